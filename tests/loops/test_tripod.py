@@ -311,7 +311,11 @@ def test_a_tripod_from_a_file_is_the_one_from_legs(
 @pytest.mark.parametrize(
     ("old", "other", "said"),
     [
-        ("axis = [0, 1, 0]}", 'kind = "spherical"}', "it needs 6 driven joints in space"),
+        (
+            "axis = [0, 1, 0]}",
+            'kind = "spherical"}',
+            "four joints are driven, not 3.  With three, all legs",
+        ),
         ("axis = [0, 1, 0]}", "axis = [0, 1, 1]}", "h1 keeps .* its axis is horizontal"),
         ("axis = [0, -1, 0], d", "axis = [0, -1, 1], d", "of theta1 and h1 have to be parallel"),
         ('"b + l", 0, 0', '"b + l", "l", 0', "has to contain the z axis"),

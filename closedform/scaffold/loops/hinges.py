@@ -137,6 +137,8 @@ def _check_count(
         raise found.loop.error(
             f"{by} the hand {COUNTS[left]} degrees of freedom, so {COUNTS[left]} joints are "
             f"driven, not {driven}"
+            + ".  With three, all legs are hinged on the ground"
+            * (driven == TRIPOD and not inside)
         )
 
 

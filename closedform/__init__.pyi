@@ -36,6 +36,7 @@ from closedform.lemmas.oblique import LinksAndObliqueWrist as LinksAndObliqueWri
 from closedform.lemmas.oblique import LinksPastTurn as LinksPastTurn
 from closedform.lemmas.parallelogram import Parallelogram as Parallelogram
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
+from closedform.lemmas.past_parallel import LinksAround as LinksAround
 from closedform.lemmas.past_parallel import LinksPastParallel as LinksPastParallel
 from closedform.lemmas.planes import Plane as Plane
 from closedform.lemmas.quartic import OnCircle as OnCircle

@@ -50,15 +50,10 @@ class LinksPastParallel(Links):
 
     def nearest(self, turn: Turn) -> Pair:
         """The pair of the turn, changed by no more than rounding, with the rest within reach."""
-        single = turn.chain.program.vanishes(
-            f"single_{turn.name}", sp.Rational(1, 2**30), 1, "rounding is that of single precision"
-        )
-        play = choose(single, SINGLE / ROUNDING, 1)
-        turn = replace(turn, allowance=turn.let("play", play * turn.allowance))
+        turn, tolerance = _precise(turn)
         level = self.height + self.centre[2]
         most = self.radius * sp.sqrt(sp.simplify(1 - self.about[2] ** 2))
         in_height = CoordinateWithin(lambda pair: self.q(pair)[2] - level, most).nearest(turn)
-        tolerance = turn.chain.size * ROUNDING * play
         best = _Past(self, tolerance, turn.renamed(in_height, f"{turn.name}_0"))
         for k in range(1, STEPS + 1):
             best = best.better_of(best.closer(), f"{turn.name}_{k}")
@@ -76,6 +71,35 @@ class LinksPastParallel(Links):
 
 
 @dataclass(frozen=True)
+class LinksAround(Links):
+    """Two links that reach q, which a joint turns in their plane where it is free."""
+
+    def nearest(self, turn: Turn) -> Pair:
+        """The pair of the turn, changed by no more than rounding, with q within reach."""
+        turn, tolerance = _precise(turn)
+        low, high = turn.let("fold", sp.Abs(self.l1 - self.l2)), turn.let("full", self.l1 + self.l2)
+
+        def within(at: Turn) -> Within:
+            point, rate = at.linear("q", self.q)
+            return Within(point, rate, rate[0] ** 2 + rate[1] ** 2, low, high)
+
+        at = turn.renamed(super().nearest(turn), f"{turn.name}_0")
+        goal = within(at)
+        (x, y), (dx, dy) = goal.point, goal.rate
+        hub = self.q(Pair(sp.S.Zero, sp.S.Zero))
+        hx, hy = (at.let(f"hub{k}", hub[k]) for k in (0, 1))
+        vx, vy = at.let("vx", hx - x), at.let("vy", hy - y)
+        far = at.let("far", sp.sqrt(x**2 + y**2))
+        reach = at.let("reach", sp.Min(sp.Max(far, low), high))
+        sides = sign_of(hx * vy - hy * vx), sign_of(vy * dx - vx * dy)
+        ended = _ended(at.renamed(at.pair, f"{turn.name}_1"), (vx, vy), (hx, hy), reach, sides)
+        other = turn.renamed(ended, f"{turn.name}_2")
+        missed = at.let("missed", goal.miss - tolerance)
+        nearer = sp.And(missed > 0, other.let("misses", within(other).miss) < missed)
+        return _better(nearer, other.pair, at.pair)
+
+
+@dataclass(frozen=True)
 class _Past:
     """What follows from a turn of joint c, seen as before the three parallel axes turn."""
 
@@ -87,16 +111,14 @@ class _Past:
     def let(self, name: str, value: sp.Expr) -> sp.Expr:
         return value if value.is_number else self.turn.let(name, value)
 
+    def _renamed(self, name: str) -> Turn:
+        return self.turn.renamed(self.turn.pair, f"{self.turn.name}_{name}")
+
     def better_of(self, pair: Pair, name: str) -> _Past:
         """This turn, or another one if it misses less."""
         other = _Past(self.goal, self.tolerance, self.turn.renamed(pair, f"{name}_moved"))
-        better = other.miss < self.miss
-        there, here = other.turn.pair, self.turn.pair
-        s, c = (
-            sp.Piecewise((moved, better), (still, True))
-            for moved, still in ((there.s, here.s), (there.c, here.c))
-        )
-        return _Past(self.goal, self.tolerance, self.turn.renamed(Pair(s, c), name))
+        better = _better(other.miss < self.miss, other.turn.pair, self.turn.pair)
+        return _Past(self.goal, self.tolerance, self.turn.renamed(better, name))
 
     @cached_property
     def _aimed(self) -> tuple[Plane, Plane]:
@@ -185,8 +207,9 @@ class _Past:
         dx, dy = (self.let(f"d_bridged{k}", moved[k]) for k in (0, 1))
         _, low, high = self._links
         bend = self.let("bend", dx**2 + dy**2)
-        near = self.turn.renamed(self.turn.pair, f"{self.turn.name}_near")
-        return near.least(Within((self._bridged[0], self._bridged[1]), (dx, dy), bend, low, high))
+        return self._renamed("near").least(
+            Within((self._bridged[0], self._bridged[1]), (dx, dy), bend, low, high)
+        )
 
     def around(self) -> list[Pair]:
         """The turn about the three axes that moves the end of the links to where they reach."""
@@ -196,7 +219,7 @@ class _Past:
         within = self.let("within", sp.Min(sp.Max(far, low), high))
         (u, v), (du, dv) = self._aimed
         sense, side = sign_of(u * dv - v * du), sign_of(x * ky - y * kx)
-        return [self._to((kx, ky), (x, y), within, side, self.let("sense", sense), "k")]
+        return [_ended(self._renamed("around"), (kx, ky), (x, y), within, (side, sense))]
 
     def in_one_plane(self) -> list[Pair]:
         """Turns of joints a and c, whose axes are parallel, to where the links reach.
@@ -219,9 +242,9 @@ class _Past:
         here = self.let("here", self._bridged.dot(level))
         there = self._nearest(here, links, turns, aside)
         hub = self.let("past_fixed", there - aside), above
-        sense = self.let("sense", sign_of(v[0] * dv[1] - v[1] * dv[0]))
+        sense = sign_of(v[0] * dv[1] - v[1] * dv[0])
         return [
-            self._to((v[0], v[1]), hub, r, sp.Integer(side), sense, name)
+            _ended(self._renamed(name), (v[0], v[1]), hub, r, (sp.Integer(side), sense))
             for side, name in ((1, "one"), (-1, "other"))
         ]
 
@@ -248,24 +271,43 @@ class _Past:
         """The leg of a right triangle, or zero."""
         return self.let(name, sp.sqrt(sp.Max(0, (longest - other) * (longest + other))))
 
-    def _to(
-        self, v: Plane, hub: Plane, reach: sp.Expr, side: sp.Expr, sense: sp.Expr, name: str
-    ) -> Pair:
-        """Turned until the vector v, which turns in a ``sense``, ends at ``reach`` from the hub."""
-        at = _Past(
-            self.goal, self.tolerance, self.turn.renamed(self.turn.pair, f"{self.turn.name}_{name}")
-        )
-        chain = self.turn.chain
-        r = at.let("r", sp.sqrt(hub[0] ** 2 + hub[1] ** 2))
-        length = at.let("v", sp.sqrt(v[0] ** 2 + v[1] ** 2))
-        u, _ = Offset(hub, r, length).leaving(
-            chain, reach, at.let("side", side), f"past_{at.turn.name}"
-        )
-        us, uc = at.let("us", u.s), at.let("uc", u.c)
-        still = length <= chain.size * LAST
-        sine = choose(still, 0, sense * (v[0] * us - v[1] * uc) / length)
-        cosine = choose(still, 1, (v[0] * uc + v[1] * us) / length)
-        return at.turn.by(at.let("by_s", sine), at.let("by_c", cosine))
+
+def _precise(turn: Turn) -> tuple[Turn, sp.Expr]:
+    """The turn with the allowance of the precision of numbers, and how far links may miss."""
+    single = turn.chain.program.vanishes(
+        f"single_{turn.name}", sp.Rational(1, 2**30), 1, "rounding is that of single precision"
+    )
+    play = choose(single, SINGLE / ROUNDING, 1)
+    tolerance = turn.chain.size * ROUNDING * play
+    return replace(turn, allowance=turn.let("play", play * turn.allowance)), tolerance
 
 
-__all__ = ["LinksPastParallel"]
+def _better(better: sp.Basic, there: Pair, here: Pair) -> Pair:
+    """One pair if it is better, else another one."""
+    s, c = (
+        sp.Piecewise((moved, better), (still, True))
+        for moved, still in ((there.s, here.s), (there.c, here.c))
+    )
+    return Pair(s, c)
+
+
+def _ended(
+    turn: Turn, v: Plane, hub: Plane, reach: sp.Expr, sides: tuple[sp.Expr, sp.Expr]
+) -> Pair:
+    """Turned until the vector v ends at a distance ``reach`` from the hub.
+
+    The ``sides`` are that of the hub on which v is then, and the sense in which v turns.
+    """
+    side, sense = (turn.let(n, e) for n, e in zip(("side", "sense"), sides, strict=True))
+    size = turn.chain.size
+    r = turn.let("r", sp.sqrt(hub[0] ** 2 + hub[1] ** 2))
+    length = turn.let("v", sp.sqrt(v[0] ** 2 + v[1] ** 2))
+    u, _ = Offset(hub, r, length).leaving(turn.chain, reach, side, f"past_{turn.name}")
+    us, uc = turn.let("us", u.s), turn.let("uc", u.c)
+    still = length <= size * LAST
+    sine = choose(still, 0, sense * (v[0] * us - v[1] * uc) / length)
+    cosine = choose(still, 1, (v[0] * uc + v[1] * us) / length)
+    return turn.by(turn.let("by_s", sine), turn.let("by_c", cosine))
+
+
+__all__ = ["LinksAround", "LinksPastParallel"]

@@ -198,6 +198,9 @@ AT_RIGHT_ANGLES = {
     "three parallel axes, then two": [
         (D, pi / 2, 1), (E, 0, 0), (F, 0, D), (B, pi / 2, A), (C, 0, 1), (0, 0, D),
     ],
+    "three parallel axes, one, then two": [
+        (E, 0, 1), (F, 0, 0), (A, pi / 2, D), (B, pi / 2, A), (C, 0, 1), (0, 0, D),
+    ],
 }  # fmt: skip
 """Arms whose last axis can be parallel to the first ones, or the first axis to the last ones."""
 

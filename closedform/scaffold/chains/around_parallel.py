@@ -18,11 +18,12 @@ from functools import cached_property
 
 import sympy as sp
 
+from closedform.mechanics.frames import rotation
 from closedform.scaffold.chains.chainlinks import Single, Singles, parallel
-from closedform.scaffold.chains.maker import Z, followed, norm, point, times, turning
+from closedform.scaffold.chains.maker import Z, followed, heading, norm, point, times, turning
 from closedform.scaffold.chains.proposal import NoChainError
 from closedform.scaffold.chains.subproblems import SubproblemMaker
-from closedform.scaffold.chains.wrists import Carried
+from closedform.scaffold.chains.wrists import Carried, is_normal
 from closedform.scaffold.source import source
 
 SHORT = sp.Rational(1, 1000)
@@ -133,8 +134,14 @@ class Beside:
         return bool(sp.simplify(square[0, 1]) == 0 == sp.simplify(square[0, 0] - square[1, 1]))
 
     @property
+    def reaches(self) -> tuple[sp.Expr, sp.Expr]:
+        """The lengths of the two links."""
+        one, two = (norm(joint.shift[:2, 0]) for joint in self.group[:2])
+        return one, two
+
+    @property
     def lengths(self) -> list[str]:
-        return [source(norm(joint.shift[:2, 0])) for joint in self.group[:2]]
+        return [source(length) for length in self.reaches]
 
     def told(self, others: str) -> str:
         numbers = [joint.number for joint in (*self.group, *self.others)]
@@ -206,30 +213,66 @@ class AroundParallelMaker(SubproblemMaker):
         return "past"
 
     def _parallel_at_last(self, beside: Beside) -> str:
-        """The axes of b and c are parallel: their direction gives joint a, and the height c."""
-        a, _, c = beside.others
+        """The axes of b and c are parallel: the three axes, a and both turn as a wrist does.
+
+        This gives joint a, and the sum of b and c; the height along the three axes gives c.
+        """
+        a, b, c = beside.others
         self._seen_from_tool(beside.arm)
         seen, (end, point_end) = beside.seen, beside.ends
-        w, rest = a.end * Z, sp.Symbol("p[2]") - beside.height + seen[2] * point_end[2]
-        reach = norm(seen[:2, 0]) * norm(point_end[:2, 0])
-        self.within_reach(beside.to_end("pair"), rest, source(reach))
-        first = self._turn(
-            a, (*turning(w, beside.toward), beside.levels[0]), "seen_across", scale="1"
-        )
-        self.vector("to_end", beside.to_end(first))
-
-        def direction(factor: str) -> str:
-            return f"{self.unknown(a)}: -{factor}"
-
-        axis = f"{source(beside.group[2].end)} * turned({first}) * {source(w)}"
-        self._lift(beside, axis, f"{source(end[2])} * M[:, 2]", direction)
-        self._links_less(beside, beside.place("pair"), "to_end")
-        sides = (*turning(seen, point_end), sp.Symbol("to_end[2]") - rest)
-        third = self._turn(c, sides, "links")
+        wrist = beside.lift, a, replace(b, turn=b.turn + end[2] * c.turn)
+        self.add(f"left1 = ik.matrix('left1', {followed('M', b.end.T)})")
+        rest = sp.Symbol("p[2]") - beside.height + seen[2] * point_end[2]
+        if is_normal(wrist[:2]):
+            e = beside.group[2].end * Z
+            e = -e if e[1].is_negative else e
+            self.vector("aimed", f"left1[2, 2] * {source(beside.toward)}", "aligned")
+            self.vector("to_end", self._to_end_by_axis(beside, point("aimed")), "end_aligned")
+            self.add(f"to_end = {source(rotation('z', sp.pi / 2 - heading(e)))} * to_end")
+            self.more = self._aligned(beside)
+            self.orientation(wrist, "left1")
+            R = beside.group[2].end
+            self.vector("aimed", times(R.T, f"(turned({self.lifted}).T * left1[:, 2])"))
+            self.vector("to_end", self._to_end_by_axis(beside, point("aimed")))
+        else:
+            _, sense = self.middle(beside.lift, a)
+            if sense:
+                self.vector("to_end", beside.to_end(self.untilted(a, "Pair(0, 1)")), "end_aligned")
+                self.more = self._aligned(beside)
+            else:
+                reach = norm(seen[:2, 0]) * norm(point_end[:2, 0])
+                self.within_reach(beside.to_end("pair"), rest, source(reach))
+                self.before_middle = "seen_across"
+            self.orientation(wrist, "left1")
+            self.vector("to_end", beside.to_end(f"pair{a.number}"))
+        self._links_less(beside, beside.place("pair"), "to_end", "LinksAround")
+        third = self._turn(c, (*turning(seen, point_end), sp.Symbol("to_end[2]") - rest), "links")
         self.vector("q", beside.place(third))
-        self.add(f"M = ik.matrix('M_wrist', {beside.left(third)})")
-        self._last(beside, first, direction)
+        self._two_links_less(beside)
         return beside.told("{1} and {2} parallel")
+
+    def _to_end_by_axis(self, beside: Beside, aimed: sp.Matrix) -> str:
+        """What joint a carries, by where it turns the axis after it, which is across its own."""
+        a, third = beside.others[0], beside.group[2]
+        w, s = a.end * Z, a.shift
+        along, aside = sp.simplify(s.dot(w)), sp.simplify(s.dot(Z.cross(w)))
+        x, y, _ = aimed
+        moved = sp.Matrix([along * x - aside * y, along * y + aside * x, s[2]])
+        return source(third.shift + third.end * moved)
+
+    def _aligned(self, beside: Beside) -> str:
+        """The argument that keeps the three joints within reach where joint c is free too.
+
+        Then it turns the place that the links reach in their plane, which adds to their reach.
+        """
+        _, point_end = beside.ends
+        own, (one, two) = norm(point_end[:2, 0]), beside.reaches
+        least, most = sp.Max(0, sp.Abs(one - two) - own, own - one - two), one + two + own
+        lengths = ", ".join(source(e) for e in ((most + least) / 2, (most - least) / 2))
+        self.vector("q", f"p + M[:, 2] * {source(point_end[2])}", "q_free")
+        arguments = f"(q[0], q[1]), ({lengths}), (to_end[0], to_end[1])"
+        self.add(f"reaching = Reaching.turning(ik, {arguments}, lever=ik.size)")
+        return ", reaching=reaching"
 
     def _lift(self, beside: Beside, axis: str, aimed: str, direction: Callable[[str], str]) -> None:
         """Solve the three joints as one by the axis of b, before they turn it and after.
@@ -241,10 +284,10 @@ class AroundParallelMaker(SubproblemMaker):
         because = f"{{{direction('(aimed[2] + axis[2])')}}}"
         self.lifted = self._rotate(beside.lift, "axis", "aimed", because, scale="1")
 
-    def _links_less(self, beside: Beside, place: str, to_end: str) -> None:
+    def _links_less(self, beside: Beside, place: str, to_end: str, goal: str = "Links") -> None:
         """Name the goal that two links reach a place less what comes after them."""
         inside = f"{place} - turned({self.lifted}) * ({to_end})"
-        self.add(f"links = Links(lambda pair: {inside}, {', '.join(beside.lengths)})")
+        self.add(f"links = {goal}(lambda pair: {inside}, {', '.join(beside.lengths)})")
 
     def _last(self, beside: Beside, first: str, direction: Callable[[str], str]) -> None:
         """Solve joint b for the rotation that is left, and the two links."""

@@ -48,6 +48,8 @@ class WristMaker(Maker):
     """Further arguments of the lemma of a wrist, besides its angles."""
     carried: Carried | None = None
     """What a wrist of any angles carries, if two links have to reach it."""
+    before_middle: str = ""
+    """The goal of the middle joint of a wrist of any angles, if no two links have to reach it."""
     tilted: dict[int, tuple[str, sp.Expr]] = field(default_factory=dict)
     """Of the middle joint of a wrist of equal angles: the unknown, and what it is ahead of it."""
 
@@ -166,7 +168,7 @@ class WristMaker(Maker):
             self.add(f"R_between = ik.matrix('R_between', {onward})")
         between = "R_between" if onward else source(first.end)
         w, (x, sense) = middle.end * Z, self.middle(first, middle, onward)
-        past = self._past_turn(f"{between} * turned({{}}) * {source(w)}", middle, sense)
+        past = self._past_turn(f"{between} * turned({{}}) * {source(w)}", middle)
         if sense:
             pair = self._tilt(first, middle, past)
         else:
@@ -203,17 +205,14 @@ class WristMaker(Maker):
         self.solve("spin", f"{self.unknown(last)}, R_rest, [{each}]", f"pair{last.number}")
         self.lifted = lifted
 
-    def _past_turn(self, last: str, middle: Single, sense: int) -> str:
+    def _past_turn(self, last: str, middle: Single) -> str:
         """The goal of the middle turn, which moves the ``last`` axis, if links are reached after.
 
         The target of the axis is that of ``M``.
         """
         if self.carried is None:
-            return ""
-        pair = "pair"
-        if sense:
-            _, offset = self.tilted[middle.number]
-            pair = self._less_by_angle(pair, offset)
+            return self.before_middle
+        pair = self.untilted(middle, "pair")
         moved = f"offset={self.carried.offset}, last=lambda pair: {last.format(pair)}"
         point, lengths = self.carried.point, ", ".join(self.carried.lengths)
         self.add(f"past = LinksPastTurn(lambda _: {point}, {lengths}, axis=M[:, 2], {moved})")
@@ -222,7 +221,7 @@ class WristMaker(Maker):
     def _free(self) -> str:
         """The argument that keeps the first turn within reach where the target leaves it free."""
         if self.carried is None:
-            return ""
+            return self.more
         (x, y, _), q = self.carried.offset_at, self.carried.point
         if x == y == 0:
             return ""
@@ -256,15 +255,21 @@ class WristMaker(Maker):
             self.tilted[middle.number] = self.angle(middle.turn - ahead), -ahead
         return self.tilted[middle.number][0], sense
 
+    def untilted(self, middle: Single, pair: str) -> str:
+        """The pair of the middle joint of a wrist from that of its unknown."""
+        if middle.number not in self.tilted:
+            return pair
+        _, ahead = self.tilted[middle.number]
+        return self._less_by_angle(pair, ahead)
+
     def _tilt(self, first: Single, middle: Single, past: str) -> str:
         """Solve the middle joint of a wrist of equal angles."""
         x, sense = self.middle(first, middle)
-        _, back = self.tilted[middle.number]
         name, pair = f"tilted{middle.number}", f"pair{middle.number}"
         more = (", sense=-1" if sense < 0 else "") + (f", toward={past}" if past else "")
         k = sp.simplify(1 - (first.end.T * Z)[2] ** 2)
         self.solve("tilt", f"{x}, {source(k)}, M[:, 2], {FLIP}{more}", name, 2)
-        self.add(f"{pair} = {self._less_by_angle(name, back)}")
+        self.add(f"{pair} = {self.untilted(middle, name)}")
         return pair
 
 

@@ -50,7 +50,8 @@ CHAIN = (
 )  # fmt: skip
 LINKED = (
     "CoordinateWithin", "LinkAtHeight", "Links", "LinksAndObliqueWrist", "LinksAndWrist",
-    "LinksAtHeight", "LinksPastParallel", "LinksPastTurn", "OnCircle", "Pair", "TwoTurns",
+    "LinksAround", "LinksAtHeight", "LinksPastParallel", "LinksPastTurn", "OnCircle", "Pair",
+    "TwoTurns",
 )  # fmt: skip
 AUTHOR = (
     "Chain",

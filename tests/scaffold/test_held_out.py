@@ -19,12 +19,14 @@ from closedform.scaffold.new import InverseSearch, Script, new
 FOLDER = TESTS / "held_out"
 FOUND = {
     "al5d": ("axes 2 and 3 parallel, and 1 joint that turns the tool", 2),
+    "hp6": ("turret and two parallel joints, with a spherical wrist", 8),
     "m16ib": ("turret and two parallel joints, with a spherical wrist", 8),
     "nao_arm": ("a turret and a joint, and 2 joints that turn the tool", 2),
     "nao_leg": ("spherical shoulder, axes 5 and 4 parallel", 8),
     "pr2": ("spherical wrist, axes 3 and 4 meet, with t1 given", 8),
     "phantomx": ("axes 2 and 3 parallel, and 1 joint that turns the tool", 2),
     "s4_abb_2p8": ("turret and two parallel joints, with a spherical wrist", 8),
+    "wam": ("spherical wrist, axes 1 and 2 meet, with t3 given", 8),
     "youbot": ("axes 2 and 3 parallel, and 2 joints that turn the tool", 4),
 }
 REFUSED = {

@@ -467,3 +467,14 @@ def test_the_claims_follow_the_sections_of_the_paper() -> None:
     results = tuple(ClaimResult(c.label, c.where, "", "proved", "", "") for c in d.claims)
     rows = Claims(d, Proof(d.name, d.paper.key, (), 0, (), claims=results), []).rows()
     assert [r["where"] for r in rows if r["heading"]] == [*map(escape, d.paper.sections)]
+def test_a_note_of_many_functions_is_told_once() -> None:
+    text = render("latex/robot.tex.jinja", context("five_bar"))
+    section = text.partition(r"\section{Functions}")[2]
+    assert section.count("NaN for an assembly mode that does not exist.") == 1
+    assert r"\texttt{jacobian\_parallel}" in section.partition("NaN for an assembly mode")[0]
+    assert section.count("Not finite at a parallel singularity.") == 2
+
+
+def test_the_parts_of_a_target_are_one_list() -> None:
+    first = context("irb2400")["inverses"][0]["stages"][0]["from"]
+    assert first.startswith("From $p_{x}$, $p_{y}$, $R_{13}$ and $R_{23}$ of the forward map")

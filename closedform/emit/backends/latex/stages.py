@@ -358,13 +358,9 @@ class Stages:
         ]
         names = [f"${self.page.math(s)}$" for s in symbols if s not in rotation]
         turned = [s for s in symbols if s in rotation]
-        if turned:
-            names.append(
-                "the rotation $R$"
-                if len(turned) > FEW
-                else listed([f"${self.page.math(s)}$" for s in turned])
-            )
-        return listed(names)
+        if len(turned) > FEW:
+            return listed([*names, "the rotation $R$"])
+        return listed([*names, *(f"${self.page.math(s)}$" for s in turned)])
 
     def count(self, step: Sequence[Solving]) -> str:
         """How many solutions there are, and the signs that tell them apart."""

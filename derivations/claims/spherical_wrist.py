@@ -88,7 +88,14 @@ def rotations(d: Derivation, wrist: Wrist) -> None:
         "revolute joints",
         "“These joints {must} be of the {revolute} type.”",
         lambda moved: Not(
-            Identity(turn.diff(moved), sp.zeros(3), names=("the rate of the rotation", "no rate"))
+            Identity(
+                turn.diff(moved),
+                sp.zeros(3),
+                names=(
+                    "the derivative of the rotation",
+                    "a rotation that the joint does not change",
+                ),
+            )
         ),
         phrases=[{"revolute": theta, "prismatic": offset}],
         opposites={"must": "need not"},

@@ -64,8 +64,8 @@ A2 = denavit_hartenberg(l2, 0, 0, theta2)
 pose = chain([A1, A2])
 by_frames = d.step(
     "Pose by Denavit-Hartenberg",
-    "Table I of the paper has the lengths l1 and l2, and no twist or offset.  The last column of the product of the two "
-    "matrices is the position found by geometry.",
+    "Table I of the paper has the lengths l1 and l2, and no twist or offset.  The last column of "
+    "the product of the two matrices is the position found by geometry.",
     {"A_1": A1, "A_2": A2, "T = A_1 A_2": pose},
     published=("(6)", "(7)", "(8)", "Table I"),
     proves=(
@@ -250,10 +250,10 @@ d.step(
 d.step(
     "Inverse: the shoulder",
     "The direction of the first link is beta - alpha, where beta = atan2(p_y, p_x) is that of the "
-    "hand and alpha the angle of the triangle at the base.  Along the first link and across it, the hand is r cos(alpha) and r sin(alpha) from "
-    "the base.  With N and M, the sine and the cosine of theta2 are 2 sigma_elbow sqrt(M N) and M "
-    "- N, each divided by M + N.  The hand can be on the base axis only if l1 = l2.  Then every "
-    "theta1 is a solution; we return 0.",
+    "hand and alpha the angle of the triangle at the base.  Along the first link and across it, "
+    "the hand is r cos(alpha) and r sin(alpha) from the base.  With N and M, the sine and the "
+    "cosine of theta2 are 2 sigma_elbow sqrt(M N) and M - N, each divided by M + N.  The hand can "
+    "be on the base axis only if l1 = l2.  Then every theta1 is a solution; we return 0.",
     {
         r"r\cos\alpha": l1 + l2 * cos(theta2),
         r"r\sin\alpha": l2 * sin(theta2),

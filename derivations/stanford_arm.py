@@ -64,8 +64,9 @@ d.explain(
 d.step(
     "Factors",
     "The wrist does not move its centre, so the determinant is that of the arm times that of the "
-    "wrist, the two blocks on the diagonal of J.  It vanishes where the boom is vertical (shoulder), where it is drawn in so far that "
-    "the wrist is on the axis of the shoulder (boom), and where axes 4 and 6 coincide (wrist).",
+    "wrist, the two blocks on the diagonal of J.  It vanishes where the boom is vertical "
+    "(shoulder), where it is drawn in so far that the wrist is on the axis of the shoulder (boom), "
+    "and where axes 4 and 6 coincide (wrist).",
     {
         r"\det J_{11}": determinant(arm.geometric[:3, :3]),
         r"\det J_{22}": determinant(arm.geometric[3:, 3:]),

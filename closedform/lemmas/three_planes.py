@@ -21,12 +21,12 @@ $\rho_k = |\mathbf w_{k+1}\times\mathbf w_{k+2}|$, and let $C \ne S$.  Then exac
 right-handed orthonormal triples $\mathbf v_1$, $\mathbf v_2$, $\mathbf v_3$ satisfy $\mathbf
 w_k\cdot\mathbf v_k = 0$ for all $k$.  Four are $\mathbf v_k = \tau_k\mathbf u_k$, for signs with
 $\tau_1\tau_2\tau_3 = 1$.  The other four, for the same signs, are $$\mathbf v_k =
-\tau_k(x_k\mathbf u_k + y_k\mathbf p_k), \qquad x_k = \frac{c_{k+2}s_{k+1} +
-s_ks_{k+2}c_kc_{k+1}}{\rho_{k+1}\rho_{k+2}}, \qquad y_k = \frac{C -
+x_k\mathbf u_k + y_k\mathbf p_k, \qquad x_k = \tau_k\frac{c_{k+2}s_{k+1} +
+s_ks_{k+2}c_kc_{k+1}}{\rho_{k+1}\rho_{k+2}}, \qquad y_k = \tau_k\frac{C -
 S}{\rho_{k+1}\rho_{k+2}}.$$""",
     proof=r"""Substitution shows that all eight are solutions.  For the last four, $\rho_k^2 = 1 -
-s_{k+1}^2c_{k+2}^2 = c_{k+1}^2 + s_{k+1}^2s_{k+2}^2 = s_{k+2}^2 + c_{k+2}^2c_{k+1}^2$, so that $x_k
-+ iy_k$ is the product of $(c_{k+2} - is_{k+2}s_k)/\rho_{k+1}$ and $(s_{k+1} +
+s_{k+1}^2c_{k+2}^2 = c_{k+1}^2 + s_{k+1}^2s_{k+2}^2 = s_{k+2}^2 + c_{k+2}^2c_{k+1}^2$, so that
+$\tau_k(x_k + iy_k)$ is the product of $(c_{k+2} - is_{k+2}s_k)/\rho_{k+1}$ and $(s_{k+1} +
 ic_{k+1}c_k)/\rho_{k+2}$, two numbers of absolute value 1.  In the first four $y_k = 0$, in the
 others $y_k \ne 0$, because $C \ne S$.  So all eight differ.  There are no others: a triple is a
 rotation, so a unit quaternion up to its sign, and the three conditions are homogeneous and
@@ -98,9 +98,9 @@ def axes_in_three_planes(
     lemma = Lemma(
         "axes in three planes",
         r"\mathbf w_k\cdot\mathbf v_k = 0,\ \mathbf v_k \ne \pm\mathbf u_k\;\Rightarrow\;"
-        r"\mathbf v_k = \tau_k(x_k\mathbf u_k + y_k\mathbf p_k),\quad x_k = "
-        r"\frac{c_{k+2}s_{k+1} + s_ks_{k+2}c_kc_{k+1}}{\rho_{k+1}\rho_{k+2}},"
-        r"\quad y_k = \frac{C - S}{\rho_{k+1}\rho_{k+2}}",
+        r"\mathbf v_k = x_k\mathbf u_k + y_k\mathbf p_k,\quad x_k = "
+        r"\tau_k\frac{c_{k+2}s_{k+1} + s_ks_{k+2}c_kc_{k+1}}{\rho_{k+1}\rho_{k+2}},"
+        r"\quad y_k = \tau_k\frac{C - S}{\rho_{k+1}\rho_{k+2}}",
         tuple(equations),
         solution,
         4,
@@ -109,6 +109,11 @@ def axes_in_three_planes(
         roles=(
             *((rf"c_{k}", sp.cos(q)) for k, q in enumerate(joints, 1)),
             *((rf"s_{k}", sp.sin(q)) for k, q in enumerate(joints, 1)),
+            (r"\tau_1", tau[0]),
+            (r"\tau_2", tau[1]),
+            (r"\tau_3", tau[2]),
+            ("C", sp.prod(sp.cos(q) for q in joints)),
+            ("S", sp.prod(sp.sin(q) for q in joints)),
         ),
         matrix="R",
     )

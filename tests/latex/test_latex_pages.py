@@ -478,3 +478,21 @@ def test_a_note_of_many_functions_is_told_once() -> None:
 def test_the_parts_of_a_target_are_one_list() -> None:
     first = context("irb2400")["inverses"][0]["stages"][0]["from"]
     assert first.startswith("From $p_{x}$, $p_{y}$, $R_{13}$ and $R_{23}$ of the forward map")
+
+
+def test_the_figure_of_a_mechanism_follows_its_description() -> None:
+    """Below the tables it was pushed behind the notation, three pages from its text."""
+    text = render("latex/robot.tex.jinja", context("h6ar"))
+    assert text.index(r"\figuresof{h6ar}") < text.index("Parameter & Name")
+
+
+def test_coordinates_of_one_point_share_a_row() -> None:
+    symbols = [form for form, _ in context("h6ar")["symbols"]]
+    assert r"x,\ y,\ z" in symbols and r"x_{T},\ y_{T},\ z_{T}" in symbols
+
+
+def test_a_lemma_names_what_its_formula_contains() -> None:
+    """The signs tau and the products C and S of the agile wrist were in no sentence."""
+    (fk,) = (i for i in context("agile_wrist")["inverses"] if i["name"] == "fk")
+    told = str(fk)
+    assert "is $" in told and all(rf"${letter}$ is $" in told for letter in ("C", "S"))

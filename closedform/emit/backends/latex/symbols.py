@@ -263,6 +263,8 @@ DEFINED = re.compile(r"(.*?)see (\\eqref\{[^{}]*\})")
 """A meaning with the number of the equation that defines the symbol."""
 INDEXED = re.compile(r"(.+)_\{(\d+)\}('?)")
 """A symbol with a number."""
+COORDINATE = re.compile(r"[xyz](_\{\w+\})?")
+"""A coordinate of a point, with the index of the point."""
 FEW = 3
 """So many names in a row are all written."""
 WIDEST = 24
@@ -296,12 +298,17 @@ def joined(rows: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
 
 
 def side_by_side(rows: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
-    """The rows, with those beside the first one that differ from it in their number alone."""
+    """The rows, with those beside the first one that differ from it in their number alone.
+
+    So are those of a point: x, y, z stand before x_T, y_T, z_T.
+    """
     first: dict[Any, int] = {}
 
     def place(row: tuple[int, tuple[str, str]]) -> int:
         k, (form, meaning) = row
         stem, label = INDEXED.fullmatch(form), DEFINED.fullmatch(meaning)
+        if (coordinate := COORDINATE.fullmatch(form)) and not label:
+            return first.setdefault((coordinate[1], meaning), k)
         return first.setdefault((stem[1], stem[3], label[1]), k) if stem and label else k
 
     return [row for _, row in sorted(enumerate(rows), key=place)]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from mpl_toolkits.mplot3d import proj3d
 from numpy.typing import ArrayLike
 
 from closedform.plot import labels
@@ -192,10 +193,23 @@ class Diagram:
         note = self.ax.text(*here[0], text, color=shade, fontsize=size, zorder=9)
         labels.add(self.ax, note, here)
 
-    def clean(self, drawn: Sequence[Array], margin: float = 0.06, zoom: float = 1.15) -> None:
+    def _share(self, points: Array) -> float:
+        """How much of the width or the height of the axes some points in space take."""
+        across, up, _ = proj3d.proj_transform(*points.T, self.ax.get_proj())
+        seen = self.ax.transData.transform(np.column_stack([across, up]))
+        return float(2 * np.nanmax(np.abs(self.ax.transAxes.inverted().transform(seen) - 0.5)))
+
+    def clean(
+        self,
+        drawn: Sequence[Array],
+        margin: float = 0.06,
+        zoom: float = 1.15,
+        filling: float | None = None,
+    ) -> None:
         """Show exactly what is drawn, at equal scales and without the axes of a plot.
 
-        A drawing in space is enlarged by ``zoom``, over the edge of the axes if it is tall.
+        A drawing in space is enlarged by ``zoom``, over the edge of the axes if it is tall, or
+        until it is as large as the share ``filling`` of the axes.
         """
         everything = np.vstack([self._here(d) for d in drawn])
         low, high = np.nanmin(everything, axis=0), np.nanmax(everything, axis=0)
@@ -205,6 +219,9 @@ class Diagram:
             for k, name in enumerate("xyz"):
                 getattr(self.ax, f"set_{name}lim")(low[k], high[k])
             self.ax.set_box_aspect(high - low, zoom=zoom)
+            if filling is not None:
+                share = self._share(everything)
+                self.ax.set_box_aspect(high - low, zoom=zoom * filling / share)
         else:
             self.ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
             self.ax.set_aspect("equal")

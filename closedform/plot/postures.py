@@ -25,8 +25,8 @@ CENTRED = 2.5
 """How much larger axes and arcs are where all joints are at one point."""
 WRIST = 3
 """If branches look alike, they differ in the axes of these last joints."""
-UNDER_A_TITLE = 0.9
-"""How much a drawing in space is enlarged below a title, so that it does not reach into it."""
+UNDER_A_TITLE = 0.84
+"""The share of its panel that a drawing in space fills: it must not reach into the title."""
 TITLE = {2: 11, 4: 15}
 """The size of the names of branches, by columns: a page is as wide as both."""
 NEARLY = 0.4
@@ -219,7 +219,7 @@ def branches(
             along=along,
         )  # fmt: skip
         ends = _show_axes(diagram, along)
-        diagram.clean([*frame, *ends], margin=0.02, zoom=UNDER_A_TITLE)
+        diagram.clean([*frame, *ends], margin=0.02, filling=UNDER_A_TITLE)
         panel.set_title(spoken(name), fontsize=TITLE[columns], y=1.0)
     return panels[0]
 

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from libraries import FORWARD
 from matplotlib import pyplot as plt
+from matplotlib.transforms import Bbox
 from places import ROOT
 
 import closedform
@@ -337,3 +338,14 @@ def test_the_scale_of_a_mixed_jacobian_names_its_units() -> None:
     assert ax.collections[0].colorbar.ax.get_ylabel().endswith("(m, rad)")
     ax = plot.field(module("planar_2r"), "condition", unit="cm", resolution=12)
     assert "rad" not in ax.collections[0].colorbar.ax.get_ylabel()
+@pytest.mark.parametrize("name", ["orthoglide", "irb260", "agile_wrist"])
+def test_a_branch_fills_its_panel_below_the_title(name: str) -> None:
+    """The drawings of the orthoglide took a third of their panels."""
+    ax = plot.branches(import_module(f"closedform.generated.numpy.{name}"))
+    ax.figure.draw_without_rendering()
+    for panel in ax.figure.axes:
+        boxes = [line.get_window_extent() for line in panel.lines + panel.collections]
+        seen = Bbox.union([b for b in boxes if np.isfinite(b.get_points()).all() and b.height > 0])
+        size = max(seen.width / panel.bbox.width, seen.height / panel.bbox.height)
+        assert 0.6 <= size <= 1.02
+        assert seen.y1 <= panel.title.get_window_extent().y0 + 1

@@ -21,7 +21,8 @@ def joint_axes(
 ) -> dict[str, tuple[Array, Array]]:
     """A point and a unit vector along the axis of each joint of the skeleton, in one posture.
 
-    A revolute joint turns by the right-hand rule about the vector, and a slide moves along it.
+    A revolute joint turns by the right-hand rule about the vector, and a slide moves along it as
+    it grows.
     For a passive joint the vector may have the other sign.
     """
     r = Robot.of(robot, params)
@@ -34,6 +35,8 @@ def joint_axes(
         at = place[joint.points[-1]] if name in driven else place[joint.points[0]]
         if joint.kind == "prismatic" or len(joint.points) == 2:
             along = place[joint.points[1]] - place[joint.points[0]]
+            if joint.kind == "prismatic" and name in driven and joints[driven.index(name)] < 0:
+                along = -along
         elif name in driven:
             along = _turning(r, joints, mode, name)
         else:

@@ -349,3 +349,11 @@ def test_a_branch_fills_its_panel_below_the_title(name: str) -> None:
         size = max(seen.width / panel.bbox.width, seen.height / panel.bbox.height)
         assert 0.6 <= size <= 1.02
         assert seen.y1 <= panel.title.get_window_extent().y0 + 1
+
+
+@pytest.mark.parametrize("at", [-0.6, 0.6])
+def test_the_axis_of_a_slide_points_to_where_it_grows(at: float) -> None:
+    """The arrows of the 3-PRS mechanism pointed down, because its sliders were below zero."""
+    robot = import_module("closedform.generated.numpy.orthoglide")
+    for k, (_, along) in enumerate(plot.joint_axes(robot, [at] * 3).values()):
+        assert along == pytest.approx(np.eye(3)[k])

@@ -1,4 +1,4 @@
-"""``python -m benchmarks`` times the generated code and its peers, in turns on one core.
+"""``python -m benchmarks`` times the generated code and its peers, taking turns on one core.
 
 The values of every competitor are checked before it is timed. The competitors of a table run in
 turns; their medians are printed, with the ratios to closedform. A competitor that fails is listed
@@ -58,7 +58,7 @@ class Report:
         print(line, flush=True)
 
     def table(self, title: str, unit: str, competitors: Competitors, rounds: int) -> None:
-        """Time all competitors in turns; the ratios are to the first one."""
+        """Time all competitors, taking turns; the ratios are to the first one."""
         self.write(f"\n| {title} | median, {unit} | times closedform |\n|---|---:|---:|")
         found = medians(competitors, rounds)
         best = next(iter(found.values()), 1.0)
@@ -235,7 +235,7 @@ def main() -> int:
     chosen = [c for c in CASES if not arguments.cases or any(w in c.title for w in arguments.cases)]
     report = Report()
     where = "on all cores" if "threads" in tables else "on one core"
-    report.write(f"# Benchmarks\n\nWritten by `make bench`; competitors run in turns {where}.\n")
+    report.write(f"# Benchmarks\n\nWritten by `make bench`; competitors take turns {where}.\n")
     report.write(f"{machine()}; {versions()}.")
     with tempfile.TemporaryDirectory() as folder:
         if "c" in tables:

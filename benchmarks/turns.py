@@ -1,4 +1,4 @@
-"""Times competitors in turns, so that what else the machine does touches them alike."""
+"""Times competitors that take turns, so that what else the machine does touches them alike."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ def double_parallelogram(
             "0": sp.Matrix(lower.equations),
             r"(\phi_1, \beta_1)_{\text{parallelogram}}": (sp.Integer(0), theta2),
             r"\phi_{1,\text{crossed}}": crossed,
-            r"\beta_{1,\text{crossed}}": 2 * gamma1 + phi1 - theta2,
+            r"\beta_{1,\text{crossed}}": r"2 \gamma_1 + \phi_{1,\text{crossed}} - \theta_2",
             r"1 - \cos\phi_{1,\text{crossed}}": meet,
         },
         proves=(

@@ -80,7 +80,7 @@ def words(seconds: float) -> str:
 
 
 def compared(task: str, found: list[Competitor], rounds: int) -> list[str]:
-    """The rows of a task: the answers are checked once, then all run in turns."""
+    """The rows of a task: the answers are checked once, then all take turns."""
     runs: dict[str, Callable[[], float]] = {}
     results: dict[str, str] = {}
     mine = found[0].ways[task]

@@ -8,7 +8,7 @@ same for each library that is installed. Solvers that enumerate have to give the
 sets of postures. Those that iterate from a seed find one solution, which need not be the nearest;
 the tables count how often it is. Each library is used as its documentation recommends. It solves
 100 targets, one after the other if it does not take several, or follows a path of 200 points. The
-times are medians for one target or point, on {machine}, all in turns in one process. What is
+times are medians for one target or point, on {machine}, all taking turns in one process. What is
 computed once, such as a derivation or compiling, is not counted; the first table shows it.
 
 This page is written by `python -m benchmarks.side_by_side`; libraries that are not installed are

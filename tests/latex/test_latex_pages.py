@@ -407,6 +407,7 @@ def test_a_continuum_says_what_is_arbitrary_and_what_holds() -> None:
         "latex/robot.tex.jinja", context("planar_2r")
     )
 
+
 def test_a_note_of_many_functions_is_printed_once() -> None:
     """Seven functions of a delta robot repeated the same sentence."""
     text = render("latex/robot.tex.jinja", context("delta"))
@@ -467,6 +468,8 @@ def test_the_claims_follow_the_sections_of_the_paper() -> None:
     results = tuple(ClaimResult(c.label, c.where, "", "proved", "", "") for c in d.claims)
     rows = Claims(d, Proof(d.name, d.paper.key, (), 0, (), claims=results), []).rows()
     assert [r["where"] for r in rows if r["heading"]] == [*map(escape, d.paper.sections)]
+
+
 def test_a_note_of_many_functions_is_told_once() -> None:
     text = render("latex/robot.tex.jinja", context("five_bar"))
     section = text.partition(r"\section{Functions}")[2]

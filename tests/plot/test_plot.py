@@ -338,6 +338,8 @@ def test_the_scale_of_a_mixed_jacobian_names_its_units() -> None:
     assert ax.collections[0].colorbar.ax.get_ylabel().endswith("(m, rad)")
     ax = plot.field(module("planar_2r"), "condition", unit="cm", resolution=12)
     assert "rad" not in ax.collections[0].colorbar.ax.get_ylabel()
+
+
 @pytest.mark.parametrize("name", ["orthoglide", "irb260", "agile_wrist"])
 def test_a_branch_fills_its_panel_below_the_title(name: str) -> None:
     """The drawings of the orthoglide took a third of their panels."""

@@ -84,7 +84,8 @@ class Identity(Check):
         entry = ""
         if shape:
             row, column = divmod(found.entry, shape[1])
-            entry = f"entry ({row + 1},{column + 1}) of "
+            place = f"({row + 1},{column + 1})" if shape[1] > 1 else f"{row + 1}"
+            entry = f"entry {place} of "
         elif isinstance(self.printed, Sequence) and not self.parts:
             entry = f"part {found.entry + 1} of "
         printed, derived = (

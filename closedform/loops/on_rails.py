@@ -490,7 +490,8 @@ def _inverse(m: OnRails, loop: Step) -> None:
     beyond = "UNREACHABLE: the bars of a leg do not reach." * bool(m.planes)
     solved.export({"x": m.target}, {"x": m.target}, beyond, [f"SINGULAR: {m.meet}."])
     zeros, links = (sp.S.Zero,) * len(m.loop), tuple(s.link for s in solved.found)
-    d.inverses.append(Inverse("ik", d.actuated, zeros, m.loop, images="fk", links=links))
+    answers = Inverse("ik", d.actuated, zeros, m.loop, images="fk", angles=(m.yaw,), links=links)
+    d.inverses.append(answers)
 
 
 __all__ = ["on_rails"]

@@ -1,10 +1,11 @@
 """A hand that turns about z in four planes: a Quadrupteron, and one with oblique axes."""
 
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
-from loop_files import apart, derived, newton, script_of
+from loop_files import apart, derived, newton, read_script, script_of
 from places import TESTS
 
 from closedform import Derivation, Paper, Plane, platform
@@ -158,10 +159,16 @@ def test_planes_that_do_not_hold_the_hand_say_why() -> None:
         four([x, x, y, z], [z, z, z, x])
 
 
-def test_a_leg_whose_last_joint_cannot_turn_is_named(tmp_path) -> None:
+def test_a_leg_whose_last_joint_cannot_turn_is_named(tmp_path: Path) -> None:
     text = QUADRUPTERON.replace(
         'at = "C1", kind = "universal", ', 'at = "C1", kind = "spherical", '
     )
     assert text != QUADRUPTERON
     with pytest.raises(TableError, match="the last joint is universal, unless the axes are vert"):
         script_of("quadrupteron", text, tmp_path)
+
+
+def test_a_yaw_of_half_a_turn_counts_as_an_angle(tmp_path: Path) -> None:
+    """In single precision it may be rounded to beyond pi, and come back as nearly -pi."""
+    d = read_script(script_of("quadrupteron", QUADRUPTERON, tmp_path))
+    assert [str(x) for i in d.inverses if i.function == "ik" for x in i.angles] == ["yaw"]

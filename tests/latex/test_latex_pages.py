@@ -465,7 +465,12 @@ def test_the_claims_follow_the_sections_of_the_paper() -> None:
     assert {c.where for c in d.claims} <= {*d.paper.sections}
     late = next(c for c in d.claims if c.where.startswith("5"))
     assert d.claims.index(late) < len(d.claims) - 1  # it is judged earlier
-    results = tuple(ClaimResult(c.label, c.where, "", "proved", "", "") for c in d.claims)
+    results = tuple(
+        ClaimResult(
+            label=c.label, where=c.where, printed="", kind="proved", evidence="", corrected=""
+        )
+        for c in d.claims
+    )
     rows = Claims(d, Proof(d.name, d.paper.key, (), 0, (), claims=results), []).rows()
     assert [r["where"] for r in rows if r["heading"]] == [*map(escape, d.paper.sections)]
 

@@ -1378,8 +1378,6 @@ _JACOBIAN = _runtime.Kernel(
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     """Derivative of the task with respect to the joints.
 
-    Source: derivative of the forward map.
-
     Parameters
     ----------
     q : array_like, shape (..., 6)

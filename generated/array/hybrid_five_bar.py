@@ -1258,10 +1258,10 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
       at A or at B; both are free if L1 = 0. 0 is returned for theta1, and for the others unless
       L1 = 0.
     - SINGULAR also near a parallel singularity, if the sine of the angle between CP and DP is
-      less than 2^-10: the loop closes, but one ulp of the joints moves P by more than 1e-12 of
-      the lengths. The length by which the answer misses a target just outside of the workspace
-      counts as a rounding error too. If L0 = 0, C coincides with D for equal signs of the last
-      two entries.
+      less than 2^-10: the loop closes, but a unit in the last place of the joints moves P by
+      more than 1e-12 of the lengths. The length by which the answer misses a target just
+      outside of the workspace counts as a rounding error too. If L0 = 0, C coincides with D in
+      the branches whose last two signs are equal.
     - Ill-conditioned near the boundary of the workspace: the angles lose half their digits, but
       the loop still closes.
     """

@@ -1103,7 +1103,7 @@ _IK = _runtime.Kernel(
 def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
     """All four configurations for a position and a yaw.
 
-    Source: solved from eq. (13); the paper does not give the inverse.
+    Source: eq. (13), which is solved here; the paper does not give the inverse.
 
     Parameters
     ----------

@@ -1757,9 +1757,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
       minus_minus_minus.
     - UNREACHABLE: a rod does not reach.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
-      closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
-      target is just outside of the workspace, the length by which the answer misses it counts
-      as a rounding error too.
+      closes, but a unit in the last place of the joints moves the hand by more than 1e-12 of
+      the lengths. If the target is just outside of the workspace, the length by which the
+      answer misses it counts as a rounding error too.
     - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
       which the hand is turned.
     """

@@ -683,8 +683,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
     - SINGULAR: a rod ends on the axis of its crank; theta is free, 0 is returned.
     - SINGULAR: a crank has no length; theta is free, 0 is returned.
     - SINGULAR also near the parallel singularity, where the rod is at right angles to the path
-      of the follower: the loop closes, but one ulp of the driver moves the follower by more
-      than 1e-12.
+      of the follower: the loop closes, but a unit in the last place of the driver moves the
+      follower by more than 1e-12.
     """
     result = _runtime.evaluate(_IK, (x,), params)
     return Solutions(*result)

@@ -294,9 +294,9 @@ void five_bar_condition_number_batch(size_t n, const five_bar_params *params,
  * - SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.
  * - SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.
  * - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes, but
- *   one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the target is
- *   just outside of the workspace, the length by which the answer misses it counts as a
- *   rounding error too.
+ *   a unit in the last place of the joints moves the hand by more than 1e-12 of the lengths. If
+ *   the target is just outside of the workspace, the length by which the answer misses it
+ *   counts as a rounding error too.
  */
 void five_bar_ik(const five_bar_params *params, const real_t x[2],
     real_t q[8], uint8_t status[4]);

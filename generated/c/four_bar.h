@@ -242,8 +242,8 @@ void four_bar_singularities_batch(size_t n, const four_bar_params *params,
  * - SINGULAR: a rod ends on the axis of its crank; theta is free, 0 is returned.
  * - SINGULAR: a crank has no length; theta is free, 0 is returned.
  * - SINGULAR also near the parallel singularity, where the rod is at right angles to the path
- *   of the follower: the loop closes, but one ulp of the driver moves the follower by more than
- *   1e-12.
+ *   of the follower: the loop closes, but a unit in the last place of the driver moves the
+ *   follower by more than 1e-12.
  */
 void four_bar_ik(const four_bar_params *params, const real_t x[1],
     real_t q[2], uint8_t status[2]);

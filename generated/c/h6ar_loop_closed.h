@@ -180,8 +180,6 @@ void h6ar_loop_closed_invariant_point_batch(size_t n, const h6ar_loop_closed_par
 /*
  * Derivative of the task with respect to the joints.
  *
- * Source: derivative of the forward map.
- *
  * Inputs
  * ------
  * q : const real_t[6]

@@ -329,7 +329,7 @@ void irb260_point_velocity_batch(size_t n, const irb260_params *params,
 /*
  * All four configurations for a position and a yaw.
  *
- * Source: solved from eq. (13); the paper does not give the inverse.
+ * Source: eq. (13), which is solved here; the paper does not give the inverse.
  *
  * Inputs
  * ------

@@ -283,9 +283,9 @@ void rpr_planar_condition_number_batch(size_t n, const rpr_planar_params *params
  * Notes
  * -----
  * - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes, but
- *   one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the target is
- *   just outside of the workspace, the length by which the answer misses it counts as a
- *   rounding error too.
+ *   a unit in the last place of the joints moves the hand by more than 1e-12 of the lengths. If
+ *   the target is just outside of the workspace, the length by which the answer misses it
+ *   counts as a rounding error too.
  */
 void rpr_planar_ik(const rpr_planar_params *params, const real_t x[2],
     real_t q[2], uint8_t status[1]);

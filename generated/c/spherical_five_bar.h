@@ -247,9 +247,9 @@ void spherical_five_bar_condition_number_batch(size_t n, const spherical_five_ba
  * - SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.
  * - SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
- *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the
- *   target is just outside of the workspace, the length by which the answer misses it counts as
- *   a rounding error too.
+ *   closes, but a unit in the last place of the joints moves the hand by more than 1e-12 of the
+ *   lengths. If the target is just outside of the workspace, the length by which the answer
+ *   misses it counts as a rounding error too.
  */
 void spherical_five_bar_ik(const spherical_five_bar_params *params,
     const real_t x[3], real_t q[8], uint8_t status[4]);

@@ -1383,8 +1383,6 @@ const _JACOBIAN = _runtime.kernel({
 /**
  * Derivative of the task with respect to the joints.
  *
- * Source: derivative of the forward map.
- *
  * - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
  *   cannot reach the middle of the tips.
  * - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against

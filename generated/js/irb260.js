@@ -1245,7 +1245,7 @@ const _IK = _runtime.kernel({
 /**
  * All four configurations for a position and a yaw.
  *
- * Source: solved from eq. (13); the paper does not give the inverse.
+ * Source: eq. (13), which is solved here; the paper does not give the inverse.
  *
  * - The branches, in the order of `BRANCHES`: front_elbow_up, front_elbow_down, back_elbow_up,
  *   back_elbow_down.

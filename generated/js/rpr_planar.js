@@ -885,9 +885,9 @@ const _IK = _runtime.kernel({
  * The driven joints of the only working mode.
  *
  * - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes, but
- *   one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the target is
- *   just outside of the workspace, the length by which the answer misses it counts as a
- *   rounding error too.
+ *   a unit in the last place of the joints moves the hand by more than 1e-12 of the lengths. If
+ *   the target is just outside of the workspace, the length by which the answer misses it
+ *   counts as a rounding error too.
  *
  * @param {ArrayLike<number>} x 2 numbers. x, y in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

@@ -1381,9 +1381,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - SINGULAR: a rod ends on the axis of its crank; theta1 or theta2 is free, 0 is returned.
     - SINGULAR: a crank has no length; theta1 or theta2 is free, 0 is returned.
     - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes,
-      but one ulp of the joints moves the hand by more than 1e-12 of the lengths. If the target
-      is just outside of the workspace, the length by which the answer misses it counts as a
-      rounding error too.
+      but a unit in the last place of the joints moves the hand by more than 1e-12 of the
+      lengths. If the target is just outside of the workspace, the length by which the answer
+      misses it counts as a rounding error too.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
     return Solutions(*result)

@@ -1537,8 +1537,6 @@ _JACOBIAN = _runtime.Kernel(
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Derivative of the task with respect to the joints.
 
-    Source: derivative of the forward map.
-
     Parameters
     ----------
     q : array_like, shape (..., 6)

@@ -26,6 +26,10 @@ of the cosines.""",
 )
 
 
+PLAY = 32
+"""How many times the scale of p the last sine may miss its limit, if both are at theirs."""
+
+
 def two_sines(
     program: Program,
     unknowns: tuple[sp.Symbol, sp.Symbol],
@@ -85,14 +89,15 @@ def two_sines(
         "spent_along", used_up(left), scale, "no margin left: a sine is at most 1"
     )
     loose = sp.Abs(lean) / (aside + sp.Rational(1, 10**9) * size)
-    allowance = program.let("play_along", scale * (1 + choose(spent, loose, 0)))
+    play = PLAY * scale
+    allowance = program.let("play_along", play * (1 + choose(spent, loose, 0)))
     program.bound("kept_along", left, allowance, "a sine is at most 1")
     lacking = (sp.Abs(left) - left) / 2 * lean / (lean**2 + aside**2)
     eased = sp.Piecewise((lacking, rest >= 0), (-lacking, True))
     part = program.let("eased", choose(spent, part + whole * eased, part))
     cy, sy = _from_sine(program, str(y), part, whole, scale)
     along = program.let("along_u", ahead - sy * lean)
-    cx, sx = _from_sine(program, str(x), along, size, scale)
+    cx, sx = _from_sine(program, str(x), along, size, scale, play)
     bounds = [s.symbol for s in program.body[start:] if isinstance(s, Bound)]
     return Lemma(
         "two sines",
@@ -135,11 +140,16 @@ def _plainly(
 
 
 def _from_sine(
-    program: Program, x: str, part: sp.Expr, whole: sp.Expr, scale: sp.Expr
+    program: Program,
+    x: str,
+    part: sp.Expr,
+    whole: sp.Expr,
+    scale: sp.Expr,
+    play: sp.Expr | None = None,
 ) -> tuple[sp.Symbol, sp.Symbol]:
     """Cosine and sine of the angle with ``sin x = part / whole`` and a cosine not negative."""
     below, above = (
-        program.bound(f"{name}_{x}", value, scale, meaning, above=scale)
+        program.bound(f"{name}_{x}", value, play or scale, meaning, above=scale)
         for name, value, meaning in (
             ("below", whole - part, "a sine is at most 1"),
             ("above", whole + part, "a sine is at least -1"),

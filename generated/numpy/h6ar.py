@@ -12,9 +12,9 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
-#   ik: 629 compare and select, 516 add, 29 atan2, 163 divide, 668 multiply, 1 reduce to a turn, 3
+#   ik: 629 compare and select, 516 add, 29 atan2, 163 divide, 670 multiply, 1 reduce to a turn, 3
 #     sincos, 54 sqrt
-#   ik where nothing vanishes: 249 compare and select, 163 add, 16 atan2, 34 divide, 148 multiply,
+#   ik where nothing vanishes: 249 compare and select, 163 add, 16 atan2, 34 divide, 150 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
 #   wrist_length: 21 compare and select, 6 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
@@ -1953,1081 +1953,1084 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t195 = -(_runtime.FEASIBILITY * play)
     t196 = t190 & t192 & t194 & (t195 <= t159 - t157) & (t195 <= -(t157 + t159))
     del t159, t192, t194
-    t197 = L1 / 1000000000.0
-    t198 = _runtime.select(spent_along, t158 / (t197 - t157), 0.0)
+    t197 = 32.0 * play
+    del play
+    t198 = L1 / 1000000000.0
+    t199 = _runtime.select(spent_along, t158 / (t198 - t157), 0.0)
     del t158
-    t199 = -(_runtime.FEASIBILITY * (play * (1.0 + t198)))
-    del t198
-    t200 = t196 & (t195 <= t161) & (t195 <= t163) & (t199 <= left_along)
-    del t161, t163, t196, t199
-    t201 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
+    t200 = -(_runtime.FEASIBILITY * (t197 * (1.0 + t199)))
+    del t199
+    t201 = t196 & (t195 <= t161) & (t195 <= t163) & (t200 <= left_along)
+    del t161, t163, t196, t200
+    t202 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
     del left_along
-    t202 = t201 / (t157 * t157 + v_2_beta * v_2_beta) * _runtime.sign(-t165)
-    del t157, t165, t201
-    t203 = _runtime.select(spent_along, t160 + whole_y * t202, t160)
-    del spent_along, t160, t202
-    t204 = whole_y + t203
-    t205 = whole_y - t203
-    del t203, whole_y
-    below_beta = np.maximum(t204, t162)
-    above_beta = np.maximum(t205, t162)
-    t206 = 1.0 / (below_beta + above_beta)
-    t207 = (below_beta - above_beta) * t206
-    t208 = t152 - v_2_beta * t207
+    t203 = t202 / (t157 * t157 + v_2_beta * v_2_beta) * _runtime.sign(-t165)
+    del t157, t165, t202
+    t204 = _runtime.select(spent_along, t160 + whole_y * t203, t160)
+    del spent_along, t160, t203
+    t205 = whole_y + t204
+    t206 = whole_y - t204
+    del t204, whole_y
+    t207 = -(_runtime.FEASIBILITY * t197)
+    below_beta = np.maximum(t205, t162)
+    above_beta = np.maximum(t206, t162)
+    t208 = 1.0 / (below_beta + above_beta)
+    t209 = (below_beta - above_beta) * t208
+    t210 = t152 - v_2_beta * t209
     del t152, v_2_beta
-    t209 = L1 + t208
-    t210 = t200 & (t195 <= t204) & (t195 <= t205) & (t195 <= t209)
-    del t200, t204, t205
-    t211 = L1 - t208
-    unreachable = np.logical_not(t210 & (t195 <= t211))
-    del t210
-    t212 = _runtime.poison(invalid | unreachable)
-    t213 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
-    t214 = np.arctan2(lean_alpha + lean_beta, 1.0 - lean_alpha * lean_beta)
+    t211 = L1 + t210
+    t212 = t201 & (t195 <= t205) & (t195 <= t206) & (t207 <= t211)
+    del t201, t205, t206
+    t213 = L1 - t210
+    unreachable = np.logical_not(t212 & (t207 <= t213))
+    del t212
+    t214 = _runtime.poison(invalid | unreachable)
+    t215 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
+    t216 = np.arctan2(lean_alpha + lean_beta, 1.0 - lean_alpha * lean_beta)
     del lean_alpha, lean_beta
-    t215 = t213 + t214
-    del t213
-    below_alpha = np.maximum(t209, t162)
-    del t209
-    above_alpha = np.maximum(t211, t162)
+    t217 = t215 + t216
+    del t215
+    below_alpha = np.maximum(t211, t162)
     del t211
-    t216 = 1.0 / (below_alpha + above_alpha)
-    t217 = (below_alpha - above_alpha) * t216
-    t218 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    above_alpha = np.maximum(t213, t162)
+    del t213
+    t218 = 1.0 / (below_alpha + above_alpha)
+    t219 = (below_alpha - above_alpha) * t218
+    t220 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
     del above_alpha, below_alpha
-    t219 = np.arctan2(t217, t216 * t218)
-    del t216, t218
-    t220 = np.arctan2(s_lag, c_lag)
+    t221 = np.arctan2(t219, t218 * t220)
+    del t218, t220
+    t222 = np.arctan2(s_lag, c_lag)
     del c_lag, s_lag
-    t221 = _runtime.select(short, 0.0, np.arctan2(t63, t72))
+    t223 = _runtime.select(short, 0.0, np.arctan2(t63, t72))
     del t63, t72
-    t222 = t220 - t221
-    t223 = np.arctan2(fore_turn_alpha + fore_turn_beta, 1.0 - fore_turn_alpha * fore_turn_beta)
+    t224 = t222 - t223
+    t225 = np.arctan2(fore_turn_alpha + fore_turn_beta, 1.0 - fore_turn_alpha * fore_turn_beta)
     del fore_turn_alpha, fore_turn_beta
-    t224 = t222 - (t214 - t223)
-    del t214, t223
-    t225 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    t226 = t224 - (t216 - t225)
+    del t216, t225
+    t227 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
     del above_beta, below_beta
-    t226 = t219 - np.arctan2(t207, t206 * t225)
-    del t206, t225
-    t227 = _runtime.wrap(principal_pitch)
+    t228 = t221 - np.arctan2(t209, t208 * t227)
+    del t208, t227
+    t229 = _runtime.wrap(principal_pitch)
     del principal_pitch
     out_front_elbow_down = t62 + t65
     del t62, t65
     up_front_elbow_down = t66 - t67
     del t66, t67
-    t228 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
-    t229 = 1.0 / np.sqrt(t228)
-    del t228
-    t230 = out_front_elbow_down * t229
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t230)
-    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t229)
-    del t229
-    t231 = higher * stheta2A_front_elbow_down
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t231
+    t230 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
+    t231 = 1.0 / np.sqrt(t230)
+    del t230
+    t232 = out_front_elbow_down * t231
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t232)
+    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t231)
+    del t231
+    t233 = higher * stheta2A_front_elbow_down
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t233
     s_relative_front_elbow_down = t73 + t74
     del t73, t74
     c_relative_front_elbow_down = t75 - t76
     del t75, t76
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    t232 = ahead * stheta2A_front_elbow_down
-    t233 = t232 - higher * ctheta2A_front_elbow_down
+    t234 = ahead * stheta2A_front_elbow_down
+    t235 = t234 - higher * ctheta2A_front_elbow_down
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
-    t234 = p_1_front_elbow_down * v_2_front_elbow_down + t233 * v_1_front_elbow_down
+    t236 = p_1_front_elbow_down * v_2_front_elbow_down + t235 * v_1_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t235 = np.abs(whole_alpha_front_elbow_down)
-    t236 = np.abs(t234) - t235
-    t237 = np.maximum(t236 * 9.094947017729282e-13, -t236)
-    spent_alpha_front_elbow_down = t237 <= t85
-    del t237
-    t238 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
+    t237 = np.abs(whole_alpha_front_elbow_down)
+    t238 = np.abs(t236) - t237
+    t239 = np.maximum(t238 * 9.094947017729282e-13, -t238)
+    spent_alpha_front_elbow_down = t239 <= t85
+    del t239
+    t240 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
-    slope_aside_alpha_front_elbow_down = L1 * t238
-    t239 = np.abs(slope_aside_alpha_front_elbow_down)
+    slope_aside_alpha_front_elbow_down = L1 * t240
+    t241 = np.abs(slope_aside_alpha_front_elbow_down)
     heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t90, 1.0)
-    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t239 / heavy_1_alpha_front_elbow_down, 0.0)
-    t240 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
+    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t241 / heavy_1_alpha_front_elbow_down, 0.0)
+    t242 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
-    t241 = np.abs(tilt_front_elbow_down)
-    t242 = t94 & (t95 <= t241)
+    t243 = np.abs(tilt_front_elbow_down)
+    t244 = t94 & (t95 <= t243)
     del t94, t95
-    t243 = stheta2A_front_elbow_down * tilt_front_elbow_down
-    aside_rate_front_elbow_down = _runtime.select(t242, -(t98 * t243), 0.0)
-    del t243
-    t244 = slope_aside_alpha_front_elbow_down * aside_rate_front_elbow_down
-    fore_rate_front_elbow_down = _runtime.select(t242, ctheta2A_front_elbow_down, 1.0)
+    t245 = stheta2A_front_elbow_down * tilt_front_elbow_down
+    aside_rate_front_elbow_down = _runtime.select(t244, -(t98 * t245), 0.0)
+    del t245
+    t246 = slope_aside_alpha_front_elbow_down * aside_rate_front_elbow_down
+    fore_rate_front_elbow_down = _runtime.select(t244, ctheta2A_front_elbow_down, 1.0)
     del ctheta2A_front_elbow_down
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
     del L_2W, a_3W, c_relative_front_elbow_down, s_relative_front_elbow_down
-    t245 = t238 * drawn_front_elbow_down
-    del t238
-    t246 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t233
-    t247 = fore_rate_front_elbow_down * (t245 - _runtime.sign(-t234) * t246)
-    del t234, t246
-    slope_alpha_front_elbow_down = t244 - t247
-    del t244, t247
-    t248 = np.abs(slope_alpha_front_elbow_down)
-    t249 = t241 * _runtime.select(t242, t104, 1.0)
-    del t104, t241
-    t250 = aside_rate_front_elbow_down + fore_rate_front_elbow_down
-    t251 = fore_rate_front_elbow_down * drawn_front_elbow_down
-    t252 = t250 - t98 * t251
-    del t250
-    t253 = fore_rate_front_elbow_down * fore_rate_front_elbow_down
-    t254 = tilt_front_elbow_down * tilt_front_elbow_down
-    t255 = _runtime.select(t242, t103, 0.0) * t254
-    del t103, t254
-    t256 = np.sqrt(L1 * (t252 * t252) + fore * t253 + t255)
-    del t252, t253
-    t257 = t88 * (t249 + t89 * t256 / 2000000.0)
-    del t256
-    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t257, 1.0)
-    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t248 / heavy_0_alpha_front_elbow_down, 0.0)
-    t258 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
-    t259 = _runtime.select(-t236 < 0.0, t240 / (t93 + t240 + t258), 0.0)
-    del t240, t258
-    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t259, 0.0)
-    del t259
-    t260 = _runtime.sign(slope_aside_alpha_front_elbow_down)
-    t261 = t84 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
-    del heavy_1_alpha_front_elbow_down
-    t262 = t236 * share_alpha_front_elbow_down * t260 / (t239 + t261)
+    t247 = t240 * drawn_front_elbow_down
+    del t240
+    t248 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t235
+    t249 = fore_rate_front_elbow_down * (t247 - _runtime.sign(-t236) * t248)
+    del t236, t248
+    slope_alpha_front_elbow_down = t246 - t249
+    del t246, t249
+    t250 = np.abs(slope_alpha_front_elbow_down)
+    t251 = t243 * _runtime.select(t244, t104, 1.0)
+    del t104, t243
+    t252 = aside_rate_front_elbow_down + fore_rate_front_elbow_down
+    t253 = fore_rate_front_elbow_down * drawn_front_elbow_down
+    t254 = t252 - t98 * t253
+    del t252
+    t255 = fore_rate_front_elbow_down * fore_rate_front_elbow_down
+    t256 = tilt_front_elbow_down * tilt_front_elbow_down
+    t257 = _runtime.select(t244, t103, 0.0) * t256
+    del t103, t256
+    t258 = np.sqrt(L1 * (t254 * t254) + fore * t255 + t257)
+    del t254, t255
+    t259 = t88 * (t251 + t89 * t258 / 2000000.0)
+    del t258
+    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t259, 1.0)
+    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t250 / heavy_0_alpha_front_elbow_down, 0.0)
+    t260 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
+    t261 = _runtime.select(-t238 < 0.0, t242 / (t93 + t242 + t260), 0.0)
+    del t242, t260
+    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t261, 0.0)
     del t261
-    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t262, 0.0)
-    del t262
-    lack_alpha_front_elbow_down = t236 * (1.0 - share_alpha_front_elbow_down)
+    t262 = _runtime.sign(slope_aside_alpha_front_elbow_down)
+    t263 = t84 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_front_elbow_down
+    t264 = t238 * share_alpha_front_elbow_down * t262 / (t241 + t263)
+    del t263
+    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t264, 0.0)
+    del t264
+    lack_alpha_front_elbow_down = t238 * (1.0 - share_alpha_front_elbow_down)
     del share_alpha_front_elbow_down
-    t263 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
-    t264 = t84 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
+    t265 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
+    t266 = t84 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
     del heavy_0_alpha_front_elbow_down
-    t265 = 1.0 / (t248 + t264)
-    del t248, t264
-    t266 = lack_alpha_front_elbow_down * t265
+    t267 = 1.0 / (t250 + t266)
+    del t250, t266
+    t268 = lack_alpha_front_elbow_down * t267
     del lack_alpha_front_elbow_down
-    t267 = (t263 * t265 <= 9.094947017729282e-13) & (0.0 < t266)
-    del t263, t265
-    t268 = _runtime.sign(slope_alpha_front_elbow_down) * _runtime.select(t267, t266, 0.0)
-    del slope_alpha_front_elbow_down, t266, t267
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t268, 0.0)
-    del t268
-    t269 = aside_rate_front_elbow_down * turn_alpha_front_elbow_down
-    t270 = fore_rate_front_elbow_down * turn_alpha_front_elbow_down
-    t271 = aside_alpha_front_elbow_down + t269 + t270 - t98 * (t251 * turn_alpha_front_elbow_down)
-    del aside_alpha_front_elbow_down, t269
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t271, 0.0)
-    del t271
-    t272 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t273 = np.sqrt(1.0 + t272)
-    del t272
-    t274 = 1.0 / t273
-    t275 = p_1_front_elbow_down * t274 - t233 * lean_alpha_front_elbow_down * t274
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t275, p_1_front_elbow_down)
-    del t275
-    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    fore_turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t270, 0.0)
+    t269 = (t265 * t267 <= 9.094947017729282e-13) & (0.0 < t268)
+    del t265, t267
+    t270 = _runtime.sign(slope_alpha_front_elbow_down) * _runtime.select(t269, t268, 0.0)
+    del slope_alpha_front_elbow_down, t268, t269
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t270, 0.0)
     del t270
-    t276 = fore_turn_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
-    t277 = 1.0 / (t273 * np.sqrt(1.0 + t276))
-    del t273, t276
-    t278 = lean_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
-    t279 = t277 + t277 * t278
-    del t278
-    t280 = fore_turn_alpha_front_elbow_down * t277 - lean_alpha_front_elbow_down * t277
+    t271 = aside_rate_front_elbow_down * turn_alpha_front_elbow_down
+    t272 = fore_rate_front_elbow_down * turn_alpha_front_elbow_down
+    t273 = aside_alpha_front_elbow_down + t271 + t272 - t98 * (t253 * turn_alpha_front_elbow_down)
+    del aside_alpha_front_elbow_down, t271
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t273, 0.0)
+    del t273
+    t274 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t275 = np.sqrt(1.0 + t274)
+    del t274
+    t276 = 1.0 / t275
+    t277 = p_1_front_elbow_down * t276 - t235 * lean_alpha_front_elbow_down * t276
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t277, p_1_front_elbow_down)
     del t277
-    t281 = v_1_front_elbow_down * t279 - v_2_front_elbow_down * t280
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t281, v_1_front_elbow_down)
-    del t281
-    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t282 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
-    t283 = np.maximum(t282 * 9.094947017729282e-13, -t282)
-    spent_beta_front_elbow_down = t283 <= t131
+    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
+    fore_turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t272, 0.0)
+    del t272
+    t278 = fore_turn_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
+    t279 = 1.0 / (t275 * np.sqrt(1.0 + t278))
+    del t275, t278
+    t280 = lean_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
+    t281 = t279 + t279 * t280
+    del t280
+    t282 = fore_turn_alpha_front_elbow_down * t279 - lean_alpha_front_elbow_down * t279
+    del t279
+    t283 = v_1_front_elbow_down * t281 - v_2_front_elbow_down * t282
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t283, v_1_front_elbow_down)
     del t283
-    t284 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
+    t284 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
+    t285 = np.maximum(t284 * 9.094947017729282e-13, -t284)
+    spent_beta_front_elbow_down = t285 <= t131
+    del t285
+    t286 = p_1_front_elbow_down * lean_alpha_front_elbow_down
     del p_1_front_elbow_down
-    t285 = _runtime.select(spent_alpha_front_elbow_down, t274 * t284 + t233 * t274, t233)
-    del t233, t274, t284
-    t286 = t285 * _runtime.sign(part_beta_front_elbow_down)
+    t287 = _runtime.select(spent_alpha_front_elbow_down, t276 * t286 + t235 * t276, t235)
+    del t235, t276, t286
+    t288 = t287 * _runtime.sign(part_beta_front_elbow_down)
     del part_beta_front_elbow_down
-    t287 = v_1_front_elbow_down * t280 + v_2_front_elbow_down * t279
-    del t279, t280
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t287, v_2_front_elbow_down)
-    del t287
-    t288 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
+    t289 = v_1_front_elbow_down * t282 + v_2_front_elbow_down * t281
+    del t281, t282
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t289, v_2_front_elbow_down)
+    del t289
+    t290 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
     del whole_beta_front_elbow_down
-    slope_aside_beta_front_elbow_down = L1 * (t286 + t288)
-    t289 = np.abs(slope_aside_beta_front_elbow_down)
+    slope_aside_beta_front_elbow_down = L1 * (t288 + t290)
+    t291 = np.abs(slope_aside_beta_front_elbow_down)
     heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t90, 1.0)
-    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t289 / heavy_1_beta_front_elbow_down, 0.0)
-    t290 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
-    t291 = aside_rate_front_elbow_down * slope_aside_beta_front_elbow_down
-    t292 = L1 - drawn_front_elbow_down
-    t293 = fore_rate_front_elbow_down * (drawn_front_elbow_down * t288 - t286 * t292)
-    del t286, t288
-    slope_beta_front_elbow_down = t291 - t293
-    del t291, t293
-    t294 = np.abs(slope_beta_front_elbow_down)
-    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t257, 1.0)
-    del t257
-    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t294 / heavy_0_beta_front_elbow_down, 0.0)
-    t295 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
-    t296 = _runtime.select(-t282 < 0.0, t290 / (t137 + t290 + t295), 0.0)
-    del t290, t295
-    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t296, 0.0)
-    del t296
-    t297 = _runtime.sign(slope_aside_beta_front_elbow_down)
+    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t291 / heavy_1_beta_front_elbow_down, 0.0)
+    t292 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
+    t293 = aside_rate_front_elbow_down * slope_aside_beta_front_elbow_down
+    t294 = L1 - drawn_front_elbow_down
+    t295 = fore_rate_front_elbow_down * (drawn_front_elbow_down * t290 - t288 * t294)
+    del t288, t290
+    slope_beta_front_elbow_down = t293 - t295
+    del t293, t295
+    t296 = np.abs(slope_beta_front_elbow_down)
+    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t259, 1.0)
+    del t259
+    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t296 / heavy_0_beta_front_elbow_down, 0.0)
+    t297 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
+    t298 = _runtime.select(-t284 < 0.0, t292 / (t137 + t292 + t297), 0.0)
+    del t292, t297
+    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t298, 0.0)
+    del t298
+    t299 = _runtime.sign(slope_aside_beta_front_elbow_down)
     del slope_aside_beta_front_elbow_down
-    t298 = t130 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
+    t300 = t130 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_1_beta_front_elbow_down
-    t299 = t282 * share_beta_front_elbow_down * t297 / (t289 + t298)
-    del t289, t297, t298
-    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t299, 0.0)
-    del t299
-    lack_beta_front_elbow_down = t282 * (1.0 - share_beta_front_elbow_down)
+    t301 = t284 * share_beta_front_elbow_down * t299 / (t291 + t300)
+    del t291, t299, t300
+    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t301, 0.0)
+    del t301
+    lack_beta_front_elbow_down = t284 * (1.0 - share_beta_front_elbow_down)
     del share_beta_front_elbow_down
-    t300 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
-    t301 = t130 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
+    t302 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
+    t303 = t130 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_0_beta_front_elbow_down
-    t302 = 1.0 / (t294 + t301)
-    del t294, t301
-    t303 = lack_beta_front_elbow_down * t302
+    t304 = 1.0 / (t296 + t303)
+    del t296, t303
+    t305 = lack_beta_front_elbow_down * t304
     del lack_beta_front_elbow_down
-    t304 = (t300 * t302 <= 9.094947017729282e-13) & (0.0 < t303)
-    del t300, t302
-    t305 = _runtime.sign(slope_beta_front_elbow_down) * _runtime.select(t304, t303, 0.0)
-    del slope_beta_front_elbow_down, t303, t304
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t305, 0.0)
-    del t305
-    t306 = aside_rate_front_elbow_down * turn_beta_front_elbow_down
-    del aside_rate_front_elbow_down
-    t307 = fore_rate_front_elbow_down * turn_beta_front_elbow_down
-    del fore_rate_front_elbow_down
-    t308 = aside_beta_front_elbow_down + t306 + t307 - t98 * (t251 * turn_beta_front_elbow_down)
-    del aside_beta_front_elbow_down, t251, t306
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t308, 0.0)
-    del t308
-    t309 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
-    t310 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
-    t311 = np.sqrt(1.0 + t310)
-    del t310
-    t312 = 1.0 / t311
-    t313 = _runtime.select(spent_beta_front_elbow_down, t309 * t312 + t285 * t312, t285)
-    del t309
-    fore_turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t307, 0.0)
+    t306 = (t302 * t304 <= 9.094947017729282e-13) & (0.0 < t305)
+    del t302, t304
+    t307 = _runtime.sign(slope_beta_front_elbow_down) * _runtime.select(t306, t305, 0.0)
+    del slope_beta_front_elbow_down, t305, t306
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t307, 0.0)
     del t307
-    t314 = fore_turn_beta_front_elbow_down * fore_turn_beta_front_elbow_down
-    t315 = 1.0 / (t311 * np.sqrt(1.0 + t314))
-    del t311, t314
-    t316 = fore_turn_beta_front_elbow_down * t315 - lean_beta_front_elbow_down * t315
-    t317 = lean_beta_front_elbow_down * fore_turn_beta_front_elbow_down
-    t318 = t315 + t315 * t317
-    del t315, t317
-    t319 = v_1_alpha_front_elbow_down * t316 + v_2_alpha_front_elbow_down * t318
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t319, v_2_alpha_front_elbow_down)
-    del t319
-    t320 = v_1_alpha_front_elbow_down * t318 - v_2_alpha_front_elbow_down * t316
-    del t316, t318, v_2_alpha_front_elbow_down
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t320, v_1_alpha_front_elbow_down)
-    del t320, v_1_alpha_front_elbow_down
+    t308 = aside_rate_front_elbow_down * turn_beta_front_elbow_down
+    del aside_rate_front_elbow_down
+    t309 = fore_rate_front_elbow_down * turn_beta_front_elbow_down
+    del fore_rate_front_elbow_down
+    t310 = aside_beta_front_elbow_down + t308 + t309 - t98 * (t253 * turn_beta_front_elbow_down)
+    del aside_beta_front_elbow_down, t253, t308
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t310, 0.0)
+    del t310
+    t311 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t312 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
+    t313 = np.sqrt(1.0 + t312)
+    del t312
+    t314 = 1.0 / t313
+    t315 = _runtime.select(spent_beta_front_elbow_down, t311 * t314 + t287 * t314, t287)
+    del t311
+    fore_turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t309, 0.0)
+    del t309
+    t316 = fore_turn_beta_front_elbow_down * fore_turn_beta_front_elbow_down
+    t317 = 1.0 / (t313 * np.sqrt(1.0 + t316))
+    del t313, t316
+    t318 = fore_turn_beta_front_elbow_down * t317 - lean_beta_front_elbow_down * t317
+    t319 = lean_beta_front_elbow_down * fore_turn_beta_front_elbow_down
+    t320 = t317 + t317 * t319
+    del t317, t319
+    t321 = v_1_alpha_front_elbow_down * t318 + v_2_alpha_front_elbow_down * t320
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t321, v_2_alpha_front_elbow_down)
+    del t321
+    t322 = v_1_alpha_front_elbow_down * t320 - v_2_alpha_front_elbow_down * t318
+    del t318, t320, v_2_alpha_front_elbow_down
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t322, v_1_alpha_front_elbow_down)
+    del t322, v_1_alpha_front_elbow_down
     sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
-    t321 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
-    t322 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t321 <= _runtime.VANISHING * (64.0 * t322)
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t322, -t321)
-    t323 = t313 * _runtime.sign(v_2_beta_front_elbow_down)
-    t324 = p_1_alpha_front_elbow_down * t312 - t312 * (t285 * lean_beta_front_elbow_down)
-    del t285, t312
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t324, p_1_alpha_front_elbow_down)
-    del p_1_alpha_front_elbow_down, t324
-    t325 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t323 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    t324 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t323 <= _runtime.VANISHING * (64.0 * t324)
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t324, -t323)
+    t325 = t315 * _runtime.sign(v_2_beta_front_elbow_down)
+    t326 = p_1_alpha_front_elbow_down * t314 - t314 * (t287 * lean_beta_front_elbow_down)
+    del t287, t314
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t326, p_1_alpha_front_elbow_down)
+    del p_1_alpha_front_elbow_down, t326
+    t327 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
     del sigma_uv_front_elbow_down
-    t326 = _runtime.select(parallel_front_elbow_down, t323, t325)
-    del t323
-    t327 = whole_y_front_elbow_down + t326
-    below_beta_0_front_elbow_down = np.maximum(t327, t162)
-    t328 = whole_y_front_elbow_down - t326
-    above_beta_0_front_elbow_down = np.maximum(t328, t162)
-    t329 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    t328 = _runtime.select(parallel_front_elbow_down, t325, t327)
+    del t325
+    t329 = whole_y_front_elbow_down + t328
+    below_beta_0_front_elbow_down = np.maximum(t329, t162)
+    t330 = whole_y_front_elbow_down - t328
+    above_beta_0_front_elbow_down = np.maximum(t330, t162)
+    t331 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t330 = v_2_beta_front_elbow_down * (t329 / total_beta_0_front_elbow_down)
-    del t329, total_beta_0_front_elbow_down
-    t331 = t313 - t330
-    del t330
-    left_along_front_elbow_down = L1 - np.abs(t331)
-    t332 = left_along_front_elbow_down * 9.094947017729282e-13
-    t333 = np.maximum(-t332, left_along_front_elbow_down)
+    t332 = v_2_beta_front_elbow_down * (t331 / total_beta_0_front_elbow_down)
+    del t331, total_beta_0_front_elbow_down
+    t333 = t315 - t332
     del t332
-    spent_along_front_elbow_down = t333 <= t167
-    del t333
-    t334 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
-    t335 = t334 | spent_beta_front_elbow_down
+    left_along_front_elbow_down = L1 - np.abs(t333)
+    t334 = left_along_front_elbow_down * 9.094947017729282e-13
+    t335 = np.maximum(-t334, left_along_front_elbow_down)
     del t334
-    t336 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
-    del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
-    t337 = _runtime.select(t242, -(t169 * (t10 * tilt_front_elbow_down)), 0.0)
-    del t10, t169
-    t338 = np.arctan2(_runtime.select(t335, t336 * t337, 0.0), 1.0)
+    spent_along_front_elbow_down = t335 <= t167
+    del t335
+    t336 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
+    t337 = t336 | spent_beta_front_elbow_down
     del t336
-    t339 = gain_1_alpha_front_elbow_down + gain_0_alpha_front_elbow_down
+    t338 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
+    t339 = _runtime.select(t244, -(t169 * (t10 * tilt_front_elbow_down)), 0.0)
+    del t10, t169
+    t340 = np.arctan2(_runtime.select(t337, t338 * t339, 0.0), 1.0)
+    del t338
+    t341 = gain_1_alpha_front_elbow_down + gain_0_alpha_front_elbow_down
     del gain_0_alpha_front_elbow_down, gain_1_alpha_front_elbow_down
-    t340 = _runtime.select(spent_alpha_front_elbow_down, t339, 0.0)
-    del spent_alpha_front_elbow_down, t339
-    t341 = -(_runtime.FEASIBILITY * (t84 + t340)) <= -t236
-    del t236, t340
-    t342 = gain_1_beta_front_elbow_down + gain_0_beta_front_elbow_down
+    t342 = _runtime.select(spent_alpha_front_elbow_down, t341, 0.0)
+    del spent_alpha_front_elbow_down, t341
+    t343 = -(_runtime.FEASIBILITY * (t84 + t342)) <= -t238
+    del t238, t342
+    t344 = gain_1_beta_front_elbow_down + gain_0_beta_front_elbow_down
     del gain_0_beta_front_elbow_down, gain_1_beta_front_elbow_down
-    t343 = _runtime.select(spent_beta_front_elbow_down, t342, 0.0)
-    del spent_beta_front_elbow_down, t342
-    t344 = -(_runtime.FEASIBILITY * (t130 + t343)) <= -t282
-    del t282, t343
-    t345 = t190 & t341 & t344 & (t195 <= t325 - t321) & (t195 <= -(t321 + t325))
-    del t325, t341, t344
-    t346 = _runtime.select(spent_along_front_elbow_down, t322 / (t197 - t321), 0.0)
-    del t322
-    t347 = -(_runtime.FEASIBILITY * (play * (1.0 + t346)))
-    del t346
-    t348 = t345 & (t195 <= t327) & (t195 <= t328) & (t347 <= left_along_front_elbow_down)
-    del t327, t328, t345, t347
-    t349 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
+    t345 = _runtime.select(spent_beta_front_elbow_down, t344, 0.0)
+    del spent_beta_front_elbow_down, t344
+    t346 = -(_runtime.FEASIBILITY * (t130 + t345)) <= -t284
+    del t284, t345
+    t347 = t190 & t343 & t346 & (t195 <= t327 - t323) & (t195 <= -(t323 + t327))
+    del t327, t343, t346
+    t348 = _runtime.select(spent_along_front_elbow_down, t324 / (t198 - t323), 0.0)
+    del t324
+    t349 = -(_runtime.FEASIBILITY * (t197 * (1.0 + t348)))
+    del t348
+    t350 = t347 & (t195 <= t329) & (t195 <= t330) & (t349 <= left_along_front_elbow_down)
+    del t329, t330, t347, t349
+    t351 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
     del left_along_front_elbow_down
-    t350 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t351 = v_2_beta_front_elbow_down * t349 / (t321 * t321 + t350)
-    del t321, t349, t350
-    t352 = whole_y_front_elbow_down * (t351 * _runtime.sign(-t331))
-    del t331, t351
-    t353 = _runtime.select(spent_along_front_elbow_down, t326 + t352, t326)
-    del spent_along_front_elbow_down, t326, t352
-    t354 = whole_y_front_elbow_down + t353
-    t355 = whole_y_front_elbow_down - t353
-    del t353, whole_y_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t354, t162)
-    above_beta_front_elbow_down = np.maximum(t355, t162)
-    t356 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t352 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t353 = v_2_beta_front_elbow_down * t351 / (t323 * t323 + t352)
+    del t323, t351, t352
+    t354 = whole_y_front_elbow_down * (t353 * _runtime.sign(-t333))
+    del t333, t353
+    t355 = _runtime.select(spent_along_front_elbow_down, t328 + t354, t328)
+    del spent_along_front_elbow_down, t328, t354
+    t356 = whole_y_front_elbow_down + t355
+    t357 = whole_y_front_elbow_down - t355
+    del t355, whole_y_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t356, t162)
+    above_beta_front_elbow_down = np.maximum(t357, t162)
+    t358 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t357 = 1.0 / total_beta_front_elbow_down
+    t359 = 1.0 / total_beta_front_elbow_down
     del total_beta_front_elbow_down
-    t358 = t356 * t357
-    del t356
-    t359 = t313 - v_2_beta_front_elbow_down * t358
-    del t313, v_2_beta_front_elbow_down
-    t360 = L1 + t359
-    t361 = t348 & (t195 <= t354) & (t195 <= t355) & (t195 <= t360)
-    del t348, t354, t355
-    t362 = L1 - t359
-    unreachable_2 = np.logical_not(t361 & (t195 <= t362))
-    del t361
-    t363 = _runtime.poison(invalid | unreachable_2)
-    t364 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
-    t365 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
-    t366 = lean_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t360 = t358 * t359
+    del t358
+    t361 = t315 - v_2_beta_front_elbow_down * t360
+    del t315, v_2_beta_front_elbow_down
+    t362 = L1 + t361
+    t363 = t350 & (t195 <= t356) & (t195 <= t357) & (t207 <= t362)
+    del t350, t356, t357
+    t364 = L1 - t361
+    unreachable_2 = np.logical_not(t363 & (t207 <= t364))
+    del t363
+    t365 = _runtime.poison(invalid | unreachable_2)
+    t366 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
+    t367 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    t368 = lean_alpha_front_elbow_down * lean_beta_front_elbow_down
     del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t367 = np.arctan2(t365, 1.0 - t366)
-    del t365, t366
-    t368 = _runtime.select(folded, 0.0, t364) + t367
-    del t364
-    below_alpha_front_elbow_down = np.maximum(t360, t162)
-    del t360
-    above_alpha_front_elbow_down = np.maximum(t362, t162)
+    t369 = np.arctan2(t367, 1.0 - t368)
+    del t367, t368
+    t370 = _runtime.select(folded, 0.0, t366) + t369
+    del t366
+    below_alpha_front_elbow_down = np.maximum(t362, t162)
     del t362
-    t369 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    above_alpha_front_elbow_down = np.maximum(t364, t162)
+    del t364
+    t371 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t370 = 1.0 / total_alpha_front_elbow_down
+    t372 = 1.0 / total_alpha_front_elbow_down
     del total_alpha_front_elbow_down
-    t371 = t369 * t370
-    del t369
-    t372 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t373 = t371 * t372
+    del t371
+    t374 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t373 = np.arctan2(t371, t370 * t372)
-    del t370, t372
-    t374 = t220 + t221
-    del t220, t221
-    t375 = fore_turn_alpha_front_elbow_down + fore_turn_beta_front_elbow_down
-    t376 = fore_turn_alpha_front_elbow_down * fore_turn_beta_front_elbow_down
+    t375 = np.arctan2(t373, t372 * t374)
+    del t372, t374
+    t376 = t222 + t223
+    del t222, t223
+    t377 = fore_turn_alpha_front_elbow_down + fore_turn_beta_front_elbow_down
+    t378 = fore_turn_alpha_front_elbow_down * fore_turn_beta_front_elbow_down
     del fore_turn_alpha_front_elbow_down, fore_turn_beta_front_elbow_down
-    t377 = t374 - (t367 - np.arctan2(t375, 1.0 - t376))
-    del t367, t375, t376
-    t378 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t379 = t376 - (t369 - np.arctan2(t377, 1.0 - t378))
+    del t369, t377, t378
+    t380 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t379 = t373 - np.arctan2(t358, t357 * t378)
-    del t357, t378
+    t381 = t375 - np.arctan2(t360, t359 * t380)
+    del t359, t380
     ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t69)
     del t69
     p_1_rear_elbow_up = t70 + ahead * ctheta2A_rear_elbow_up
     del t70
-    t380 = t77 - higher * ctheta2A_rear_elbow_up
+    t382 = t77 - higher * ctheta2A_rear_elbow_up
     del t77
-    t381 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t380
-    margin_alpha_rear_elbow_up = t235 - np.abs(t381)
-    del t235
-    t382 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t383 = np.maximum(-t382, margin_alpha_rear_elbow_up)
-    del t382
-    spent_alpha_rear_elbow_up = t383 <= t85
-    del t383
+    t383 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t382
+    margin_alpha_rear_elbow_up = t237 - np.abs(t383)
+    del t237
+    t384 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t385 = np.maximum(-t384, margin_alpha_rear_elbow_up)
+    del t384
+    spent_alpha_rear_elbow_up = t385 <= t85
+    del t385
     heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t90, 1.0)
-    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t239 / heavy_1_alpha_rear_elbow_up, 0.0)
-    t384 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
-    aside_rate_rear_elbow_up = _runtime.select(t242, -(t98 * (stheta2A * tilt_front_elbow_down)), 0.0)
+    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t241 / heavy_1_alpha_rear_elbow_up, 0.0)
+    t386 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
+    aside_rate_rear_elbow_up = _runtime.select(t244, -(t98 * (stheta2A * tilt_front_elbow_down)), 0.0)
     del stheta2A, tilt_front_elbow_down
-    t385 = slope_aside_alpha_front_elbow_down * aside_rate_rear_elbow_up
+    t387 = slope_aside_alpha_front_elbow_down * aside_rate_rear_elbow_up
     del slope_aside_alpha_front_elbow_down
-    fore_rate_rear_elbow_up = _runtime.select(t242, ctheta2A_rear_elbow_up, 1.0)
-    del ctheta2A_rear_elbow_up, t242
-    t386 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t380
-    t387 = fore_rate_rear_elbow_up * (t245 - _runtime.sign(-t381) * t386)
-    del t245, t381, t386
-    slope_alpha_rear_elbow_up = t385 - t387
-    del t385, t387
-    t388 = np.abs(slope_alpha_rear_elbow_up)
-    t389 = aside_rate_rear_elbow_up + fore_rate_rear_elbow_up
-    t390 = drawn_front_elbow_down * fore_rate_rear_elbow_up
-    t391 = t389 - t98 * t390
-    del t389
-    t392 = fore_rate_rear_elbow_up * fore_rate_rear_elbow_up
-    t393 = np.sqrt(t255 + L1 * (t391 * t391) + fore * t392)
-    del t255, t391, t392
-    t394 = t88 * (t249 + t89 * t393 / 2000000.0)
-    del t249, t393
-    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t394, 1.0)
-    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t388 / heavy_0_alpha_rear_elbow_up, 0.0)
-    t395 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
-    t396 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t384 / (t93 + t384 + t395), 0.0)
-    del t384, t395
-    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t396, 0.0)
-    del t396
-    t397 = t260 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
-    del t260
-    t398 = t84 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
+    fore_rate_rear_elbow_up = _runtime.select(t244, ctheta2A_rear_elbow_up, 1.0)
+    del ctheta2A_rear_elbow_up, t244
+    t388 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t382
+    t389 = fore_rate_rear_elbow_up * (t247 - _runtime.sign(-t383) * t388)
+    del t247, t383, t388
+    slope_alpha_rear_elbow_up = t387 - t389
+    del t387, t389
+    t390 = np.abs(slope_alpha_rear_elbow_up)
+    t391 = aside_rate_rear_elbow_up + fore_rate_rear_elbow_up
+    t392 = drawn_front_elbow_down * fore_rate_rear_elbow_up
+    t393 = t391 - t98 * t392
+    del t391
+    t394 = fore_rate_rear_elbow_up * fore_rate_rear_elbow_up
+    t395 = np.sqrt(t257 + L1 * (t393 * t393) + fore * t394)
+    del t257, t393, t394
+    t396 = t88 * (t251 + t89 * t395 / 2000000.0)
+    del t251, t395
+    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t396, 1.0)
+    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t390 / heavy_0_alpha_rear_elbow_up, 0.0)
+    t397 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
+    t398 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t386 / (t93 + t386 + t397), 0.0)
+    del t386, t397
+    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t398, 0.0)
+    del t398
+    t399 = t262 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
+    del t262
+    t400 = t84 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_up
-    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t397 / (t239 + t398)), 0.0)
-    del t239, t397, t398
-    t399 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
+    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t399 / (t241 + t400)), 0.0)
+    del t241, t399, t400
+    t401 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
     del share_alpha_rear_elbow_up
-    t400 = t84 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
-    t401 = 1.0 / (t388 + t400)
-    del t388, t400
-    t402 = -(heavy_0_alpha_rear_elbow_up * t399 * t401) <= 9.094947017729282e-13
+    t402 = t84 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
+    t403 = 1.0 / (t390 + t402)
+    del t390, t402
+    t404 = -(heavy_0_alpha_rear_elbow_up * t401 * t403) <= 9.094947017729282e-13
     del heavy_0_alpha_rear_elbow_up
-    t403 = -(t399 * t401)
-    del t399, t401
-    t404 = _runtime.select(t402 & (0.0 < t403), t403, 0.0)
-    del t402, t403
-    t405 = _runtime.sign(slope_alpha_rear_elbow_up) * t404
-    del slope_alpha_rear_elbow_up, t404
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t405, 0.0)
-    del t405
-    t406 = aside_rate_rear_elbow_up * turn_alpha_rear_elbow_up
-    t407 = fore_rate_rear_elbow_up * turn_alpha_rear_elbow_up
-    t408 = aside_alpha_rear_elbow_up + t406 + t407 - t98 * (t390 * turn_alpha_rear_elbow_up)
-    del aside_alpha_rear_elbow_up, t406
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t408, 0.0)
-    del t408
-    t409 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t410 = np.sqrt(1.0 + t409)
-    del t409
-    t411 = 1.0 / t410
-    t412 = p_1_rear_elbow_up * t411 - t380 * lean_alpha_rear_elbow_up * t411
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t412, p_1_rear_elbow_up)
-    del t412
-    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    fore_turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t407, 0.0)
+    t405 = -(t401 * t403)
+    del t401, t403
+    t406 = _runtime.select(t404 & (0.0 < t405), t405, 0.0)
+    del t404, t405
+    t407 = _runtime.sign(slope_alpha_rear_elbow_up) * t406
+    del slope_alpha_rear_elbow_up, t406
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t407, 0.0)
     del t407
-    t413 = fore_turn_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
-    t414 = 1.0 / (t410 * np.sqrt(1.0 + t413))
-    del t410, t413
-    t415 = lean_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
-    t416 = t414 + t414 * t415
-    del t415
-    t417 = fore_turn_alpha_rear_elbow_up * t414 - lean_alpha_rear_elbow_up * t414
+    t408 = aside_rate_rear_elbow_up * turn_alpha_rear_elbow_up
+    t409 = fore_rate_rear_elbow_up * turn_alpha_rear_elbow_up
+    t410 = aside_alpha_rear_elbow_up + t408 + t409 - t98 * (t392 * turn_alpha_rear_elbow_up)
+    del aside_alpha_rear_elbow_up, t408
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t410, 0.0)
+    del t410
+    t411 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t412 = np.sqrt(1.0 + t411)
+    del t411
+    t413 = 1.0 / t412
+    t414 = p_1_rear_elbow_up * t413 - t382 * lean_alpha_rear_elbow_up * t413
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t414, p_1_rear_elbow_up)
     del t414
-    t418 = v_1_front_elbow_down * t416 - v_2_front_elbow_down * t417
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t418, v_1_front_elbow_down)
-    del t418
-    whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t419 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
-    t420 = np.maximum(t419 * 9.094947017729282e-13, -t419)
-    spent_beta_rear_elbow_up = t420 <= t131
+    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
+    fore_turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t409, 0.0)
+    del t409
+    t415 = fore_turn_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
+    t416 = 1.0 / (t412 * np.sqrt(1.0 + t415))
+    del t412, t415
+    t417 = lean_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
+    t418 = t416 + t416 * t417
+    del t417
+    t419 = fore_turn_alpha_rear_elbow_up * t416 - lean_alpha_rear_elbow_up * t416
+    del t416
+    t420 = v_1_front_elbow_down * t418 - v_2_front_elbow_down * t419
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t420, v_1_front_elbow_down)
     del t420
-    t421 = t411 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
+    whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
+    t421 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    t422 = np.maximum(t421 * 9.094947017729282e-13, -t421)
+    spent_beta_rear_elbow_up = t422 <= t131
+    del t422
+    t423 = t413 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
     del p_1_rear_elbow_up
-    t422 = _runtime.select(spent_alpha_rear_elbow_up, t421 + t380 * t411, t380)
-    del t380, t411, t421
-    t423 = t422 * _runtime.sign(part_beta_rear_elbow_up)
+    t424 = _runtime.select(spent_alpha_rear_elbow_up, t423 + t382 * t413, t382)
+    del t382, t413, t423
+    t425 = t424 * _runtime.sign(part_beta_rear_elbow_up)
     del part_beta_rear_elbow_up
-    t424 = v_1_front_elbow_down * t417 + v_2_front_elbow_down * t416
-    del t416, t417, v_1_front_elbow_down
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t424, v_2_front_elbow_down)
-    del t424, v_2_front_elbow_down
-    t425 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
+    t426 = v_1_front_elbow_down * t419 + v_2_front_elbow_down * t418
+    del t418, t419, v_1_front_elbow_down
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t426, v_2_front_elbow_down)
+    del t426, v_2_front_elbow_down
+    t427 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
     del whole_beta_rear_elbow_up
-    slope_aside_beta_rear_elbow_up = L1 * (t423 + t425)
-    t426 = np.abs(slope_aside_beta_rear_elbow_up)
+    slope_aside_beta_rear_elbow_up = L1 * (t425 + t427)
+    t428 = np.abs(slope_aside_beta_rear_elbow_up)
     heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t90, 1.0)
-    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t426 / heavy_1_beta_rear_elbow_up, 0.0)
-    t427 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
-    t428 = aside_rate_rear_elbow_up * slope_aside_beta_rear_elbow_up
-    t429 = fore_rate_rear_elbow_up * (drawn_front_elbow_down * t425 - t292 * t423)
-    del drawn_front_elbow_down, t292, t423, t425
-    slope_beta_rear_elbow_up = t428 - t429
-    del t428, t429
-    t430 = np.abs(slope_beta_rear_elbow_up)
-    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t394, 1.0)
-    del t394
-    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t430 / heavy_0_beta_rear_elbow_up, 0.0)
-    t431 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
-    t432 = _runtime.select(-t419 < 0.0, t427 / (t137 + t427 + t431), 0.0)
-    del t427, t431
-    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t432, 0.0)
-    del t432
-    t433 = _runtime.sign(slope_aside_beta_rear_elbow_up)
+    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t428 / heavy_1_beta_rear_elbow_up, 0.0)
+    t429 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
+    t430 = aside_rate_rear_elbow_up * slope_aside_beta_rear_elbow_up
+    t431 = fore_rate_rear_elbow_up * (drawn_front_elbow_down * t427 - t294 * t425)
+    del drawn_front_elbow_down, t294, t425, t427
+    slope_beta_rear_elbow_up = t430 - t431
+    del t430, t431
+    t432 = np.abs(slope_beta_rear_elbow_up)
+    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t396, 1.0)
+    del t396
+    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t432 / heavy_0_beta_rear_elbow_up, 0.0)
+    t433 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
+    t434 = _runtime.select(-t421 < 0.0, t429 / (t137 + t429 + t433), 0.0)
+    del t429, t433
+    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t434, 0.0)
+    del t434
+    t435 = _runtime.sign(slope_aside_beta_rear_elbow_up)
     del slope_aside_beta_rear_elbow_up
-    t434 = t130 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
+    t436 = t130 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_beta_rear_elbow_up
-    t435 = t419 * share_beta_rear_elbow_up * t433 / (t426 + t434)
-    del t426, t433, t434
-    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t435, 0.0)
-    del t435
-    lack_beta_rear_elbow_up = t419 * (1.0 - share_beta_rear_elbow_up)
+    t437 = t421 * share_beta_rear_elbow_up * t435 / (t428 + t436)
+    del t428, t435, t436
+    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t437, 0.0)
+    del t437
+    lack_beta_rear_elbow_up = t421 * (1.0 - share_beta_rear_elbow_up)
     del share_beta_rear_elbow_up
-    t436 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
-    t437 = t130 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
+    t438 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
+    t439 = t130 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
     del heavy_0_beta_rear_elbow_up
-    t438 = 1.0 / (t430 + t437)
-    del t430, t437
-    t439 = lack_beta_rear_elbow_up * t438
+    t440 = 1.0 / (t432 + t439)
+    del t432, t439
+    t441 = lack_beta_rear_elbow_up * t440
     del lack_beta_rear_elbow_up
-    t440 = (t436 * t438 <= 9.094947017729282e-13) & (0.0 < t439)
-    del t436, t438
-    t441 = _runtime.sign(slope_beta_rear_elbow_up) * _runtime.select(t440, t439, 0.0)
-    del slope_beta_rear_elbow_up, t439, t440
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t441, 0.0)
-    del t441
-    t442 = aside_rate_rear_elbow_up * turn_beta_rear_elbow_up
-    del aside_rate_rear_elbow_up
-    t443 = fore_rate_rear_elbow_up * turn_beta_rear_elbow_up
-    del fore_rate_rear_elbow_up
-    t444 = aside_beta_rear_elbow_up + t442 + t443 - t98 * (t390 * turn_beta_rear_elbow_up)
-    del aside_beta_rear_elbow_up, t390, t442
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t444, 0.0)
-    del t444
-    t445 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
-    t446 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t447 = np.sqrt(1.0 + t446)
-    del t446
-    t448 = 1.0 / t447
-    t449 = _runtime.select(spent_beta_rear_elbow_up, t445 * t448 + t422 * t448, t422)
-    del t445
-    fore_turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t443, 0.0)
+    t442 = (t438 * t440 <= 9.094947017729282e-13) & (0.0 < t441)
+    del t438, t440
+    t443 = _runtime.sign(slope_beta_rear_elbow_up) * _runtime.select(t442, t441, 0.0)
+    del slope_beta_rear_elbow_up, t441, t442
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t443, 0.0)
     del t443
-    t450 = fore_turn_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
-    t451 = 1.0 / (t447 * np.sqrt(1.0 + t450))
-    del t447, t450
-    t452 = fore_turn_beta_rear_elbow_up * t451 - lean_beta_rear_elbow_up * t451
-    t453 = lean_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
-    t454 = t451 + t451 * t453
-    del t451, t453
-    t455 = v_1_alpha_rear_elbow_up * t452 + v_2_alpha_rear_elbow_up * t454
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t455, v_2_alpha_rear_elbow_up)
-    del t455
-    t456 = v_1_alpha_rear_elbow_up * t454 - v_2_alpha_rear_elbow_up * t452
-    del t452, t454, v_2_alpha_rear_elbow_up
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t456, v_1_alpha_rear_elbow_up)
-    del t456, v_1_alpha_rear_elbow_up
+    t444 = aside_rate_rear_elbow_up * turn_beta_rear_elbow_up
+    del aside_rate_rear_elbow_up
+    t445 = fore_rate_rear_elbow_up * turn_beta_rear_elbow_up
+    del fore_rate_rear_elbow_up
+    t446 = aside_beta_rear_elbow_up + t444 + t445 - t98 * (t392 * turn_beta_rear_elbow_up)
+    del aside_beta_rear_elbow_up, t392, t444
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t446, 0.0)
+    del t446
+    t447 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t448 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t449 = np.sqrt(1.0 + t448)
+    del t448
+    t450 = 1.0 / t449
+    t451 = _runtime.select(spent_beta_rear_elbow_up, t447 * t450 + t424 * t450, t424)
+    del t447
+    fore_turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t445, 0.0)
+    del t445
+    t452 = fore_turn_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    t453 = 1.0 / (t449 * np.sqrt(1.0 + t452))
+    del t449, t452
+    t454 = fore_turn_beta_rear_elbow_up * t453 - lean_beta_rear_elbow_up * t453
+    t455 = lean_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    t456 = t453 + t453 * t455
+    del t453, t455
+    t457 = v_1_alpha_rear_elbow_up * t454 + v_2_alpha_rear_elbow_up * t456
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t457, v_2_alpha_rear_elbow_up)
+    del t457
+    t458 = v_1_alpha_rear_elbow_up * t456 - v_2_alpha_rear_elbow_up * t454
+    del t454, t456, v_2_alpha_rear_elbow_up
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t458, v_1_alpha_rear_elbow_up)
+    del t458, v_1_alpha_rear_elbow_up
     sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
-    t457 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    t458 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t457 <= _runtime.VANISHING * (64.0 * t458)
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t458, -t457)
-    t459 = p_1_alpha_rear_elbow_up * t448 - t448 * (t422 * lean_beta_rear_elbow_up)
-    del t422, t448
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t459, p_1_alpha_rear_elbow_up)
-    del p_1_alpha_rear_elbow_up, t459
-    t460 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t459 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    t460 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t459 <= _runtime.VANISHING * (64.0 * t460)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t460, -t459)
+    t461 = p_1_alpha_rear_elbow_up * t450 - t450 * (t424 * lean_beta_rear_elbow_up)
+    del t424, t450
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t461, p_1_alpha_rear_elbow_up)
+    del p_1_alpha_rear_elbow_up, t461
+    t462 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
     del sigma_uv_rear_elbow_up
-    t461 = _runtime.select(parallel_rear_elbow_up, t449 * _runtime.sign(v_2_beta_rear_elbow_up), t460)
-    t462 = whole_y_rear_elbow_up + t461
-    below_beta_0_rear_elbow_up = np.maximum(t462, t162)
-    t463 = whole_y_rear_elbow_up - t461
-    above_beta_0_rear_elbow_up = np.maximum(t463, t162)
-    t464 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    t463 = _runtime.select(parallel_rear_elbow_up, t451 * _runtime.sign(v_2_beta_rear_elbow_up), t462)
+    t464 = whole_y_rear_elbow_up + t463
+    below_beta_0_rear_elbow_up = np.maximum(t464, t162)
+    t465 = whole_y_rear_elbow_up - t463
+    above_beta_0_rear_elbow_up = np.maximum(t465, t162)
+    t466 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t465 = v_2_beta_rear_elbow_up * (t464 / total_beta_0_rear_elbow_up)
-    del t464, total_beta_0_rear_elbow_up
-    t466 = t449 - t465
-    del t465
-    left_along_rear_elbow_up = L1 - np.abs(t466)
-    t467 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t467, left_along_rear_elbow_up) <= t167
+    t467 = v_2_beta_rear_elbow_up * (t466 / total_beta_0_rear_elbow_up)
+    del t466, total_beta_0_rear_elbow_up
+    t468 = t451 - t467
     del t467
-    t468 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
-    t469 = t468 | spent_beta_rear_elbow_up
-    del t468
-    t470 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    left_along_rear_elbow_up = L1 - np.abs(t468)
+    t469 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t469, left_along_rear_elbow_up) <= t167
+    del t469
+    t470 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
+    t471 = t470 | spent_beta_rear_elbow_up
+    del t470
+    t472 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
     del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
-    t471 = np.arctan2(_runtime.select(t469, t337 * t470, 0.0), 1.0)
-    del t337, t470
-    t472 = _runtime.select(nowhere, 0.0, t171 + t172)
+    t473 = np.arctan2(_runtime.select(t471, t339 * t472, 0.0), 1.0)
+    del t339, t472
+    t474 = _runtime.select(nowhere, 0.0, t171 + t172)
     del t171, t172
-    t473 = gain_1_alpha_rear_elbow_up + gain_0_alpha_rear_elbow_up
+    t475 = gain_1_alpha_rear_elbow_up + gain_0_alpha_rear_elbow_up
     del gain_0_alpha_rear_elbow_up, gain_1_alpha_rear_elbow_up
-    t474 = _runtime.select(spent_alpha_rear_elbow_up, t473, 0.0)
-    del spent_alpha_rear_elbow_up, t473
-    t475 = -(_runtime.FEASIBILITY * (t84 + t474)) <= margin_alpha_rear_elbow_up
-    del margin_alpha_rear_elbow_up, t474
-    t476 = gain_1_beta_rear_elbow_up + gain_0_beta_rear_elbow_up
+    t476 = _runtime.select(spent_alpha_rear_elbow_up, t475, 0.0)
+    del spent_alpha_rear_elbow_up, t475
+    t477 = -(_runtime.FEASIBILITY * (t84 + t476)) <= margin_alpha_rear_elbow_up
+    del margin_alpha_rear_elbow_up, t476
+    t478 = gain_1_beta_rear_elbow_up + gain_0_beta_rear_elbow_up
     del gain_0_beta_rear_elbow_up, gain_1_beta_rear_elbow_up
-    t477 = _runtime.select(spent_beta_rear_elbow_up, t476, 0.0)
-    del spent_beta_rear_elbow_up, t476
-    t478 = -(_runtime.FEASIBILITY * (t130 + t477)) <= -t419
-    del t419, t477
-    t479 = t190 & t475 & t478 & (t195 <= t460 - t457) & (t195 <= -(t457 + t460))
-    del t460, t475, t478
-    t480 = _runtime.select(spent_along_rear_elbow_up, t458 / (t197 - t457), 0.0)
-    del t458
-    t481 = -(_runtime.FEASIBILITY * (play * (1.0 + t480)))
-    del t480
-    t482 = t479 & (t195 <= t462) & (t195 <= t463) & (t481 <= left_along_rear_elbow_up)
-    del t462, t463, t479, t481
-    t483 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
+    t479 = _runtime.select(spent_beta_rear_elbow_up, t478, 0.0)
+    del spent_beta_rear_elbow_up, t478
+    t480 = -(_runtime.FEASIBILITY * (t130 + t479)) <= -t421
+    del t421, t479
+    t481 = t190 & t477 & t480 & (t195 <= t462 - t459) & (t195 <= -(t459 + t462))
+    del t462, t477, t480
+    t482 = _runtime.select(spent_along_rear_elbow_up, t460 / (t198 - t459), 0.0)
+    del t460
+    t483 = -(_runtime.FEASIBILITY * (t197 * (1.0 + t482)))
+    del t482
+    t484 = t481 & (t195 <= t464) & (t195 <= t465) & (t483 <= left_along_rear_elbow_up)
+    del t464, t465, t481, t483
+    t485 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
     del left_along_rear_elbow_up
-    t484 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t485 = v_2_beta_rear_elbow_up * t483 / (t457 * t457 + t484)
-    del t457, t483, t484
-    t486 = whole_y_rear_elbow_up * (t485 * _runtime.sign(-t466))
-    del t466, t485
-    t487 = _runtime.select(spent_along_rear_elbow_up, t461 + t486, t461)
-    del spent_along_rear_elbow_up, t461, t486
-    t488 = whole_y_rear_elbow_up + t487
-    t489 = whole_y_rear_elbow_up - t487
-    del t487, whole_y_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t488, t162)
-    above_beta_rear_elbow_up = np.maximum(t489, t162)
-    t490 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t486 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t487 = v_2_beta_rear_elbow_up * t485 / (t459 * t459 + t486)
+    del t459, t485, t486
+    t488 = whole_y_rear_elbow_up * (t487 * _runtime.sign(-t468))
+    del t468, t487
+    t489 = _runtime.select(spent_along_rear_elbow_up, t463 + t488, t463)
+    del spent_along_rear_elbow_up, t463, t488
+    t490 = whole_y_rear_elbow_up + t489
+    t491 = whole_y_rear_elbow_up - t489
+    del t489, whole_y_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t490, t162)
+    above_beta_rear_elbow_up = np.maximum(t491, t162)
+    t492 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t491 = 1.0 / total_beta_rear_elbow_up
+    t493 = 1.0 / total_beta_rear_elbow_up
     del total_beta_rear_elbow_up
-    t492 = t490 * t491
-    del t490
-    t493 = t449 - v_2_beta_rear_elbow_up * t492
-    del t449, v_2_beta_rear_elbow_up
-    t494 = L1 + t493
-    t495 = t482 & (t195 <= t488) & (t195 <= t489) & (t195 <= t494)
-    del t482, t488, t489
-    t496 = L1 - t493
-    unreachable_3 = np.logical_not(t495 & (t195 <= t496))
-    del t495
-    t497 = _runtime.poison(invalid | unreachable_3)
-    t498 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
+    t494 = t492 * t493
+    del t492
+    t495 = t451 - v_2_beta_rear_elbow_up * t494
+    del t451, v_2_beta_rear_elbow_up
+    t496 = L1 + t495
+    t497 = t484 & (t195 <= t490) & (t195 <= t491) & (t207 <= t496)
+    del t484, t490, t491
+    t498 = L1 - t495
+    unreachable_3 = np.logical_not(t497 & (t207 <= t498))
+    del t497
+    t499 = _runtime.poison(invalid | unreachable_3)
+    t500 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
     del out_2, up
-    t499 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
-    t500 = lean_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t501 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    t502 = lean_alpha_rear_elbow_up * lean_beta_rear_elbow_up
     del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t501 = np.arctan2(t499, 1.0 - t500)
-    del t499, t500
-    t502 = t498 + t501
-    del t498
-    below_alpha_rear_elbow_up = np.maximum(t494, t162)
-    del t494
-    above_alpha_rear_elbow_up = np.maximum(t496, t162)
+    t503 = np.arctan2(t501, 1.0 - t502)
+    del t501, t502
+    t504 = t500 + t503
+    del t500
+    below_alpha_rear_elbow_up = np.maximum(t496, t162)
     del t496
-    t503 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    above_alpha_rear_elbow_up = np.maximum(t498, t162)
+    del t498
+    t505 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t504 = 1.0 / total_alpha_rear_elbow_up
+    t506 = 1.0 / total_alpha_rear_elbow_up
     del total_alpha_rear_elbow_up
-    t505 = t503 * t504
-    del t503
-    t506 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t507 = t505 * t506
+    del t505
+    t508 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t507 = np.arctan2(t505, t504 * t506)
-    del t504, t506
-    t508 = fore_turn_alpha_rear_elbow_up + fore_turn_beta_rear_elbow_up
-    t509 = fore_turn_alpha_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    t509 = np.arctan2(t507, t506 * t508)
+    del t506, t508
+    t510 = fore_turn_alpha_rear_elbow_up + fore_turn_beta_rear_elbow_up
+    t511 = fore_turn_alpha_rear_elbow_up * fore_turn_beta_rear_elbow_up
     del fore_turn_alpha_rear_elbow_up, fore_turn_beta_rear_elbow_up
-    t510 = t374 - (t501 - np.arctan2(t508, 1.0 - t509))
-    del t374, t501, t508, t509
-    t511 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    t512 = t376 - (t503 - np.arctan2(t510, 1.0 - t511))
+    del t376, t503, t510, t511
+    t513 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
     del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t512 = t507 - np.arctan2(t492, t491 * t511)
-    del t491, t511
-    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t230)
-    del t230
-    p_1_rear_elbow_down = t231 + ahead * ctheta2A_rear_elbow_down
-    del ahead, t231
-    t513 = t232 - higher * ctheta2A_rear_elbow_down
-    del higher, t232
-    t514 = v_2 * p_1_rear_elbow_down + v_1 * t513
-    margin_alpha_rear_elbow_down = t80 - np.abs(t514)
+    t514 = t509 - np.arctan2(t494, t493 * t513)
+    del t493, t513
+    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t232)
+    del t232
+    p_1_rear_elbow_down = t233 + ahead * ctheta2A_rear_elbow_down
+    del ahead, t233
+    t515 = t234 - higher * ctheta2A_rear_elbow_down
+    del higher, t234
+    t516 = v_2 * p_1_rear_elbow_down + v_1 * t515
+    margin_alpha_rear_elbow_down = t80 - np.abs(t516)
     del t80
-    t515 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t516 = np.maximum(-t515, margin_alpha_rear_elbow_down)
-    del t515
-    spent_alpha_rear_elbow_down = t516 <= t85
-    del t516, t85
+    t517 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t518 = np.maximum(-t517, margin_alpha_rear_elbow_down)
+    del t517
+    spent_alpha_rear_elbow_down = t518 <= t85
+    del t518, t85
     heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t90, 1.0)
     gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t87 / heavy_1_alpha_rear_elbow_down, 0.0)
-    t517 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
+    t519 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
     aside_rate_rear_elbow_down = _runtime.select(t97, -(t98 * (tilt * stheta2A_front_elbow_down)), 0.0)
     del stheta2A_front_elbow_down, tilt
-    t518 = slope_aside_alpha * aside_rate_rear_elbow_down
+    t520 = slope_aside_alpha * aside_rate_rear_elbow_down
     del slope_aside_alpha
     fore_rate_rear_elbow_down = _runtime.select(t97, ctheta2A_rear_elbow_down, 1.0)
     del ctheta2A_rear_elbow_down, t97
-    t519 = _runtime.sign(-t514) * (v_1 * p_1_rear_elbow_down - v_2 * t513)
-    del t514
-    slope_alpha_rear_elbow_down = t518 - fore_rate_rear_elbow_down * (t99 - t519)
-    del t518, t519, t99
-    t520 = np.abs(slope_alpha_rear_elbow_down)
-    t521 = aside_rate_rear_elbow_down + fore_rate_rear_elbow_down
-    t522 = drawn * fore_rate_rear_elbow_down
-    t523 = t521 - t98 * t522
-    del t521
-    t524 = fore_rate_rear_elbow_down * fore_rate_rear_elbow_down
-    t525 = np.sqrt(t109 + L1 * (t523 * t523) + fore * t524)
-    del fore, t109, t523, t524
-    t526 = t88 * (t105 + t89 * t525 / 2000000.0)
-    del t105, t525, t88, t89
-    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t526, 1.0)
-    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t520 / heavy_0_alpha_rear_elbow_down, 0.0)
-    t527 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
-    t528 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t517 / (t93 + t517 + t527), 0.0)
-    del t517, t527, t93
-    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t528, 0.0)
-    del t528
-    t529 = t113 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
+    t521 = _runtime.sign(-t516) * (v_1 * p_1_rear_elbow_down - v_2 * t515)
+    del t516
+    slope_alpha_rear_elbow_down = t520 - fore_rate_rear_elbow_down * (t99 - t521)
+    del t520, t521, t99
+    t522 = np.abs(slope_alpha_rear_elbow_down)
+    t523 = aside_rate_rear_elbow_down + fore_rate_rear_elbow_down
+    t524 = drawn * fore_rate_rear_elbow_down
+    t525 = t523 - t98 * t524
+    del t523
+    t526 = fore_rate_rear_elbow_down * fore_rate_rear_elbow_down
+    t527 = np.sqrt(t109 + L1 * (t525 * t525) + fore * t526)
+    del fore, t109, t525, t526
+    t528 = t88 * (t105 + t89 * t527 / 2000000.0)
+    del t105, t527, t88, t89
+    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t528, 1.0)
+    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t522 / heavy_0_alpha_rear_elbow_down, 0.0)
+    t529 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
+    t530 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t519 / (t93 + t519 + t529), 0.0)
+    del t519, t529, t93
+    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t530, 0.0)
+    del t530
+    t531 = t113 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
     del t113
-    t530 = t84 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
+    t532 = t84 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_down
-    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t529 / (t87 + t530)), 0.0)
-    del t529, t530, t87
-    t531 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
+    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t531 / (t87 + t532)), 0.0)
+    del t531, t532, t87
+    t533 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
     del share_alpha_rear_elbow_down
-    t532 = t84 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
-    t533 = 1.0 / (t520 + t532)
-    del t520, t532
-    t534 = -(heavy_0_alpha_rear_elbow_down * t531 * t533)
+    t534 = t84 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
+    t535 = 1.0 / (t522 + t534)
+    del t522, t534
+    t536 = -(heavy_0_alpha_rear_elbow_down * t533 * t535)
     del heavy_0_alpha_rear_elbow_down
-    t535 = -(t531 * t533)
-    del t531, t533
-    t536 = (t534 <= 9.094947017729282e-13) & (0.0 < t535)
-    del t534
-    t537 = _runtime.sign(slope_alpha_rear_elbow_down) * _runtime.select(t536, t535, 0.0)
-    del slope_alpha_rear_elbow_down, t535, t536
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t537, 0.0)
-    del t537
-    t538 = aside_rate_rear_elbow_down * turn_alpha_rear_elbow_down
-    t539 = fore_rate_rear_elbow_down * turn_alpha_rear_elbow_down
-    t540 = aside_alpha_rear_elbow_down + t538 + t539 - t98 * (t522 * turn_alpha_rear_elbow_down)
-    del aside_alpha_rear_elbow_down, t538
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t540, 0.0)
-    del t540
-    t541 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t542 = np.sqrt(1.0 + t541)
-    del t541
-    t543 = 1.0 / t542
-    t544 = p_1_rear_elbow_down * t543 - t513 * lean_alpha_rear_elbow_down * t543
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t544, p_1_rear_elbow_down)
-    del t544
-    part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    fore_turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t539, 0.0)
+    t537 = -(t533 * t535)
+    del t533, t535
+    t538 = (t536 <= 9.094947017729282e-13) & (0.0 < t537)
+    del t536
+    t539 = _runtime.sign(slope_alpha_rear_elbow_down) * _runtime.select(t538, t537, 0.0)
+    del slope_alpha_rear_elbow_down, t537, t538
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t539, 0.0)
     del t539
-    t545 = fore_turn_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
-    t546 = 1.0 / (t542 * np.sqrt(1.0 + t545))
-    del t542, t545
-    t547 = lean_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
-    t548 = t546 + t546 * t547
-    del t547
-    t549 = fore_turn_alpha_rear_elbow_down * t546 - lean_alpha_rear_elbow_down * t546
+    t540 = aside_rate_rear_elbow_down * turn_alpha_rear_elbow_down
+    t541 = fore_rate_rear_elbow_down * turn_alpha_rear_elbow_down
+    t542 = aside_alpha_rear_elbow_down + t540 + t541 - t98 * (t524 * turn_alpha_rear_elbow_down)
+    del aside_alpha_rear_elbow_down, t540
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t542, 0.0)
+    del t542
+    t543 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t544 = np.sqrt(1.0 + t543)
+    del t543
+    t545 = 1.0 / t544
+    t546 = p_1_rear_elbow_down * t545 - t515 * lean_alpha_rear_elbow_down * t545
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t546, p_1_rear_elbow_down)
     del t546
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t548 - v_2 * t549, v_1)
+    part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
+    fore_turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t541, 0.0)
+    del t541
+    t547 = fore_turn_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
+    t548 = 1.0 / (t544 * np.sqrt(1.0 + t547))
+    del t544, t547
+    t549 = lean_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
+    t550 = t548 + t548 * t549
+    del t549
+    t551 = fore_turn_alpha_rear_elbow_down * t548 - lean_alpha_rear_elbow_down * t548
+    del t548
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t550 - v_2 * t551, v_1)
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t550 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
-    t551 = np.maximum(t550 * 9.094947017729282e-13, -t550)
-    spent_beta_rear_elbow_down = t551 <= t131
-    del t131, t551
-    t552 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    t552 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    t553 = np.maximum(t552 * 9.094947017729282e-13, -t552)
+    spent_beta_rear_elbow_down = t553 <= t131
+    del t131, t553
+    t554 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
     del p_1_rear_elbow_down
-    t553 = _runtime.select(spent_alpha_rear_elbow_down, t543 * t552 + t513 * t543, t513)
-    del t513, t543, t552
-    t554 = t553 * _runtime.sign(part_beta_rear_elbow_down)
+    t555 = _runtime.select(spent_alpha_rear_elbow_down, t545 * t554 + t515 * t545, t515)
+    del t515, t545, t554
+    t556 = t555 * _runtime.sign(part_beta_rear_elbow_down)
     del part_beta_rear_elbow_down
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t549 + v_2 * t548, v_2)
-    del t548, t549, v_1, v_2
-    t555 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t551 + v_2 * t550, v_2)
+    del t550, t551, v_1, v_2
+    t557 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
     del whole_beta_rear_elbow_down
-    slope_aside_beta_rear_elbow_down = L1 * (t554 + t555)
-    t556 = np.abs(slope_aside_beta_rear_elbow_down)
+    slope_aside_beta_rear_elbow_down = L1 * (t556 + t557)
+    t558 = np.abs(slope_aside_beta_rear_elbow_down)
     heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t90, 1.0)
     del t90
-    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t556 / heavy_1_beta_rear_elbow_down, 0.0)
-    t557 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
-    t558 = aside_rate_rear_elbow_down * slope_aside_beta_rear_elbow_down
-    t559 = fore_rate_rear_elbow_down * (drawn * t555 - t138 * t554)
-    del drawn, t138, t554, t555
-    slope_beta_rear_elbow_down = t558 - t559
-    del t558, t559
-    t560 = np.abs(slope_beta_rear_elbow_down)
-    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t526, 1.0)
-    del t526
-    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t560 / heavy_0_beta_rear_elbow_down, 0.0)
-    t561 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
-    t562 = _runtime.select(-t550 < 0.0, t557 / (t137 + t557 + t561), 0.0)
-    del t137, t557, t561
-    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t562, 0.0)
-    del t562
-    t563 = _runtime.sign(slope_aside_beta_rear_elbow_down)
+    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t558 / heavy_1_beta_rear_elbow_down, 0.0)
+    t559 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
+    t560 = aside_rate_rear_elbow_down * slope_aside_beta_rear_elbow_down
+    t561 = fore_rate_rear_elbow_down * (drawn * t557 - t138 * t556)
+    del drawn, t138, t556, t557
+    slope_beta_rear_elbow_down = t560 - t561
+    del t560, t561
+    t562 = np.abs(slope_beta_rear_elbow_down)
+    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t528, 1.0)
+    del t528
+    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t562 / heavy_0_beta_rear_elbow_down, 0.0)
+    t563 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
+    t564 = _runtime.select(-t552 < 0.0, t559 / (t137 + t559 + t563), 0.0)
+    del t137, t559, t563
+    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t564, 0.0)
+    del t564
+    t565 = _runtime.sign(slope_aside_beta_rear_elbow_down)
     del slope_aside_beta_rear_elbow_down
-    t564 = t130 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
+    t566 = t130 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
     del heavy_1_beta_rear_elbow_down
-    t565 = t550 * share_beta_rear_elbow_down * t563 / (t556 + t564)
-    del t556, t563, t564
-    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t565, 0.0)
-    del t565
-    lack_beta_rear_elbow_down = t550 * (1.0 - share_beta_rear_elbow_down)
+    t567 = t552 * share_beta_rear_elbow_down * t565 / (t558 + t566)
+    del t558, t565, t566
+    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t567, 0.0)
+    del t567
+    lack_beta_rear_elbow_down = t552 * (1.0 - share_beta_rear_elbow_down)
     del share_beta_rear_elbow_down
-    t566 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
-    t567 = t130 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
+    t568 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
+    t569 = t130 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
     del heavy_0_beta_rear_elbow_down
-    t568 = 1.0 / (t560 + t567)
-    del t560, t567
-    t569 = lack_beta_rear_elbow_down * t568
+    t570 = 1.0 / (t562 + t569)
+    del t562, t569
+    t571 = lack_beta_rear_elbow_down * t570
     del lack_beta_rear_elbow_down
-    t570 = (t566 * t568 <= 9.094947017729282e-13) & (0.0 < t569)
-    del t566, t568
-    t571 = _runtime.sign(slope_beta_rear_elbow_down) * _runtime.select(t570, t569, 0.0)
-    del slope_beta_rear_elbow_down, t569, t570
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t571, 0.0)
-    del t571
-    t572 = aside_rate_rear_elbow_down * turn_beta_rear_elbow_down
-    del aside_rate_rear_elbow_down
-    t573 = fore_rate_rear_elbow_down * turn_beta_rear_elbow_down
-    del fore_rate_rear_elbow_down
-    t574 = aside_beta_rear_elbow_down + t572 + t573 - t98 * (t522 * turn_beta_rear_elbow_down)
-    del aside_beta_rear_elbow_down, t522, t572, t98
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t574, 0.0)
-    del t574
-    t575 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
-    t576 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t577 = np.sqrt(1.0 + t576)
-    del t576
-    t578 = 1.0 / t577
-    t579 = _runtime.select(spent_beta_rear_elbow_down, t575 * t578 + t553 * t578, t553)
-    del t575
-    fore_turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t573, 0.0)
+    t572 = (t568 * t570 <= 9.094947017729282e-13) & (0.0 < t571)
+    del t568, t570
+    t573 = _runtime.sign(slope_beta_rear_elbow_down) * _runtime.select(t572, t571, 0.0)
+    del slope_beta_rear_elbow_down, t571, t572
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t573, 0.0)
     del t573
-    t580 = fore_turn_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
-    t581 = 1.0 / (t577 * np.sqrt(1.0 + t580))
-    del t577, t580
-    t582 = fore_turn_beta_rear_elbow_down * t581 - lean_beta_rear_elbow_down * t581
-    t583 = lean_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
-    t584 = t581 + t581 * t583
-    del t581, t583
-    t585 = v_1_alpha_rear_elbow_down * t582 + v_2_alpha_rear_elbow_down * t584
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t585, v_2_alpha_rear_elbow_down)
-    del t585
-    t586 = v_1_alpha_rear_elbow_down * t584 - v_2_alpha_rear_elbow_down * t582
-    del t582, t584, v_2_alpha_rear_elbow_down
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t586, v_1_alpha_rear_elbow_down)
-    del t586, v_1_alpha_rear_elbow_down
+    t574 = aside_rate_rear_elbow_down * turn_beta_rear_elbow_down
+    del aside_rate_rear_elbow_down
+    t575 = fore_rate_rear_elbow_down * turn_beta_rear_elbow_down
+    del fore_rate_rear_elbow_down
+    t576 = aside_beta_rear_elbow_down + t574 + t575 - t98 * (t524 * turn_beta_rear_elbow_down)
+    del aside_beta_rear_elbow_down, t524, t574, t98
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t576, 0.0)
+    del t576
+    t577 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t578 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t579 = np.sqrt(1.0 + t578)
+    del t578
+    t580 = 1.0 / t579
+    t581 = _runtime.select(spent_beta_rear_elbow_down, t577 * t580 + t555 * t580, t555)
+    del t577
+    fore_turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t575, 0.0)
+    del t575
+    t582 = fore_turn_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t583 = 1.0 / (t579 * np.sqrt(1.0 + t582))
+    del t579, t582
+    t584 = fore_turn_beta_rear_elbow_down * t583 - lean_beta_rear_elbow_down * t583
+    t585 = lean_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t586 = t583 + t583 * t585
+    del t583, t585
+    t587 = v_1_alpha_rear_elbow_down * t584 + v_2_alpha_rear_elbow_down * t586
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t587, v_2_alpha_rear_elbow_down)
+    del t587
+    t588 = v_1_alpha_rear_elbow_down * t586 - v_2_alpha_rear_elbow_down * t584
+    del t584, t586, v_2_alpha_rear_elbow_down
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t588, v_1_alpha_rear_elbow_down)
+    del t588, v_1_alpha_rear_elbow_down
     sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
-    t587 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
-    t588 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t587 <= _runtime.VANISHING * (64.0 * t588)
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t588, -t587)
-    t589 = t579 * _runtime.sign(v_2_beta_rear_elbow_down)
-    t590 = p_1_alpha_rear_elbow_down * t578 - t578 * (t553 * lean_beta_rear_elbow_down)
-    del t553, t578
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t590, p_1_alpha_rear_elbow_down)
-    del p_1_alpha_rear_elbow_down, t590
-    t591 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t589 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t590 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t589 <= _runtime.VANISHING * (64.0 * t590)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t590, -t589)
+    t591 = t581 * _runtime.sign(v_2_beta_rear_elbow_down)
+    t592 = p_1_alpha_rear_elbow_down * t580 - t580 * (t555 * lean_beta_rear_elbow_down)
+    del t555, t580
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t592, p_1_alpha_rear_elbow_down)
+    del p_1_alpha_rear_elbow_down, t592
+    t593 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
     del sigma_uv_rear_elbow_down
-    t592 = _runtime.select(parallel_rear_elbow_down, t589, t591)
-    del t589
-    t593 = whole_y_rear_elbow_down + t592
-    below_beta_0_rear_elbow_down = np.maximum(t593, t162)
-    t594 = whole_y_rear_elbow_down - t592
-    above_beta_0_rear_elbow_down = np.maximum(t594, t162)
-    t595 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t594 = _runtime.select(parallel_rear_elbow_down, t591, t593)
+    del t591
+    t595 = whole_y_rear_elbow_down + t594
+    below_beta_0_rear_elbow_down = np.maximum(t595, t162)
+    t596 = whole_y_rear_elbow_down - t594
+    above_beta_0_rear_elbow_down = np.maximum(t596, t162)
+    t597 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t596 = v_2_beta_rear_elbow_down * (t595 / total_beta_0_rear_elbow_down)
-    del t595, total_beta_0_rear_elbow_down
-    t597 = t579 - t596
-    del t596
-    left_along_rear_elbow_down = L1 - np.abs(t597)
-    t598 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t599 = np.maximum(-t598, left_along_rear_elbow_down)
+    t598 = v_2_beta_rear_elbow_down * (t597 / total_beta_0_rear_elbow_down)
+    del t597, total_beta_0_rear_elbow_down
+    t599 = t581 - t598
     del t598
-    spent_along_rear_elbow_down = t599 <= t167
-    del t167, t599
-    t600 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
-    t601 = t600 | spent_beta_rear_elbow_down
+    left_along_rear_elbow_down = L1 - np.abs(t599)
+    t600 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t601 = np.maximum(-t600, left_along_rear_elbow_down)
     del t600
-    t602 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    spent_along_rear_elbow_down = t601 <= t167
+    del t167, t601
+    t602 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
+    t603 = t602 | spent_beta_rear_elbow_down
+    del t602
+    t604 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
     del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
-    t603 = np.arctan2(_runtime.select(t601, t170 * t602, 0.0), 1.0)
-    del t170, t602
-    t604 = gain_1_alpha_rear_elbow_down + gain_0_alpha_rear_elbow_down
+    t605 = np.arctan2(_runtime.select(t603, t170 * t604, 0.0), 1.0)
+    del t170, t604
+    t606 = gain_1_alpha_rear_elbow_down + gain_0_alpha_rear_elbow_down
     del gain_0_alpha_rear_elbow_down, gain_1_alpha_rear_elbow_down
-    t605 = _runtime.select(spent_alpha_rear_elbow_down, t604, 0.0)
-    del spent_alpha_rear_elbow_down, t604
-    t606 = -(_runtime.FEASIBILITY * (t84 + t605)) <= margin_alpha_rear_elbow_down
-    del margin_alpha_rear_elbow_down, t605, t84
-    t607 = gain_1_beta_rear_elbow_down + gain_0_beta_rear_elbow_down
+    t607 = _runtime.select(spent_alpha_rear_elbow_down, t606, 0.0)
+    del spent_alpha_rear_elbow_down, t606
+    t608 = -(_runtime.FEASIBILITY * (t84 + t607)) <= margin_alpha_rear_elbow_down
+    del margin_alpha_rear_elbow_down, t607, t84
+    t609 = gain_1_beta_rear_elbow_down + gain_0_beta_rear_elbow_down
     del gain_0_beta_rear_elbow_down, gain_1_beta_rear_elbow_down
-    t608 = _runtime.select(spent_beta_rear_elbow_down, t607, 0.0)
-    del spent_beta_rear_elbow_down, t607
-    t609 = -(_runtime.FEASIBILITY * (t130 + t608)) <= -t550
-    del t130, t550, t608
-    t610 = t190 & t606 & t609 & (t195 <= t591 - t587) & (t195 <= -(t587 + t591))
-    del t190, t591, t606, t609
-    t611 = _runtime.select(spent_along_rear_elbow_down, t588 / (t197 - t587), 0.0)
-    del t197, t588
-    t612 = -(_runtime.FEASIBILITY * (play * (1.0 + t611)))
-    del play, t611
-    t613 = t610 & (t195 <= t593) & (t195 <= t594) & (t612 <= left_along_rear_elbow_down)
-    del t593, t594, t610, t612
-    t614 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
+    t610 = _runtime.select(spent_beta_rear_elbow_down, t609, 0.0)
+    del spent_beta_rear_elbow_down, t609
+    t611 = -(_runtime.FEASIBILITY * (t130 + t610)) <= -t552
+    del t130, t552, t610
+    t612 = t190 & t608 & t611 & (t195 <= t593 - t589) & (t195 <= -(t589 + t593))
+    del t190, t593, t608, t611
+    t613 = _runtime.select(spent_along_rear_elbow_down, t590 / (t198 - t589), 0.0)
+    del t198, t590
+    t614 = -(_runtime.FEASIBILITY * (t197 * (1.0 + t613)))
+    del t197, t613
+    t615 = t612 & (t195 <= t595) & (t195 <= t596) & (t614 <= left_along_rear_elbow_down)
+    del t595, t596, t612, t614
+    t616 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
     del left_along_rear_elbow_down
-    t615 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t616 = v_2_beta_rear_elbow_down * t614 / (t587 * t587 + t615)
-    del t587, t614, t615
-    t617 = whole_y_rear_elbow_down * (t616 * _runtime.sign(-t597))
-    del t597, t616
-    t618 = _runtime.select(spent_along_rear_elbow_down, t592 + t617, t592)
-    del spent_along_rear_elbow_down, t592, t617
-    t619 = whole_y_rear_elbow_down + t618
-    t620 = whole_y_rear_elbow_down - t618
-    del t618, whole_y_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t619, t162)
-    above_beta_rear_elbow_down = np.maximum(t620, t162)
-    t621 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t617 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t618 = v_2_beta_rear_elbow_down * t616 / (t589 * t589 + t617)
+    del t589, t616, t617
+    t619 = whole_y_rear_elbow_down * (t618 * _runtime.sign(-t599))
+    del t599, t618
+    t620 = _runtime.select(spent_along_rear_elbow_down, t594 + t619, t594)
+    del spent_along_rear_elbow_down, t594, t619
+    t621 = whole_y_rear_elbow_down + t620
+    t622 = whole_y_rear_elbow_down - t620
+    del t620, whole_y_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t621, t162)
+    above_beta_rear_elbow_down = np.maximum(t622, t162)
+    t623 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t622 = 1.0 / total_beta_rear_elbow_down
+    t624 = 1.0 / total_beta_rear_elbow_down
     del total_beta_rear_elbow_down
-    t623 = t621 * t622
-    del t621
-    t624 = t579 - v_2_beta_rear_elbow_down * t623
-    del t579, v_2_beta_rear_elbow_down
-    t625 = L1 + t624
-    t626 = t613 & (t195 <= t619) & (t195 <= t620) & (t195 <= t625)
-    del t613, t619, t620
-    t627 = L1 - t624
-    unreachable_4 = np.logical_not(t626 & (t195 <= t627))
-    del t195, t626
-    t628 = _runtime.poison(invalid | unreachable_4)
-    t629 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
+    t625 = t623 * t624
+    del t623
+    t626 = t581 - v_2_beta_rear_elbow_down * t625
+    del t581, v_2_beta_rear_elbow_down
+    t627 = L1 + t626
+    t628 = t615 & (t195 <= t621) & (t195 <= t622) & (t207 <= t627)
+    del t195, t615, t621, t622
+    t629 = L1 - t626
+    unreachable_4 = np.logical_not(t628 & (t207 <= t629))
+    del t207, t628
+    t630 = _runtime.poison(invalid | unreachable_4)
+    t631 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
     del out_front_elbow_down, up_front_elbow_down
-    t630 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
-    t631 = lean_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t632 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    t633 = lean_alpha_rear_elbow_down * lean_beta_rear_elbow_down
     del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t632 = np.arctan2(t630, 1.0 - t631)
-    del t630, t631
-    t633 = _runtime.select(folded, 0.0, t629) + t632
-    del t629
-    below_alpha_rear_elbow_down = np.maximum(t625, t162)
-    del t625
-    above_alpha_rear_elbow_down = np.maximum(t627, t162)
-    del t162, t627
-    t634 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t634 = np.arctan2(t632, 1.0 - t633)
+    del t632, t633
+    t635 = _runtime.select(folded, 0.0, t631) + t634
+    del t631
+    below_alpha_rear_elbow_down = np.maximum(t627, t162)
+    del t627
+    above_alpha_rear_elbow_down = np.maximum(t629, t162)
+    del t162, t629
+    t636 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t635 = 1.0 / total_alpha_rear_elbow_down
+    t637 = 1.0 / total_alpha_rear_elbow_down
     del total_alpha_rear_elbow_down
-    t636 = t634 * t635
-    del t634
-    t637 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t638 = t636 * t637
+    del t636
+    t639 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t638 = np.arctan2(t636, t635 * t637)
-    del t635, t637
-    t639 = fore_turn_alpha_rear_elbow_down + fore_turn_beta_rear_elbow_down
-    t640 = fore_turn_alpha_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t640 = np.arctan2(t638, t637 * t639)
+    del t637, t639
+    t641 = fore_turn_alpha_rear_elbow_down + fore_turn_beta_rear_elbow_down
+    t642 = fore_turn_alpha_rear_elbow_down * fore_turn_beta_rear_elbow_down
     del fore_turn_alpha_rear_elbow_down, fore_turn_beta_rear_elbow_down
-    t641 = t222 - (t632 - np.arctan2(t639, 1.0 - t640))
-    del t222, t632, t639, t640
-    t642 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t643 = t224 - (t634 - np.arctan2(t641, 1.0 - t642))
+    del t224, t634, t641, t642
+    t644 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t643 = t638 - np.arctan2(t623, t622 * t642)
-    del t622, t642
-    t644 = (wrist <= al * _runtime.DETERMINED) | nowhere
+    t645 = t640 - np.arctan2(t625, t624 * t644)
+    del t624, t644
+    t646 = (wrist <= al * _runtime.DETERMINED) | nowhere
     del nowhere, wrist
-    t645 = t644 | folded | short
-    del folded, short, t644
-    t646 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
-    t647 = t646 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
-    del t646
-    t648 = t647 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
-    del t647
-    t649 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
+    t647 = t646 | folded | short
+    del folded, short, t646
+    t648 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
+    t649 = t648 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
+    del t648
+    t650 = t649 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
+    del t649
+    t651 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
     del t_phi, t_psi
-    t650 = t648 * t649
-    del t648, t649
-    t651 = np.abs(p_1_beta + v_1_beta * t207) + np.abs(t208 - L1 * t217)
-    del p_1_beta, t207, t208, t217, v_1_beta
-    t652 = 1125899906842624.0 * _runtime.select(t168, t651, 0.0)
-    del t651
-    t653 = _runtime.select(t168, t650, 1.0) <= _runtime.DETERMINED * t652
-    del t168, t652
-    t654 = _runtime.status(invalid, unreachable, t645 | parallel | t653)
-    del parallel, t653, unreachable
-    t655 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t358
-    del p_1_beta_front_elbow_down, t358, v_1_beta_front_elbow_down
-    missed_front_elbow_down = _runtime.select(t335, np.abs(t655) + np.abs(t359 - L1 * t371), 0.0)
-    del t359, t371, t655
-    t656 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
+    t652 = t650 * t651
+    del t650, t651
+    t653 = np.abs(p_1_beta + v_1_beta * t209) + np.abs(t210 - L1 * t219)
+    del p_1_beta, t209, t210, t219, v_1_beta
+    t654 = 1125899906842624.0 * _runtime.select(t168, t653, 0.0)
+    del t653
+    t655 = _runtime.select(t168, t652, 1.0) <= _runtime.DETERMINED * t654
+    del t168, t654
+    t656 = _runtime.status(invalid, unreachable, t647 | parallel | t655)
+    del parallel, t655, unreachable
+    t657 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t360
+    del p_1_beta_front_elbow_down, t360, v_1_beta_front_elbow_down
+    missed_front_elbow_down = _runtime.select(t337, np.abs(t657) + np.abs(t361 - L1 * t373), 0.0)
+    del t361, t373, t657
+    t658 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
     del missed_front_elbow_down
-    t657 = t645 | parallel_front_elbow_down | (_runtime.select(t335, t650, 1.0) <= t656)
-    del parallel_front_elbow_down, t335, t656
-    t658 = _runtime.status(invalid, unreachable_2, t657)
-    del t657, unreachable_2
-    t659 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t492
-    del p_1_beta_rear_elbow_up, t492, v_1_beta_rear_elbow_up
-    missed_rear_elbow_up = _runtime.select(t469, np.abs(t659) + np.abs(t493 - L1 * t505), 0.0)
-    del t493, t505, t659
-    t660 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
+    t659 = t647 | parallel_front_elbow_down | (_runtime.select(t337, t652, 1.0) <= t658)
+    del parallel_front_elbow_down, t337, t658
+    t660 = _runtime.status(invalid, unreachable_2, t659)
+    del t659, unreachable_2
+    t661 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t494
+    del p_1_beta_rear_elbow_up, t494, v_1_beta_rear_elbow_up
+    missed_rear_elbow_up = _runtime.select(t471, np.abs(t661) + np.abs(t495 - L1 * t507), 0.0)
+    del t495, t507, t661
+    t662 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
     del missed_rear_elbow_up
-    t661 = t645 | parallel_rear_elbow_up | (_runtime.select(t469, t650, 1.0) <= t660)
-    del parallel_rear_elbow_up, t469, t660
-    t662 = _runtime.status(invalid, unreachable_3, t661)
-    del t661, unreachable_3
-    t663 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t623
-    del p_1_beta_rear_elbow_down, t623, v_1_beta_rear_elbow_down
-    missed_rear_elbow_down = _runtime.select(t601, np.abs(t663) + np.abs(t624 - L1 * t636), 0.0)
-    del t624, t636, t663
-    t664 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
+    t663 = t647 | parallel_rear_elbow_up | (_runtime.select(t471, t652, 1.0) <= t662)
+    del parallel_rear_elbow_up, t471, t662
+    t664 = _runtime.status(invalid, unreachable_3, t663)
+    del t663, unreachable_3
+    t665 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t625
+    del p_1_beta_rear_elbow_down, t625, v_1_beta_rear_elbow_down
+    missed_rear_elbow_down = _runtime.select(t603, np.abs(t665) + np.abs(t626 - L1 * t638), 0.0)
+    del t626, t638, t665
+    t666 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
     del missed_rear_elbow_down
-    t665 = t645 | parallel_rear_elbow_down | (_runtime.select(t601, t650, 1.0) <= t664)
-    del parallel_rear_elbow_down, t601, t645, t650, t664
-    t666 = _runtime.status(invalid, unreachable_4, t665)
-    del invalid, t665, unreachable_4
+    t667 = t647 | parallel_rear_elbow_down | (_runtime.select(t603, t652, 1.0) <= t666)
+    del parallel_rear_elbow_down, t603, t647, t652, t666
+    t668 = _runtime.status(invalid, unreachable_4, t667)
+    del invalid, t667, unreachable_4
     return (
-        t174 + t212,
-        _runtime.wrap(t215 - t219) + t212,
-        _runtime.wrap(t224 + t226) + t212,
-        _runtime.wrap(t215 + t219) + t212,
-        _runtime.wrap(t224 - t226) + t212,
-        t227 + t212,
-        _runtime.wrap(t338 - t173) + t363,
-        _runtime.wrap(t368 - t373) + t363,
-        _runtime.wrap(t377 + t379) + t363,
-        _runtime.wrap(t368 + t373) + t363,
-        _runtime.wrap(t377 - t379) + t363,
-        t227 + t363,
-        _runtime.wrap(t471 - t472) + t497,
-        _runtime.wrap(t502 - t507) + t497,
-        _runtime.wrap(t510 + t512) + t497,
-        _runtime.wrap(t502 + t507) + t497,
-        _runtime.wrap(t510 - t512) + t497,
-        t227 + t497,
-        _runtime.wrap(t603 - t472) + t628,
-        _runtime.wrap(t633 - t638) + t628,
-        _runtime.wrap(t641 + t643) + t628,
-        _runtime.wrap(t633 + t638) + t628,
-        _runtime.wrap(t641 - t643) + t628,
-        t227 + t628,
-        t654,
-        t658,
-        t662,
-        t666,
+        t174 + t214,
+        _runtime.wrap(t217 - t221) + t214,
+        _runtime.wrap(t226 + t228) + t214,
+        _runtime.wrap(t217 + t221) + t214,
+        _runtime.wrap(t226 - t228) + t214,
+        t229 + t214,
+        _runtime.wrap(t340 - t173) + t365,
+        _runtime.wrap(t370 - t375) + t365,
+        _runtime.wrap(t379 + t381) + t365,
+        _runtime.wrap(t370 + t375) + t365,
+        _runtime.wrap(t379 - t381) + t365,
+        t229 + t365,
+        _runtime.wrap(t473 - t474) + t499,
+        _runtime.wrap(t504 - t509) + t499,
+        _runtime.wrap(t512 + t514) + t499,
+        _runtime.wrap(t504 + t509) + t499,
+        _runtime.wrap(t512 - t514) + t499,
+        t229 + t499,
+        _runtime.wrap(t605 - t474) + t630,
+        _runtime.wrap(t635 - t640) + t630,
+        _runtime.wrap(t643 + t645) + t630,
+        _runtime.wrap(t635 + t640) + t630,
+        _runtime.wrap(t643 - t645) + t630,
+        t229 + t630,
+        t656,
+        t660,
+        t664,
+        t668,
     )
 
 
@@ -3185,42 +3188,43 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t69 = part_y - t66
     del part_y
     t70 = t65 <= t69
-    t71 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
-    below_beta_0 = np.maximum(t67, t71)
+    t71 = -(_runtime.FEASIBILITY * (32.0 * play))
+    t72 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
+    below_beta_0 = np.maximum(t67, t72)
     del t67
-    above_beta_0 = np.maximum(t69, t71)
+    above_beta_0 = np.maximum(t69, t72)
     del t69
-    t72 = below_beta_0 - above_beta_0
-    t73 = t59 - v_2 * (t72 / (below_beta_0 + above_beta_0))
+    t73 = below_beta_0 - above_beta_0
+    t74 = t59 - v_2 * (t73 / (below_beta_0 + above_beta_0))
     del t59
-    left_along = L1 - np.abs(t73)
-    t74 = t64 & t68 & t70 & t68 & t70 & (t65 <= left_along)
+    left_along = L1 - np.abs(t74)
+    t75 = t64 & t68 & t70 & t68 & t70 & (t71 <= left_along)
     del t64
-    t75 = L1 + t73
-    t76 = L1 - t73
-    del t73
-    t77 = t74 & t68 & t70 & (t65 <= t75) & (t65 <= t76)
-    del t68, t70, t74
-    unreachable = np.logical_not(t77)
-    del t77
-    t78 = _runtime.poison(invalid | unreachable)
-    t79 = np.arctan2(up, -out_rear_elbow_up)
-    below_alpha = np.maximum(t75, t71)
-    del t75
-    above_alpha = np.maximum(t76, t71)
+    t76 = L1 + t74
+    t77 = L1 - t74
+    del t74
+    t78 = t75 & t68 & t70 & (t71 <= t76) & (t71 <= t77)
+    del t68, t70, t75
+    unreachable = np.logical_not(t78)
+    del t78
+    t79 = _runtime.poison(invalid | unreachable)
+    t80 = np.arctan2(up, -out_rear_elbow_up)
+    below_alpha = np.maximum(t76, t72)
     del t76
-    t80 = np.arctan2(below_alpha - above_alpha, 2.0 * np.sqrt(below_alpha * above_alpha))
+    above_alpha = np.maximum(t77, t72)
+    del t77
+    t81 = np.arctan2(below_alpha - above_alpha, 2.0 * np.sqrt(below_alpha * above_alpha))
     del above_alpha, below_alpha
-    t81 = np.arctan2(t72, 2.0 * np.sqrt(below_beta_0 * above_beta_0))
-    del above_beta_0, below_beta_0, t72
-    t82 = t80 - t81
-    del t81
-    t83 = np.arctan2(t44, t42)
+    t82 = np.arctan2(t73, 2.0 * np.sqrt(below_beta_0 * above_beta_0))
+    del above_beta_0, below_beta_0, t73
+    t83 = t81 - t82
+    del t82
+    t84 = np.arctan2(t44, t42)
     del t42, t44
-    t84 = np.arctan2(L_2W, a_3W)
+    t85 = np.arctan2(L_2W, a_3W)
     del L_2W, a_3W
-    t85 = t83 - t84
-    t86 = _runtime.wrap(principal_pitch)
+    t86 = t84 - t85
+    t87 = _runtime.wrap(principal_pitch)
     del principal_pitch
     c_relative_front_elbow_down = t43 - t45
     del t43, t45
@@ -3228,290 +3232,291 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t46, t47
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t87 = np.abs(whole_alpha_front_elbow_down)
+    t88 = np.abs(whole_alpha_front_elbow_down)
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
     del c_relative_front_elbow_down, s_relative_front_elbow_down
     out_front_elbow_down = t52 + t53
     del t52, t53
-    t88 = t50 - t51
+    t89 = t50 - t51
     del t50, t51
-    t89 = out_front_elbow_down * out_front_elbow_down + t88 * t88
-    t90 = 1.0 / np.sqrt(t89)
-    del t89
-    ctheta2A_front_elbow_down = out_front_elbow_down * t90
-    t91 = ahead * ctheta2A_front_elbow_down
-    t92 = t88 * t90
+    t90 = out_front_elbow_down * out_front_elbow_down + t89 * t89
+    t91 = 1.0 / np.sqrt(t90)
     del t90
-    t93 = higher * t92
-    p_1_front_elbow_down = t91 - t93
-    t94 = ahead * t92
-    del ahead, t92
-    t95 = higher * ctheta2A_front_elbow_down
+    ctheta2A_front_elbow_down = out_front_elbow_down * t91
+    t92 = ahead * ctheta2A_front_elbow_down
+    t93 = t89 * t91
+    del t91
+    t94 = higher * t93
+    p_1_front_elbow_down = t92 - t94
+    t95 = ahead * t93
+    del ahead, t93
+    t96 = higher * ctheta2A_front_elbow_down
     del ctheta2A_front_elbow_down, higher
-    t96 = t94 + t95
-    t97 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t96
-    margin_alpha_front_elbow_down = t87 - np.abs(t97)
-    del t97
-    margin_beta_front_elbow_down = t87 - np.abs(L1 * p_1_front_elbow_down)
-    t98 = t37 & (t39 <= margin_alpha_front_elbow_down) & (t63 <= margin_beta_front_elbow_down)
+    t97 = t95 + t96
+    t98 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t97
+    margin_alpha_front_elbow_down = t88 - np.abs(t98)
+    del t98
+    margin_beta_front_elbow_down = t88 - np.abs(L1 * p_1_front_elbow_down)
+    t99 = t37 & (t39 <= margin_alpha_front_elbow_down) & (t63 <= margin_beta_front_elbow_down)
     sigma_uv_front_elbow_down = _runtime.sign(-whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
-    t99 = sigma_uv_front_elbow_down * p_1_front_elbow_down
+    t100 = sigma_uv_front_elbow_down * p_1_front_elbow_down
     del p_1_front_elbow_down
-    t100 = v_1_front_elbow_down * sigma_uv_front_elbow_down
-    t101 = t99 - t100
-    t102 = t65 <= t101
-    t103 = -(t100 + t99)
-    del t99
-    t104 = t65 <= t103
-    below_beta_0_front_elbow_down = np.maximum(t101, t71)
-    del t101
-    above_beta_0_front_elbow_down = np.maximum(t103, t71)
-    del t103
-    t105 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    t101 = v_1_front_elbow_down * sigma_uv_front_elbow_down
+    t102 = t100 - t101
+    t103 = t65 <= t102
+    t104 = -(t101 + t100)
+    del t100
+    t105 = t65 <= t104
+    below_beta_0_front_elbow_down = np.maximum(t102, t72)
+    del t102
+    above_beta_0_front_elbow_down = np.maximum(t104, t72)
+    del t104
+    t106 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
-    t106 = v_2_front_elbow_down * (t105 / total_beta_0_front_elbow_down)
+    t107 = v_2_front_elbow_down * (t106 / total_beta_0_front_elbow_down)
     del total_beta_0_front_elbow_down
-    along_u_front_elbow_down = t96 + t106
-    del t106, t96
+    along_u_front_elbow_down = t97 + t107
+    del t107, t97
     left_along_front_elbow_down = L1 - np.abs(-along_u_front_elbow_down)
-    t107 = t98 & t102 & t104 & t102 & t104 & (t65 <= left_along_front_elbow_down)
-    del t98
-    t108 = L1 - along_u_front_elbow_down
-    t109 = L1 + along_u_front_elbow_down
+    t108 = t99 & t103 & t105 & t103 & t105 & (t71 <= left_along_front_elbow_down)
+    del t99
+    t109 = L1 - along_u_front_elbow_down
+    t110 = L1 + along_u_front_elbow_down
     del along_u_front_elbow_down
-    t110 = t107 & t102 & t104 & (t65 <= t108) & (t65 <= t109)
-    del t102, t104, t107
-    unreachable_2 = np.logical_not(t110)
-    del t110
-    t111 = _runtime.poison(invalid | unreachable_2)
-    t112 = np.arctan2(-t88, out_front_elbow_down)
-    below_alpha_front_elbow_down = np.maximum(t108, t71)
-    del t108
-    above_alpha_front_elbow_down = np.maximum(t109, t71)
+    t111 = t108 & t103 & t105 & (t71 <= t109) & (t71 <= t110)
+    del t103, t105, t108
+    unreachable_2 = np.logical_not(t111)
+    del t111
+    t112 = _runtime.poison(invalid | unreachable_2)
+    t113 = np.arctan2(-t89, out_front_elbow_down)
+    below_alpha_front_elbow_down = np.maximum(t109, t72)
     del t109
-    t113 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    t114 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
+    above_alpha_front_elbow_down = np.maximum(t110, t72)
+    del t110
+    t114 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t115 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t115 = np.arctan2(t113, 2.0 * np.sqrt(t114))
-    del t113, t114
-    t116 = t83 + t84
-    del t83, t84
-    t117 = below_beta_0_front_elbow_down * above_beta_0_front_elbow_down
+    t116 = np.arctan2(t114, 2.0 * np.sqrt(t115))
+    del t114, t115
+    t117 = t84 + t85
+    del t84, t85
+    t118 = below_beta_0_front_elbow_down * above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t118 = t115 - np.arctan2(t105, 2.0 * np.sqrt(t117))
-    del t105, t117
-    t119 = _runtime.wrap(-(t13 + t12))
+    t119 = t116 - np.arctan2(t106, 2.0 * np.sqrt(t118))
+    del t106, t118
+    t120 = _runtime.wrap(-(t13 + t12))
     del t12, t13
-    t120 = t60 + t61
+    t121 = t60 + t61
     del t60, t61
-    t121 = t56 - t58
+    t122 = t56 - t58
     del t56, t58
-    t122 = v_2_front_elbow_down * t120 + v_1_front_elbow_down * t121
+    t123 = v_2_front_elbow_down * t121 + v_1_front_elbow_down * t122
     del v_1_front_elbow_down
-    margin_alpha_rear_elbow_up = t87 - np.abs(t122)
-    del t122
-    margin_beta_rear_elbow_up = t87 - np.abs(L1 * t120)
-    del t87
-    t123 = t37 & (t39 <= margin_alpha_rear_elbow_up) & (t63 <= margin_beta_rear_elbow_up)
-    t124 = sigma_uv_front_elbow_down * t120
-    del sigma_uv_front_elbow_down, t120
-    t125 = t124 - t100
-    t126 = t65 <= t125
-    t127 = -(t100 + t124)
-    del t124
-    t128 = t65 <= t127
-    below_beta_0_rear_elbow_up = np.maximum(t125, t71)
-    del t125
-    above_beta_0_rear_elbow_up = np.maximum(t127, t71)
-    del t127
-    t129 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
-    total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
-    t130 = v_2_front_elbow_down * (t129 / total_beta_0_rear_elbow_up)
-    del total_beta_0_rear_elbow_up
-    t131 = t121 - t130
-    del t121, t130
-    left_along_rear_elbow_up = L1 - np.abs(t131)
-    t132 = t123 & t126 & t128 & t126 & t128 & (t65 <= left_along_rear_elbow_up)
+    margin_alpha_rear_elbow_up = t88 - np.abs(t123)
     del t123
-    t133 = L1 + t131
-    t134 = L1 - t131
-    del t131
-    t135 = t132 & t126 & t128 & (t65 <= t133) & (t65 <= t134)
-    del t126, t128, t132
-    unreachable_3 = np.logical_not(t135)
-    del t135
-    t136 = _runtime.poison(invalid | unreachable_3)
-    t137 = np.arctan2(up, out_rear_elbow_up)
+    margin_beta_rear_elbow_up = t88 - np.abs(L1 * t121)
+    del t88
+    t124 = t37 & (t39 <= margin_alpha_rear_elbow_up) & (t63 <= margin_beta_rear_elbow_up)
+    t125 = sigma_uv_front_elbow_down * t121
+    del sigma_uv_front_elbow_down, t121
+    t126 = t125 - t101
+    t127 = t65 <= t126
+    t128 = -(t101 + t125)
+    del t125
+    t129 = t65 <= t128
+    below_beta_0_rear_elbow_up = np.maximum(t126, t72)
+    del t126
+    above_beta_0_rear_elbow_up = np.maximum(t128, t72)
+    del t128
+    t130 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
+    t131 = v_2_front_elbow_down * (t130 / total_beta_0_rear_elbow_up)
+    del total_beta_0_rear_elbow_up
+    t132 = t122 - t131
+    del t122, t131
+    left_along_rear_elbow_up = L1 - np.abs(t132)
+    t133 = t124 & t127 & t129 & t127 & t129 & (t71 <= left_along_rear_elbow_up)
+    del t124
+    t134 = L1 + t132
+    t135 = L1 - t132
+    del t132
+    t136 = t133 & t127 & t129 & (t71 <= t134) & (t71 <= t135)
+    del t127, t129, t133
+    unreachable_3 = np.logical_not(t136)
+    del t136
+    t137 = _runtime.poison(invalid | unreachable_3)
+    t138 = np.arctan2(up, out_rear_elbow_up)
     del out_rear_elbow_up, up
-    below_alpha_rear_elbow_up = np.maximum(t133, t71)
-    del t133
-    above_alpha_rear_elbow_up = np.maximum(t134, t71)
+    below_alpha_rear_elbow_up = np.maximum(t134, t72)
     del t134
-    t138 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    t139 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
+    above_alpha_rear_elbow_up = np.maximum(t135, t72)
+    del t135
+    t139 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t140 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t140 = np.arctan2(t138, 2.0 * np.sqrt(t139))
-    del t138, t139
-    t141 = below_beta_0_rear_elbow_up * above_beta_0_rear_elbow_up
+    t141 = np.arctan2(t139, 2.0 * np.sqrt(t140))
+    del t139, t140
+    t142 = below_beta_0_rear_elbow_up * above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t142 = t140 - np.arctan2(t129, 2.0 * np.sqrt(t141))
-    del t129, t141
-    t143 = t91 + t93
-    del t91, t93
-    t144 = t94 - t95
-    del t94, t95
-    margin_alpha_rear_elbow_down = t48 - np.abs(-(v_2 * t143 + v_1 * t144))
+    t143 = t141 - np.arctan2(t130, 2.0 * np.sqrt(t142))
+    del t130, t142
+    t144 = t92 + t94
+    del t92, t94
+    t145 = t95 - t96
+    del t95, t96
+    margin_alpha_rear_elbow_down = t48 - np.abs(-(v_2 * t144 + v_1 * t145))
     del v_1
-    margin_beta_rear_elbow_down = t48 - np.abs(-(L1 * t143))
+    margin_beta_rear_elbow_down = t48 - np.abs(-(L1 * t144))
     del t48
-    t145 = t37 & (t39 <= margin_alpha_rear_elbow_down) & (t63 <= margin_beta_rear_elbow_down)
+    t146 = t37 & (t39 <= margin_alpha_rear_elbow_down) & (t63 <= margin_beta_rear_elbow_down)
     del t37, t39, t63
-    part_y_rear_elbow_down = sigma_uv * t143
-    del sigma_uv, t143
-    t146 = -(t66 + part_y_rear_elbow_down)
-    t147 = t65 <= t146
-    t148 = part_y_rear_elbow_down - t66
+    part_y_rear_elbow_down = sigma_uv * t144
+    del sigma_uv, t144
+    t147 = -(t66 + part_y_rear_elbow_down)
+    t148 = t65 <= t147
+    t149 = part_y_rear_elbow_down - t66
     del part_y_rear_elbow_down
-    t149 = t65 <= t148
-    below_beta_0_rear_elbow_down = np.maximum(t146, t71)
-    del t146
-    above_beta_0_rear_elbow_down = np.maximum(t148, t71)
-    del t148
-    t150 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t150 = t65 <= t149
+    del t65
+    below_beta_0_rear_elbow_down = np.maximum(t147, t72)
+    del t147
+    above_beta_0_rear_elbow_down = np.maximum(t149, t72)
+    del t149
+    t151 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
-    along_u_rear_elbow_down = t144 + v_2 * (t150 / total_beta_0_rear_elbow_down)
-    del t144, total_beta_0_rear_elbow_down
+    along_u_rear_elbow_down = t145 + v_2 * (t151 / total_beta_0_rear_elbow_down)
+    del t145, total_beta_0_rear_elbow_down
     left_along_rear_elbow_down = L1 - np.abs(-along_u_rear_elbow_down)
-    t151 = t145 & t147 & t149 & t147 & t149 & (t65 <= left_along_rear_elbow_down)
-    del t145
-    t152 = L1 - along_u_rear_elbow_down
-    t153 = L1 + along_u_rear_elbow_down
+    t152 = t146 & t148 & t150 & t148 & t150 & (t71 <= left_along_rear_elbow_down)
+    del t146
+    t153 = L1 - along_u_rear_elbow_down
+    t154 = L1 + along_u_rear_elbow_down
     del along_u_rear_elbow_down
-    t154 = t151 & t147 & t149 & (t65 <= t152) & (t65 <= t153)
-    del t147, t149, t151, t65
-    unreachable_4 = np.logical_not(t154)
-    del t154
-    t155 = _runtime.poison(invalid | unreachable_4)
-    t156 = np.arctan2(-t88, -out_front_elbow_down)
-    del out_front_elbow_down, t88
-    below_alpha_rear_elbow_down = np.maximum(t152, t71)
-    del t152
-    above_alpha_rear_elbow_down = np.maximum(t153, t71)
-    del t153, t71
-    t157 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    t158 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
+    t155 = t152 & t148 & t150 & (t71 <= t153) & (t71 <= t154)
+    del t148, t150, t152, t71
+    unreachable_4 = np.logical_not(t155)
+    del t155
+    t156 = _runtime.poison(invalid | unreachable_4)
+    t157 = np.arctan2(-t89, -out_front_elbow_down)
+    del out_front_elbow_down, t89
+    below_alpha_rear_elbow_down = np.maximum(t153, t72)
+    del t153
+    above_alpha_rear_elbow_down = np.maximum(t154, t72)
+    del t154, t72
+    t158 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t159 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t159 = np.arctan2(t157, 2.0 * np.sqrt(t158))
-    del t157, t158
-    t160 = below_beta_0_rear_elbow_down * above_beta_0_rear_elbow_down
+    t160 = np.arctan2(t158, 2.0 * np.sqrt(t159))
+    del t158, t159
+    t161 = below_beta_0_rear_elbow_down * above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t161 = t159 - np.arctan2(t150, 2.0 * np.sqrt(t160))
-    del t150, t160
-    t162 = (wrist <= al * _runtime.DETERMINED) | (1.0 <= 0.0)
-    t163 = _runtime.status(invalid, unreachable_2, t162)
+    t162 = t160 - np.arctan2(t151, 2.0 * np.sqrt(t161))
+    del t151, t161
+    t163 = (wrist <= al * _runtime.DETERMINED) | (1.0 <= 0.0)
+    t164 = _runtime.status(invalid, unreachable_2, t163)
     del unreachable_2
-    t164 = _runtime.status(invalid, unreachable_3, t162)
+    t165 = _runtime.status(invalid, unreachable_3, t163)
     del unreachable_3
-    t165 = _runtime.status(invalid, unreachable_4, t162)
+    t166 = _runtime.status(invalid, unreachable_4, t163)
     del unreachable_4
     stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING
     del wrist
-    t166 = h * slack
+    t167 = h * slack
     del slack
-    tangent = 4.0 * root * t29 - t166 * 0.00390625 <= _runtime.VANISHING * t166
-    del t166
-    t167 = stretched | tangent | (h <= _runtime.VANISHING * lengths)
+    tangent = 4.0 * root * t29 - t167 * 0.00390625 <= _runtime.VANISHING * t167
+    del t167
+    t168 = stretched | tangent | (h <= _runtime.VANISHING * lengths)
     del h, lengths, stretched, tangent
-    t168 = t167 | (L1 * fore <= _runtime.VANISHING * t30)
-    del t167, t30
-    t169 = _runtime.VANISHING * t29
+    t169 = t168 | (L1 * fore <= _runtime.VANISHING * t30)
+    del t168, t30
+    t170 = _runtime.VANISHING * t29
     del t29
-    t170 = t168 | (np.abs(t31) + np.abs(root) <= t169) | (fore <= t169)
-    del fore, root, t168, t169, t31
-    t171 = np.maximum(-(margin_alpha * 9.094947017729282e-13), margin_alpha)
+    t171 = t169 | (np.abs(t31) + np.abs(root) <= t170) | (fore <= t170)
+    del fore, root, t169, t170, t31
+    t172 = np.maximum(-(margin_alpha * 9.094947017729282e-13), margin_alpha)
     del margin_alpha
-    t172 = _runtime.VANISHING * play_alpha
+    t173 = _runtime.VANISHING * play_alpha
     del play_alpha
-    t173 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
+    t174 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
     del margin_beta
-    t174 = _runtime.VANISHING * play_beta
+    t175 = _runtime.VANISHING * play_beta
     del play_beta
     parallel = -t66 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
     del t66, v_2
-    t175 = t170 | (t171 <= t172) | (t173 <= t174) | parallel
-    del parallel, t170, t171, t173
-    t176 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t176 = t171 | (t172 <= t173) | (t174 <= t175) | parallel
+    del parallel, t171, t172, t174
+    t177 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
     del left_along
-    t177 = _runtime.VANISHING * play
+    t178 = _runtime.VANISHING * play
     del play
-    t178 = margin_alpha_front_elbow_down * 9.094947017729282e-13
-    t179 = np.maximum(-t178, margin_alpha_front_elbow_down)
-    del margin_alpha_front_elbow_down, t178
-    t180 = margin_beta_front_elbow_down * 9.094947017729282e-13
-    t181 = np.maximum(-t180, margin_beta_front_elbow_down)
-    del margin_beta_front_elbow_down, t180
-    t182 = t175 | (t176 <= t177) | (t179 <= t172) | (t181 <= t174)
-    del t175, t176, t179, t181
-    t183 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
+    t179 = margin_alpha_front_elbow_down * 9.094947017729282e-13
+    t180 = np.maximum(-t179, margin_alpha_front_elbow_down)
+    del margin_alpha_front_elbow_down, t179
+    t181 = margin_beta_front_elbow_down * 9.094947017729282e-13
+    t182 = np.maximum(-t181, margin_beta_front_elbow_down)
+    del margin_beta_front_elbow_down, t181
+    t183 = t176 | (t177 <= t178) | (t180 <= t173) | (t182 <= t175)
+    del t176, t177, t180, t182
+    t184 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
     del v_2_front_elbow_down
-    t184 = left_along_front_elbow_down * 9.094947017729282e-13
-    t185 = np.maximum(-t184, left_along_front_elbow_down)
-    del left_along_front_elbow_down, t184
-    t186 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t187 = np.maximum(-t186, margin_alpha_rear_elbow_up)
-    del margin_alpha_rear_elbow_up, t186
-    t188 = t182 | (-t100 <= t183) | (t185 <= t177) | (t187 <= t172)
-    del t100, t182, t183, t185, t187
-    t189 = margin_beta_rear_elbow_up * 9.094947017729282e-13
-    spent_beta_rear_elbow_up = np.maximum(-t189, margin_beta_rear_elbow_up) <= t174
-    del margin_beta_rear_elbow_up, t189
-    t190 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t190, left_along_rear_elbow_up) <= t177
-    del left_along_rear_elbow_up, t190
-    t191 = t188 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up
-    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t188
-    t192 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t193 = np.maximum(-t192, margin_alpha_rear_elbow_down)
-    del margin_alpha_rear_elbow_down, t192
-    t194 = margin_beta_rear_elbow_down * 9.094947017729282e-13
-    t195 = np.maximum(-t194, margin_beta_rear_elbow_down)
-    del margin_beta_rear_elbow_down, t194
-    t196 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t197 = np.maximum(-t196, left_along_rear_elbow_down)
-    del left_along_rear_elbow_down, t196
-    t198 = t191 | (t193 <= t172) | (t195 <= t174) | (t197 <= t177)
-    del t172, t174, t177, t191, t193, t195, t197
+    t185 = left_along_front_elbow_down * 9.094947017729282e-13
+    t186 = np.maximum(-t185, left_along_front_elbow_down)
+    del left_along_front_elbow_down, t185
+    t187 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t188 = np.maximum(-t187, margin_alpha_rear_elbow_up)
+    del margin_alpha_rear_elbow_up, t187
+    t189 = t183 | (-t101 <= t184) | (t186 <= t178) | (t188 <= t173)
+    del t101, t183, t184, t186, t188
+    t190 = margin_beta_rear_elbow_up * 9.094947017729282e-13
+    spent_beta_rear_elbow_up = np.maximum(-t190, margin_beta_rear_elbow_up) <= t175
+    del margin_beta_rear_elbow_up, t190
+    t191 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t191, left_along_rear_elbow_up) <= t178
+    del left_along_rear_elbow_up, t191
+    t192 = t189 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up
+    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t189
+    t193 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t194 = np.maximum(-t193, margin_alpha_rear_elbow_down)
+    del margin_alpha_rear_elbow_down, t193
+    t195 = margin_beta_rear_elbow_down * 9.094947017729282e-13
+    t196 = np.maximum(-t195, margin_beta_rear_elbow_down)
+    del margin_beta_rear_elbow_down, t195
+    t197 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t198 = np.maximum(-t197, left_along_rear_elbow_down)
+    del left_along_rear_elbow_down, t197
+    t199 = t192 | (t194 <= t173) | (t196 <= t175) | (t198 <= t178)
+    del t173, t175, t178, t192, t194, t196, t198
     return (
-        t14 + t78,
-        _runtime.wrap(t79 - t80) + t78,
-        _runtime.wrap(t82 - t85) + t78,
-        _runtime.wrap(t79 + t80) + t78,
-        _runtime.wrap(-(t85 + t82)) + t78,
-        t86 + t78,
-        t14 + t111,
-        _runtime.wrap(t112 - t115) + t111,
-        _runtime.wrap(t116 + t118) + t111,
-        _runtime.wrap(t112 + t115) + t111,
-        _runtime.wrap(t116 - t118) + t111,
-        t86 + t111,
-        t119 + t136,
-        _runtime.wrap(t137 - t140) + t136,
-        _runtime.wrap(t116 + t142) + t136,
-        _runtime.wrap(t137 + t140) + t136,
-        _runtime.wrap(t116 - t142) + t136,
-        t86 + t136,
-        t119 + t155,
-        _runtime.wrap(t156 - t159) + t155,
-        _runtime.wrap(t161 - t85) + t155,
-        _runtime.wrap(t156 + t159) + t155,
-        _runtime.wrap(-(t85 + t161)) + t155,
-        t86 + t155,
-        _runtime.status(invalid, unreachable, t162),
-        t163,
+        t14 + t79,
+        _runtime.wrap(t80 - t81) + t79,
+        _runtime.wrap(t83 - t86) + t79,
+        _runtime.wrap(t80 + t81) + t79,
+        _runtime.wrap(-(t86 + t83)) + t79,
+        t87 + t79,
+        t14 + t112,
+        _runtime.wrap(t113 - t116) + t112,
+        _runtime.wrap(t117 + t119) + t112,
+        _runtime.wrap(t113 + t116) + t112,
+        _runtime.wrap(t117 - t119) + t112,
+        t87 + t112,
+        t120 + t137,
+        _runtime.wrap(t138 - t141) + t137,
+        _runtime.wrap(t117 + t143) + t137,
+        _runtime.wrap(t138 + t141) + t137,
+        _runtime.wrap(t117 - t143) + t137,
+        t87 + t137,
+        t120 + t156,
+        _runtime.wrap(t157 - t160) + t156,
+        _runtime.wrap(t162 - t86) + t156,
+        _runtime.wrap(t157 + t160) + t156,
+        _runtime.wrap(-(t86 + t162)) + t156,
+        t87 + t156,
+        _runtime.status(invalid, unreachable, t163),
         t164,
         t165,
-        t198,
+        t166,
+        t199,
     )
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from mpl_toolkits.mplot3d import proj3d
 from numpy.typing import ArrayLike
 
 from closedform.plot import labels
@@ -195,8 +194,7 @@ class Diagram:
 
     def _share(self, points: Array) -> float:
         """How much of the width or the height of the axes some points in space take."""
-        across, up, _ = proj3d.proj_transform(*points.T, self.ax.get_proj())
-        seen = self.ax.transData.transform(np.column_stack([across, up]))
+        seen = labels.pixels(self.ax, points)
         return float(2 * np.nanmax(np.abs(self.ax.transAxes.inverted().transform(seen) - 0.5)))
 
     def clean(

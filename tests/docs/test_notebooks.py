@@ -25,7 +25,7 @@ def test_every_cell_runs(guide: str) -> None:
     if guide == "reading-a-derivation":
         text = "\n".join(t for c in cells for t in shown(c, "text/markdown"))
         assert "**Jacobian and its determinant.**" in text
-        assert r"\det J_{xy} &= l_{1} l_{2} \sin \theta_{2}" in text
+        assert r"\det J_{xy} &= l_{1} l_{2} \mathrm{s}_{2}" in text
         assert "**Lemma (two-link triangle).**" in text and "atan_{2}" not in text
         assert "base has a cosine instead of a sine.**" in text
 
@@ -50,4 +50,4 @@ def test_the_table_of_a_step_is_shown() -> None:
 
     step = next(s for s in d.steps if s.title == "Skeleton")
     rows = [line for line in (step._repr_markdown_() or "").splitlines() if line.startswith("|")]
-    assert rows[1] == "|---|---|" and rows[2] == "| base to elbow | $l_{1}$ |"
+    assert rows[1] == "|---|---|---|" and rows[2] == "| first | base to elbow | $l_{1}$ |"

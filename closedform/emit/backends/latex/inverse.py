@@ -147,7 +147,7 @@ class Told:
 
     def varied(self, case: Degenerate) -> list[sp.Symbol]:
         """The symbols that parametrise a locus, and stand for nothing else."""
-        there = {s for e in case.locus.values() for s in sp.sympify(e).free_symbols}
+        there = {s for e in case.locus.values() for s in sp.sympify(e, strict=True).free_symbols}
         known = {*self.function.symbols, *self.parameters, *symbols_declared(self.page.derivation)}
         return sorted(there - known, key=str)
 

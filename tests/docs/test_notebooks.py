@@ -48,6 +48,8 @@ def test_a_derivation_shows_what_a_reader_computes() -> None:
 def test_the_table_of_a_step_is_shown() -> None:
     from closedform.derivations.planar_2r import d
 
+    import closedform.emit.notebook  # noqa: F401
+
     step = next(s for s in d.steps if s.title == "Skeleton")
     rows = [line for line in (step._repr_markdown_() or "").splitlines() if line.startswith("|")]
     assert rows[1] == "|---|---|---|" and rows[2] == "| first | base to elbow | $l_{1}$ |"

@@ -97,7 +97,7 @@ def two_sines(
     part = program.let("eased", choose(spent, part + whole * eased, part))
     cy, sy = _from_sine(program, str(y), part, whole, scale)
     along = program.let("along_u", ahead - sy * lean)
-    cx, sx = _from_sine(program, str(x), along, size, scale, play)
+    cx, sx = _from_sine(program, str(x), along, size, scale, play=play)
     bounds = [s.symbol for s in program.body[start:] if isinstance(s, Bound)]
     return Lemma(
         "two sines",
@@ -145,6 +145,7 @@ def _from_sine(
     part: sp.Expr,
     whole: sp.Expr,
     scale: sp.Expr,
+    *,
     play: sp.Expr | None = None,
 ) -> tuple[sp.Symbol, sp.Symbol]:
     """Cosine and sine of the angle with ``sin x = part / whole`` and a cosine not negative."""

@@ -23,7 +23,7 @@ from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, vector
 from closedform.loops.guides import LENGTH, TURNS, Ball, Gimbal, Guide, Placed
 from closedform.loops.hand import check_order, check_plain, rate_of, square
 from closedform.loops.hinged_pose import motions, state_pose
-from closedform.loops.hinges import Hinged, Hinges, StandingPlane, TurningPlane
+from closedform.loops.hinges import Hinged, Hinges, InPlane
 from closedform.loops.leg_by_leg import MISSED, LegByLeg, named_in, signs_of_modes, size_of
 from closedform.loops.skeleton import Drawing, points_of
 from closedform.mechanics.skeleton import skeleton
@@ -56,8 +56,7 @@ class Guided:
                 f"{name}: a driven leg beside {self.guide.what} must be a crank, a slide or a "
                 f"leg that stretches"
             )
-        jointed = Guide | Gimbal | TurningPlane | StandingPlane
-        if isinstance(self.guide, jointed) and self.guide.joint.faulty:
+        if isinstance(self.guide, Guide | Gimbal | InPlane) and self.guide.joint.faulty:
             raise ShapeError(
                 f"{name}: the axes of {self.guide.what} must be two unit vectors at right angles"
             )

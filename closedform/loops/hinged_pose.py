@@ -9,7 +9,8 @@ import sympy as sp
 
 from closedform.lemmas.legs import vector
 from closedform.loops.guides import Placed
-from closedform.loops.hinges import Hinges, StandingPlane, TurningPlane
+from closedform.loops.hinges import Hinges, InPlane, StandingPlane, TurningPlane
+from closedform.mechanics.frames import homogeneous
 from closedform.model.derivation import Derivation
 from closedform.model.step import Step
 
@@ -40,7 +41,7 @@ def state_pose(d: Derivation, guide: Hinges, places: Sequence[sp.Matrix], at: Pl
     """The step on the pose of the hand, and the function that returns it."""
     p = d.program()
     placed = guide.place(p, places)
-    plane = guide if isinstance(guide, TurningPlane | StandingPlane) else None
+    plane = guide if isinstance(guide, InPlane) else None
     them = "its place along the axis" if plane else "its place sideways, x and y"
     d.explain({"R": "rotation of the hand", r"\mathbf p": "position of the point of the hand"})
     shown: dict[str, Any] = {"R": at.rotation, r"\mathbf p": vector(guide.pivot) + at.shift}
@@ -69,12 +70,11 @@ def state_pose(d: Derivation, guide: Hinges, places: Sequence[sp.Matrix], at: Pl
         proves=proves.rstrip(),
         equal=equal,
     )
-    T = placed.rotation.row_join(vector(guide.pivot) + placed.shift)
     d.function(
         "hand_pose",
         "Pose of the hand, which the target determines.",
         guide.inputs,
-        {"T": sp.Matrix.vstack(T, sp.Matrix([[0, 0, 0, 1]]))},
+        {"T": homogeneous(placed.rotation, vector(guide.pivot) + placed.shift)},
         program=p,
         notes=("Not finite where the hinges do not fix the place of the hand.",) * guide.loose,
     )

@@ -131,9 +131,9 @@ class Hinges(ABC):
         return len([t for t in self.target if t not in (ALONG, DISTANCE, TILTED[0])])
 
     @property
+    @abstractmethod
     def degree(self) -> int:
         """Of the forward problem in general, counted at random numbers."""
-        raise NotImplementedError
 
     @property
     def own(self) -> tuple[str, ...]:
@@ -227,7 +227,25 @@ def _ends(p: Program, shift: sp.Matrix, levers: Sequence[sp.Matrix]) -> tuple[sp
 
 
 @dataclass(frozen=True)
-class TurningPlane(Hinges):
+class InPlane(Hinges):
+    """A hand that some of its legs keep in a plane, in which it moves and turns."""
+
+    first: Sequence[Any]
+    second: Sequence[Any]
+    inside: tuple[int, ...] = field(default=(), kw_only=True)
+    """The numbers of the legs in the plane; found from the legs."""
+
+    @property
+    def joint(self) -> Turning:
+        return Turning(self.pivot, self.first, self.second)
+
+    @property
+    def coordinates(self) -> tuple[sp.Symbol, ...]:
+        return (ALONG, DISTANCE, *TURNS)
+
+
+@dataclass(frozen=True)
+class TurningPlane(InPlane):
     """A plane that turns about an axis on the ground, in which legs keep the hand.
 
     Each of these legs has a universal joint on this axis and a revolute joint on the hand, as two
@@ -240,22 +258,10 @@ class TurningPlane(Hinges):
     the hand in it.  With four legs the place of the hand along the axis comes first.
     """
 
-    first: Sequence[Any]
-    second: Sequence[Any]
     aside: sp.Expr = field(default=sp.S.Zero, kw_only=True)
     """How far the legs end beside the point of the hand, along ``second``; found from them."""
-    inside: tuple[int, ...] = field(default=(), kw_only=True)
-    """The numbers of the legs in the plane; found from the legs."""
 
     what: ClassVar[str] = "a plane that turns"
-
-    @property
-    def joint(self) -> Turning:
-        return Turning(self.pivot, self.first, self.second)
-
-    @property
-    def coordinates(self) -> tuple[sp.Symbol, ...]:
-        return (ALONG, DISTANCE, *TURNS)
 
     @property
     def solved(self) -> dict[sp.Symbol, sp.Matrix]:
@@ -307,7 +313,7 @@ class TurningPlane(Hinges):
 
 
 @dataclass(frozen=True)
-class StandingPlane(Hinges):
+class StandingPlane(InPlane):
     """A plane of the ground in which legs keep an axis of the hand.
 
     Each of these legs has revolute joints whose axes are ``first``, the normal of the plane, and a
@@ -321,20 +327,7 @@ class StandingPlane(Hinges):
     four legs the place of the hand along ``second``, where nothing is turned, comes first.
     """
 
-    first: Sequence[Any]
-    second: Sequence[Any]
-    inside: tuple[int, ...] = field(default=(), kw_only=True)
-    """The numbers of the legs in the plane; found from the legs."""
-
     what: ClassVar[str] = "a plane that stands still"
-
-    @property
-    def joint(self) -> Turning:
-        return Turning(self.pivot, self.first, self.second)
-
-    @property
-    def coordinates(self) -> tuple[sp.Symbol, ...]:
-        return (ALONG, DISTANCE, *TURNS)
 
     @property
     def solved(self) -> dict[sp.Symbol, sp.Matrix]:
@@ -449,4 +442,4 @@ def _check_hinges(
         raise ShapeError(f"{name}: {count} Hinged, not {len(hinged)}")
 
 
-__all__ = ["Hinged", "Hinges", "StandingPlane", "TurningPlane", "TwoHinges"]
+__all__ = ["Hinged", "Hinges", "InPlane", "StandingPlane", "TurningPlane", "TwoHinges"]

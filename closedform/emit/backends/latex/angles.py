@@ -243,6 +243,8 @@ class _InAngles:
     def _choose(self, unknown: sp.Symbol, solution: sp.Expr, usual: sp.Expr) -> None:
         """Note where a flag holds in which other names than the usual ones give an angle."""
         for flag in self.special:
+            if not self._has(solution, flag):
+                continue
             there = self._angle(solution, flag)
             if not there.is_number and there != self._angle(usual, flag):
                 self.chosen.setdefault(flag, []).append(unknown)
@@ -443,6 +445,8 @@ def turned(y: sp.Expr, x: sp.Expr) -> sp.Expr | None:
         return y.args[0]
     for angle in sorted({f.args[0] for f in y.atoms(sp.sin, sp.cos)}, key=str):
         s, c = sp.sin(angle), sp.cos(angle)
+        if not all(e.is_polynomial(s, c) for e in (y, x)):
+            continue  # the long formulas of roots cannot be expanded
         (ys, yc), (xs, xc) = ([sp.expand(e).coeff(f) for f in (s, c)] for e in (y, x))
         if sp.expand(y - ys * s - yc * c) != 0 or sp.expand(x - xs * s - xc * c) != 0:
             continue

@@ -260,7 +260,7 @@ def test_angles_without_square_roots_become_parameters(
 ) -> None:
     arm = quick(tmp_path, "named", "dh", NAMED, monkeypatch)
     said = capsys.readouterr().err
-    assert "line 4, column theta: the cosine of pi/18 cannot be written with square roots" in said
+    assert "line 4, column theta: the cosine of pi/18 has no short form with square roots" in said
     assert "the parameter angle2 = 0.17453292519943295769 rad" in said
     assert "# named.table, line 4, column theta: the cosine of pi/18" in (
         tmp_path / "named.py"

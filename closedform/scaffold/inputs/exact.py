@@ -21,6 +21,8 @@ from closedform.model.tolerances import UNIT_LENGTH
 ROUNDED = 0.75
 """Tolerance in units of the last decimal: half for its own rounding, the rest for the others'."""
 FINEST = 1e-15
+SHORT = (1, 2, 3, 4, 5, 6, 8, 10, 12)
+"""The parts of a half turn whose multiples have short sines and cosines: one root in another."""
 SIMPLE: tuple[sp.Expr, ...] = (
     *map(sp.Integer, (0, 1)),
     *(sp.Rational(p, q) for p, q in ((1, 2), (1, 3), (2, 3), (3, 5), (4, 5))),
@@ -160,7 +162,7 @@ def _normal_to(axis: sp.Matrix, u: Sequence[float], place: float) -> sp.Matrix:
 
 @dataclass
 class Angles:
-    """Names for the angles whose cosine cannot be written with square roots."""
+    """Names for the angles whose cosine has no short form with square roots."""
 
     taken: Callable[[str], bool]
     named: dict[sp.Expr, sp.Symbol] = field(default_factory=dict)
@@ -177,7 +179,7 @@ class Angles:
         return self._named(entry, where) if angle else entry
 
     def _named(self, angle: sp.Expr, where: str) -> sp.Expr:
-        unknown = sp.Add(*(t for t in sp.Add.make_args(angle) if not _has_roots(t)))
+        unknown = sp.Add(*(t for t in sp.Add.make_args(angle) if not _is_simple(t)))
         if unknown == 0:
             return angle
         value, sign = (-unknown, -1) if unknown < 0 else (unknown, 1)
@@ -189,13 +191,13 @@ class Angles:
         return angle - unknown + sign * self.named[value]
 
 
-def _has_roots(term: sp.Expr) -> bool:
-    """Whether the cosine can be written with square roots, or the angle has symbols."""
+def _is_simple(term: sp.Expr) -> bool:
+    """Whether the sine and the cosine have short forms with square roots, or it has symbols."""
     if term.free_symbols or term == 0:
         return True
     factor, rest = term.as_coeff_Mul()
     if rest == sp.pi:
-        return not (sp.cos(term).has(sp.cos, sp.sin) or sp.sin(term).has(sp.cos, sp.sin))
+        return factor.is_Rational and factor.q in SHORT
     return factor.is_Integer and isinstance(rest, sp.atan | sp.atan2)
 
 

@@ -302,7 +302,7 @@ def _declare(table: Table, angles: exact.Angles) -> None:
             "meaning": f"the angle {angle} of the table",
         }
         table.notes.append(
-            f"{where}: the cosine of {angle} cannot be written with square roots, so this angle "
+            f"{where}: the cosine of {angle} has no short form with square roots, so this angle "
             f"is the parameter {symbol.name} = {value} rad"
         )
 

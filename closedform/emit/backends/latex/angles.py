@@ -100,7 +100,9 @@ class _InAngles:
         body = self.function.body
         self.flags = [s.symbol for s in body if isinstance(s, Vanishes)]
         self.usual: dict[sp.Basic, Any] = dict.fromkeys(self.flags, sp.false)
-        self.special = [s.symbol for s in body if isinstance(s, Vanishes) and not is_rounding(s)]
+        flags = [s for s in body if isinstance(s, Vanishes) and not is_rounding(s)]
+        self.special = [flag.symbol for flag in flags]
+        self.freeing = [flag.symbol for flag in flags if flag.free]
         self.raw = {s.symbol: s.value for s in body if isinstance(s, Let | Bound)}
         self.values = {n: substitute(e, self.usual) for n, e in self.raw.items()}
         self.alias = {n: e for n, e in self.values.items() if e.is_Symbol}
@@ -241,10 +243,8 @@ class _InAngles:
             self.totals.setdefault(usual, unknown)
 
     def _choose(self, unknown: sp.Symbol, solution: sp.Expr, usual: sp.Expr) -> None:
-        """Note where a flag holds in which other names than the usual ones give an angle."""
-        for flag in self.special:
-            if not self._has(solution, flag):
-                continue
+        """Note the flags of free joints with which other names than the usual ones give an angle."""
+        for flag in self.freeing:
             there = self._angle(solution, flag)
             if not there.is_number and there != self._angle(usual, flag):
                 self.chosen.setdefault(flag, []).append(unknown)

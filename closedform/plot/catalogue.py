@@ -62,6 +62,8 @@ class View:
     home: Sequence[float] | None = None
     general: Sequence[float] | None = None
     mode: int = 0
+    shown: Mapping[str, float] = field(default_factory=dict)
+    """Dimensions that the example does not have, because they would not be seen in it."""
     faint: Collection[str] = ()
     hues: Mapping[str, int] = field(default_factory=dict)
     """The numbers of the colours of links that have one of their own."""
@@ -85,7 +87,7 @@ def standard(view: View) -> list[Figure]:
         Figure(
             "mechanism",
             "The mechanism at home (left) and in a general posture (right), with the axes of its "
-            "joints, its lengths and its angles.",
+            "joints, its lengths and its angles." + _shown(view),
             lambda robot: _both(robot, view),
         ),
         Figure(
@@ -121,6 +123,14 @@ def standard(view: View) -> list[Figure]:
     ]  # fmt: skip
 
 
+def _shown(view: View) -> str:
+    """Which dimensions are drawn that the example does not have."""
+    if not view.shown:
+        return ""
+    values = ", ".join(f"{name} = {value:g}" for name, value in view.shown.items())
+    return f" Here {values}, so that it can be seen; in the example it is 0."
+
+
 def fits(robot: ModuleType, figure: str) -> bool:
     """Whether a figure makes sense for a mechanism.
 
@@ -148,14 +158,16 @@ def _both(robot: ModuleType, view: View) -> Any:
         return pictured(robot, view, postures[1])
     panels = new_panels(1, 2, spatial=not r.flat, size=(7.4, 3.7))
     for ax, posture in zip(panels, postures, strict=True):
-        pictured(robot, view, posture, ax=ax)
+        pictured(robot, view, posture, ax=ax, lettered=ax is not panels[0])
     return panels[0]
 
 
 def pictured(robot: ModuleType, view: View, posture: ArrayLike | None, **style: Any) -> Any:
     """Draw one of the postures of a view; by default a posture that is far from singular."""
-    style |= {"mode": view.mode, "faint": view.faint, "hues": view.hues}
-    if Robot.of(robot).has_forward_map:
+    r = Robot.of(robot)
+    params = r.params._replace(**view.shown)
+    style |= {"mode": view.mode, "faint": view.faint, "hues": view.hues, "params": params}
+    if r.has_forward_map:
         return mechanism(robot, posture, **style)
     return mechanism(robot, x=posture, **style)
 

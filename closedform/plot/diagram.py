@@ -15,6 +15,10 @@ from closedform.plot.style import COLOURS, GROUND, INK
 
 AXIS = "#9a9a9a"
 ANGLE = COLOURS[1]
+ALONG = (0.5, 0.3, 0.7)
+"""Where a label may stand beside an arc, as shares of it."""
+MIDDLE = (0.5, 0.35, 0.65)
+"""Where a label may stand beside a segment, as shares of it."""
 
 
 @dataclass(frozen=True)
@@ -156,7 +160,8 @@ class Diagram:
             chord = tangent - 0.012 / radius * (np.cos(turn) * way + np.sin(turn) * side)
             self._head(self._here(arc[-1])[0], self._here(chord)[0], shade, 1.0, 0.024)
         if text:
-            self.label(arc[len(arc) // 2], text, shade=shade)
+            beside = arc[[int(part * (len(arc) - 1)) for part in ALONG]]
+            self.label(beside, text, shade=shade, centre=foot)
 
     def spin(self, at: ArrayLike, axis: ArrayLike, text: str = "", radius: float = 0.035) -> None:
         """An arrow most of the way about an axis: the sense of an angle that has no arm to show."""
@@ -170,8 +175,19 @@ class Diagram:
         return np.append(found, 0.0) if found.size == 2 else found
 
     def dimension(self, a: ArrayLike, b: ArrayLike, text: str) -> None:
-        """The name of a length, beside the middle of its segment; of several, at the clearest."""
-        self.label((self._three(a) + self._three(b)) / 2, text)
+        """The name of a length, near the middle of its segment; of several, at the clearest."""
+        start, end = self._three(a), self._three(b)
+        self.label(np.vstack([start + part * (end - start) for part in MIDDLE]), text)
+
+    def seen(self, points: ArrayLike) -> Array:
+        """Where points are in the picture, to the right and upwards, in units of the mechanism."""
+        here = self._here(points)
+        if not self.spatial:
+            return here
+        e, a = np.radians(self.ax.elev), np.radians(self.ax.azim)
+        right = [-np.sin(a), np.cos(a), 0.0]
+        up = [-np.sin(e) * np.cos(a), -np.sin(e) * np.sin(a), np.cos(e)]
+        return np.asarray(here @ np.transpose([right, up]))
 
     def frame(
         self, at: ArrayLike, turn: ArrayLike | None = None, names: Sequence[str] = ("x", "y", "z"),
@@ -186,11 +202,17 @@ class Diagram:
             self.arrow(self._three(at), end, shade=shade, width=0.9, head=0.028)
             self.label(end, f"${name}$" if not name.startswith("$") else name, shade=shade)
 
-    def label(self, at: ArrayLike, text: str, *, shade: str = INK, size: float = 10) -> None:
-        """A text beside a point or one of several, where it covers the least."""
+    def label(
+        self, at: ArrayLike, text: str, *, shade: str = INK, size: float = 10,
+        centre: ArrayLike | None = None,
+    ) -> None:  # fmt: skip
+        """A text beside a point or one of several, where it covers the least.
+
+        If they are on an arc about a ``centre``, it is rather outside.
+        """
         here = self._here(at)
         note = self.ax.text(*here[0], text, color=shade, fontsize=size, zorder=9)
-        labels.add(self.ax, note, here)
+        labels.add(self.ax, note, here, None if centre is None else self._here(centre)[0])
 
     def _share(self, points: Array) -> float:
         """How much of the width or the height of the axes some points in space take."""

@@ -24,6 +24,12 @@ AROUND = 8.0
 """Lines that are nearer to a label than that, in points of the page, could be taken for its own."""
 DISTANCES = (4.0, 8.0, 13.0, 19.0)
 """How far a label may be from its point, in points of the page."""
+BETWEEN = 2.5
+"""The room between two labels, in points of the page."""
+ROUNDS = 4
+"""How often each label is placed again, beside where the others are by then."""
+OUTSIDE = 0.12
+"""What it costs to name an arc beside it, and half of what it costs inside."""
 POINTS_PER_INCH = 72
 
 
@@ -34,15 +40,17 @@ class Label:
     text: Any
     at: Array
     inside: Any
+    centre: Array | None = None
+    """Of an arc, which has its name rather outside."""
     box: Array | None = None
     """Where it was placed, in pixels."""
 
 
-def add(ax: Any, text: Any, at: Array) -> None:
+def add(ax: Any, text: Any, at: Array, centre: Array | None = None) -> None:
     """Register a text, so that it is moved beside one of its points when the figure is drawn."""
     text.set(ha="center", va="center")
     places, own = np.atleast_2d(at), text.get_transform()
-    ax.__dict__.setdefault("_closedform_labels", []).append(Label(text, places, own))
+    ax.__dict__.setdefault("_closedform_labels", []).append(Label(text, places, own, centre))
 
 
 class Layout(ConstrainedLayoutEngine):
@@ -55,7 +63,7 @@ class Layout(ConstrainedLayoutEngine):
 
 
 def place(figure: Any) -> None:
-    """Move all registered labels to where they cover the least, in the order of registration."""
+    """Move all registered labels to where they cover the least, lines and each other."""
     for ax in figure.axes:
         mine = getattr(ax, "_closedform_labels", [])
         if not mine:
@@ -64,16 +72,26 @@ def place(figure: Any) -> None:
         for label in mine:
             label.text.set_transform(label.inside)
         lines, thick = _lines(ax)
-        placed = np.zeros((0, 2, 2))
-        for label in mine:
-            box = _place_one(figure, ax, label, (lines, thick), placed)
-            placed = np.concatenate([placed, box[None]])
+        places = [_places(figure, ax, label, (lines, thick)) for label in mine]
+        boxes = np.full((len(mine), 2, 2), np.nan)
+        for _ in range(ROUNDS):
+            for k, (centres, half, cost) in enumerate(places):
+                others = np.delete(boxes, k, axis=0)
+                total = cost + _shared(centres, half, others[np.isfinite(others[:, 0, 0])], ax)
+                centre = centres[np.argmin(np.round(total, 6))]
+                boxes[k] = [centre - half, centre + half]
+        for label, box in zip(mine, boxes, strict=True):
+            moved = (box.mean(0) - pixels(ax, label.at)[0]) / figure.dpi
+            label.text.set_transform(
+                label.inside + ScaledTranslation(moved[0], moved[1], figure.dpi_scale_trans)
+            )
             label.box = box
 
 
-def _place_one(
-    figure: Any, ax: Any, label: Label, lines: tuple[Array, Array], placed: Array
-) -> Array:
+def _places(
+    figure: Any, ax: Any, label: Label, lines: tuple[Array, Array]
+) -> tuple[Array, Array, Array]:
+    """Where a label may be, half of its size, and what it would cover at each place."""
     scale = figure.dpi / POINTS_PER_INCH
     at = pixels(ax, label.at)
     box = label.text.get_window_extent(figure._get_renderer())
@@ -84,17 +102,24 @@ def _place_one(
     way = np.tile(ways, (len(at) * len(DISTANCES), 1))
     starts = np.repeat(at, DIRECTIONS * len(DISTANCES), axis=0)
     centres = starts + way * (far * scale + half * np.abs(way))
-    cost = far[:, 0] / 40 + _cost(centres, half + 1.5 * scale, lines, placed, ax)
-    centre = centres[np.argmin(np.round(cost, 6))]
-    moved = (centre - at[0]) / figure.dpi
-    label.text.set_transform(
-        label.inside + ScaledTranslation(moved[0], moved[1], figure.dpi_scale_trans)
-    )
-    return np.array([centre - half, centre + half])
+    cost = far[:, 0] / 25 + _cost(centres, half + 1.5 * scale, lines, ax)
+    if label.centre is not None:
+        out = starts - pixels(ax, np.atleast_2d(label.centre))
+        out /= np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-9)
+        cost += OUTSIDE * (1 - (out * way).sum(1))
+    return centres, half, cost
 
 
-def _cost(centres: Array, half: Array, lines: tuple[Array, Array], placed: Array, ax: Any) -> Array:
-    """What a label would cover at each place: points of lines, other labels, the border.
+def _shared(centres: Array, half: Array, placed: Array, ax: Any) -> Array:
+    """How much of other labels each place would cover, with a little room between them."""
+    half = half + BETWEEN * ax.figure.dpi / POINTS_PER_INCH
+    low, high = centres - half, centres + half
+    sides = np.minimum(high[:, None], placed[:, 1]) - np.maximum(low[:, None], placed[:, 0])
+    return np.asarray(0.2 * np.prod(np.clip(sides, 0, None), axis=-1).sum(-1))
+
+
+def _cost(centres: Array, half: Array, lines: tuple[Array, Array], ax: Any) -> Array:
+    """What a label would cover at each place: points of lines and the border.
 
     Lines beside it count a little, so that of two free places it takes the clearer one.
     """
@@ -107,11 +132,9 @@ def _cost(centres: Array, half: Array, lines: tuple[Array, Array], placed: Array
     covered = (gaps < 0).all(-1).sum(-1)
     beside = (gaps < around).all(-1).sum(-1)
     low, high = centres - half, centres + half
-    sides = np.minimum(high[:, None], placed[:, 1]) - np.maximum(low[:, None], placed[:, 0])
-    shared = np.prod(np.clip(sides, 0, None), axis=-1).sum(-1)
     corner, end = np.array([frame.x0, frame.y0]), np.array([frame.x1, frame.y1])
     outside = np.maximum(corner - low, high - end).max(-1).clip(0)
-    return np.asarray(0.35 * covered + 0.002 * beside + 0.2 * shared + 0.05 * outside)
+    return np.asarray(0.35 * covered + 0.002 * beside + 0.05 * outside)
 
 
 def _lines(ax: Any) -> tuple[Array, Array]:

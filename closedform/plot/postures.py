@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import replace
-from itertools import combinations, pairwise
+from itertools import combinations
 from types import MappingProxyType, ModuleType
 from typing import Any
 
@@ -13,14 +13,15 @@ from numpy.typing import ArrayLike
 
 from closedform.plot.axes import joint_axes
 from closedform.plot.diagram import Diagram
-from closedform.plot.labels import Layout, place
+from closedform.plot.labels import Layout
+from closedform.plot.labels import place as place_labels
+from closedform.plot.naming import FRAME, Drawn, name_all
 from closedform.plot.robot import OK, Array, Robot
+from closedform.plot.sphere import on_sphere, way_through
 from closedform.plot.style import GROUND, colour, new_axes, new_panels, styled
-from closedform.plot.symbols import lengths, symbol
+from closedform.plot.symbols import symbol
 
 NO_HUES: Mapping[str, int] = MappingProxyType({})
-SMALL = 0.03
-"""An arm of a joint that is shorter than this part of the drawing is too short for an arc."""
 CENTRED = 2.5
 """How much larger axes and arcs are where all joints are at one point."""
 WRIST = 3
@@ -45,6 +46,7 @@ def mechanism(
     mode: int | None = None,
     ax: Any = None,
     labels: bool = True,
+    lettered: bool = True,
     axes: bool = True,
     faint: Collection[str] = (),
     hues: Mapping[str, int] = NO_HUES,
@@ -68,6 +70,8 @@ def mechanism(
         the axes to draw on, with a 3D projection unless the mechanism is planar
     labels
         whether lengths, angles and the frame of the base are shown and named
+    lettered
+        whether points are named too, if a letter names them
     axes
         whether the axes of joints in space are shown
     faint
@@ -90,7 +94,7 @@ def mechanism(
     ax = new_axes(not r.flat) if ax is None else ax
     points = on_sphere(r, points)
     along = joint_axes(r, joints, mode=mode)
-    diagram = Diagram(ax, extent([points]) * (CENTRED if _meet(along) else 1))
+    diagram = Diagram(ax, extent([points]) * (CENTRED if _meet(r, along) else 1))
     draw(
         diagram,
         r,
@@ -104,7 +108,9 @@ def mechanism(
     if axes and diagram.spatial:
         shown += _show_axes(diagram, along)
     if labels:
-        _name(diagram, r, joints, points, mode=mode, along=along, faint=faint)
+        place = dict(zip(robot.SKELETON.points, points, strict=True))
+        drawn = Drawn(diagram, r, joints, mode, place, along)
+        name_all(drawn, faint=faint, lettered=lettered)
         shown.append(_base_frame(diagram, r, points))
     diagram.clean(shown)
     _settle(ax)
@@ -132,7 +138,7 @@ def _settle(ax: Any) -> None:
     """Place the labels now on a figure that is not of this package; others do it when drawn."""
     if not isinstance(ax.figure.get_layout_engine(), Layout):
         ax.figure.draw_without_rendering()
-        place(ax.figure)
+        place_labels(ax.figure)
 
 
 def posture(robot: ModuleType, *, params: Any = None) -> Array:
@@ -210,7 +216,7 @@ def branches(
         panel.set_axis_off()
     for panel, name in zip(panels, found, strict=False):
         along = joint_axes(r, q[names.index(name)]) if alike else {}
-        diagram = Diagram(panel, extent(frame) * (CENTRED if _meet(along) else 1))
+        diagram = Diagram(panel, extent(frame) * (CENTRED if _meet(r, along) else 1))
         others = [points for other, points in found.items() if other != name]
         diagram.link(_outlines(r, others), "#dddddd", linewidth=1.0)
         along = dict(list(along.items())[-WRIST:])
@@ -222,36 +228,6 @@ def branches(
         diagram.clean([*frame, *ends], margin=0.02, filling=UNDER_A_TITLE)
         panel.set_title(spoken(name), fontsize=TITLE[columns], y=1.0)
     return panels[0]
-
-
-def on_sphere(r: Robot, points: Array) -> Array:
-    """The points of a spherical mechanism, moved along their radii to one sphere; others as is."""
-    if not r.centre:
-        return points
-    centre = points[r.module.SKELETON.points.index(r.centre)]
-    ways = points - centre
-    far = np.linalg.norm(ways, axis=1, keepdims=True)
-    moved = centre + far.max() * ways / np.where(far > 0, far, 1)
-    return np.asarray(moved)
-
-
-def way_through(r: Robot, place: Mapping[str, Array], link: Sequence[str]) -> Array:
-    """The line of a link: straight, or arcs of great circles of a spherical mechanism."""
-    points = [place[p] for p in link]
-    if not r.centre:
-        return np.array(points)
-    centre, parts = place[r.centre], [points[:1]]
-    for a, b in pairwise(points):
-        u, v = a - centre, b - centre
-        size = float(np.linalg.norm(u) * np.linalg.norm(v))
-        angle = float(np.arccos(np.clip(u @ v / size, -1, 1))) if size else 0.0
-        if angle < 1e-6 or angle > np.pi - 1e-6:
-            parts.append([b])
-            continue
-        s = np.linspace(0, 1, max(3, int(angle * 18)))[1:, None]
-        arc = (np.sin((1 - s) * angle) * u + np.sin(s * angle) * v) / np.sin(angle)
-        parts.append(list(centre + arc))
-    return np.vstack(parts)
 
 
 def _outlines(r: Robot, postures: list[Array]) -> Array:
@@ -409,82 +385,14 @@ def _show_axes(diagram: Diagram, along: Mapping[str, tuple[Array, Array]]) -> li
     return ends
 
 
-def _name(
-    diagram: Diagram,
-    r: Robot,
-    q: Array,
-    points: Array,
-    *,
-    mode: int,
-    along: Mapping[str, tuple[Array, Array]],
-    faint: Collection[str],
-) -> None:
-    """Lengths at one of their segments, and angles as arcs, or as arrows about their axes."""
-    skeleton = r.module.SKELETON
-    place = dict(zip(skeleton.points, points, strict=True))
-    taken = list[Array]()
-    thin = {p for name, link in skeleton.links.items() if name in faint for p in link}
-    thin -= {p for name, link in skeleton.links.items() if name not in faint for p in link}
-    for field, pairs in lengths(r, q, mode).items():
-        seen = [p for p in pairs if not {*p} & thin] or pairs
-        starts, ends = (np.array([place[p[k]] for p in seen]) for k in (0, 1))
-        diagram.dimension(starts, ends, symbol(field))
-    for name, joint in skeleton.joints.items():
-        if joint.kind == "prismatic":
-            a, b = joint.points
-            diagram.dimension(place[a], place[b], symbol(name))
-            continue
-        if name not in along:
-            diagram.label(place[joint.points[0]], symbol(name))
-            continue
-        at, way = along[name]
-        if name not in r.module.JOINTS:
-            diagram.label(at, symbol(name))
-            continue
-        turn = float(q[list(r.module.JOINTS).index(name)])
-        turn = float(np.angle(np.exp(1j * turn)))
-        foot = joint.points[0]
-        beside = {p for k in skeleton.links.values() if foot in k for p in k}
-        arm = _arm(r, q, mode, name, [p for p in beside if p != foot])
-        across = arm - way * (arm @ way)
-        size = float(np.linalg.norm(across))
-        if size < SMALL * diagram.size or abs(turn) < 0.05 or len(joint.points) == 2:
-            centre = at + 0.1 * diagram.size * way
-            while any(np.linalg.norm(centre - c) < SMALL * diagram.size for c in taken):
-                centre = (
-                    centre + 0.08 * diagram.size * way
-                )  # beside another joint or the arc of one
-            taken.append(centre)
-            diagram.spin(centre, way, symbol(name))
-        else:
-            back = np.cos(turn) * across - np.sin(turn) * np.cross(way, across)
-            diagram.angle(place[foot], back, way, turn, symbol(name))
-            taken.append(place[foot] + 0.1 * diagram.size * across / size)
-
-
-def _meet(along: Mapping[str, tuple[Array, Array]]) -> bool:
+def _meet(r: Robot, along: Mapping[str, tuple[Array, Array]]) -> bool:
     """Whether several joints are all at one point, so that only their axes tell them apart."""
-    places = [at for at, _ in along.values()]
+    joints = r.module.SKELETON.joints
+    places = [at for name, (at, _) in along.items() if joints[name].kind == "revolute"]
     return len(places) > 1 and bool(np.ptp(places, axis=0).max() < 1e-9)
-
-
-def _arm(r: Robot, q: Array, mode: int, name: str, beside: list[str]) -> Array:
-    """From a joint to the end of the link that it turns; zero where nothing beside it moves."""
-    names = r.module.SKELETON.points
-    step = 1e-4 * np.eye(len(q))[list(r.module.JOINTS).index(name)]
-    here, moved = r.points(q)[mode], r.points(q + step)[mode]
-    foot = r.module.SKELETON.joints[name].points[0]
-    best = np.zeros(3)
-    for point in sorted(beside, key=names.index):
-        k = names.index(point)
-        gap = here[k] - here[names.index(foot)]
-        if np.linalg.norm(moved[k] - here[k]) > 1e-7 * r.size and best @ best < gap @ gap:
-            best = gap
-    return best
 
 
 def _base_frame(diagram: Diagram, r: Robot, points: Array) -> Array:
     """The frame of the base at the origin, or beside the drawing if that is too crowded."""
-    reach = 0.13
-    diagram.frame(np.zeros(3), reach=reach)
-    return np.vstack([np.zeros(3), reach * diagram.size * np.eye(3)])
+    diagram.frame(np.zeros(3), reach=FRAME)
+    return np.vstack([np.zeros(3), FRAME * diagram.size * np.eye(3)])

@@ -104,12 +104,12 @@ class Robot:
     @property
     def size(self) -> float:
         """The sum of the lengths, which is the scale of every figure; 1 on a sphere."""
-        record = self.module.Parameters
-        found = 0.0
-        for name, value in zip(record._fields, self.params, strict=True):
-            if ", in rad" not in (getattr(record, name).__doc__ or ""):
-                found += abs(float(value))
-        return found or 1.0
+        pairs = zip(self.module.Parameters._fields, self.params, strict=True)
+        return sum(abs(float(v)) for name, v in pairs if not self.is_angle(name)) or 1.0
+
+    def is_angle(self, parameter: str) -> bool:
+        """Whether a parameter is an angle, not a length."""
+        return ", in rad" in (getattr(self.module.Parameters, parameter).__doc__ or "")
 
     @property
     def slides(self) -> list[int]:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
 
 from closedform.plot.robot import Array, Robot
 
+K = TypeVar("K")
 GREEK = ("alpha", "beta", "gamma", "theta", "rho", "phi", "psi", "sigma")
 FUNCTIONS = ("sin", "cos", "tan", "sqrt")
 INDICES = {"al": "a_{l}", "gs": "g_{s}", "lp": "l_{p}", "w": "w"}
@@ -61,23 +64,91 @@ def equation(text: str) -> str:
 def lengths(r: Robot, q: Array, mode: int) -> dict[str, list[tuple[str, str]]]:
     """For each parameter, the segments of links that are as long as it, for any dimensions.
 
-    A parameter that is zero has no segment to show.
+    On a sphere, angles have segments too: arcs.  A parameter that is zero has no segment to show.
     """
     names = r.module.SKELETON.points
-    segments = [pair for link in r.module.SKELETON.links.values() for pair in pairwise(link)]
+    links = r.module.SKELETON.links.values()
+    segments = list(dict.fromkeys(pair for link in links for pair in pairwise(link)))
+
+    def sizes(points: Array) -> dict[tuple[str, str], tuple[float, float]]:
+        place = dict(zip(names, points, strict=True))
+        centre = place[r.centre] if r.centre else None
+        return {(a, b): _sizes(place[a], place[b], centre) for a, b in segments}
+
+    return _parameters(r, q, mode, sizes)
+
+
+def distances(r: Robot, q: Array, mode: int) -> dict[str, list[tuple[Array, Array]]]:
+    """For each parameter, the segments that no link covers and that are as long as it.
+
+    They lead from the origin to a fixed point, or else from a plane of the base to a point.
+    """
+    skeleton = r.module.SKELETON
+    names = skeleton.points
+    here = dict(zip(names, r.points(q)[mode], strict=True))
+    found: dict[str, list[tuple[Array, Array]]] = {}
+    for ways in (np.eye(3), *np.eye(3)[:, None]):
+        chosen = skeleton.ground if len(ways) == 3 else (skeleton.hand,)
+
+        def sizes(
+            points: Array, ways: Array = ways, chosen: tuple[str, ...] = chosen
+        ) -> dict[str, tuple[float, float]]:
+            place = dict(zip(names, points, strict=True))
+            return {p: _sizes(_foot(place[p], ways), place[p]) for p in chosen}
+
+        for field, ends in _parameters(r, q, mode, sizes).items():
+            found.setdefault(field, [(_foot(here[p], ways), here[p]) for p in ends])
+    return found
+
+
+def _foot(point: Array, ways: Array) -> Array:
+    """Where one comes to from a point along some directions, nearest to the origin."""
+    return np.asarray(point - (ways @ point) @ ways)
+
+
+def _sizes(a: Array, b: Array, centre: Array | None = None) -> tuple[float, float]:
+    """How far two points are apart, and at which angle a centre sees them."""
+    gap = float(np.linalg.norm(b - a))
+    if centre is None:
+        return gap, np.nan
+    u, v = a - centre, b - centre
+    return gap, float(np.arctan2(np.linalg.norm(np.cross(u, v)), u @ v))
+
+
+def _parameters(
+    r: Robot, q: Array, mode: int, sizes: Callable[[Array], Mapping[K, tuple[float, float]]]
+) -> dict[str, list[K]]:
+    """For each parameter that is not zero, what is as large as it, for any dimensions."""
+    fields = r.module.Parameters._fields
+    angular = [r.is_angle(field) for field in fields]
     rng = np.random.default_rng(5)
     base = np.array([float(v) for v in r.params])
-    possible = {(k, pair) for k in range(len(base)) for pair in segments}
+    possible: set[tuple[int, K]] | None = None
+    order: list[K] = []
     for _ in range(2):
         changed = base * rng.uniform(0.97, 1.03, len(base))
-        points = replace(r, params=r.module.Parameters(*changed)).points(q)[mode]
-        place = dict(zip(names, points, strict=True))
-        possible = {
-            (k, pair)
-            for k, pair in possible
-            if abs(np.linalg.norm(place[pair[1]] - place[pair[0]]) - abs(changed[k]))
-            < 1e-9 * r.size
+        other = replace(r, params=r.module.Parameters(*changed))
+        found = sizes(other.points(_same_branch(r, other, q))[mode])
+        order = order or list(found)
+        fitting = {
+            (k, key)
+            for key, size in found.items()
+            for k, value in enumerate(changed)
+            if value and abs(size[angular[k]] - abs(value)) < 1e-9 * r.size
         }
-    fields = enumerate(r.module.Parameters._fields)
-    found = {field: [p for p in segments if (k, p) in possible] for k, field in fields if base[k]}
-    return {field: pairs for field, pairs in found.items() if pairs}
+        possible = fitting if possible is None else possible & fitting
+    named = {
+        field: [key for key in order if possible and (k, key) in possible]
+        for k, field in enumerate(fields)
+    }
+    return {field: keys for field, keys in named.items() if keys}
+
+
+def _same_branch(r: Robot, other: Robot, q: Array) -> Array:
+    """The joints of the same branch for other dimensions, where the hand is given."""
+    if r.has_forward_map:
+        return q
+    before, _ = r.branches(r.target)
+    after, _ = other.branches(other.target)
+    gaps = np.abs(before - q).max(-1)
+    return np.asarray(after[int(np.argmin(np.where(np.isfinite(gaps), gaps, np.inf)))])

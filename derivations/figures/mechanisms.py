@@ -46,8 +46,12 @@ VIEWS = {
         plane=("x", "y"),
     ),
     "irb2400": View(unit="m", general=degrees(-30, 25, -20, 30, 40, 20)),
-    "opw_arm": View(unit="m", general=degrees(-30, 15, 70, 30, 40, 20)),
-    "ur_arm": View(unit="m"),
+    "opw_arm": View(unit="m", general=degrees(-30, 15, 70, 30, 40, 20), shown={"b": 0.12}),
+    "ur_arm": View(
+        unit="m",
+        home=degrees(0, -60, 80, -110, -90, 0),
+        general=degrees(-30, -75, 95, -50, -60, 40),
+    ),
     "srs_arm": View(unit="m", general=degrees(-20, 40, 30, -70, 20, 60, 0), given=0.3),
     "franka_arm": View(unit="m", general=degrees(-20, -30, 20, -120, 10, 110, 45)),
     "five_bar": View(home=degrees(110, 70), general=degrees(140, 65)),
@@ -77,7 +81,9 @@ VIEWS = {
         hues={f"{link}{k}": k + 1 for k in (1, 2, 3) for link in ("crank", "rod")},
     ),
     "four_bar": View(home=degrees(90), general=degrees(50)),
-    "slider_crank": View(unit="m", home=degrees(90), general=degrees(50), mode=1),
+    "slider_crank": View(
+        unit="m", home=degrees(90), general=degrees(50), mode=1, shown={"e": 0.5}
+    ),
     "rpr_planar": View(
         unit="m", home=(0.8, 0.8), general=(0.9, 0.6), limits=((-0.7, 1.7), (-1.1, 1.1))
     ),

@@ -208,7 +208,7 @@ d.given_by |= {"psi": leaning, "phi": leaning}
 a = real("ahead")
 half_base = sqrt(m.d**2 + a**2)
 d.step(
-    "Yaw and wrist without the angle",
+    "Yaw without its angle",
     "The forward map computes the cosines and sines of yaw and roll directly from the tips.  It "
     "needs the angles only as outputs: psi = atan2(d tan(psi), d), and likewise for roll.",
     {r"\cos\psi": m.d / half_base, r"\sin\psi": a / half_base},

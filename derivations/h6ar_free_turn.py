@@ -211,7 +211,7 @@ def turn_step(d: Derivation, m: Dimensions) -> None:
     p = reach(m, pair(theta2A), pair(theta23A), L_2W, a_3W)
     rate = p.diff(theta23A) + (1 - drawn / m.L1) * p.diff(theta2A)
     d.step(
-        "Arms at their limit while the virtual arm is straight",
+        "Straight virtual arm, arms at their limit",
         "If the virtual fore-arm turns by t and the virtual upper arm by (1 - drawn / L1) t, the "
         "tip moves by R_perp t along the upper arm.  If the virtual arm with the wrist is "
         "straight, R_perp is zero.  A rounding error of the target then turns the arm by as much "

@@ -134,7 +134,7 @@ forearm = sp.Matrix([[c23, 0, s23], [0, -1, 0], [s23, 0, -c23]])  # R03 for thet
 base = m.d / (cos(psi) * cos(phi))
 wrist_line = base * rotation("z", phi) * rotation("x", psi) * sp.Matrix([0, 1, 0])
 d.step(
-    "Base line in fore-arm axes",
+    "Base line in the axes of the fore-arm",
     "The line from the middle of the tips to the right tip is half the base line.  Here it is "
     "given in the axes of the virtual fore-arm: x (upwards at home), y (to the right) and z (along "
     "it).",
@@ -163,7 +163,7 @@ length = real("wrist", positive=True)
 link = axis * sp.Matrix([0, m.gs, length]) - wrist_line
 other = axis * sp.Matrix([0, -m.gs, length]) + wrist_line
 d.step(
-    "The four-bar of the wrist closes",
+    "Four-bar of the wrist",
     "The gears are at the distance gs beside the axis of the wrist and l_W along it.  A wrist "
     "link joins each gear to its tip.  The length of both links is al if l_W^2 = al^2 - (b - "
     "gs)^2.",
@@ -195,7 +195,7 @@ beyond, width = real("beyond"), real("width")
 half_line = sqrt(m.d**2 + width**2 + beyond**2)
 cosine_roll = m.d / sqrt(m.d**2 + width**2)
 d.step(
-    "Yaw and wrist without the angle",
+    "Yaw without its angle",
     "The forward map computes the cosines and sines of yaw and roll directly from the tips, and "
     "needs the angles only as outputs.  Half the base line is half the distance of the tips.",
     {

@@ -94,7 +94,7 @@ def bent_step(d: Derivation, m: Dimensions, q: Joints, tips: tuple[sp.Matrix, sp
     mean = (right.dot(right) + left.dot(left)) / 2
     fore = sqrt(m.L2**2 + m.a3**2)
     d.step(
-        "How far the virtual arm is bent",
+        "Bend of the virtual arm",
         "The square of the reach R_I of the virtual arm is the mean of the squares for both arms, "
         "minus the square of half the distance of the tips.  So N = (L1 + f)^2 - R_I^2 of the "
         "virtual arm is a sum of terms that are not negative.  No digits cancel if the arms are "

@@ -268,7 +268,7 @@ def loci(d: Derivation) -> Loci:
         ],
     )
     d.step(
-        "Degrees of the loci",
+        "Loci: degrees",
         "The curves are polynomials in the coordinates y and rho of P in the plane of the "
         "linkage.  The factors are those over the rationals, with all lengths and kappa symbolic.  "
         "The factor of C = D splits into two circles if the square root of 4*L1^2 - L0^2 is "
@@ -398,7 +398,7 @@ def workspace(d: Derivation) -> dict[str, Regime]:
         ],
     )
     d.step(
-        "Workspace: the regimes meet",
+        "Workspace: seams of the regimes",
         "At each seam the volumes of both regimes agree, and so do their derivatives with respect "
         "to L0.  So the formula holds for all lengths, including the limits.",
         {},
@@ -418,7 +418,7 @@ def workspace(d: Derivation) -> dict[str, Regime]:
     )
     whole = sp.Rational(4, 3) * pi * (R**3 - r**3)
     d.step(
-        "Workspace: where it is largest",
+        "Workspace: largest volume",
         "In each regime (in the order above, without the last) the lengths are written in terms "
         "of L0 and the distances s and t of L0 from its limits.  Then all coefficients of minus "
         "the derivative with respect to L0 are positive, so the volume falls as L0 grows and is "

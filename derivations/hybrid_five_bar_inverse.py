@@ -197,7 +197,7 @@ def _explain(d: Derivation, loop: Loop, turn: Lemma) -> None:
     ap, bp = sp.Matrix([y, off_axis]), sp.Matrix([y - L0, off_axis])
     cp, dp = (L2 * sp.Matrix([cos(t), sin(t)]) for t in (theta4, theta5))
     d.step(
-        "Inverse: what the joints determine",
+        "Inverse: accuracy near a parallel singularity",
         "Rounded joints miss the lengths of the bars by a few units in the last place of L0 + L1 "
         "+ L2.  The error of P, where the bars CP and DP meet, is this error divided by the sine "
         "of the angle between them.  So near a parallel singularity, with C, D and P in line or "

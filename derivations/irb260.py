@@ -141,7 +141,7 @@ v = sp.Matrix([real(f"v{i}") for i in "xyz"])
 w = sp.Matrix([sin(lam) * cos(mu), sin(lam) * sin(mu), cos(lam)])  # any unit vector
 e = exponential(sp.Matrix([*v, *w]), theta)
 d.step(
-    "Exponential",
+    "Exponential of a twist",
     "Rodrigues' formula is the exponential of a twist with a unit axis, because it solves the "
     "differential equation of the exponential and starts at the identity.  The axis is an "
     "arbitrary unit vector, given by its polar angles.",

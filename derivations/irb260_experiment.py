@@ -32,7 +32,7 @@ def experiment(
     difference = v_relative - v_grounded
     start, first, second = (difference.diff(time, k).subs(time, 0) for k in range(3))
     d.step(
-        "Relative or grounded",
+        "Angles relative or grounded",
         "If 5 degrees per second were the rate of a motor 3 on the turret, the joint would turn by "
         "theta3 = (5 - 10) t, and the velocity would be w.  All three components distinguish the "
         "two readings, but not equally early.  At t = 0 only the vertical component differs, by a "

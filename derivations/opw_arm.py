@@ -100,7 +100,7 @@ d.step(
 at_wrist = centre.jacobian(q[:3])
 det = c2 * X * elbow * sin(theta5)
 d.step(
-    "Factors",
+    "Factors of the determinant",
     "The velocity of the centre of the wrist depends on the first three joints alone, so the "
     "determinant is that of the arm times that of the wrist.  If the upper arm has a length, the "
     "determinant vanishes where X = 0 (shoulder: the centre of the wrist is as near to the first "

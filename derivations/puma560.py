@@ -95,7 +95,7 @@ d.step(
     equal=[(arm.position, rotation("z", theta1) * sp.Matrix([X, -d3, Z]))],
 )
 d.step(
-    "Factors",
+    "Factors of the determinant",
     "The wrist does not move its centre, so the determinant is that of the arm times that of the "
     "wrist.  If the upper arm has a length, the determinant vanishes where X = 0 (shoulder: the "
     "centre of the wrist is as near to the base axis as d3 allows), where the arm is stretched or "

@@ -62,7 +62,7 @@ d.explain(
     }
 )
 d.step(
-    "Factors",
+    "Factors of the determinant",
     "The wrist does not move its centre, so the determinant is that of the arm times that of the "
     "wrist, the two blocks on the diagonal of J.  It vanishes where the boom is vertical "
     "(shoulder), where it is drawn in so far that the wrist is on the axis of the shoulder (boom), "

@@ -173,7 +173,9 @@ class Tripod:
         for k, leg in self.numbered:
             x, y = vector(leg.corner)
             arm = R.col(0) * x + R.col(1) * y
-            arms.append(sp.Matrix([named_in(p, f"h_{k}{i}", e) for i, e in enumerate(arm, 1)]))
+            arms.append(
+                sp.Matrix([named_in(p, f"h{k}_{i}", e) for i, e in zip("xyz", arm, strict=True)])
+            )
         n = [leg.normal for leg in self.legs]
         off = [named_in(p, f"beside_{k + 1}", n[k].dot(arms[k][:2, 0])) for k in range(2)]
         across = self.weights[2]

@@ -46,7 +46,7 @@ HAND = r"\begin{bmatrix} 1 & 0 & 0 \\ 0 & 0 & -1 \\ 0 & 1 & 0 \end{bmatrix}"
 ANGLES = ("-90", "90", "90")
 BOTH = (r"\mp 90", r"\pm 90", r"\pm 90")
 ENTRY = real("entry12")
-"""Stands for the entry (1,2) on the left side of a correction."""
+"""Stands for the entry in row 1, column 2, on the left side of a correction."""
 
 
 def state(d: Derivation, wrist: Wrist, eq12: sp.Matrix) -> None:
@@ -97,7 +97,7 @@ def convention(d: Derivation, wrist: Wrist, known: Notation) -> None:
     )
     d.erratum(
         "entry-12",
-        "The entry (1,2) of the wrist's matrix has a sine instead of a cosine",
+        "The wrist's matrix has a sine instead of a cosine in row 1, column 2",
         Gravity.MOTION,
         why="The product of the three matrices has $-c_4 c_5 s_6 - s_4 c_6$ there, as eq. (12) "
         "has.  At $\\theta_4 = \\theta_5 = 0$, $\\theta_6 = 90^\\circ$ the wrist turns the hand by "
@@ -135,7 +135,7 @@ def as_derived(derived: sp.Matrix, printed: sp.Matrix, relation: Relation) -> Ch
     if relation.left == ENTRY:
         matrix = printed.copy()
         matrix[0, 1] = relation.right
-    return Identity(matrix, derived)
+    return Identity(matrix, derived, names=(f"${relation.texts[0]}$ as printed", "the derived one"))
 
 
 def form_of_eq14(claim: partial[None], pose: sp.Matrix) -> None:
@@ -218,10 +218,10 @@ def results(d: Derivation, wrist: Wrist, known: Notation, eq12: sp.Matrix) -> No
             {
                 "eq. (12)": eq12,
                 "eq. (15)": eq15,
-                "eq. (15) with c_5 in the entry (1,2)": corrected,
+                "eq. (15) with c_5 in row 1, column 2": corrected,
             }
         ],
-        corrected=text % "eq. (15) with c_5 in the entry (1,2)",
+        corrected=text % "eq. (15) with c_5 in row 1, column 2",
         erratum="entry-12",
         readings=[
             Reading("for all joint angles"),

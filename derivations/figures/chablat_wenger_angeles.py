@@ -537,9 +537,9 @@ FIGURES = (
     Figure("fig7", "A serial singularity: $B$, $D$ and $P$ in line (Figure 7).", outstretched,
            step="Velocity: J and the determinants"),
     Figure("fig8", "A section of the workspace for $L_0 = 0$ and $L_1 = L_2$ (Figure 8).",
-           optimal_section, step="Workspace: where it is largest"),
+           optimal_section, step="Workspace: largest volume"),
     Figure("fig9", "The joint space for $L_0 = 0$ and $L_1 = L_2$ (Figure 9).", optimal_joints,
-           step="Workspace: where it is largest"),
+           step="Workspace: largest volume"),
     Figure("fig10", "A section of the workspace without parallel singularities, for "
            "$L_0 = 5$, $L_1 = 2$, $L_2 = 5$ (Figure 10).", avoiding_section,
            step="Designs without parallel singularities"),
@@ -564,7 +564,7 @@ FIGURES = (
            step="Isotropy"),
     Figure("volume", "The volume of the workspace for bars of the same total length: it is "
            "largest for $L_0 = 0$ and $L_1 = L_2$, as section 3.1 of the paper says.", volume,
-           step="Workspace: where it is largest"),
+           step="Workspace: largest volume"),
 )  # fmt: skip
 
 ALL = tuple((NAME, f) for f in FIGURES)

@@ -81,9 +81,7 @@ VIEWS = {
         hues={f"{link}{k}": k + 1 for k in (1, 2, 3) for link in ("crank", "rod")},
     ),
     "four_bar": View(home=degrees(90), general=degrees(50)),
-    "slider_crank": View(
-        unit="m", home=degrees(90), general=degrees(50), mode=1, shown={"e": 0.5}
-    ),
+    "slider_crank": View(unit="m", home=degrees(90), general=degrees(50), mode=1, shown={"e": 0.5}),
     "rpr_planar": View(
         unit="m", home=(0.8, 0.8), general=(0.9, 0.6), limits=((-0.7, 1.7), (-1.1, 1.1))
     ),

@@ -217,12 +217,12 @@ FIGURES = (
     Figure("fig4", "The linkage in grey, and the equivalent open chain in dark lines (Fig. 4).",
            simplified, step="The upper loop and the virtual joint"),
     Figure("fig5", "A revolute joint: its direction $\\omega$, a point $q$ on its axis, and the "
-           "velocity of a point $p$ (Fig. 5).", revolute, step="Exponential"),
+           "velocity of a point $p$ (Fig. 5).", revolute, step="Exponential of a twist"),
     Figure("fig6", "The open chain at home, with the screws of eqs. (1) to (5) (Fig. 6).",
            open_chain, step="Screws"),
     Figure("fig7", "The velocity of the hand in the experiment of section V, from all angles 0 and "
            "with the dimensions of the data sheet, for both readings of axis 3 (Fig. 7b).",
-           velocities, step="Relative or grounded"),
+           velocities, step="Angles relative or grounded"),
 )  # fmt: skip
 BY_NUMBER = {1: 0, 3: 1, 4: 2, 5: 3, 6: 4, 7: 5}
 

@@ -13,7 +13,7 @@ REDDY_BABU = Paper(
     year="n.d. (the latest work that it cites is of 2015)",
     source="The text was read from a scan by optical character recognition, without the figures.  "
     "Errors of the scan may affect single characters: the cosine in the numerator of tan "
-    "α, the sum in $c_{12}$, the last row of T in eq. (9), s_5 in the entry (1,2) of eqs. (14) "
+    "α, the sum in $c_{12}$, the last row of T in eq. (9), s_5 in row 1, column 2 of eqs. (14) "
     "and (15) (it appears in both), and the last digits in the results A and B.  The scan "
     "has R_{zγz} for R_{zyz} in eq. (12), and superscripts instead of indices in Table II; "
     "these are not counted.",

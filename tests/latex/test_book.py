@@ -77,7 +77,7 @@ def compiled(name: str, folder: Path, passes: int, *options: str) -> str:
 def test_equations_have_numbers_and_later_steps_refer_to_them(tmp_path: Path) -> None:
     text = article(toy())
     assert re.findall(r"\\label\{eq:toy:(\d+)\}", text) == ["1", "2", "3"]
-    assert r"See \eqref{eq:toy:1} for $r$." in text
+    assert r"Here $r$ is that of \eqref{eq:toy:1}." in text
     assert r"This rests on \eqref{eq:toy:1}." in text
     (tmp_path / "toy.tex").write_text(text, encoding="utf-8")
     compiled("toy.tex", tmp_path, 2)

@@ -307,11 +307,11 @@ def test_the_entries_of_a_diagonal_share_a_row() -> None:
     ("title", "entry"),
     [
         ("The loop", "loop"),
-        ("Inverse: the elbow", "inverse!elbow"),
+        ("Inverse: the elbow", "inverse kinematics!elbow"),
         ("Centre of the wrist", "centre of the wrist"),
         ("Jacobian and its determinant", "Jacobian and its determinant"),
         ("Velocity: A and B", "velocity!A and B"),
-        ("Forward: P from two circles", "forward!P from two circles"),
+        ("Forward: P from two circles", "forward kinematics!P from two circles"),
     ],
 )
 def test_no_entry_of_the_index_starts_with_an_article(title: str, entry: str) -> None:

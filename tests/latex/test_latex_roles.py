@@ -57,7 +57,7 @@ def test_the_squares_of_a_distance_are_in_the_order_of_coordinates(
 def test_what_vanishes_says_where_it_is_defined() -> None:
     found = article("orthoglide")["singular"]
     (_, first), *_ = found["rank"]
-    assert first.endswith(r"B_{11} = 0$, see \eqref{eq:orthoglide:18}")
+    assert first.endswith(r"B_{11} = 0$, where $B_{11}$ is that of \eqref{eq:orthoglide:18}")
     functions = {f["name"]: f["evaluates"] for f in article("orthoglide")["functions"]}
     assert functions["constraint"] == r"\eqref{eq:orthoglide:14} in each assembly mode"
 

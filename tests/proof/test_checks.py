@@ -103,7 +103,7 @@ class TestIdentity:
 
     def test_the_entry_is_named(self) -> None:
         matrix = Identity(sp.Matrix([[1, x], [y, 2 * y]]), sp.Matrix([[1, x], [y, x]]))
-        assert "entry (2,2) of the printed form is" in evidence(matrix)
+        assert "in row 2, column 2, the printed form is" in evidence(matrix)
         assert "part 2 of the printed form is" in evidence(Identity([x, x], [x, -x]))
         named = Identity([x, x], [x, -x], names=("f", "zero"), parts=("for k = 1", "for k = 2"))
         assert ": f for k = 2 is " in evidence(named) and "part" not in evidence(named)

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -42,6 +43,8 @@ _DEGREE = 6
 """From this degree on, the terms of an error are not considered."""
 _SHORT = 40
 """The longest printed side, in characters, that is repeated in the evidence."""
+_SYMBOL = re.compile(r"[A-Za-z](_\w|_\{\w+\}|\^\w|\^\{\w+\})*|\\mathbf\{\w\}")
+"""What a formula calls a matrix or a vector by, such as ``T_2^0``."""
 
 
 @dataclass(frozen=True)
@@ -81,13 +84,12 @@ class Identity(Check):
     def _point(self, found: Counterexample) -> tuple[Any, ...]:
         """The counterexample with the values of both sides, so that a reader can check it."""
         shape = getattr(self.printed, "shape", None)
-        entry = ""
+        entry, of = "", ""
         if shape:
             row, column = divmod(found.entry, shape[1])
-            place = f"({row + 1},{column + 1})" if shape[1] > 1 else f"{row + 1}"
-            entry = f"entry {place} of "
+            entry = f"in row {row + 1}, " + f"column {column + 1}, " * (shape[1] > 1)
         elif isinstance(self.printed, Sequence) and not self.parts:
-            entry = f"part {found.entry + 1} of "
+            entry, of = f"part {found.entry + 1} of ", "that of "
         printed, derived = (
             shown(entries(side)[found.entry], found.point) for side in (self.printed, self.derived)
         )
@@ -96,7 +98,7 @@ class Identity(Check):
             left = f"{left} {self.parts[found.entry]}"
         if right == f"${derived}$":
             return (*at(found.point), entry, left, " is ", printed, ", not ", derived)
-        of = "" if not entry or right.startswith("that of ") else "that of "
+        of = "" if right.startswith("that of ") else of
         contrast = (entry, left, " is ", printed, ", but ", of, right, " is ", derived)
         return (*at(found.point), *contrast)
 
@@ -187,15 +189,16 @@ class Equal(Check):
         return sp.sympify(side, strict=True).xreplace(values)
 
     def _compare(self, first: Exact, name: str, side: Exact, text: str) -> Verdict:
+        spoken = ("the left side", "the right side")
         if not isinstance(first, sp.MatrixBase) and isinstance(side, sp.MatrixBase):
             first, name, side, text = side, text, first, name
+            spoken = spoken[::-1]
         if isinstance(first, sp.MatrixBase) and side == 0:
             side = sp.zeros(*first.shape)
-        names = (
-            (f"${name}$", f"${text}$")
-            if max(len(name), len(text)) <= _SHORT and r"\begin" not in name + text
-            else ("the left side", "the right side")
-        )
+        short = [len(t) <= _SHORT and r"\begin" not in t for t in (name, text)]
+        names = (f"${name}$", f"${text}$") if all(short) else spoken
+        if isinstance(first, sp.MatrixBase) and _SYMBOL.fullmatch(name):
+            names = (f"${name}$", names[1])
         if any(e.has(sp.Piecewise) for e in (*entries(first), *entries(side))):
             return self._in_cases([*entries(first)], [*entries(side)], names)
         gap = difference(first, side)

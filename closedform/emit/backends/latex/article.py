@@ -23,6 +23,7 @@ from closedform.emit.backends.latex.cases import Cases
 from closedform.emit.backends.latex.claims import Claims
 from closedform.emit.backends.latex.equations import (
     canonical,
+    defined_in,
     names_in,
     reference,
     runs,
@@ -55,6 +56,8 @@ from closedform.proof.prove import Proof
 
 __all__ = ["Page", "document", "index_of", "indexed", "tied"]
 
+MAPS = ("Forward", "Inverse")
+"""What the title of a step calls a map in short."""
 FEW = 3
 """Fewer results that are arguments are equations like all others."""
 BARE: Mapping[str, Any] = {
@@ -193,8 +196,7 @@ class Page(Sheet):
         uses = self.used(step, [left for left, _ in shown])
         if fresh and again:  # of what is shown once more, the number says enough
             names = [run[0][0] for run in runs(shown) if self.numbers.is_shown(run)]
-            seen = f"See {reference(again)} for {listed([f'${n}$' for n in names])}."
-            uses = f"{uses} {seen}".lstrip()
+            uses = f"{uses} Here {defined_in(names, again)}.".lstrip()
         new = self.numbers.number(fresh)
         self.labels.append([e.label for e in new if e.label] or again)
         n, proved = len(step.vanishes), step.title in self.proof.steps
@@ -231,8 +233,11 @@ class Page(Sheet):
         known = self.numbers.defined
         found = {n: known[n] for n in dict.fromkeys(names) if n in known and n not in here}
         found = {n: label for n, label in found.items() if label not in labels}
-        seen = [f"{reference([label])} for ${name}$" for name, label in found.items()]
-        return f"{told} See {listed(seen)}." if seen else told
+        where = dict[str, list[str]]()
+        for name, label in found.items():
+            where.setdefault(label, []).append(name)
+        seen = [defined_in(names, [label]) for label, names in where.items()]
+        return f"{told} Here {listed(seen)}.".lstrip() if seen else told
 
     def cell(self, value: Any) -> str:
         """A cell of a table: a sentence, an expression or an increasing chain of them."""
@@ -308,7 +313,7 @@ class Page(Sheet):
         if not labels:
             return ""
         names = sorted(labels, key=lambda n: int(labels[n].rpartition(":")[2]))
-        return f"See {reference(list(labels.values()))} for {listed([f'${n}$' for n in names])}."
+        return f"Here {defined_in(names, labels.values())}."
 
     def after(self, function: Function, algorithm: Algorithm) -> str:
         """The function with whose statements this one starts, and whether their cases matter."""
@@ -374,12 +379,13 @@ class Page(Sheet):
 
     def stated(self, vanishing: str) -> str:
         """Where the name is defined whose vanishing is a formula."""
-        name = canonical(vanishing.removesuffix(" = 0"))
+        printed = vanishing.removesuffix(" = 0")
+        name = canonical(printed)
         any_leg = re.sub(r"\d(?=\d?\}$)", INDEX, name)
         known = self.numbers.defined
         label = known.get(name) or known.get(any_leg) or known.get(symbols.matrix_of(name))
         joints = {canonical(self.math(j.symbol)) for j in self.derivation.joints}
-        return f", see {reference([label])}" if label and name not in joints else ""
+        return f", where {defined_in([printed], [label])}" if label and name not in joints else ""
 
     def in_names_of_steps(self, value: sp.Expr) -> sp.Expr:
         """A value of the joints in names that the steps have defined."""
@@ -429,9 +435,11 @@ def column(cells: Sequence[Any]) -> str:
 
 
 def indexed(title: str) -> str:
-    """The entry of a step in the index: ``inverse!elbow`` for "Inverse: the elbow"."""
+    """The entry of a step in the index, ``inverse kinematics!elbow`` for "Inverse: the elbow"."""
     escaped = re.sub(r'(["@|!])', r'"\1', escape(title))
-    parts = (ARTICLE.sub("", part.strip()) for part in escaped.split(":"))
+    parts = [ARTICLE.sub("", part.strip()) for part in escaped.split(":")]
+    if len(parts) > 1 and parts[0] in MAPS:
+        parts[0] += " kinematics"
     return "!".join(p if PROPER.match(p) else p[:1].lower() + p[1:] for p in parts)
 
 

@@ -12,6 +12,9 @@ from dataclasses import dataclass, field
 
 from closedform.model.names import listed
 
+COORDINATE = re.compile(r"([a-z])_\{(\d),[xyz]\}")
+"""A coordinate of a vector that has a number, such as ``b_{1,x}``."""
+
 GREEK_OR_LETTER = r"\\(?!text|mathrm|left|right|[bB]ig|quad|frac|sqrt)[A-Za-z]+|[A-Za-z]"
 SCRIPT = r"[_^](?:\{(?:[^{}]|\{[^{}]*\})*\}|\\[A-Za-z]+|\w)|'"
 NAME = re.compile(
@@ -162,6 +165,18 @@ def reference(labels: Iterable[str]) -> str:
     marks = [[rf"\eqref{{{label}}}" for label in group] for group in groups]
     told = [[f"{m[0]}--{m[-1]}"] if len(m) > 2 else m for m in marks]
     return listed([text for texts in told for text in texts])
+
+
+def defined_in(names: Sequence[str], labels: Iterable[str]) -> str:
+    """Where symbols are defined: ``$a$ is that of (3)``, ``$a$ and $b$ are those of (3)``."""
+    told, one = listed([f"${name}$" for name in names]), len(names) == 1
+    found = [COORDINATE.fullmatch(name) for name in names]
+    if vectors := list(
+        dict.fromkeys(rf"$\mathbf {m[1]}_{m[2]}$" for m in found if m and all(found))
+    ):
+        what = "is a coordinate" if one else "are coordinates"
+        return f"{told} {what} of {listed(vectors)}, see {reference(labels)}"
+    return f"{told} {'is that' if one else 'are those'} of {reference(labels)}"
 
 
 def _place(label: str) -> int:

@@ -412,23 +412,43 @@ def upright(text: str) -> str:
     return re.sub(r"(?<![\\A-Za-z])[A-Za-z]{3,}", r"\\mathrm{\g<0>}", spaced)
 
 
+CALLED = re.compile(
+    r"\\(operatorname\{\w+\}|[a-z]*(sin|cos|tan)|min|max)(_\{\d\})?(\^\S+)? *\{? *$"
+)
+"""What the parentheses after it are the arguments of."""
+
+
 def loosen(text: str) -> str:
-    """Replace ``\\left( \\right)`` by parentheses of fixed size, unless a matrix is inside."""
+    """Replace ``\\left( \\right)`` by parentheses of fixed size, unless a matrix is inside.
+
+    A sum in parentheses that has others in it has brackets, and a sum with those parentheses.
+    """
     opened: list[tuple[int, str]] = []
+    heights = [0]
+    """How many pairs are in each other, in what is open and around it."""
     parts = re.split(r"(\\left[(\[]|\\right[)\]]|\\left\S|\\right\S)", text)
     for i, part in enumerate(parts):
         if part.startswith(r"\left"):
             opened.append((i, part))
+            heights.append(0)
         elif part.startswith(r"\right") and opened:
             j, left = opened.pop()
             inside = "".join(parts[j + 1 : i])
+            round_pair = left[5:] == "(" and part[6:] == ")"
+            height = heights.pop() + round_pair
+            heights[-1] = max(heights[-1], height)
             if left[5:] in "([" and r"\begin" not in inside:
                 large = "Big" if r"\frac" in inside else "big" if r"\sqrt" in inside else ""
                 before = "".join(parts[:j])
                 small = before.count("{") > before.count("}") or r"\begin" in before
                 large = large.lower() if small else large
+                ends = left[5:], part[6:]
+                if round_pair and height % 2 == 0 and not CALLED.search(before):
+                    ends = "[", "]"
+                if round_pair and height > 1 and (ends[0] == "[" or height > 2):
+                    large = large or "big"  # a bare bracket after \\ would be its argument
                 size = (rf"\{large}l", rf"\{large}r") if large else ("", "")
-                parts[j], parts[i] = size[0] + left[5:], size[1] + part[6:]
+                parts[j], parts[i] = size[0] + ends[0], size[1] + ends[1]
     return re.sub(r"(?<![\s\\]) (?=(?:\\[bB]igr)?[)\]])", "", "".join(parts))
 
 

@@ -16,6 +16,7 @@ from closedform.emit.backends.latex.angles import same_angle
 from closedform.emit.backends.latex.cases import Cases, are_free
 from closedform.emit.backends.latex.equations import (
     Numbered,
+    defined_in,
     reference,
     runs,
 )
@@ -156,11 +157,19 @@ class Stages:
             "count": self.count(step),
             "vectors": mixed(lemma.vectors),
             "solution": blocks(solution),
-            "seen": reference(self.seen.values()),
-            "seen_names": listed([f"${n}$" for n in self.seen]) if len(self.seen) <= FEW else "",
+            "seen": self.where_defined(bool(role_rows or solution)),
             "exists": ", ".join(dict.fromkeys(e for s in step if (e := self.exists(s)))),
             "degenerate": self.degenerate(step),
         }
+
+    def where_defined(self, some_here: bool) -> str:
+        """Where the symbols of a step are defined that it takes from the derivation."""
+        if not self.seen:
+            return ""
+        if len(self.seen) <= FEW:
+            return f"Here {defined_in([*self.seen], self.seen.values())}."
+        which = "other symbols" if some_here else "symbols"
+        return f"The {which} are those of {reference(self.seen.values())}."
 
     def numbered(self, solved: Sequence[list[Equation]]) -> tuple[list[Numbered], list[str]]:
         """The equations that a lemma solves, with numbers, and the numbers; names for parts follow.

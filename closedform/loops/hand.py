@@ -185,8 +185,9 @@ class Hand:
         self.d.alike = self.alike
         if self.alike:
             *own, sign = zip(self.alike.any_part, *self.alike.symbols, strict=True)
-            for symbol, first, *_, last in own:
-                self.d.write(symbol, meaning=f"{first}, ..., {last} of leg {INDEX}")
+            for symbol, *some, last in own:
+                named = f"{', '.join(map(str, some))} or {last}"
+                self.d.write(symbol, meaning=f"{named}: that of leg {INDEX}")
             self.d.write(sign[0], rf"\sigma_{{\mathrm{{leg}}_{{{INDEX}}}}}", f"sign of leg {INDEX}")
 
     def state_loop(self) -> Step:

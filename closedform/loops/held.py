@@ -243,8 +243,8 @@ def state_parallelograms(by: Held) -> None:
         f"hand has the direction {v}, and {r} leads from the middle of the first to the middle of "
         f"the second.  The two rods are {r} + {h}*({v} - {u}) and {r} - {h}*({v} - {u}), and both "
         f"must have this length.  In a parallelogram {v} = {u}, and {r} is as long as a rod, "
-        "whatever the width.  The other solutions are left out: the crossed one "
-        f"(antiparallelogram) and twisted ones.{by.then}",
+        f"whatever the width; that of leg {one} is {r}_{one}.  The other solutions are left "
+        f"out: the crossed one (antiparallelogram) and twisted ones.{by.then}",
         {
             rf"\mathbf {r}\cdot(\mathbf {v} - \mathbf {u})": sp.S.Zero,
             rf"|\mathbf {r}|^2 + {h}^2\,|\mathbf {v} - \mathbf {u}|^2": squared,

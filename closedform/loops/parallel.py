@@ -218,8 +218,8 @@ def _on_rods(
         "sign of the mode times a product of lengths.",
         notes=(
             "UNREACHABLE: the rods do not meet.",
-            "SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of "
-            "its points is returned.",
+            f"SINGULAR: centres coincide{' or are in line' if n == 3 else ''}, and the hand is "
+            "free on a circle; one of its points is returned.",
             NEAR,
         ),
     )

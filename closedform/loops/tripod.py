@@ -198,14 +198,15 @@ def _velocity(m: Tripod, loop: Step) -> None:
         "derivatives of its far end, the corner.  Entry k of the target, k = 2 or 3, tilts the "
         "hand about the axis a_k, and the twist turns it about a_psi.  The twist follows the "
         "tilts: F_k is the derivative of f*cos(psi) + g*sin(psi) with respect to entry k, and "
-        "delta is the derivative with respect to psi.  So the corner of leg i moves by v_ik, seen "
-        "from the point of the hand.  The point itself moves by p_k, which is horizontal and "
-        "keeps the corners in their planes.  B is diagonal, because each leg depends on its own "
-        "joint alone.  B is singular if the joint moves the near end of a rod at right angles to "
-        "it (serial: the joint moves and the hand stands still).  A is singular if the rods do "
-        "not hold the hand (parallel), and where tilt_x is a right angle: there tilt_y turns the "
-        "hand about its own axis, as the twist does.  Where delta, the root of f^2 + g^2, "
-        "vanishes, the planes do not hold the twist (constraint).",
+        "delta is the derivative with respect to psi.  So the corner of leg i moves by v_ik, "
+        "seen from the point of the hand.  The point itself moves by p_k, which is horizontal "
+        "and keeps the corners in their planes.  The vector r_i has the entries r_i1 along d_i "
+        "and r_i2 upwards, and v_ik3 is the third entry of v_ik.  B is diagonal, because each "
+        "leg depends on its own joint alone.  B is singular if the joint moves the near end of a "
+        "rod at right angles to it (serial: the joint moves and the hand stands still).  A is "
+        "singular if the rods do not hold the hand (parallel), and where tilt_x is a right "
+        "angle: there tilt_y turns the hand about its own axis, as the twist does.  Where delta, "
+        "the root of f^2 + g^2, vanishes, the planes do not hold the twist (constraint).",
         _velocities(m),
         proves="The derivative of f*cos(psi) + g*sin(psi) with respect to psi is g*cos(psi) - "
         "f*sin(psi), which is delta.  The derivative of each loop equation with respect to "

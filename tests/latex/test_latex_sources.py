@@ -107,10 +107,10 @@ def test_the_rotation_of_a_lemma_is_one_matrix() -> None:
 
 def test_names_of_the_derivation_are_not_defined_again() -> None:
     (step,) = stages("three_prs", "ik")
-    assert step["seen"].startswith(r"\eqref{eq:three_prs:2}--")
+    assert step["seen"].startswith(r"The other symbols are those of \eqref{eq:three_prs:2}--")
     told = [*step["definitions"], *step["role_blocks"]]
     defined = {row.left for block in told for row in block.rows}
-    assert not {"f", "g", "R_{11}", "h_{11}", "p_{x}"} & defined and "m_{1}" in defined
+    assert not {"f", "g", "R_{11}", "h_{1,x}", "p_{x}"} & defined and "m_{1}" in defined
 
 
 def rows(blocks: list) -> dict[str, str]:

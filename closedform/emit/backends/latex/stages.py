@@ -541,7 +541,10 @@ class Stages:
             where = Cases(self.algorithm).vanishing(self.vanishing(flag))
             names = found.setdefault(f"{self.page.prose(flag.meaning)} ({where})", [])
             names += [f"${self.page.math(s)}$" for s in flag.free]
-        return "; ".join(f"{where}: {are_free(names)}" for where, names in found.items())
+        places: dict[str, list[str]] = {}
+        for where, names in found.items():
+            places.setdefault(are_free(names), []).append(where)
+        return "; where ".join(f"{' or where '.join(w)}: {free}" for free, w in places.items())
 
     def vanishing(self, flag: Vanishes) -> sp.Expr:
         """What a flag compares with zero, by its name if it has one."""

@@ -15,9 +15,11 @@ from closedform.check.samples import Sample, inverse_postures, joint_samples, pe
 from closedform.check.singular import singular_samples
 from closedform.check.truth import Solutions, cached, solutions_of
 from closedform.check.values import check_forward
+from closedform.lower.program import lower
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
 from closedform.model.inverse import Inverse
+from closedform.model.tolerances import HIGHEST_DEGREE
 
 SUSPECTS = 5
 """The number of worst answers on and near the singular set that are evaluated in Arb."""
@@ -42,7 +44,9 @@ def check_inverse(
         if not truth.stated:
             return check_forward(derivation, function, backend)
         for sample in joint_samples(derivation, function):
-            _Batch(finding, truth, backend, rounded(sample, backend), exact=True).check(None)
+            posed = rounded(sample, backend)
+            for part, exact in _in_range(derivation, function, posed, backend):
+                _Batch(finding, truth, backend, part, exact=exact).check(None)
         return finding
     answers = len(inverse.unknowns) * len(list(function.cases()))
     for sample in inverse_postures(derivation, inverse.unknowns):
@@ -203,6 +207,21 @@ class _Batch:
             self.finding.fail(
                 f"{posture.tolist()} is not among {solutions.tolist()}; {self._where(row)}"
             )
+
+
+def _in_range(
+    derivation: Derivation, function: Function, sample: Sample, backend: Backend
+) -> Iterator[tuple[Sample, bool]]:
+    """The targets that the function promises to reach, and those whose powers may overflow.
+
+    The latter exist if lengths of the mechanism are numbers, because it cannot be scaled then.
+    """
+    limit = backend.tolerances.sizes(HIGHEST_DEGREE)[1]
+    beyond = (abs(sample.values) > limit).any(axis=1)
+    beyond &= beyond.any() and lower(function, derivation).degrees is None
+    for rows in (~beyond, beyond):
+        if rows.any():
+            yield replace(sample, values=sample.values[rows]), rows is not beyond
 
 
 def _check_round_trips(

@@ -51,7 +51,7 @@ class Branch:
     """Lowers one branch: statements first, then outputs and the status.
 
     ``names`` collects the preferred names of nodes, and ``signs`` are the branch signs that are
-    inputs of the program.
+    inputs of the program.  With ``unscaled`` a length that overflows makes the target UNREACHABLE.
     """
 
     function: Function
@@ -67,6 +67,8 @@ class Branch:
     """Conditions without which the target is UNREACHABLE."""
     singular: list[Node] = field(default_factory=list)
     """Conditions of which any one makes the answer SINGULAR."""
+    unscaled: bool = False
+    """Whether lengths are numbers, so that powers of a large target overflow."""
 
     @property
     def graph(self) -> Graph:
@@ -86,6 +88,8 @@ class Branch:
         self.valid += self._valid_input()
         for statement in self.function.body:
             self._add(statement)
+        if self.unscaled and self.function.has_status:
+            self.reachable += self._in_range(entries)
         # In this form a comparison with NaN, after an overflow, counts as a failure.
         invalid = graph.negate(graph.every(self.valid))
         unreachable = graph.negate(graph.every(self.reachable))
@@ -178,6 +182,12 @@ class Branch:
         if failed.op == "false":
             return node
         return self.graph.node("add", node, self.graph.node("poison", failed))
+
+    def _in_range(self, entries: Sequence[tuple[sp.Expr, bool]]) -> list[Node]:
+        """The condition that no length of the answer overflows; an angle cannot."""
+        lengths = [self.build(entry) for entry, angle in entries if not angle]
+        computed = [node for node in lengths if node.op not in LEAVES]
+        return [self.graph.node("finite", *computed)] if computed else []
 
     def _valid_input(self) -> list[Node]:
         """The conditions that every input and parameter is finite and no length is negative.

@@ -55,12 +55,16 @@ class Degrees:
 
 
 def degrees(
-    results: Sequence[Sequence[Node]], known: Mapping[str, int], preferred: Sequence[str]
+    results: Sequence[Sequence[Node]],
+    known: Mapping[str, int],
+    preferred: Sequence[str],
+    lengths: Iterable[Node] = (),
 ) -> Degrees | None:
     """The degrees of a program, or None if it has none, for example with a constant length in it.
 
     ``known`` contains degrees of inputs.  The inputs in ``preferred`` are lengths unless the
-    program excludes it; the others are lengths only if the program requires it.
+    program excludes it; the others are lengths only if the program requires it.  The nodes in
+    ``lengths`` are results of degree 1.
     """
     roots = [n for nodes in results for n in nodes]
     nodes = list(reachable(roots))
@@ -73,6 +77,9 @@ def degrees(
         degree_of = _NodeDegrees(system)
         for node in nodes:
             degree_of.add(node)
+        for node in lengths:
+            if (degree := degree_of[node]) is not None:
+                system.equate(degree, {"": ONE})
     except MixedError:
         return None
     for name in [name for name in preferred if name in inputs]:

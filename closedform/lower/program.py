@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from itertools import islice
+from itertools import cycle, islice
 
 import sympy as sp
 
@@ -119,12 +119,12 @@ def lower(function: Function, derivation: Derivation) -> Lowered:
     """Lower one function of a derivation."""
     function = within_edge(function, derivation)
     entries = Turns.of(function, derivation).entries()
-    whole = _with_common(*_lower(function, derivation, entries, list(function.cases())))
+    whole = _whole(function, derivation, entries, list(function.cases()))
     if whole.common is not None and function.branches:
-        branch = _one_branch(function, derivation, entries)
+        branch = _one_branch(function, derivation, entries, unscaled=whole.degrees is None)
         short = branch is not None and branch.length < LENGTH_OF_BRANCH * whole.common.length
         whole = replace(whole, branch=branch if short else None)
-    return _with_degrees(whole, derivation)
+    return whole
 
 
 def results_of(function: Function) -> list[Result]:
@@ -141,8 +141,22 @@ def lower_branch(function: Function, derivation: Derivation, branch: int) -> Low
     entries = Turns.of(function, derivation).entries()
     case = list(function.cases())[branch]
     alone = replace(function, branches=None)
-    whole = _with_common(*_lower(alone, derivation, entries, [case]))
-    return _with_degrees(whole, derivation)
+    return _whole(alone, derivation, entries, [case])
+
+
+def _whole(
+    function: Function,
+    derivation: Derivation,
+    entries: Sequence[tuple[sp.Expr, bool]],
+    cases: Sequence[tuple[str, Mapping[sp.Symbol, int]]],
+) -> Lowered:
+    """The program, which says where a length overflows if it cannot be scaled."""
+    for unscaled in (False, True):
+        programs = _lower(function, derivation, entries, cases, unscaled=unscaled)
+        whole = _with_degrees(_with_common(*programs), function, derivation)
+        if whole.degrees is not None or not function.has_status:
+            break
+    return whole
 
 
 def _with_common(whole: Lowered, common: Lowered) -> Lowered:
@@ -152,20 +166,27 @@ def _with_common(whole: Lowered, common: Lowered) -> Lowered:
     return replace(whole, common=replace(common, parameters=whole.parameters))
 
 
-def _with_degrees(program: Lowered, derivation: Derivation) -> Lowered:
+def _with_degrees(program: Lowered, function: Function, derivation: Derivation) -> Lowered:
     """The program with its degrees; the highest one includes the common case."""
     known = {j.name: int(j.kind == "prismatic") for j in derivation.joints}
     known |= {p.name: 0 for p in derivation.parameters if p.unit in NUMBERS}
     preferred = [p.name for p in derivation.parameters if p.name not in known]
     results = [r.nodes for p in (program, program.common) if p for r in p.results]
-    found = degrees(results, known, preferred)
+    slides = {j.symbol for j in derivation.joints if j.kind == "prismatic"}
+    unknowns = [i.unknowns for i in derivation.inverses if i.function == function.name]
+    answers = zip(program.results[0].nodes, cycle(*unknowns), strict=False) if unknowns else ()
+    found = degrees(results, known, preferred, [n for n, joint in answers if joint in slides])
     if found:
         found = replace(found, results=found.results[: len(program.results)])
     return replace(program, degrees=found)
 
 
 def _one_branch(
-    function: Function, derivation: Derivation, entries: Sequence[tuple[sp.Expr, bool]]
+    function: Function,
+    derivation: Derivation,
+    entries: Sequence[tuple[sp.Expr, bool]],
+    *,
+    unscaled: bool,
 ) -> Lowered | None:
     """The common case of one branch, with the signs of the branch as inputs."""
     assert function.branches
@@ -176,7 +197,7 @@ def _one_branch(
         inputs=(*function.inputs, Array("signs", (len(signs),), tuple(signs))),
     )
     try:
-        return _lower(one, derivation, entries, [("", {})], signs)[1]
+        return _lower(one, derivation, entries, [("", {})], signs, unscaled=unscaled)[1]
     except UnboundedAngleError:  # a sign occurs in an angle, but not as a factor
         return None
 
@@ -187,6 +208,8 @@ def _lower(
     entries: Sequence[tuple[sp.Expr, bool]],
     cases: Sequence[tuple[str, Mapping[sp.Symbol, int]]],
     signs: Sequence[sp.Symbol] = (),
+    *,
+    unscaled: bool,
 ) -> tuple[Lowered, Lowered]:
     """The whole program and its common case; ``signs`` are inputs with the values 1 or -1."""
     graph = Graph()
@@ -198,7 +221,7 @@ def _lower(
     ranges = _ranges(function, derivation, signs)
     for label, chosen in cases:
         build = Builder(graph, leaves, divisors)
-        branch = Branch(function, derivation, build, names, label, signs, ranges)
+        branch = Branch(function, derivation, build, names, label, signs, ranges, unscaled=unscaled)
         rows.append(branch.lowered(chosen, entries))
     nodes = [tuple(n for row in rows for n in row[0][k]) for k in range(len(function.outputs))]
     nodes.append(tuple(row[1] for row in rows))

@@ -207,8 +207,8 @@ class Magnitudes:
     """The natural scales of values: all signs positive, sines and cosines at their largest.
 
     Divisors keep their value.  With ``amplified``, a quotient is multiplied by the natural scale of
-    its divisor over the divisor.  Each subexpression is visited once, because the full tree would
-    be far too large.
+    its divisor over the divisor, and a root grows where its argument cancels.  Each subexpression
+    is visited once, because the full tree would be far too large.
 
     The expressions may contain ``names``, with a value each, which hold what cancels in a formula
     that is written out.
@@ -274,12 +274,25 @@ class Magnitudes:
             return lambda done, given: total(done[k] for k in parts)
         if isinstance(e, sp.Pow) and e.exp.is_Number and e.exp > 0:
             base, power = self._place(e.base), float(e.exp)
+            if self._amplified and power < 1:
+                value = self._evaluated(e.base)
+                return lambda done, given: _scale_of_root(done[base], given[value], power)
             return lambda done, given: np.power(done[base], power)
-        self._divisors.append(substitute(e, self._written_out))
-        place = len(self._places) + len(self._divisors) - 1
+        place = self._evaluated(e)
         if self._amplified and isinstance(e, sp.Pow) and e.exp.is_Number:
             inner, power = self._place(e.base), float(e.exp)
             return lambda done, given: (
                 given[place] * np.maximum(1.0, done[inner] / given[place] ** (1 / power))
             )
         return lambda done, given: given[place]
+
+    def _evaluated(self, e: sp.Expr) -> int:
+        """The place of an expression that is evaluated."""
+        self._divisors.append(substitute(e, self._written_out))
+        return len(self._places) + len(self._divisors) - 1
+
+
+def _scale_of_root(scale: Array, value: Array, power: float) -> Array:
+    """What a rounding of a root's argument makes of the root: much where the argument cancels."""
+    least = np.maximum(value, np.finfo(float).eps * scale)
+    return np.maximum(np.power(scale, power), power * scale * np.power(least, power - 1))

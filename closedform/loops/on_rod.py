@@ -434,7 +434,8 @@ def _inverse(m: OnRod, loop: Step) -> None:
     solved.solve(2, second, m.end(m.hand - named, m.hand) - second.base)
     other = m.to_hand * solved.found[1].rod
     volume = g.let("Delta", named[0] * other[1] - named[1] * other[0])
-    scale = solved.lengths(m.legs) * m.stretch
+    # a hand that is farther from b1 than c moves more than c when it is moved by rounding
+    scale = solved.lengths(m.legs) * m.stretch * sp.Max(1, m.stretch)
     missed, size = solved.missed * m.stretch, solved.size
     g.determined(sp.Abs(volume), scale, MEET, name=r"|\det A|", missed=missed, size=size)
     d.step(
@@ -443,7 +444,8 @@ def _inverse(m: OnRod, loop: Step) -> None:
         "second leg has to reach it with its own rod.  "
         f"{solved.on_modes}Near a parallel singularity rounded joints do not determine the hand.  "
         "The status is SINGULAR if the determinant of A is less than 2^-10 of the product of the "
-        f"radii of both circles.  {MISSED}",
+        "radii of both circles, or of a multiple of it if the hand is farther from b1 than c: as "
+        f"many times as it is farther.  {MISSED}",
         {},
         uses=[loop],
         solves={"ik": ()},

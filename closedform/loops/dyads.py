@@ -77,7 +77,9 @@ def _state(m: Linkage) -> Step:
         rows += [(step.pin, a, near, lengths[0]), (step.pin, b, other, lengths[1])]
     return m.d.step(
         "The linkage",
-        "The driven bodies turn about the ground.  Each pin of the table belongs to two bodies, of "
+        "The driven bodies turn about the ground.  " * bool(m.driven)
+        + "The length of a cylinder is its joint.  " * bool(m.cylinders)
+        + "Each pin of the table belongs to two bodies, of "
         "which one more point is known before: they are a dyad, and the pin is at the given "
         "distances from these points.",
         {},
@@ -103,7 +105,7 @@ def _forward(m: Linkage, choice: Choice, loop: Step) -> Posture:
     signs = [real(f"sigma_dyad{k}") for k, _ in enumerate(m.solved, 1)]
     modes = branches(*((sigma, choice) for sigma in signs))
     d.assembly_modes = modes.labels
-    size = f.let("size", m.size)
+    size = f.let("size", m.size + sp.Add(*m.cylinders.values()))
     found = Posture(f, modes, known_points(m, f, list(m.driven)))
     links: list[Link] = []
     outputs: list[sp.Expr] = []
@@ -250,7 +252,7 @@ def _draw(m: Linkage, at: Posture) -> None:
     bars = _bars(m)
     for body, points in m.points.items():
         line = (*points, points[0]) if len(points) > 2 else points
-        if len(points) > 1:
+        if len(points) > 1 and body not in m.cylinders:
             links[body] = line
         for a, b in pairwise(line):
             if {a, b} <= set(m.points[GROUND]) and body != GROUND:
@@ -260,7 +262,8 @@ def _draw(m: Linkage, at: Posture) -> None:
                 near, far, equation = bars[body]
                 share = m.squared(body, a, b) / m.squared(body, near, far)
                 closing[a, b] = sp.factor(share) * equation
-    joints = {q: (m.pivot(body),) for q, body in zip(m.d.actuated, m.driven, strict=True)}
+    joints = {b.joint: (m.pivot(body),) for body, b in m.driven.items() if b.joint}
+    joints |= {q: m.points[body] for body, q in m.cylinders.items()}
     hand = m.at or m.solved[-1].pin
     skeleton(
         m.d,
@@ -305,7 +308,7 @@ class Rate:
 
 
 def _velocity(m: Linkage, at: Posture, loop: Step) -> None:
-    d, n = m.d, len(m.driven)
+    d, n = m.d, len(m.d.actuated)
     A, B = velocity_matrices(m.loop, m.variables, d.actuated)
     rows, driven = _rows(m, [end - start for end, start in _ends(m)])
     d.step(
@@ -323,7 +326,8 @@ def _velocity(m: Linkage, at: Posture, loop: Step) -> None:
     v = Program(list(at.program.body), at.program.taken)
     volumes = [v.let(f"Delta_{k}", e) for k, e in enumerate(at.volumes, 1)]
     rates = {p: Rate(sp.zeros(2, n)) for p in m.points[GROUND]}
-    for k, body in enumerate(m.driven):
+    for body, drawn in m.driven.items():
+        k = d.actuated.index(drawn.joint)
         for point in m.points[body]:
             if point not in rates:
                 arm = at.points[point] - at.points[m.pivot(body)]
@@ -339,8 +343,10 @@ def _velocity(m: Linkage, at: Posture, loop: Step) -> None:
         near = rates[step.near[1]]
         volume = v.let(f"Delta_{len(m.solved)}", rod.dot(crank.rate_at(at.points[step.pin])))
         volumes.append(volume)
-        moved = v.let("B_last", (rod.T * near.times)[0])
-        J, still = sp.Matrix([[moved / _product(volumes, near.dyads) / volume]]), moved
+        longer = _longer(m, step.dyad.bodies[1]) * _product(volumes, near.dyads)
+        moved = v.matrix("B_last", rod.T * near.times + longer)
+        J = moved / _product(volumes, near.dyads) / volume
+        still = moved[0] if n == 1 else sp.S.Zero
     else:
         hand = rates[m.at]
         J = hand.times / _product(volumes, hand.dyads)
@@ -391,7 +397,11 @@ def _rate_of(
     first = near.over(volumes, both)
     second = first + step.turned * (other.over(volumes, both) - first)
     plain = Rate(second, both) if step.turned != sp.eye(2) else other
-    rows = [v.matrix(f"s1_{k + 1}", a.T * near.times), v.matrix(f"s2_{k + 1}", b.T * plain.times)]
+    longer = [_longer(m, body) for body in step.dyad.bodies]
+    sized = a.T * near.times + longer[0] * _product(volumes, near.dyads)
+    other_sized = b.T * plain.times
+    other_sized += longer[1] * m.stretch(step) ** 2 * _product(volumes, plain.dyads)
+    rows = [v.matrix(f"s1_{k + 1}", sized), v.matrix(f"s2_{k + 1}", other_sized)]
     rates[""] = Rate(sp.Matrix.vstack(*rows))
     s = [Rate(row, r.dyads).over(volumes, both) for row, r in zip(rows, (near, plain), strict=True)]
     pushed = sp.Matrix.vstack(b[1] * s[0] - a[1] * s[1], a[0] * s[1] - b[0] * s[0])
@@ -402,6 +412,12 @@ def _rate_of(
             for point in m.points[body]:
                 if point not in rates:
                     rates[point] = _carried(m, (body, near_point, step.pin, point), rates, volumes)
+
+
+def _longer(m: Linkage, body: str) -> sp.Matrix:
+    """Half of the derivative of the squared length of a body with respect to the driven joints."""
+    q = m.cylinders.get(body)
+    return sp.Matrix([[q if joint == q else 0 for joint in m.d.actuated]])
 
 
 def _carried(
@@ -420,10 +436,21 @@ def _carried(
 def _rows(m: Linkage, bars: Sequence[sp.Matrix]) -> tuple[sp.Matrix, sp.Matrix]:
     """A and B of A*du = B*dq, row by row: the bar times the rates of its ends."""
     A, B = [], []
-    for bar, (end, start) in zip(bars, _ends(m), strict=True):
+    for bar, (end, start), longer in zip(bars, _ends(m), _lengthened(m), strict=True):
         A.append(bar.T * (end - start).jacobian(list(m.variables)))
-        B.append(bar.T * (start - end).jacobian(list(m.d.actuated)))
+        B.append(bar.T * (start - end).jacobian(list(m.d.actuated)) + longer)
     return sp.Matrix.vstack(*A), sp.Matrix.vstack(*B)
+
+
+def _lengthened(m: Linkage) -> list[sp.Matrix]:
+    """For each of these bars, what its own joint adds to the row of B."""
+    found = []
+    for step in m.circles:
+        first, second = step.dyad.bodies
+        found += [_longer(m, first), m.stretch(step) ** 2 * _longer(m, second)]
+    if m.follower:
+        found.append(_longer(m, m.solved[-1].dyad.bodies[1]))
+    return found
 
 
 def _ends(m: Linkage) -> list[tuple[sp.Matrix, sp.Matrix]]:

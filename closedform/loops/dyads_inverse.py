@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 
 from closedform.lemmas.circles import two_circles
-from closedform.lemmas.legs import Naming, Solution
+from closedform.lemmas.legs import Naming, Solution, Stretch
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import (
     MISSED,
@@ -49,10 +49,17 @@ def named(p: Program, name: str, place: sp.Matrix) -> sp.Matrix:
 def inverse(m: Linkage, loop: Step) -> None:
     """Derive and export the inverse, or say why there is none."""
     known = [GROUND, *[m.follower] * bool(m.follower)]
-    found = order(m.points, known, [m.at] * bool(m.at), sought=m.driven)
+    bars = {name: at for name, at in m.points.items() if name not in m.cylinders}
+    found = order(bars, known, [m.at] * bool(m.at), sought=m.driven)
     if found.left:
         m.d.no_inverse(f"with the hand held, {found.undone}")
         return
+    there = {m.at, *(p for at in bars.values() for p in at)}
+    for name in m.cylinders:
+        if loose := [p for p in m.points[name] if p not in there]:
+            m.d.no_inverse(f"with the hand held, the end {loose[0]} of {name} can still move")
+            return
+        found.steps.append(Held(name, m.points[name]))
     _Reverse(m, loop, found).export()
 
 
@@ -87,7 +94,9 @@ class _Reverse:
 
     def export(self) -> None:
         for k, step in enumerate(self.order.steps, 1):
-            if isinstance(step, Held):
+            if isinstance(step, Held) and step.body in self.m.cylinders:
+                self._stretch(step, k)
+            elif isinstance(step, Held):
                 self._hold(step, k)
             else:
                 driven = [body for body in step.bodies if body in self.m.driven]
@@ -186,6 +195,18 @@ class _Reverse:
         pairs = zip(step.bodies, step.near, strict=True)
         return [self.m.length(body, near, step.pin) for body, near in pairs]
 
+    def _stretch(self, step: Held, k: int) -> None:
+        """A cylinder, both of whose ends are known."""
+        near, far = step.points
+        q = self.m.cylinders[step.body]
+        leg = Stretch(q, (0, 0))
+        names = Naming(self.program, self.size, f"_{k}")
+        solved = leg.solve(names, self.at[far] - self.at[near], real("none"))
+        self.links.append(solved.link)
+        self.found.append(solved)
+        self.values[q] = solved.value
+        self.equations.append(square(self.meant[far] - self.meant[near]) - q**2)
+
     def _hold(self, step: Held, k: int) -> None:
         """A body whose points are known: their distances have to be right."""
         m, p = self.m, self.program
@@ -257,7 +278,7 @@ class _Reverse:
         for k, dyad in enumerate(m.dyads, 1):
             a, b = (self.at[dyad.pin] - self.at[near] for near in dyad.near)
             volumes.append(g.let(f"Delta_{k}", sp.Abs(a[0] * b[1] - a[1] * b[0]), nonnegative=True))
-            scales += self._lengths(dyad) + self._stretches(dyad)
+            scales += [e.subs(self.values) for e in self._lengths(dyad)] + self._stretches(dyad)
         missed = g.let("missed", sp.Add(*self.missed))
         meet = "both bars of a dyad are in line"
         g.determined(
@@ -266,11 +287,12 @@ class _Reverse:
 
     def _write(self) -> None:
         m, d, g = self.m, self.m.d, self.program
-        on_curve = bool(self.order.held)
+        on_curve = any(step.body not in m.cylinders for step in self.order.held)
         d.step(
             "Inverse: dyad by dyad, from the hand",
             "The hand is known instead of the joints.  The bodies are found in this order, again "
             f"dyad by dyad: {self._told()}.  "
+            + "The length of a cylinder is the distance of its ends.  " * bool(m.cylinders)
             + "The target has to be on the curve of the hand, which the last distance tells.  "
             * on_curve
             + "Near a parallel singularity rounded joints do not determine the hand.  The status "

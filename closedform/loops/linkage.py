@@ -1,9 +1,9 @@
 """A planar linkage that is solved dyad by dyad: six-bar linkages, straight-line linkages, legs.
 
-Its bodies are pinned to each other.  The driven ones turn about the ground.  Two bodies with a
-common pin, each of which has one more point that is known, are a dyad: two circles meet in the pin.
-Then all points of both bodies are known, and the next dyad follows.  So each dyad has two assembly
-modes.
+Its bodies are pinned to each other.  The driven ones turn about the ground, or are cylinders, whose
+length is the joint.  Two bodies with a common pin, each of which has one more point that is known,
+are a dyad: two circles meet in the pin.  Then all points of both bodies are known, and the next
+dyad follows.  So each dyad has two assembly modes.
 
 A point of a body is seen from another one of its points as a third one is, turned and stretched by
 constants.  If the hand is on a body of the last dyad, the same turn and stretch take the circles of
@@ -36,7 +36,8 @@ class Body:
 
     Bodies that have a point of the same name are pinned together there.  The points of the ground,
     and of a body with a joint, are where they are when the joint is zero; of any other body only
-    the distances of its points count, and on which side they are.
+    the distances of its points count, and on which side they are.  A cylinder is a body of two
+    points at a distance that is a driven joint.
     """
 
     points: Mapping[str, Sequence[Any]]
@@ -79,13 +80,15 @@ class Linkage:
         for body, parts in self.bodies.items():
             if any(len(at) != 2 for at in parts.points.values()):
                 raise ShapeError(f"{name}: {body} needs points with two coordinates")
-        if {b.joint for b in self.driven.values()} != set(self.d.actuated):
+        if {b.joint for b in self.driven.values()} | set(self.cylinders.values()) != {
+            *self.d.actuated
+        }:
             raise ShapeError(f"{name}: each driven joint must belong to a body")
         free = freedoms(self.points)
         if free != len(self.driven):
             raise ShapeError(
-                f"{name}: {len(self.driven)} joints are driven, but by the count of its bodies "
-                f"and pins the linkage has {free} degrees of freedom"
+                f"{name}: {len(self.d.actuated)} joints are driven, but by the count of its bodies "
+                f"and pins the linkage has {free + len(self.cylinders)} degrees of freedom"
             )
         if held := self.order.held:
             raise ShapeError(
@@ -109,6 +112,19 @@ class Linkage:
         """The bodies with a driven joint, in the order of the joints."""
         on = {body.joint: (name, body) for name, body in self.bodies.items() if body.joint}
         return dict(on[q] for q in self.d.actuated if q in on)
+
+    @cached_property
+    def cylinders(self) -> dict[str, sp.Symbol]:
+        """The bodies whose length is a driven joint, with this joint."""
+        found = {}
+        for name, body in self.bodies.items():
+            entries = [sp.sympify(e, strict=True) for at in body.points.values() for e in at]
+            for q in self.d.actuated:
+                if any(e.has(q) for e in entries):
+                    found[name] = q
+                    if len(body.points) != 2:
+                        raise ShapeError(f"{self.d.name}: the cylinder {name} needs two points")
+        return found
 
     @cached_property
     def follower(self) -> str:
@@ -167,6 +183,8 @@ class Linkage:
         return sp.factor(sp.expand(square(self.span(body, start, end))))
 
     def length(self, body: str, start: str, end: str) -> sp.Expr:
+        if body in self.cylinders:
+            return self.cylinders[body]
         return sp.sqrt(self.squared(body, start, end))
 
     def turn(self, body: str, start: str, seen: str, end: str) -> sp.Matrix:
@@ -218,7 +236,7 @@ class Linkage:
 
     @cached_property
     def size(self) -> sp.Expr:
-        """The sum of all lengths."""
+        """The sum of all lengths, without those of cylinders."""
         lengths = [p for p in self.d.parameters if p.unit != "rad"]
         sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
         numbers = [
@@ -227,7 +245,8 @@ class Linkage:
                 for at in body.points.values()
                 for e in at
             )
-            for body in self.bodies.values()
+            for name, body in self.bodies.items()
+            if name not in self.cylinders
         ]
         return sp.Add(*sized, *numbers)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import sympy as sp
@@ -10,6 +10,7 @@ import sympy as sp
 from closedform.mechanics.assur import Dyad, Order, freedoms, order
 from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
+from closedform.scaffold.loops.cylinders import joined
 from closedform.scaffold.source import literal, source
 
 FEW = {1: 3, 2: 4}
@@ -27,45 +28,52 @@ class LinkageLines:
 
 def linkage(loop: Loop) -> LinkageLines | None:
     """The lines of a linkage; None if the file is of another kind."""
+    loop, cylinders = joined(loop)
     driven = [j for j in loop.joints.values() if j.driven]
     follower = loop.joints.get(loop.hand)
-    moving = len(loop.bodies) - 1
-    _check_slides(loop, driven, moving)
+    inputs, moving = len(driven) + len(cylinders), len(loop.bodies) - 1
+    few = FEW.get(inputs, 0) - len(cylinders)
+    _check_slides(loop, inputs, moving > few)
     if (
         loop.dimensions != 2
-        or len(driven) not in FEW
+        or inputs not in FEW
         or any(j.kind != "revolute" for j in loop.joints.values())
         or any(GROUND not in j.between for j in driven)
         or loop.parallelograms
         or (follower and (follower.driven or GROUND not in follower.between))
     ):
         return None
-    point_of_one = len(driven) == 1 and not follower
-    if moving < FEW[len(driven)] or (moving == FEW[len(driven)] and not point_of_one):
+    point_of_one = inputs == 1 and not follower
+    if moving < few or (moving == few and not point_of_one):
         return None
-    if len(driven) == 2 and any(_without(loop, name) for name in loop.bodies):
+    if inputs == 2 and any(_without(loop, name) for name in loop.bodies):
         return None  # a leg may leave out where its body is joined, and its messages say more
     points = _points(loop)
     _check_pins(loop, points)
-    turning = {j.other(GROUND): j for j in driven}
-    found = _ordered(loop, points, turning)
+    turned = {j.other(GROUND): j for j in driven}
+    turning = dict(turned)
+    found = _ordered(loop, points, turning, cylinders)
     if follower:
         turning[follower.other(GROUND)] = follower
     elif not any(loop.hand in at for at in points.values()):
         raise loop.error(f"the hand {loop.hand} is neither a point of a body nor a joint")
     bodies = tuple(_line(loop, name, at, turning) for name, at in points.items())
-    return LinkageLines(bodies, "" if follower else _safe(loop.hand), _words(driven, found))
+    return LinkageLines(
+        bodies, "" if follower else _safe(loop.hand), _words(turned, cylinders, found)
+    )
 
 
-def _check_slides(loop: Loop, driven: Sequence[Joint], moving: int) -> None:
+def _check_slides(loop: Loop, inputs: int, more: bool) -> None:
     """Refuse slides in a linkage of one driven joint that is more than a single loop."""
+    moving = len(loop.bodies) - 1
     slides = [j.name for j in loop.joints.values() if j.kind == "prismatic"]
-    if loop.dimensions == 2 and len(driven) == 1 and moving > FEW[1] and slides:
+    if loop.dimensions == 2 and inputs == 1 and more and slides:
         raise loop.error(
             f"this is a planar linkage of {moving} moving bodies, in which {listed(slides)} "
             f"slide{'s' * (len(slides) == 1)}; a linkage of more than {FEW[1]} is supported with "
-            f"revolute joints alone.  If a slide only ends the linkage, leave it and its rod out, "
-            f"and take the point that drives the rod as the hand"
+            f"revolute joints and driven cylinders, which are pinned at both ends.  If a slide "
+            f"only ends the linkage, leave it and its rod out, and take the point that drives the "
+            f"rod as the hand"
         )
 
 
@@ -112,14 +120,18 @@ def _check_pins(loop: Loop, points: Mapping[str, Mapping[str, sp.Matrix]]) -> No
 
 
 def _ordered(
-    loop: Loop, points: Mapping[str, Mapping[str, sp.Matrix]], turning: Mapping[str, Joint]
+    loop: Loop,
+    points: Mapping[str, Mapping[str, sp.Matrix]],
+    turning: Mapping[str, Joint],
+    cylinders: Mapping[str, Joint],
 ) -> Order:
     """The dyads of the linkage, if there are no other groups."""
     free = freedoms(points)
     if free != len(turning):
         raise loop.error(
-            f"{listed([j.name for j in turning.values()])} drive this linkage, but by the count of "
-            f"its bodies and pins it has {free} degrees of freedom"
+            f"{listed([j.name for j in (*turning.values(), *cylinders.values())])} drive this "
+            f"linkage, but by the count of its bodies and pins it has {free + len(cylinders)} "
+            f"degrees of freedom"
         )
     found = order(points, [GROUND, *turning])
     for step in found.held:
@@ -133,7 +145,7 @@ def _ordered(
     others = [
         j.name
         for j in loop.of(GROUND)
-        if len(turning) == 1 and not order(points, [GROUND, j.other(GROUND)]).left
+        if len(turning) == 1 and not cylinders and not order(points, [GROUND, j.other(GROUND)]).left
     ]
     instead = f"; it can be solved if {' or '.join(others)} is driven" if others else ""
     raise loop.error(
@@ -151,14 +163,15 @@ def _line(
     return f"{literal(_safe(name))}: Body({{{places}}}{joint})"
 
 
-def _words(driven: Sequence[Joint], found: Order) -> str:
-    turned = listed([f"{j.name} turns {_safe(j.other(GROUND))}" for j in driven])
+def _words(turned: Mapping[str, Joint], cylinders: Mapping[str, Joint], found: Order) -> str:
+    moved = [f"{j.name} turns {_safe(body)}" for body, j in turned.items()]
+    moved += [f"{j.name} is the length of {_safe(body)}" for body, j in cylinders.items()]
     dyads = (
         f"{_safe(s.bodies[0])} and {_safe(s.bodies[1])} meet in {s.pin}"
         for s in found.steps
         if isinstance(s, Dyad)
     )
-    return f"Joint {turned}.  Then {', '.join(dyads)}."
+    return f"Joint {listed(moved)}.  Then {', '.join(dyads)}."
 
 
 def _safe(name: str) -> str:

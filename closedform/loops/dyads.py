@@ -11,7 +11,7 @@ import sympy as sp
 
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.legs import Naming
-from closedform.lemmas.missed import SHARE
+from closedform.lemmas.missed import MOVED, SHARE
 from closedform.loops.conditioning import JACOBIAN, conditioning
 from closedform.loops.dyads_inverse import inverse, known_points, named
 from closedform.loops.hand import in_space
@@ -122,7 +122,7 @@ def _forward(m: Linkage, choice: Choice, loop: Step) -> Posture:
         links.append(link)
     if m.follower:
         step, k = m.solved[-1], len(m.solved)
-        names = Naming(f, size, f"_{k}", SHARE)
+        names = Naming(f, size, f"_{k}", _share(m))
         crank = m.crank(m.follower, step.pin, m.length(step.dyad.bodies[1], step.near[1], step.pin))
         solved = crank.solve(names, found.points[step.near[1]] - crank.base, signs[-1])
         outputs, last = [solved.value], solved.link
@@ -211,13 +211,18 @@ def _meet(m: Linkage, at: Posture, dyad: tuple[int, Solved, sp.Symbol], size: sp
         tuple(step.unknowns),
         sigma,
         scale=scale,
-        share=SHARE,
+        share=_share(m),
         free=tuple(m.hand),
         suffix=f"_{k}",
     )
     at.spans.append((sp.Matrix(met.first), sp.Matrix(met.first) - span))
     at.volumes.append(met.side * met.size)
     return met
+
+
+def _share(m: Linkage) -> sp.Rational:
+    """By what share of the size a hand may miss; the size of the inverse counts no cylinders."""
+    return MOVED if m.cylinders else SHARE
 
 
 def _carry(m: Linkage, p: Program, step: Solved, points: dict[str, sp.Matrix]) -> None:

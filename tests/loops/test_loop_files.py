@@ -152,9 +152,23 @@ t = {between = ["p2", "stick"], at = "T"}
 """
 
 
+BUCKET = EXCAVATOR.replace("P = [1.5, 0]}", "K = [1.5, 0], U = [0.2, 0.3]}").replace(
+    "[joints]", "bucket = {K = [0, 0], V = [-0.1, 0.3], P = [0.6, 0]}\nt3 = {}\np3 = {}\n[joints]"
+)
+THIRD = """k = {between = ["stick", "bucket"], at = "K"}
+u = {between = ["stick", "t3"], at = "U"}
+q3 = {between = ["t3", "p3"], at = "U", kind = "prismatic", axis = [1, 0], driven = true}
+v = {between = ["p3", "bucket"], at = "V"}
+"""
+
+
 def test_the_file_of_an_excavator_is_told_what_to_write_instead(tmp_path: Path) -> None:
+    assert "linkage(" in script_of("excavator", EXCAVATOR, tmp_path)
     with pytest.raises(TableError, match=r'write each loop as a file of its own.*hand = "o"'):
-        script_of("excavator", EXCAVATOR, tmp_path)
+        script_of("excavator", BUCKET + THIRD, tmp_path)
+    first = BUCKET.replace("[joints]", "[joints]\n" + THIRD)
+    with pytest.raises(TableError, match=r"leg of q3.*write each loop as a file of its own"):
+        script_of("excavator", first, tmp_path)
     boom = 'hand = "o"' + EXCAVATOR.removeprefix('hand = "P"').split("e = {between")[0]
     lines = [line for line in boom.splitlines() if not line.startswith(("stick", "t2", "p2"))]
     assert "coupled(" in script_of("boom", "\n".join(lines), tmp_path)

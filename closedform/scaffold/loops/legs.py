@@ -383,7 +383,13 @@ class Legs:
                 raise loop.error(f"{half} is half of a leg, so it needs one more joint")
             ends[GROUND in others[0].between] = others[0]
         if len(ends) != 2:
-            raise loop.error(f"one half of the leg of {joint.name} must be joined to the ground")
+            apart = (
+                "; if another body holds it, as on an arm, write each loop as a file of its own, "
+                "seen from that body" * (loop.dimensions == 2)
+            )
+            raise loop.error(
+                f"one half of the leg of {joint.name} must be joined to the ground{apart}"
+            )
         self.used |= {joint.name, *(end.name for end in ends.values())}
         base = self.point(GROUND, ends[True])
         place = self.place_of(ends[False])

@@ -212,8 +212,8 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
     -----
     - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - UNREACHABLE: the rods do not meet.
-    - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
-      points is returned.
+    - SINGULAR: centres coincide, and the hand is free on a circle; one of its points is
+      returned.
     - Ill-conditioned near the parallel singularities, where both modes meet.
     """
     result = _runtime.evaluate(_FK, (q,), params)

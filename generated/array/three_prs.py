@@ -130,8 +130,8 @@ def _hand_pose(ops, z, tilt_x, tilt_y, a):
     R_11 = c_tilt_y * c + t2 * s
     R_12 = t2 * c - c_tilt_y * s
     R_21 = c_tilt_x * s
-    h_12 = a * R_21
-    t4 = h_12 * 0.5
+    h1_y = a * R_21
+    t4 = h1_y * 0.5
     t5 = a * 1.7320508075688772
     t6 = 1.7320508075688772 * (a * R_11 * 0.5 - t5 * R_12 * 0.5)
     R_22 = c_tilt_x * c
@@ -145,7 +145,7 @@ def _hand_pose(ops, z, tilt_x, tilt_y, a):
         R_21,
         R_22,
         -s_tilt_x,
-        -h_12,
+        -h1_y,
         t8 * s - s_tilt_y * c,
         t8 * c + s_tilt_y * s,
         c_tilt_x * c_tilt_y,
@@ -216,17 +216,17 @@ def _jacobian_parallel(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t7 = a * t6
     r_12 = z - rho1 - t7
     R_21 = c_tilt_x * s
-    h_12 = a * R_21
-    t8 = c_tilt_y * h_12
+    h1_y = a * R_21
+    t8 = c_tilt_y * h1_y
     R_22 = c_tilt_x * c
     twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
     t9 = s_tilt_x * c
     R_32 = c_tilt_y * t9 + s_tilt_y * s
     t10 = a * R_32
     R_11 = c_tilt_y * c + s_tilt_y * t5
-    h_11 = a * R_11
-    t11 = h_12 * 0.5
-    t12 = h_11 * 0.5
+    h1_x = a * R_11
+    t11 = h1_y * 0.5
+    t12 = h1_x * 0.5
     t13 = a * 1.7320508075688772
     R_12 = s_tilt_y * t9 - c_tilt_y * s
     t14 = t13 * R_12 * 0.5
@@ -236,8 +236,8 @@ def _jacobian_parallel(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t18 = t11 - t17
     t19 = t11 + (1.7320508075688772 * t15 * 0.5 + t18 * 0.5)
     px = 1.1547005383792515 * t19
-    t20 = b - h_11 - px
-    t21 = s_tilt_y * h_12
+    t20 = b - h1_x - px
+    t21 = s_tilt_y * h1_y
     t22 = a * R_12
     t23 = a * 0.75
     t24 = t13 * R_21
@@ -253,7 +253,7 @@ def _jacobian_parallel(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t34 = t13 * R_32 * 0.5
     t35 = a * 1.5
     twist_tilt_y = (t2 * t9 + t3 * s) / delta
-    A_13 = t20 * (t34 + t35 * t6 - t28 * twist_tilt_y) - r_12 * (h_11 - t10 * twist_tilt_y)
+    A_13 = t20 * (t34 + t35 * t6 - t28 * twist_tilt_y) - r_12 * (h1_x - t10 * twist_tilt_y)
     t36 = t7 * 0.5
     r_22 = z - rho2 + (t34 + t36)
     t37 = c_tilt_y * t16 * 0.5
@@ -261,7 +261,7 @@ def _jacobian_parallel(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t39 = t13 * t6 * 0.5
     t40 = t10 * 0.5
     t41 = t39 - t40
-    t42 = t15 * 0.5 - 1.7320508075688772 * (h_12 + t18) * 0.5
+    t42 = t15 * 0.5 - 1.7320508075688772 * (h1_y + t18) * 0.5
     t43 = b + px * 0.5
     t44 = t42 - t43
     t45 = t30 * 0.25
@@ -278,7 +278,7 @@ def _jacobian_parallel(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     A_23 = twist_tilt_y * t44 * t54 + r_22 * (t15 + twist_tilt_y * t41)
     r_32 = z - rho3 - (t34 - t36)
     t55 = t12 + t14
-    t56 = 1.7320508075688772 * (h_12 + (t11 + t17)) * 0.5
+    t56 = 1.7320508075688772 * (h1_y + (t11 + t17)) * 0.5
     t57 = t55 * 0.5 + t56 - t43
     t58 = t45 - 1.7320508075688772 * (t46 + t47) * 0.5 + t48
     t59 = t50 - 1.7320508075688772 * (t51 - t52) * 0.5 - t53
@@ -422,11 +422,11 @@ def _jacobian_inverse(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     s = t4 / delta
     t5 = s_tilt_x * s
     R_11 = c_tilt_y * c + s_tilt_y * t5
-    h_11 = a * R_11
+    h1_x = a * R_11
     R_21 = c_tilt_x * s
-    h_12 = a * R_21
-    t6 = h_12 * 0.5
-    t7 = h_11 * 0.5
+    h1_y = a * R_21
+    t6 = h1_y * 0.5
+    t7 = h1_x * 0.5
     t8 = a * 1.7320508075688772
     t9 = s_tilt_x * c
     R_12 = s_tilt_y * t9 - c_tilt_y * s
@@ -438,8 +438,8 @@ def _jacobian_inverse(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t14 = t6 - t13
     t15 = t6 + (1.7320508075688772 * t11 * 0.5 + t14 * 0.5)
     px = 1.1547005383792515 * t15
-    t16 = b - h_11 - px
-    t17 = s_tilt_y * h_12
+    t16 = b - h1_x - px
+    t17 = s_tilt_y * h1_y
     twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
     t18 = a * R_12
     t19 = a * 0.75
@@ -456,14 +456,14 @@ def _jacobian_inverse(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t30 = s_tilt_y * c - c_tilt_y * t5
     t31 = a * t30
     r_12 = z - rho1 - t31
-    t32 = c_tilt_y * h_12
+    t32 = c_tilt_y * h1_y
     R_32 = c_tilt_y * t9 + s_tilt_y * s
     t33 = a * R_32
     t34 = t16 * t29 - r_12 * (t32 + twist_tilt_x * t33)
     t35 = t8 * R_32 * 0.5
     t36 = a * 1.5
     twist_tilt_y = (t2 * t9 + t3 * s) / delta
-    A_13 = t16 * (t35 + t36 * t30 - t24 * twist_tilt_y) - r_12 * (h_11 - t33 * twist_tilt_y)
+    A_13 = t16 * (t35 + t36 * t30 - t24 * twist_tilt_y) - r_12 * (h1_x - t33 * twist_tilt_y)
     t37 = t31 * 0.5
     r_22 = z - rho2 + (t35 + t37)
     t38 = c_tilt_y * t12 * 0.5
@@ -471,7 +471,7 @@ def _jacobian_inverse(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t40 = t8 * t30 * 0.5
     t41 = t33 * 0.5
     t42 = t40 - t41
-    t43 = t11 * 0.5 - 1.7320508075688772 * (h_12 + t14) * 0.5
+    t43 = t11 * 0.5 - 1.7320508075688772 * (h1_y + t14) * 0.5
     t44 = b + px * 0.5
     t45 = t43 - t44
     t46 = t26 * 0.25
@@ -489,7 +489,7 @@ def _jacobian_inverse(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     r_32 = z - rho3 - (t35 - t37)
     t57 = t40 + t41
     t58 = t7 + t10
-    t59 = 1.7320508075688772 * (h_12 + (t6 + t13)) * 0.5
+    t59 = 1.7320508075688772 * (h1_y + (t6 + t13)) * 0.5
     t60 = t58 * 0.5 + t59 - t44
     t61 = t46 - 1.7320508075688772 * (t47 + t48) * 0.5 + t49
     t62 = t51 - 1.7320508075688772 * (t52 - t53) * 0.5 - t54
@@ -579,8 +579,8 @@ def _jacobian(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t12 = t9 * R_22
     t13 = c_tilt_y * t12 * 0.5
     R_21 = c_tilt_x * s
-    h_12 = a * R_21
-    t14 = c_tilt_y * h_12
+    h1_y = a * R_21
+    t14 = c_tilt_y * h1_y
     t15 = t14 * 0.5
     twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
     t16 = t9 * t6 * 0.5
@@ -588,15 +588,15 @@ def _jacobian(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t18 = t17 * 0.5
     t19 = t16 - t18
     R_11 = c_tilt_y * c + s_tilt_y * t5
-    h_11 = a * R_11
-    t20 = h_11 * 0.5
+    h1_x = a * R_11
+    t20 = h1_x * 0.5
     R_12 = s_tilt_y * t10 - c_tilt_y * s
     t21 = t9 * R_12 * 0.5
     t22 = t20 - t21
-    t23 = h_12 * 0.5
+    t23 = h1_y * 0.5
     t24 = t12 * 0.5
     t25 = t23 - t24
-    t26 = t22 * 0.5 - 1.7320508075688772 * (h_12 + t25) * 0.5
+    t26 = t22 * 0.5 - 1.7320508075688772 * (h1_y + t25) * 0.5
     t27 = t23 + (1.7320508075688772 * t22 * 0.5 + t25 * 0.5)
     px = 1.1547005383792515 * t27
     t28 = b + px * 0.5
@@ -607,7 +607,7 @@ def _jacobian(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t33 = t32 * 0.5
     t34 = a * 1.5
     t35 = t34 * t5
-    t36 = s_tilt_y * h_12
+    t36 = s_tilt_y * h1_y
     t37 = a * 0.75
     t38 = 1.7320508075688772 * (t30 * 0.5 - t36 * 0.5) * 0.5
     t39 = t32 * 0.25 - t37 * t5 - t38
@@ -625,7 +625,7 @@ def _jacobian(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t51 = t43 - 1.7320508075688772 * (t44 + t46) * 0.5 + t50
     A_22 = r_22 * (t13 - t15 + twist_tilt_x * t19) - t29 * (t41 - twist_tilt_x * t51)
     t52 = t20 + t21
-    t53 = 1.7320508075688772 * (h_12 + (t23 + t24)) * 0.5
+    t53 = 1.7320508075688772 * (h1_y + (t23 + t24)) * 0.5
     t54 = t52 * 0.5 + t53 - t28
     twist_tilt_y = (t2 * t10 + t3 * s) / delta
     t55 = t43 - 1.7320508075688772 * (t44 - t46) * 0.5 - t50
@@ -635,13 +635,13 @@ def _jacobian(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t58 = twist_tilt_y * t29 * t51 + r_22 * (t22 + t19 * twist_tilt_y)
     t59 = t31 - 1.7320508075688772 * (t33 + t35) * 0.5 + t40
     t60 = r_32 * (t13 + t15 + twist_tilt_x * t56) - t54 * (t59 - twist_tilt_x * t55)
-    t61 = b - h_11 - px
+    t61 = b - h1_x - px
     t62 = t47 + 1.1547005383792515 * t49
     t63 = t36 + twist_tilt_x * t62 + 1.1547005383792515 * t39
     t64 = t61 * t63 - r_12 * (t14 + twist_tilt_x * t17)
     t65 = r_32 * t64
     t66 = r_22 * t64
-    A_13 = t61 * (t11 + t34 * t6 - twist_tilt_y * t62) - r_12 * (h_11 - t17 * twist_tilt_y)
+    A_13 = t61 * (t11 + t34 * t6 - twist_tilt_y * t62) - r_12 * (h1_x - t17 * twist_tilt_y)
     t67 = r_32 * A_13
     t68 = r_22 * A_13
     t69 = t65 * t58 - t66 * t57 + t67 * A_22 + t68 * t60
@@ -730,11 +730,11 @@ def _determinant(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     r_22 = z - rho2 + (t8 + t11)
     r_32 = z - rho3 + (t8 - t11)
     R_11 = c_tilt_y * c + s_tilt_y * t5
-    h_11 = a * R_11
+    h1_x = a * R_11
     R_21 = c_tilt_x * s
-    h_12 = a * R_21
-    t12 = h_12 * 0.5
-    t13 = h_11 * 0.5
+    h1_y = a * R_21
+    t12 = h1_y * 0.5
+    t13 = h1_x * 0.5
     R_12 = s_tilt_y * t10 - c_tilt_y * s
     t14 = t9 * R_12 * 0.5
     t15 = t13 - t14
@@ -744,8 +744,8 @@ def _determinant(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t18 = t12 - t17
     t19 = t12 + (1.7320508075688772 * t15 * 0.5 + t18 * 0.5)
     px = 1.1547005383792515 * t19
-    t20 = b - h_11 - px
-    t21 = s_tilt_y * h_12
+    t20 = b - h1_x - px
+    t21 = s_tilt_y * h1_y
     twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
     t22 = a * R_12
     t23 = a * 0.75
@@ -759,11 +759,11 @@ def _determinant(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t31 = 1.7320508075688772 * (t30 * 0.5 - t21 * 0.5) * 0.5
     t32 = t29 * 0.25 - t23 * t5 - t31
     t33 = t21 + twist_tilt_x * t28 + 1.1547005383792515 * t32
-    t34 = c_tilt_y * h_12
+    t34 = c_tilt_y * h1_y
     t35 = a * R_32
     t36 = t20 * t33 - r_12 * (t34 + twist_tilt_x * t35)
     twist_tilt_y = (t2 * t10 + t3 * s) / delta
-    t37 = t15 * 0.5 - 1.7320508075688772 * (h_12 + t18) * 0.5
+    t37 = t15 * 0.5 - 1.7320508075688772 * (h1_y + t18) * 0.5
     t38 = b + px * 0.5
     t39 = t37 - t38
     t40 = t25 * 0.25
@@ -777,12 +777,12 @@ def _determinant(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t48 = t46 - t47
     t49 = twist_tilt_y * t39 * t45 + r_22 * (t15 + twist_tilt_y * t48)
     t50 = t13 + t14
-    t51 = 1.7320508075688772 * (h_12 + (t12 + t17)) * 0.5
+    t51 = 1.7320508075688772 * (h1_y + (t12 + t17)) * 0.5
     t52 = t50 * 0.5 + t51 - t38
     t53 = t40 - 1.7320508075688772 * (t42 - t43) * 0.5 - t44
     t54 = t46 + t47
     t55 = t52 * (t11 - twist_tilt_y * t53) + r_32 * (t50 - twist_tilt_y * t54)
-    A_13 = t20 * (t11 + t41 * t6 - t28 * twist_tilt_y) - r_12 * (h_11 - t35 * twist_tilt_y)
+    A_13 = t20 * (t11 + t41 * t6 - t28 * twist_tilt_y) - r_12 * (h1_x - t35 * twist_tilt_y)
     t56 = c_tilt_y * t16 * 0.5
     t57 = t34 * 0.5
     t58 = t30 * 0.25
@@ -869,19 +869,19 @@ def _singularities(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     r_32 = z - rho3 + (t8 - t11)
     twist_tilt_y = (t2 * t10 + t3 * s) / delta
     R_11 = c_tilt_y * c + s_tilt_y * t5
-    h_11 = a * R_11
-    t12 = h_11 * 0.5
+    h1_x = a * R_11
+    t12 = h1_x * 0.5
     R_12 = s_tilt_y * t10 - c_tilt_y * s
     t13 = t9 * R_12 * 0.5
     t14 = t12 - t13
     R_21 = c_tilt_x * s
-    h_12 = a * R_21
-    t15 = h_12 * 0.5
+    h1_y = a * R_21
+    t15 = h1_y * 0.5
     R_22 = c_tilt_x * c
     t16 = t9 * R_22
     t17 = t16 * 0.5
     t18 = t15 - t17
-    t19 = t14 * 0.5 - 1.7320508075688772 * (h_12 + t18) * 0.5
+    t19 = t14 * 0.5 - 1.7320508075688772 * (h1_y + t18) * 0.5
     t20 = t15 + (1.7320508075688772 * t14 * 0.5 + t18 * 0.5)
     px = 1.1547005383792515 * t20
     t21 = b + px * 0.5
@@ -904,31 +904,31 @@ def _singularities(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t38 = t35 - t37
     t39 = twist_tilt_y * t22 * t34 + r_22 * (t14 + twist_tilt_y * t38)
     t40 = c_tilt_y * t16 * 0.5
-    t41 = c_tilt_y * h_12
+    t41 = c_tilt_y * h1_y
     t42 = t41 * 0.5
     twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
     t43 = t35 + t37
     t44 = t12 + t13
-    t45 = 1.7320508075688772 * (h_12 + (t15 + t17)) * 0.5
+    t45 = 1.7320508075688772 * (h1_y + (t15 + t17)) * 0.5
     t46 = t44 * 0.5 + t45 - t21
     t47 = s_tilt_y * t16
     t48 = t47 * 0.25
     t49 = t9 * t10
     t50 = t49 * 0.5
     t51 = t25 * t5
-    t52 = s_tilt_y * h_12
+    t52 = s_tilt_y * h1_y
     t53 = 1.7320508075688772 * (t47 * 0.5 - t52 * 0.5) * 0.5
     t54 = t49 * 0.25 - t30 * t5 - t53
     t55 = t52 * 0.25 - 1.7320508075688772 * t54 / 3.0
     t56 = t48 - 1.7320508075688772 * (t50 + t51) * 0.5 + t55
     t57 = t24 - 1.7320508075688772 * (t26 - t28) * 0.5 - t33
     t58 = r_32 * (t40 + t42 + twist_tilt_x * t43) - t46 * (t56 - twist_tilt_x * t57)
-    t59 = b - h_11 - px
+    t59 = b - h1_x - px
     t60 = t29 + 1.1547005383792515 * t32
     t61 = t52 + twist_tilt_x * t60 + 1.1547005383792515 * t54
     t62 = t59 * t61 - r_12 * (t41 + twist_tilt_x * t36)
     t63 = t46 * (t11 - twist_tilt_y * t57) + r_32 * (t44 - twist_tilt_y * t43)
-    A_13 = t59 * (t11 + t25 * t6 - t60 * twist_tilt_y) - r_12 * (h_11 - t36 * twist_tilt_y)
+    A_13 = t59 * (t11 + t25 * t6 - t60 * twist_tilt_y) - r_12 * (h1_x - t36 * twist_tilt_y)
     t64 = t48 + 1.7320508075688772 * (t50 - t51) * 0.5 - t55
     A_22 = r_22 * (t40 - t42 + twist_tilt_x * t38) - t22 * (t64 - twist_tilt_x * t34)
     t65 = r_32 * t62 * t39 - r_22 * t62 * t63 + r_32 * A_13 * A_22
@@ -996,11 +996,11 @@ def _skeleton(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     g = c_tilt_x * t1 + c_tilt_y * t1
     delta = ops.sqrt(t3 * t3 + g * g)
     s = t3 / delta
-    h_12 = a * (c_tilt_x * s)
-    t4 = h_12 * 0.5
+    h1_y = a * (c_tilt_x * s)
+    t4 = h1_y * 0.5
     c = g / delta
-    h_11 = a * (c_tilt_y * c + t2 * s)
-    t5 = h_11 * 0.5
+    h1_x = a * (c_tilt_y * c + t2 * s)
+    t5 = h1_x * 0.5
     t6 = a * 1.7320508075688772
     t7 = t6 * (t2 * c - c_tilt_y * s) * 0.5
     t8 = t5 - t7
@@ -1016,7 +1016,7 @@ def _skeleton(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t17 = t6 * (t12 * c + s_tilt_y * s) * 0.5
     return (
         px,
-        -h_12,
+        -h1_y,
         z,
         b,
         0.0,
@@ -1024,7 +1024,7 @@ def _skeleton(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
         b,
         0.0,
         rho1,
-        h_11 + px,
+        h1_x + px,
         0.0,
         z - t13,
         t14,
@@ -1034,7 +1034,7 @@ def _skeleton(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
         t15,
         rho2,
         px - t8,
-        -(h_12 + t10),
+        -(h1_y + t10),
         z + (t16 + t17),
         t14,
         -t15,
@@ -1043,7 +1043,7 @@ def _skeleton(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
         -t15,
         rho3,
         px - (t5 + t7),
-        -(h_12 + (t4 + t9)),
+        -(h1_y + (t4 + t9)),
         z + (t16 - t17),
     )
 
@@ -1115,11 +1115,11 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     s = ops.select(untwisted, 0.0, t6 * t9)
     t10 = s_tilt_x * s
     R_11 = c_tilt_y * c + s_tilt_y * t10
-    h_11 = a * R_11
+    h1_x = a * R_11
     R_21 = c_tilt_x * s
-    h_12 = a * R_21
-    t11 = h_12 * 0.5
-    t12 = h_11 * 0.5
+    h1_y = a * R_21
+    t11 = h1_y * 0.5
+    t12 = h1_x * 0.5
     t13 = a * 1.7320508075688772
     t14 = s_tilt_x * c
     R_12 = s_tilt_y * t14 - c_tilt_y * s
@@ -1131,17 +1131,17 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t19 = t11 - t18
     t20 = t11 + (1.7320508075688772 * t16 * 0.5 + t19 * 0.5)
     px = 1.1547005383792515 * t20
-    t21 = b - h_11 - px
+    t21 = b - h1_x - px
     t22 = l + t21
     t23 = l - t21
-    t24 = t16 * 0.5 - 1.7320508075688772 * (h_12 + t19) * 0.5
+    t24 = t16 * 0.5 - 1.7320508075688772 * (h1_y + t19) * 0.5
     t25 = b + px * 0.5
     aside_2 = t24 - t25
     t26 = l - aside_2
     t27 = l + aside_2
     t28 = (t3 <= t22) & (t3 <= t23) & (t3 <= t26) & (t3 <= t27)
     t29 = t12 + t15
-    t30 = 1.7320508075688772 * (h_12 + (t11 + t18)) * 0.5
+    t30 = 1.7320508075688772 * (h1_y + (t11 + t18)) * 0.5
     aside_3 = t29 * 0.5 + t30 - t25
     t31 = l - aside_3
     t32 = l + aside_3
@@ -1156,10 +1156,10 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t37 = s_tilt_x * s_2
     t38 = a * (s_tilt_y * c_2 - c_tilt_y * t37)
     m_1 = z - t38
-    h_11_2 = a * (c_tilt_y * c_2 + s_tilt_y * t37)
-    h_12_2 = a * (c_tilt_x * s_2)
-    t39 = h_12_2 * 0.5
-    t40 = h_11_2 * 0.5
+    h1_x_2 = a * (c_tilt_y * c_2 + s_tilt_y * t37)
+    h1_y_2 = a * (c_tilt_x * s_2)
+    t39 = h1_y_2 * 0.5
+    t40 = h1_x_2 * 0.5
     t41 = s_tilt_x * c_2
     t42 = t13 * (s_tilt_y * t41 - c_tilt_y * s_2) * 0.5
     t43 = t40 - t42
@@ -1167,21 +1167,21 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t45 = t39 - t44
     t46 = t39 + (1.7320508075688772 * t43 * 0.5 + t45 * 0.5)
     px_2 = 1.1547005383792515 * t46
-    t47 = b - h_11_2 - px_2
+    t47 = b - h1_x_2 - px_2
     t48 = ops.max(l + t47, 0.0) * ops.max(l - t47, 0.0)
     root_1 = ops.sqrt(ops.select(t33, t48, 1.0))
     t49 = ops.select(failed, ops.nan, m_1 - root_1)
     t50 = t38 * 0.5
     t51 = t13 * (c_tilt_y * t41 + s_tilt_y * s_2) * 0.5
     m_2 = z + (t50 + t51)
-    t52 = t43 * 0.5 - 1.7320508075688772 * (h_12_2 + t45) * 0.5
+    t52 = t43 * 0.5 - 1.7320508075688772 * (h1_y_2 + t45) * 0.5
     t53 = b + px_2 * 0.5
     aside_2_2 = t52 - t53
     t54 = ops.max(l - aside_2_2, 0.0) * ops.max(l + aside_2_2, 0.0)
     root_2 = ops.sqrt(ops.select(t33, t54, 1.0))
     t55 = ops.select(failed, ops.nan, m_2 - root_2)
     m_3 = z + (t50 - t51)
-    t56 = 1.7320508075688772 * (h_12_2 + (t39 + t44)) * 0.5
+    t56 = 1.7320508075688772 * (h1_y_2 + (t39 + t44)) * 0.5
     aside_3_2 = (t40 + t42) * 0.5 + t56 - t53
     t57 = ops.max(l - aside_3_2, 0.0) * ops.max(l + aside_3_2, 0.0)
     root_3 = ops.sqrt(ops.select(t33, t57, 1.0))
@@ -1218,8 +1218,8 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t85 = t82 + t84
     t86 = t29 - twist_tilt_y * t85
     t87 = t66 * 0.5
-    h_33 = t87 - t67
-    m_3_2 = z + h_33
+    h3_z = t87 - t67
+    m_3_2 = z + h3_z
     root_3_2 = ops.sqrt(ops.max(t31, 0.0) * ops.max(t32, 0.0))
     slide_3 = m_3_2 - root_3_2
     t88 = m_3_2 - slide_3
@@ -1229,7 +1229,7 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t92 = t13 * t14
     t93 = t92 * 0.5
     t94 = t71 * t10
-    t95 = s_tilt_y * h_12
+    t95 = s_tilt_y * h1_y
     t96 = 1.7320508075688772 * (t90 * 0.5 - t95 * 0.5) * 0.5
     t97 = t92 * 0.25 - t76 * t10 - t96
     t98 = t95 * 0.25 - 1.7320508075688772 * t97 / 3.0
@@ -1238,12 +1238,12 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t100 = t70 - 1.7320508075688772 * (t72 + t74) * 0.5 + t79
     t101 = aside_2 * (t99 - twist_tilt_x * t100)
     t102 = c_tilt_y * t17 * 0.5
-    t103 = c_tilt_y * h_12
+    t103 = c_tilt_y * h1_y
     t104 = t103 * 0.5
     t105 = t82 - t84
     t106 = t102 - t104 + twist_tilt_x * t105
-    h_23 = t87 + t67
-    m_2_2 = z + h_23
+    h2_z = t87 + t67
+    m_2_2 = z + h2_z
     root_2_2 = ops.sqrt(ops.max(t26, 0.0) * ops.max(t27, 0.0))
     slide_2 = m_2_2 - root_2_2
     t107 = m_2_2 - slide_2
@@ -1270,14 +1270,14 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t125 = t89 * t124
     t126 = z * t124
     t127 = t21 * (t67 + t71 * t65 - t119 * twist_tilt_y)
-    t128 = h_11 - t83 * twist_tilt_y
+    t128 = h1_x - t83 * twist_tilt_y
     t129 = t127 - t128 * t123
     t130 = t116 * t129
     t131 = z * t129
-    t132 = h_23 * t125 + t89 * t126 + (h_23 * t130 + t116 * t131)
+    t132 = h2_z * t125 + t89 * t126 + (h2_z * t130 + t116 * t131)
     t133 = t112 * t124
     t134 = t108 * t129
-    t135 = h_33 * t133 + t112 * t126 - (h_33 * t134 + t108 * t131)
+    t135 = h3_z * t133 + t112 * t126 - (h3_z * t134 + t108 * t131)
     t136 = t118 + t132 - t135 + slide_3 * t133 - slide_2 * t125
     t137 = t136 - slide_3 * t134 - slide_2 * t130 + slide_1 * t109
     t138 = ops.min(t63, t64 * ops.abs(-(t137 + slide_1 * t117)))
@@ -1294,7 +1294,7 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t148 = t66 * t145 - z * t145 + (t66 * t147 - z * t147)
     t149 = t124 * t144
     t150 = t129 * t146
-    t151 = h_23 * t149 + t126 * t144 + (h_23 * t150 + t131 * t146)
+    t151 = h2_z * t149 + t126 * t144 + (h2_z * t150 + t131 * t146)
     t152 = t135 - t148 - t151 - slide_3_plus_plus_minus * t133
     t153 = t152 + slide_2 * t149 + slide_3_plus_plus_minus * t134
     t154 = t153 + slide_2 * t150 - slide_1 * t145 - slide_1 * t147
@@ -1308,7 +1308,7 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t161 = t66 * t158 - z * t158 + (t66 * t160 - z * t160)
     t162 = t124 * t159
     t163 = t129 * t157
-    t164 = h_33 * t162 + t126 * t159 - (h_33 * t163 + t131 * t157)
+    t164 = h3_z * t162 + t126 * t159 - (h3_z * t163 + t131 * t157)
     t165 = t132 + t161 - t164 + slide_3 * t162 - slide_2_plus_minus_plus * t125
     t166 = t165 - slide_3 * t163 - slide_2_plus_minus_plus * t130
     t167 = ops.abs(t166 + slide_1 * t158 + slide_1 * t160)
@@ -1329,17 +1329,17 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     A_13_minus_plus_plus = t127 - t128 * t177
     t181 = t116 * A_13_minus_plus_plus
     t182 = z * A_13_minus_plus_plus
-    t183 = h_23 * t179 + t89 * t180 + (h_23 * t181 + t116 * t182)
+    t183 = h2_z * t179 + t89 * t180 + (h2_z * t181 + t116 * t182)
     t184 = t112 * t178
     t185 = t108 * A_13_minus_plus_plus
-    t186 = h_33 * t184 + t112 * t180 - (h_33 * t185 + t108 * t182)
+    t186 = h3_z * t184 + t112 * t180 - (h3_z * t185 + t108 * t182)
     t187 = t118 + t183 - t186 + slide_3 * t184 - slide_2 * t179
     t188 = t187 - slide_3 * t185 - slide_2 * t181 + slide_1_minus_plus_plus * t109
     t189 = ops.abs(t188 + slide_1_minus_plus_plus * t117)
     t190 = ops.status(invalid, unreachable, t62 * ops.min(t63, t64 * t189) <= t141)
     t191 = t144 * t178
     t192 = t146 * A_13_minus_plus_plus
-    t193 = h_23 * t191 + t144 * t180 + (h_23 * t192 + t146 * t182)
+    t193 = h2_z * t191 + t144 * t180 + (h2_z * t192 + t146 * t182)
     t194 = t148 - t186 + t193 + slide_3_plus_plus_minus * t184
     t195 = t194 - slide_2 * t191 - slide_3_plus_plus_minus * t185
     t196 = t195 - slide_2 * t192 + slide_1_minus_plus_plus * t145
@@ -1347,7 +1347,7 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t198 = ops.status(invalid, unreachable, t62 * ops.min(t63, t64 * t197) <= t141)
     t199 = t159 * t178
     t200 = t157 * A_13_minus_plus_plus
-    t201 = h_33 * t199 + t159 * t180 - (h_33 * t200 + t157 * t182)
+    t201 = h3_z * t199 + t159 * t180 - (h3_z * t200 + t157 * t182)
     t202 = t161 + t183 - t201 + slide_3 * t199 - slide_2_plus_minus_plus * t179
     t203 = t202 - slide_3 * t200 - slide_2_plus_minus_plus * t181
     Delta_minus_minus_plus = t203 + slide_1_minus_plus_plus * t158 + slide_1_minus_plus_plus * t160
@@ -1465,10 +1465,10 @@ def _workspace_contains(ops, z, tilt_x, tilt_y, b, a, l):
     untwisted = delta <= 0.0
     c = ops.select(untwisted, 1.0, g / delta)
     s = ops.select(untwisted, 0.0, t6 / delta)
-    h_11 = a * (c_tilt_y * c + t5 * s)
-    h_12 = a * (c_tilt_x * s)
-    t7 = h_12 * 0.5
-    t8 = h_11 * 0.5
+    h1_x = a * (c_tilt_y * c + t5 * s)
+    h1_y = a * (c_tilt_x * s)
+    t7 = h1_y * 0.5
+    t8 = h1_x * 0.5
     t9 = a * 1.7320508075688772
     t10 = t9 * (t5 * c - c_tilt_y * s) * 0.5
     t11 = t8 - t10
@@ -1476,12 +1476,12 @@ def _workspace_contains(ops, z, tilt_x, tilt_y, b, a, l):
     t13 = t7 - t12
     t14 = t7 + (1.7320508075688772 * t11 * 0.5 + t13 * 0.5)
     px = 1.1547005383792515 * t14
-    t15 = b - h_11 - px
-    t16 = t11 * 0.5 - 1.7320508075688772 * (h_12 + t13) * 0.5
+    t15 = b - h1_x - px
+    t16 = t11 * 0.5 - 1.7320508075688772 * (h1_y + t13) * 0.5
     t17 = b + px * 0.5
     aside_2 = t16 - t17
     t18 = (-t3 <= l + t15) & (-t3 <= l - t15) & (-t3 <= l - aside_2)
-    t19 = 1.7320508075688772 * (h_12 + (t7 + t12)) * 0.5
+    t19 = 1.7320508075688772 * (h1_y + (t7 + t12)) * 0.5
     aside_3 = (t8 + t10) * 0.5 + t19 - t17
     t20 = t18 & (-t3 <= l + aside_2) & (-t3 <= l - aside_3)
     failed = ops.opposite(t2) | ops.opposite(t20 & (-t3 <= l + aside_3))

@@ -6370,8 +6370,8 @@ const cf_function cf_functions[] = {
       "-----\n"
       "- The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.\n"
       "- UNREACHABLE: the rods do not meet.\n"
-      "- SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its\n"
-      "  points is returned.\n"
+      "- SINGULAR: centres coincide, and the hand is free on a circle; one of its points is\n"
+      "  returned.\n"
       "- Ill-conditioned near the parallel singularities, where both modes meet.\n"
       ,
       5, five_bar_values, five_bar_fields,
@@ -11098,8 +11098,8 @@ const cf_function cf_functions[] = {
       "-----\n"
       "- The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.\n"
       "- UNREACHABLE: the rods do not meet.\n"
-      "- SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its\n"
-      "  points is returned.\n"
+      "- SINGULAR: centres coincide, and the hand is free on a circle; one of its points is\n"
+      "  returned.\n"
       "- Ill-conditioned near the parallel singularities, where both modes meet.\n"
       ,
       1, rpr_planar_values, rpr_planar_fields,

@@ -65,8 +65,8 @@ typedef struct {
  * -----
  * - The assembly modes, in order: above, below.
  * - UNREACHABLE: the rods do not meet.
- * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
- *   points is returned.
+ * - SINGULAR: centres coincide, and the hand is free on a circle; one of its points is
+ *   returned.
  * - Ill-conditioned near the parallel singularities, where both modes meet.
  */
 void five_bar_fk(const five_bar_params *params, const real_t q[2],

@@ -59,8 +59,8 @@ typedef struct {
  * -----
  * - The assembly modes, in order: above, below.
  * - UNREACHABLE: the rods do not meet.
- * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
- *   points is returned.
+ * - SINGULAR: centres coincide, and the hand is free on a circle; one of its points is
+ *   returned.
  * - Ill-conditioned near the parallel singularities, where both modes meet.
  */
 void rpr_planar_fk(const rpr_planar_params *params, const real_t q[2],

@@ -128,8 +128,8 @@ const _FK = _runtime.kernel({
  *
  * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - UNREACHABLE: the rods do not meet.
- * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
- *   points is returned.
+ * - SINGULAR: centres coincide, and the hand is free on a circle; one of its points is
+ *   returned.
  * - Ill-conditioned near the parallel singularities, where both modes meet.
  *
  * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.

@@ -108,8 +108,8 @@ function _hand_pose(v, o) {
     const R_11 = c_tilt_y * c + t2 * s;
     const R_12 = t2 * c - c_tilt_y * s;
     const R_21 = c_tilt_x * s;
-    const h_12 = a * R_21;
-    const t4 = h_12 * 0.5;
+    const h1_y = a * R_21;
+    const t4 = h1_y * 0.5;
     const t5 = a * 1.7320508075688772;
     const t6 = 1.7320508075688772 * (a * R_11 * 0.5 - t5 * R_12 * 0.5);
     const R_22 = c_tilt_x * c;
@@ -122,7 +122,7 @@ function _hand_pose(v, o) {
     o[4] = R_21;
     o[5] = R_22;
     o[6] = -s_tilt_x;
-    o[7] = -h_12;
+    o[7] = -h1_y;
     o[8] = t8 * s - s_tilt_y * c;
     o[9] = t8 * c + s_tilt_y * s;
     o[10] = c_tilt_x * c_tilt_y;
@@ -211,17 +211,17 @@ function _jacobian_parallel(v, o) {
     const t7 = a * t6;
     const r_12 = z - rho1 - t7;
     const R_21 = c_tilt_x * s;
-    const h_12 = a * R_21;
-    const t8 = c_tilt_y * h_12;
+    const h1_y = a * R_21;
+    const t8 = c_tilt_y * h1_y;
     const R_22 = c_tilt_x * c;
     const twist_tilt_x = (t3 * R_22 + t1 * t5) / delta;
     const t9 = s_tilt_x * c;
     const R_32 = c_tilt_y * t9 + s_tilt_y * s;
     const t10 = a * R_32;
     const R_11 = c_tilt_y * c + s_tilt_y * t5;
-    const h_11 = a * R_11;
-    const t11 = h_12 * 0.5;
-    const t12 = h_11 * 0.5;
+    const h1_x = a * R_11;
+    const t11 = h1_y * 0.5;
+    const t12 = h1_x * 0.5;
     const t13 = a * 1.7320508075688772;
     const R_12 = s_tilt_y * t9 - c_tilt_y * s;
     const t14 = t13 * R_12 * 0.5;
@@ -231,8 +231,8 @@ function _jacobian_parallel(v, o) {
     const t18 = t11 - t17;
     const t19 = t11 + (1.7320508075688772 * t15 * 0.5 + t18 * 0.5);
     const px = 1.1547005383792515 * t19;
-    const t20 = b - h_11 - px;
-    const t21 = s_tilt_y * h_12;
+    const t20 = b - h1_x - px;
+    const t21 = s_tilt_y * h1_y;
     const t22 = a * R_12;
     const t23 = a * 0.75;
     const t24 = t13 * R_21;
@@ -248,7 +248,7 @@ function _jacobian_parallel(v, o) {
     const t34 = t13 * R_32 * 0.5;
     const t35 = a * 1.5;
     const twist_tilt_y = (t2 * t9 + t3 * s) / delta;
-    const A_13 = t20 * (t34 + t35 * t6 - t28 * twist_tilt_y) - r_12 * (h_11 - t10 *
+    const A_13 = t20 * (t34 + t35 * t6 - t28 * twist_tilt_y) - r_12 * (h1_x - t10 *
         twist_tilt_y);
     const t36 = t7 * 0.5;
     const r_22 = z - rho2 + (t34 + t36);
@@ -257,7 +257,7 @@ function _jacobian_parallel(v, o) {
     const t39 = t13 * t6 * 0.5;
     const t40 = t10 * 0.5;
     const t41 = t39 - t40;
-    const t42 = t15 * 0.5 - 1.7320508075688772 * (h_12 + t18) * 0.5;
+    const t42 = t15 * 0.5 - 1.7320508075688772 * (h1_y + t18) * 0.5;
     const t43 = b + px * 0.5;
     const t44 = t42 - t43;
     const t45 = t30 * 0.25;
@@ -274,7 +274,7 @@ function _jacobian_parallel(v, o) {
     const A_23 = twist_tilt_y * t44 * t54 + r_22 * (t15 + twist_tilt_y * t41);
     const r_32 = z - rho3 - (t34 - t36);
     const t55 = t12 + t14;
-    const t56 = 1.7320508075688772 * (h_12 + (t11 + t17)) * 0.5;
+    const t56 = 1.7320508075688772 * (h1_y + (t11 + t17)) * 0.5;
     const t57 = t55 * 0.5 + t56 - t43;
     const t58 = t45 - 1.7320508075688772 * (t46 + t47) * 0.5 + t48;
     const t59 = t50 - 1.7320508075688772 * (t51 - t52) * 0.5 - t53;
@@ -454,11 +454,11 @@ function _jacobian_inverse(v, o) {
     const s = t4 / delta;
     const t5 = s_tilt_x * s;
     const R_11 = c_tilt_y * c + s_tilt_y * t5;
-    const h_11 = a * R_11;
+    const h1_x = a * R_11;
     const R_21 = c_tilt_x * s;
-    const h_12 = a * R_21;
-    const t6 = h_12 * 0.5;
-    const t7 = h_11 * 0.5;
+    const h1_y = a * R_21;
+    const t6 = h1_y * 0.5;
+    const t7 = h1_x * 0.5;
     const t8 = a * 1.7320508075688772;
     const t9 = s_tilt_x * c;
     const R_12 = s_tilt_y * t9 - c_tilt_y * s;
@@ -470,8 +470,8 @@ function _jacobian_inverse(v, o) {
     const t14 = t6 - t13;
     const t15 = t6 + (1.7320508075688772 * t11 * 0.5 + t14 * 0.5);
     const px = 1.1547005383792515 * t15;
-    const t16 = b - h_11 - px;
-    const t17 = s_tilt_y * h_12;
+    const t16 = b - h1_x - px;
+    const t17 = s_tilt_y * h1_y;
     const twist_tilt_x = (t3 * R_22 + t1 * t5) / delta;
     const t18 = a * R_12;
     const t19 = a * 0.75;
@@ -488,14 +488,14 @@ function _jacobian_inverse(v, o) {
     const t30 = s_tilt_y * c - c_tilt_y * t5;
     const t31 = a * t30;
     const r_12 = z - rho1 - t31;
-    const t32 = c_tilt_y * h_12;
+    const t32 = c_tilt_y * h1_y;
     const R_32 = c_tilt_y * t9 + s_tilt_y * s;
     const t33 = a * R_32;
     const t34 = t16 * t29 - r_12 * (t32 + twist_tilt_x * t33);
     const t35 = t8 * R_32 * 0.5;
     const t36 = a * 1.5;
     const twist_tilt_y = (t2 * t9 + t3 * s) / delta;
-    const A_13 = t16 * (t35 + t36 * t30 - t24 * twist_tilt_y) - r_12 * (h_11 - t33 *
+    const A_13 = t16 * (t35 + t36 * t30 - t24 * twist_tilt_y) - r_12 * (h1_x - t33 *
         twist_tilt_y);
     const t37 = t31 * 0.5;
     const r_22 = z - rho2 + (t35 + t37);
@@ -504,7 +504,7 @@ function _jacobian_inverse(v, o) {
     const t40 = t8 * t30 * 0.5;
     const t41 = t33 * 0.5;
     const t42 = t40 - t41;
-    const t43 = t11 * 0.5 - 1.7320508075688772 * (h_12 + t14) * 0.5;
+    const t43 = t11 * 0.5 - 1.7320508075688772 * (h1_y + t14) * 0.5;
     const t44 = b + px * 0.5;
     const t45 = t43 - t44;
     const t46 = t26 * 0.25;
@@ -522,7 +522,7 @@ function _jacobian_inverse(v, o) {
     const r_32 = z - rho3 - (t35 - t37);
     const t57 = t40 + t41;
     const t58 = t7 + t10;
-    const t59 = 1.7320508075688772 * (h_12 + (t6 + t13)) * 0.5;
+    const t59 = 1.7320508075688772 * (h1_y + (t6 + t13)) * 0.5;
     const t60 = t58 * 0.5 + t59 - t44;
     const t61 = t46 - 1.7320508075688772 * (t47 + t48) * 0.5 + t49;
     const t62 = t51 - 1.7320508075688772 * (t52 - t53) * 0.5 - t54;
@@ -630,8 +630,8 @@ function _jacobian(v, o) {
     const t12 = t9 * R_22;
     const t13 = c_tilt_y * t12 * 0.5;
     const R_21 = c_tilt_x * s;
-    const h_12 = a * R_21;
-    const t14 = c_tilt_y * h_12;
+    const h1_y = a * R_21;
+    const t14 = c_tilt_y * h1_y;
     const t15 = t14 * 0.5;
     const twist_tilt_x = (t3 * R_22 + t1 * t5) / delta;
     const t16 = t9 * t6 * 0.5;
@@ -639,15 +639,15 @@ function _jacobian(v, o) {
     const t18 = t17 * 0.5;
     const t19 = t16 - t18;
     const R_11 = c_tilt_y * c + s_tilt_y * t5;
-    const h_11 = a * R_11;
-    const t20 = h_11 * 0.5;
+    const h1_x = a * R_11;
+    const t20 = h1_x * 0.5;
     const R_12 = s_tilt_y * t10 - c_tilt_y * s;
     const t21 = t9 * R_12 * 0.5;
     const t22 = t20 - t21;
-    const t23 = h_12 * 0.5;
+    const t23 = h1_y * 0.5;
     const t24 = t12 * 0.5;
     const t25 = t23 - t24;
-    const t26 = t22 * 0.5 - 1.7320508075688772 * (h_12 + t25) * 0.5;
+    const t26 = t22 * 0.5 - 1.7320508075688772 * (h1_y + t25) * 0.5;
     const t27 = t23 + (1.7320508075688772 * t22 * 0.5 + t25 * 0.5);
     const px = 1.1547005383792515 * t27;
     const t28 = b + px * 0.5;
@@ -658,7 +658,7 @@ function _jacobian(v, o) {
     const t33 = t32 * 0.5;
     const t34 = a * 1.5;
     const t35 = t34 * t5;
-    const t36 = s_tilt_y * h_12;
+    const t36 = s_tilt_y * h1_y;
     const t37 = a * 0.75;
     const t38 = 1.7320508075688772 * (t30 * 0.5 - t36 * 0.5) * 0.5;
     const t39 = t32 * 0.25 - t37 * t5 - t38;
@@ -676,7 +676,7 @@ function _jacobian(v, o) {
     const t51 = t43 - 1.7320508075688772 * (t44 + t46) * 0.5 + t50;
     const A_22 = r_22 * (t13 - t15 + twist_tilt_x * t19) - t29 * (t41 - twist_tilt_x * t51);
     const t52 = t20 + t21;
-    const t53 = 1.7320508075688772 * (h_12 + (t23 + t24)) * 0.5;
+    const t53 = 1.7320508075688772 * (h1_y + (t23 + t24)) * 0.5;
     const t54 = t52 * 0.5 + t53 - t28;
     const twist_tilt_y = (t2 * t10 + t3 * s) / delta;
     const t55 = t43 - 1.7320508075688772 * (t44 - t46) * 0.5 - t50;
@@ -686,13 +686,13 @@ function _jacobian(v, o) {
     const t58 = twist_tilt_y * t29 * t51 + r_22 * (t22 + t19 * twist_tilt_y);
     const t59 = t31 - 1.7320508075688772 * (t33 + t35) * 0.5 + t40;
     const t60 = r_32 * (t13 + t15 + twist_tilt_x * t56) - t54 * (t59 - twist_tilt_x * t55);
-    const t61 = b - h_11 - px;
+    const t61 = b - h1_x - px;
     const t62 = t47 + 1.1547005383792515 * t49;
     const t63 = t36 + twist_tilt_x * t62 + 1.1547005383792515 * t39;
     const t64 = t61 * t63 - r_12 * (t14 + twist_tilt_x * t17);
     const t65 = r_32 * t64;
     const t66 = r_22 * t64;
-    const A_13 = t61 * (t11 + t34 * t6 - twist_tilt_y * t62) - r_12 * (h_11 - t17 *
+    const A_13 = t61 * (t11 + t34 * t6 - twist_tilt_y * t62) - r_12 * (h1_x - t17 *
         twist_tilt_y);
     const t67 = r_32 * A_13;
     const t68 = r_22 * A_13;
@@ -800,11 +800,11 @@ function _determinant(v, o) {
     const r_22 = z - rho2 + (t8 + t11);
     const r_32 = z - rho3 + (t8 - t11);
     const R_11 = c_tilt_y * c + s_tilt_y * t5;
-    const h_11 = a * R_11;
+    const h1_x = a * R_11;
     const R_21 = c_tilt_x * s;
-    const h_12 = a * R_21;
-    const t12 = h_12 * 0.5;
-    const t13 = h_11 * 0.5;
+    const h1_y = a * R_21;
+    const t12 = h1_y * 0.5;
+    const t13 = h1_x * 0.5;
     const R_12 = s_tilt_y * t10 - c_tilt_y * s;
     const t14 = t9 * R_12 * 0.5;
     const t15 = t13 - t14;
@@ -814,8 +814,8 @@ function _determinant(v, o) {
     const t18 = t12 - t17;
     const t19 = t12 + (1.7320508075688772 * t15 * 0.5 + t18 * 0.5);
     const px = 1.1547005383792515 * t19;
-    const t20 = b - h_11 - px;
-    const t21 = s_tilt_y * h_12;
+    const t20 = b - h1_x - px;
+    const t21 = s_tilt_y * h1_y;
     const twist_tilt_x = (t3 * R_22 + t1 * t5) / delta;
     const t22 = a * R_12;
     const t23 = a * 0.75;
@@ -829,11 +829,11 @@ function _determinant(v, o) {
     const t31 = 1.7320508075688772 * (t30 * 0.5 - t21 * 0.5) * 0.5;
     const t32 = t29 * 0.25 - t23 * t5 - t31;
     const t33 = t21 + twist_tilt_x * t28 + 1.1547005383792515 * t32;
-    const t34 = c_tilt_y * h_12;
+    const t34 = c_tilt_y * h1_y;
     const t35 = a * R_32;
     const t36 = t20 * t33 - r_12 * (t34 + twist_tilt_x * t35);
     const twist_tilt_y = (t2 * t10 + t3 * s) / delta;
-    const t37 = t15 * 0.5 - 1.7320508075688772 * (h_12 + t18) * 0.5;
+    const t37 = t15 * 0.5 - 1.7320508075688772 * (h1_y + t18) * 0.5;
     const t38 = b + px * 0.5;
     const t39 = t37 - t38;
     const t40 = t25 * 0.25;
@@ -847,12 +847,12 @@ function _determinant(v, o) {
     const t48 = t46 - t47;
     const t49 = twist_tilt_y * t39 * t45 + r_22 * (t15 + twist_tilt_y * t48);
     const t50 = t13 + t14;
-    const t51 = 1.7320508075688772 * (h_12 + (t12 + t17)) * 0.5;
+    const t51 = 1.7320508075688772 * (h1_y + (t12 + t17)) * 0.5;
     const t52 = t50 * 0.5 + t51 - t38;
     const t53 = t40 - 1.7320508075688772 * (t42 - t43) * 0.5 - t44;
     const t54 = t46 + t47;
     const t55 = t52 * (t11 - twist_tilt_y * t53) + r_32 * (t50 - twist_tilt_y * t54);
-    const A_13 = t20 * (t11 + t41 * t6 - t28 * twist_tilt_y) - r_12 * (h_11 - t35 *
+    const A_13 = t20 * (t11 + t41 * t6 - t28 * twist_tilt_y) - r_12 * (h1_x - t35 *
         twist_tilt_y);
     const t56 = c_tilt_y * t16 * 0.5;
     const t57 = t34 * 0.5;
@@ -959,19 +959,19 @@ function _singularities(v, o) {
     const r_32 = z - rho3 + (t8 - t11);
     const twist_tilt_y = (t2 * t10 + t3 * s) / delta;
     const R_11 = c_tilt_y * c + s_tilt_y * t5;
-    const h_11 = a * R_11;
-    const t12 = h_11 * 0.5;
+    const h1_x = a * R_11;
+    const t12 = h1_x * 0.5;
     const R_12 = s_tilt_y * t10 - c_tilt_y * s;
     const t13 = t9 * R_12 * 0.5;
     const t14 = t12 - t13;
     const R_21 = c_tilt_x * s;
-    const h_12 = a * R_21;
-    const t15 = h_12 * 0.5;
+    const h1_y = a * R_21;
+    const t15 = h1_y * 0.5;
     const R_22 = c_tilt_x * c;
     const t16 = t9 * R_22;
     const t17 = t16 * 0.5;
     const t18 = t15 - t17;
-    const t19 = t14 * 0.5 - 1.7320508075688772 * (h_12 + t18) * 0.5;
+    const t19 = t14 * 0.5 - 1.7320508075688772 * (h1_y + t18) * 0.5;
     const t20 = t15 + (1.7320508075688772 * t14 * 0.5 + t18 * 0.5);
     const px = 1.1547005383792515 * t20;
     const t21 = b + px * 0.5;
@@ -994,31 +994,31 @@ function _singularities(v, o) {
     const t38 = t35 - t37;
     const t39 = twist_tilt_y * t22 * t34 + r_22 * (t14 + twist_tilt_y * t38);
     const t40 = c_tilt_y * t16 * 0.5;
-    const t41 = c_tilt_y * h_12;
+    const t41 = c_tilt_y * h1_y;
     const t42 = t41 * 0.5;
     const twist_tilt_x = (t3 * R_22 + t1 * t5) / delta;
     const t43 = t35 + t37;
     const t44 = t12 + t13;
-    const t45 = 1.7320508075688772 * (h_12 + (t15 + t17)) * 0.5;
+    const t45 = 1.7320508075688772 * (h1_y + (t15 + t17)) * 0.5;
     const t46 = t44 * 0.5 + t45 - t21;
     const t47 = s_tilt_y * t16;
     const t48 = t47 * 0.25;
     const t49 = t9 * t10;
     const t50 = t49 * 0.5;
     const t51 = t25 * t5;
-    const t52 = s_tilt_y * h_12;
+    const t52 = s_tilt_y * h1_y;
     const t53 = 1.7320508075688772 * (t47 * 0.5 - t52 * 0.5) * 0.5;
     const t54 = t49 * 0.25 - t30 * t5 - t53;
     const t55 = t52 * 0.25 - 1.7320508075688772 * t54 / 3.0;
     const t56 = t48 - 1.7320508075688772 * (t50 + t51) * 0.5 + t55;
     const t57 = t24 - 1.7320508075688772 * (t26 - t28) * 0.5 - t33;
     const t58 = r_32 * (t40 + t42 + twist_tilt_x * t43) - t46 * (t56 - twist_tilt_x * t57);
-    const t59 = b - h_11 - px;
+    const t59 = b - h1_x - px;
     const t60 = t29 + 1.1547005383792515 * t32;
     const t61 = t52 + twist_tilt_x * t60 + 1.1547005383792515 * t54;
     const t62 = t59 * t61 - r_12 * (t41 + twist_tilt_x * t36);
     const t63 = t46 * (t11 - twist_tilt_y * t57) + r_32 * (t44 - twist_tilt_y * t43);
-    const A_13 = t59 * (t11 + t25 * t6 - t60 * twist_tilt_y) - r_12 * (h_11 - t36 *
+    const A_13 = t59 * (t11 + t25 * t6 - t60 * twist_tilt_y) - r_12 * (h1_x - t36 *
         twist_tilt_y);
     const t64 = t48 + 1.7320508075688772 * (t50 - t51) * 0.5 - t55;
     const A_22 = r_22 * (t40 - t42 + twist_tilt_x * t38) - t22 * (t64 - twist_tilt_x * t34);
@@ -1106,11 +1106,11 @@ function _skeleton(v, o) {
     const g = c_tilt_x * t1 + c_tilt_y * t1;
     const delta = Math.sqrt(t3 * t3 + g * g);
     const s = t3 / delta;
-    const h_12 = a * (c_tilt_x * s);
-    const t4 = h_12 * 0.5;
+    const h1_y = a * (c_tilt_x * s);
+    const t4 = h1_y * 0.5;
     const c = g / delta;
-    const h_11 = a * (c_tilt_y * c + t2 * s);
-    const t5 = h_11 * 0.5;
+    const h1_x = a * (c_tilt_y * c + t2 * s);
+    const t5 = h1_x * 0.5;
     const t6 = a * 1.7320508075688772;
     const t7 = t6 * (t2 * c - c_tilt_y * s) * 0.5;
     const t8 = t5 - t7;
@@ -1125,7 +1125,7 @@ function _skeleton(v, o) {
     const t16 = t13 * 0.5;
     const t17 = t6 * (t12 * c + s_tilt_y * s) * 0.5;
     o[0] = px;
-    o[1] = -h_12;
+    o[1] = -h1_y;
     o[2] = z;
     o[3] = b;
     o[4] = 0.0;
@@ -1133,7 +1133,7 @@ function _skeleton(v, o) {
     o[6] = b;
     o[7] = 0.0;
     o[8] = rho1;
-    o[9] = h_11 + px;
+    o[9] = h1_x + px;
     o[10] = 0.0;
     o[11] = z - t13;
     o[12] = t14;
@@ -1143,7 +1143,7 @@ function _skeleton(v, o) {
     o[16] = t15;
     o[17] = rho2;
     o[18] = px - t8;
-    o[19] = -(h_12 + t10);
+    o[19] = -(h1_y + t10);
     o[20] = z + (t16 + t17);
     o[21] = t14;
     o[22] = -t15;
@@ -1152,7 +1152,7 @@ function _skeleton(v, o) {
     o[25] = -t15;
     o[26] = rho3;
     o[27] = px - (t5 + t7);
-    o[28] = -(h_12 + (t4 + t9));
+    o[28] = -(h1_y + (t4 + t9));
     o[29] = z + (t16 - t17);
 }
 
@@ -1238,11 +1238,11 @@ function _ik(v, o) {
     const t8 = a * t7;
     const m_1 = z - t8;
     const R_11 = c_tilt_y * c + s_tilt_y * t6;
-    const h_11 = a * R_11;
+    const h1_x = a * R_11;
     const R_21 = c_tilt_x * s;
-    const h_12 = a * R_21;
-    const t9 = h_12 * 0.5;
-    const t10 = h_11 * 0.5;
+    const h1_y = a * R_21;
+    const t9 = h1_y * 0.5;
+    const t10 = h1_x * 0.5;
     const t11 = a * 1.7320508075688772;
     const t12 = s_tilt_x * c;
     const R_12 = s_tilt_y * t12 - c_tilt_y * s;
@@ -1254,7 +1254,7 @@ function _ik(v, o) {
     const t17 = t9 - t16;
     const t18 = t9 + (1.7320508075688772 * t14 * 0.5 + t17 * 0.5);
     const px = 1.1547005383792515 * t18;
-    const t19 = b - h_11 - px;
+    const t19 = b - h1_x - px;
     const t20 = l + t19;
     const t21 = l - t19;
     const root_1 = Math.sqrt(Math.max(t20, 0.0) * Math.max(t21, 0.0));
@@ -1265,14 +1265,14 @@ function _ik(v, o) {
     const invalid = !t24;
     const size = b + a + l + Math.abs(z);
     const t25 = -(_runtime.FEASIBILITY * (size * 0.5));
-    const t26 = t14 * 0.5 - 1.7320508075688772 * (h_12 + t17) * 0.5;
+    const t26 = t14 * 0.5 - 1.7320508075688772 * (h1_y + t17) * 0.5;
     const t27 = b + px * 0.5;
     const aside_2 = t26 - t27;
     const t28 = l - aside_2;
     const t29 = l + aside_2;
     const t30 = t25 <= t20 && t25 <= t21 && t25 <= t28 && t25 <= t29;
     const t31 = t10 + t13;
-    const t32 = 1.7320508075688772 * (h_12 + (t9 + t16)) * 0.5;
+    const t32 = 1.7320508075688772 * (h1_y + (t9 + t16)) * 0.5;
     const aside_3 = t31 * 0.5 + t32 - t27;
     const t33 = l - aside_3;
     const t34 = l + aside_3;
@@ -1282,13 +1282,13 @@ function _ik(v, o) {
     const t37 = t8 * 0.5;
     const R_32 = c_tilt_y * t12 + s_tilt_y * s;
     const t38 = t11 * R_32 * 0.5;
-    const h_23 = t37 + t38;
-    const m_2 = z + h_23;
+    const h2_z = t37 + t38;
+    const m_2 = z + h2_z;
     const root_2 = Math.sqrt(Math.max(t28, 0.0) * Math.max(t29, 0.0));
     const slide_2 = m_2 - root_2;
     const t39 = slide_2 + t35;
-    const h_33 = t37 - t38;
-    const m_3 = z + h_33;
+    const h3_z = t37 - t38;
+    const m_3 = z + h3_z;
     const root_3 = Math.sqrt(Math.max(t33, 0.0) * Math.max(t34, 0.0));
     const slide_3 = m_3 - root_3;
     const t40 = slide_3 + t35;
@@ -1329,7 +1329,7 @@ function _ik(v, o) {
     const t70 = t11 * t12;
     const t71 = t70 * 0.5;
     const t72 = t50 * t6;
-    const t73 = s_tilt_y * h_12;
+    const t73 = s_tilt_y * h1_y;
     const t74 = 1.7320508075688772 * (t68 * 0.5 - t73 * 0.5) * 0.5;
     const t75 = t70 * 0.25 - t55 * t6 - t74;
     const t76 = t73 * 0.25 - 1.7320508075688772 * t75 / 3.0;
@@ -1338,7 +1338,7 @@ function _ik(v, o) {
     const t78 = t49 - 1.7320508075688772 * (t51 + t53) * 0.5 + t58;
     const t79 = aside_2 * (t77 - twist_tilt_x * t78);
     const t80 = c_tilt_y * t15 * 0.5;
-    const t81 = c_tilt_y * h_12;
+    const t81 = c_tilt_y * h1_y;
     const t82 = t81 * 0.5;
     const t83 = t61 - t63;
     const t84 = t80 - t82 + twist_tilt_x * t83;
@@ -1363,14 +1363,14 @@ function _ik(v, o) {
     const t103 = t67 * t102;
     const t104 = z * t102;
     const t105 = t19 * (t38 + t50 * t7 - t97 * twist_tilt_y);
-    const t106 = h_11 - t62 * twist_tilt_y;
+    const t106 = h1_x - t62 * twist_tilt_y;
     const t107 = t105 - t106 * t101;
     const t108 = t94 * t107;
     const t109 = z * t107;
-    const t110 = h_23 * t103 + t67 * t104 + (h_23 * t108 + t94 * t109);
+    const t110 = h2_z * t103 + t67 * t104 + (h2_z * t108 + t94 * t109);
     const t111 = t90 * t102;
     const t112 = t86 * t107;
-    const t113 = h_33 * t111 + t90 * t104 - (h_33 * t112 + t86 * t109);
+    const t113 = h3_z * t111 + t90 * t104 - (h3_z * t112 + t86 * t109);
     const t114 = t96 + t110 - t113 + slide_3 * t111 - slide_2 * t103;
     const t115 = t114 - slide_3 * t112 - slide_2 * t108 + slide_1 * t87;
     const t116 = Math.min(t45, t46 * Math.abs(-(t115 + slide_1 * t95)));
@@ -1386,7 +1386,7 @@ function _ik(v, o) {
     const t126 = t8 * t123 - z * t123 + (t8 * t125 - z * t125);
     const t127 = t102 * t122;
     const t128 = t107 * t124;
-    const t129 = h_23 * t127 + t104 * t122 + (h_23 * t128 + t109 * t124);
+    const t129 = h2_z * t127 + t104 * t122 + (h2_z * t128 + t109 * t124);
     const t130 = t113 - t126 - t129 - slide_3_plus_plus_minus * t111;
     const t131 = t130 + slide_2 * t127 + slide_3_plus_plus_minus * t112;
     const t132 = t131 + slide_2 * t128 - slide_1 * t123 - slide_1 * t125;
@@ -1399,7 +1399,7 @@ function _ik(v, o) {
     const t139 = t8 * t136 - z * t136 + (t8 * t138 - z * t138);
     const t140 = t102 * t137;
     const t141 = t107 * t135;
-    const t142 = h_33 * t140 + t104 * t137 - (h_33 * t141 + t109 * t135);
+    const t142 = h3_z * t140 + t104 * t137 - (h3_z * t141 + t109 * t135);
     const t143 = t110 + t139 - t142 + slide_3 * t140 - slide_2_plus_minus_plus * t103;
     const t144 = t143 - slide_3 * t141 - slide_2_plus_minus_plus * t108;
     const t145 = Math.abs(t144 + slide_1 * t136 + slide_1 * t138);
@@ -1420,10 +1420,10 @@ function _ik(v, o) {
     const A_13_minus_plus_plus = t105 - t106 * t155;
     const t159 = t94 * A_13_minus_plus_plus;
     const t160 = z * A_13_minus_plus_plus;
-    const t161 = h_23 * t157 + t67 * t158 + (h_23 * t159 + t94 * t160);
+    const t161 = h2_z * t157 + t67 * t158 + (h2_z * t159 + t94 * t160);
     const t162 = t90 * t156;
     const t163 = t86 * A_13_minus_plus_plus;
-    const t164 = h_33 * t162 + t90 * t158 - (h_33 * t163 + t86 * t160);
+    const t164 = h3_z * t162 + t90 * t158 - (h3_z * t163 + t86 * t160);
     const t165 = t96 + t161 - t164 + slide_3 * t162 - slide_2 * t157;
     const t166 = t165 - slide_3 * t163 - slide_2 * t159 + slide_1_minus_plus_plus * t87;
     const t167 = Math.abs(t166 + slide_1_minus_plus_plus * t95);
@@ -1431,7 +1431,7 @@ function _ik(v, o) {
         0;
     const t169 = t122 * t156;
     const t170 = t124 * A_13_minus_plus_plus;
-    const t171 = h_23 * t169 + t122 * t158 + (h_23 * t170 + t124 * t160);
+    const t171 = h2_z * t169 + t122 * t158 + (h2_z * t170 + t124 * t160);
     const t172 = t126 - t164 + t171 + slide_3_plus_plus_minus * t162;
     const t173 = t172 - slide_2 * t169 - slide_3_plus_plus_minus * t163;
     const t174 = t173 - slide_2 * t170 + slide_1_minus_plus_plus * t123;
@@ -1440,7 +1440,7 @@ function _ik(v, o) {
         0;
     const t177 = t137 * t156;
     const t178 = t135 * A_13_minus_plus_plus;
-    const t179 = h_33 * t177 + t137 * t158 - (h_33 * t178 + t135 * t160);
+    const t179 = h3_z * t177 + t137 * t158 - (h3_z * t178 + t135 * t160);
     const t180 = t139 + t161 - t179 + slide_3 * t177 - slide_2_plus_minus_plus * t157;
     const t181 = t180 - slide_3 * t178 - slide_2_plus_minus_plus * t159;
     const Delta_minus_minus_plus = t181 + slide_1_minus_plus_plus * t136 +
@@ -1576,10 +1576,10 @@ function _workspace_contains(v, o) {
     const untwisted = delta <= 0.0;
     const c = untwisted ? 1.0 : g / delta;
     const s = untwisted ? 0.0 : t6 / delta;
-    const h_11 = a * (c_tilt_y * c + t5 * s);
-    const h_12 = a * (c_tilt_x * s);
-    const t7 = h_12 * 0.5;
-    const t8 = h_11 * 0.5;
+    const h1_x = a * (c_tilt_y * c + t5 * s);
+    const h1_y = a * (c_tilt_x * s);
+    const t7 = h1_y * 0.5;
+    const t8 = h1_x * 0.5;
     const t9 = a * 1.7320508075688772;
     const t10 = t9 * (t5 * c - c_tilt_y * s) * 0.5;
     const t11 = t8 - t10;
@@ -1587,12 +1587,12 @@ function _workspace_contains(v, o) {
     const t13 = t7 - t12;
     const t14 = t7 + (1.7320508075688772 * t11 * 0.5 + t13 * 0.5);
     const px = 1.1547005383792515 * t14;
-    const t15 = b - h_11 - px;
-    const t16 = t11 * 0.5 - 1.7320508075688772 * (h_12 + t13) * 0.5;
+    const t15 = b - h1_x - px;
+    const t16 = t11 * 0.5 - 1.7320508075688772 * (h1_y + t13) * 0.5;
     const t17 = b + px * 0.5;
     const aside_2 = t16 - t17;
     const t18 = -t3 <= l + t15 && -t3 <= l - t15 && -t3 <= l - aside_2;
-    const t19 = 1.7320508075688772 * (h_12 + (t7 + t12)) * 0.5;
+    const t19 = 1.7320508075688772 * (h1_y + (t7 + t12)) * 0.5;
     const aside_3 = (t8 + t10) * 0.5 + t19 - t17;
     const t20 = t18 && -t3 <= l + aside_2 && -t3 <= l - aside_3;
     o[0] = (!(invalid || !(t20 && -t3 <= l + aside_3))) ? 1 : 0;

@@ -130,8 +130,8 @@ def _hand_pose(z, tilt_x, tilt_y, a):
     R_12 = t2 * c - c_tilt_y * s
     del t2
     R_21 = c_tilt_x * s
-    h_12 = a * R_21
-    t4 = h_12 * 0.5
+    h1_y = a * R_21
+    t4 = h1_y * 0.5
     t5 = a * 1.7320508075688772
     t6 = 1.7320508075688772 * (a * R_11 * 0.5 - t5 * R_12 * 0.5)
     R_22 = c_tilt_x * c
@@ -146,7 +146,7 @@ def _hand_pose(z, tilt_x, tilt_y, a):
         R_21,
         R_22,
         -s_tilt_x,
-        -h_12,
+        -h1_y,
         t8 * s - s_tilt_y * c,
         t8 * c + s_tilt_y * s,
         c_tilt_x * c_tilt_y,
@@ -219,8 +219,8 @@ def _jacobian_parallel(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t7 = a * t6
     r_12 = z - rho1 - t7
     R_21 = c_tilt_x * s
-    h_12 = a * R_21
-    t8 = c_tilt_y * h_12
+    h1_y = a * R_21
+    t8 = c_tilt_y * h1_y
     R_22 = c_tilt_x * c
     del c_tilt_x
     twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
@@ -231,9 +231,9 @@ def _jacobian_parallel(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t10 = a * R_32
     R_11 = c_tilt_y * c + s_tilt_y * t5
     del c
-    h_11 = a * R_11
-    t11 = h_12 * 0.5
-    t12 = h_11 * 0.5
+    h1_x = a * R_11
+    t11 = h1_y * 0.5
+    t12 = h1_x * 0.5
     t13 = a * 1.7320508075688772
     R_12 = s_tilt_y * t9 - c_tilt_y * s
     t14 = t13 * R_12 * 0.5
@@ -244,8 +244,8 @@ def _jacobian_parallel(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t19 = t11 + (1.7320508075688772 * t15 * 0.5 + t18 * 0.5)
     px = 1.1547005383792515 * t19
     del t19
-    t20 = b - h_11 - px
-    t21 = s_tilt_y * h_12
+    t20 = b - h1_x - px
+    t21 = s_tilt_y * h1_y
     t22 = a * R_12
     del R_12
     t23 = a * 0.75
@@ -269,8 +269,8 @@ def _jacobian_parallel(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t35 = a * 1.5
     twist_tilt_y = (t2 * t9 + t3 * s) / delta
     del delta, s, t2, t3, t9
-    A_13 = t20 * (t34 + t35 * t6 - t28 * twist_tilt_y) - r_12 * (h_11 - t10 * twist_tilt_y)
-    del h_11, t28
+    A_13 = t20 * (t34 + t35 * t6 - t28 * twist_tilt_y) - r_12 * (h1_x - t10 * twist_tilt_y)
+    del h1_x, t28
     t36 = t7 * 0.5
     del t7
     r_22 = z - rho2 + (t34 + t36)
@@ -281,7 +281,7 @@ def _jacobian_parallel(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del t13, t6
     t40 = t10 * 0.5
     t41 = t39 - t40
-    t42 = t15 * 0.5 - 1.7320508075688772 * (h_12 + t18) * 0.5
+    t42 = t15 * 0.5 - 1.7320508075688772 * (h1_y + t18) * 0.5
     del t18
     t43 = b + px * 0.5
     del px
@@ -313,8 +313,8 @@ def _jacobian_parallel(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del t36
     t55 = t12 + t14
     del t12, t14
-    t56 = 1.7320508075688772 * (h_12 + (t11 + t17)) * 0.5
-    del h_12, t11, t17
+    t56 = 1.7320508075688772 * (h1_y + (t11 + t17)) * 0.5
+    del h1_y, t11, t17
     t57 = t55 * 0.5 + t56 - t43
     del t43, t56
     t58 = t45 - 1.7320508075688772 * (t46 + t47) * 0.5 + t48
@@ -473,11 +473,11 @@ def _jacobian_inverse(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del t4
     t5 = s_tilt_x * s
     R_11 = c_tilt_y * c + s_tilt_y * t5
-    h_11 = a * R_11
+    h1_x = a * R_11
     R_21 = c_tilt_x * s
-    h_12 = a * R_21
-    t6 = h_12 * 0.5
-    t7 = h_11 * 0.5
+    h1_y = a * R_21
+    t6 = h1_y * 0.5
+    t7 = h1_x * 0.5
     t8 = a * 1.7320508075688772
     t9 = s_tilt_x * c
     del s_tilt_x
@@ -492,8 +492,8 @@ def _jacobian_inverse(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t15 = t6 + (1.7320508075688772 * t11 * 0.5 + t14 * 0.5)
     px = 1.1547005383792515 * t15
     del t15
-    t16 = b - h_11 - px
-    t17 = s_tilt_y * h_12
+    t16 = b - h1_x - px
+    t17 = s_tilt_y * h1_y
     twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
     del t1
     t18 = a * R_12
@@ -517,7 +517,7 @@ def _jacobian_inverse(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del c
     t31 = a * t30
     r_12 = z - rho1 - t31
-    t32 = c_tilt_y * h_12
+    t32 = c_tilt_y * h1_y
     R_32 = c_tilt_y * t9 + s_tilt_y * s
     del s_tilt_y
     t33 = a * R_32
@@ -528,8 +528,8 @@ def _jacobian_inverse(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t36 = a * 1.5
     twist_tilt_y = (t2 * t9 + t3 * s) / delta
     del delta, s, t2, t3, t9
-    A_13 = t16 * (t35 + t36 * t30 - t24 * twist_tilt_y) - r_12 * (h_11 - t33 * twist_tilt_y)
-    del h_11, t16, t24
+    A_13 = t16 * (t35 + t36 * t30 - t24 * twist_tilt_y) - r_12 * (h1_x - t33 * twist_tilt_y)
+    del h1_x, t16, t24
     t37 = t31 * 0.5
     del t31
     r_22 = z - rho2 + (t35 + t37)
@@ -542,7 +542,7 @@ def _jacobian_inverse(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t41 = t33 * 0.5
     del t33
     t42 = t40 - t41
-    t43 = t11 * 0.5 - 1.7320508075688772 * (h_12 + t14) * 0.5
+    t43 = t11 * 0.5 - 1.7320508075688772 * (h1_y + t14) * 0.5
     del t14
     t44 = b + px * 0.5
     del px
@@ -576,8 +576,8 @@ def _jacobian_inverse(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del t40, t41
     t58 = t7 + t10
     del t10, t7
-    t59 = 1.7320508075688772 * (h_12 + (t6 + t13)) * 0.5
-    del h_12, t13, t6
+    t59 = 1.7320508075688772 * (h1_y + (t6 + t13)) * 0.5
+    del h1_y, t13, t6
     t60 = t58 * 0.5 + t59 - t44
     del t44, t59
     t61 = t46 - 1.7320508075688772 * (t47 + t48) * 0.5 + t49
@@ -677,8 +677,8 @@ def _jacobian(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t13 = c_tilt_y * t12 * 0.5
     R_21 = c_tilt_x * s
     del c_tilt_x
-    h_12 = a * R_21
-    t14 = c_tilt_y * h_12
+    h1_y = a * R_21
+    t14 = c_tilt_y * h1_y
     t15 = t14 * 0.5
     twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
     del t1
@@ -689,16 +689,16 @@ def _jacobian(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t19 = t16 - t18
     R_11 = c_tilt_y * c + s_tilt_y * t5
     del c
-    h_11 = a * R_11
-    t20 = h_11 * 0.5
+    h1_x = a * R_11
+    t20 = h1_x * 0.5
     R_12 = s_tilt_y * t10 - c_tilt_y * s
     del c_tilt_y
     t21 = t9 * R_12 * 0.5
     t22 = t20 - t21
-    t23 = h_12 * 0.5
+    t23 = h1_y * 0.5
     t24 = t12 * 0.5
     t25 = t23 - t24
-    t26 = t22 * 0.5 - 1.7320508075688772 * (h_12 + t25) * 0.5
+    t26 = t22 * 0.5 - 1.7320508075688772 * (h1_y + t25) * 0.5
     t27 = t23 + (1.7320508075688772 * t22 * 0.5 + t25 * 0.5)
     del t25
     px = 1.1547005383792515 * t27
@@ -713,7 +713,7 @@ def _jacobian(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t33 = t32 * 0.5
     t34 = a * 1.5
     t35 = t34 * t5
-    t36 = s_tilt_y * h_12
+    t36 = s_tilt_y * h1_y
     del s_tilt_y
     t37 = a * 0.75
     t38 = 1.7320508075688772 * (t30 * 0.5 - t36 * 0.5) * 0.5
@@ -741,8 +741,8 @@ def _jacobian(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del t41
     t52 = t20 + t21
     del t20, t21
-    t53 = 1.7320508075688772 * (h_12 + (t23 + t24)) * 0.5
-    del h_12, t23, t24
+    t53 = 1.7320508075688772 * (h1_y + (t23 + t24)) * 0.5
+    del h1_y, t23, t24
     t54 = t52 * 0.5 + t53 - t28
     del t28, t53
     twist_tilt_y = (t2 * t10 + t3 * s) / delta
@@ -761,7 +761,7 @@ def _jacobian(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del t31, t33, t35, t40
     t60 = r_32 * (t13 + t15 + twist_tilt_x * t56) - t54 * (t59 - twist_tilt_x * t55)
     del t13, t15, t54, t55, t56, t59
-    t61 = b - h_11 - px
+    t61 = b - h1_x - px
     del px
     t62 = t47 + 1.1547005383792515 * t49
     del t47, t49
@@ -771,8 +771,8 @@ def _jacobian(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del t14, t63, twist_tilt_x
     t65 = r_32 * t64
     t66 = r_22 * t64
-    A_13 = t61 * (t11 + t34 * t6 - twist_tilt_y * t62) - r_12 * (h_11 - t17 * twist_tilt_y)
-    del h_11, t11, t17, t34, t6, t61, t62, twist_tilt_y
+    A_13 = t61 * (t11 + t34 * t6 - twist_tilt_y * t62) - r_12 * (h1_x - t17 * twist_tilt_y)
+    del h1_x, t11, t17, t34, t6, t61, t62, twist_tilt_y
     t67 = r_32 * A_13
     t68 = r_22 * A_13
     t69 = t65 * t58 - t66 * t57 + t67 * A_22 + t68 * t60
@@ -867,11 +867,11 @@ def _determinant(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     r_32 = z - rho3 + (t8 - t11)
     del t8
     R_11 = c_tilt_y * c + s_tilt_y * t5
-    h_11 = a * R_11
+    h1_x = a * R_11
     R_21 = c_tilt_x * s
-    h_12 = a * R_21
-    t12 = h_12 * 0.5
-    t13 = h_11 * 0.5
+    h1_y = a * R_21
+    t12 = h1_y * 0.5
+    t13 = h1_x * 0.5
     R_12 = s_tilt_y * t10 - c_tilt_y * s
     t14 = t9 * R_12 * 0.5
     t15 = t13 - t14
@@ -883,8 +883,8 @@ def _determinant(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t19 = t12 + (1.7320508075688772 * t15 * 0.5 + t18 * 0.5)
     px = 1.1547005383792515 * t19
     del t19
-    t20 = b - h_11 - px
-    t21 = s_tilt_y * h_12
+    t20 = b - h1_x - px
+    t21 = s_tilt_y * h1_y
     twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
     del t1
     t22 = a * R_12
@@ -905,14 +905,14 @@ def _determinant(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t32 = t29 * 0.25 - t23 * t5 - t31
     del t23, t31
     t33 = t21 + twist_tilt_x * t28 + 1.1547005383792515 * t32
-    t34 = c_tilt_y * h_12
+    t34 = c_tilt_y * h1_y
     t35 = a * R_32
     del R_32
     t36 = t20 * t33 - r_12 * (t34 + twist_tilt_x * t35)
     del t33
     twist_tilt_y = (t2 * t10 + t3 * s) / delta
     del delta, s, t10, t2, t3
-    t37 = t15 * 0.5 - 1.7320508075688772 * (h_12 + t18) * 0.5
+    t37 = t15 * 0.5 - 1.7320508075688772 * (h1_y + t18) * 0.5
     del t18
     t38 = b + px * 0.5
     del px
@@ -936,8 +936,8 @@ def _determinant(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del t15
     t50 = t13 + t14
     del t13, t14
-    t51 = 1.7320508075688772 * (h_12 + (t12 + t17)) * 0.5
-    del h_12, t12, t17
+    t51 = 1.7320508075688772 * (h1_y + (t12 + t17)) * 0.5
+    del h1_y, t12, t17
     t52 = t50 * 0.5 + t51 - t38
     del t38, t51
     t53 = t40 - 1.7320508075688772 * (t42 - t43) * 0.5 - t44
@@ -946,8 +946,8 @@ def _determinant(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del t46, t47
     t55 = t52 * (t11 - twist_tilt_y * t53) + r_32 * (t50 - twist_tilt_y * t54)
     del t50
-    A_13 = t20 * (t11 + t41 * t6 - t28 * twist_tilt_y) - r_12 * (h_11 - t35 * twist_tilt_y)
-    del h_11, t11, t20, t28, t35, t6, twist_tilt_y
+    A_13 = t20 * (t11 + t41 * t6 - t28 * twist_tilt_y) - r_12 * (h1_x - t35 * twist_tilt_y)
+    del h1_x, t11, t20, t28, t35, t6, twist_tilt_y
     t56 = c_tilt_y * t16 * 0.5
     del c_tilt_y, t16
     t57 = t34 * 0.5
@@ -1051,21 +1051,21 @@ def _singularities(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     twist_tilt_y = (t2 * t10 + t3 * s) / delta
     del t2
     R_11 = c_tilt_y * c + s_tilt_y * t5
-    h_11 = a * R_11
-    t12 = h_11 * 0.5
+    h1_x = a * R_11
+    t12 = h1_x * 0.5
     R_12 = s_tilt_y * t10 - c_tilt_y * s
     t13 = t9 * R_12 * 0.5
     t14 = t12 - t13
     R_21 = c_tilt_x * s
     del s
-    h_12 = a * R_21
-    t15 = h_12 * 0.5
+    h1_y = a * R_21
+    t15 = h1_y * 0.5
     R_22 = c_tilt_x * c
     del c, c_tilt_x
     t16 = t9 * R_22
     t17 = t16 * 0.5
     t18 = t15 - t17
-    t19 = t14 * 0.5 - 1.7320508075688772 * (h_12 + t18) * 0.5
+    t19 = t14 * 0.5 - 1.7320508075688772 * (h1_y + t18) * 0.5
     t20 = t15 + (1.7320508075688772 * t14 * 0.5 + t18 * 0.5)
     del t18
     px = 1.1547005383792515 * t20
@@ -1098,7 +1098,7 @@ def _singularities(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t39 = twist_tilt_y * t22 * t34 + r_22 * (t14 + twist_tilt_y * t38)
     del t14
     t40 = c_tilt_y * t16 * 0.5
-    t41 = c_tilt_y * h_12
+    t41 = c_tilt_y * h1_y
     del c_tilt_y
     t42 = t41 * 0.5
     twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
@@ -1107,7 +1107,7 @@ def _singularities(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del t35, t37
     t44 = t12 + t13
     del t12, t13
-    t45 = 1.7320508075688772 * (h_12 + (t15 + t17)) * 0.5
+    t45 = 1.7320508075688772 * (h1_y + (t15 + t17)) * 0.5
     del t15, t17
     t46 = t44 * 0.5 + t45 - t21
     del t21, t45
@@ -1118,8 +1118,8 @@ def _singularities(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del t10, t9
     t50 = t49 * 0.5
     t51 = t25 * t5
-    t52 = s_tilt_y * h_12
-    del h_12, s_tilt_y
+    t52 = s_tilt_y * h1_y
+    del h1_y, s_tilt_y
     t53 = 1.7320508075688772 * (t47 * 0.5 - t52 * 0.5) * 0.5
     del t47
     t54 = t49 * 0.25 - t30 * t5 - t53
@@ -1130,7 +1130,7 @@ def _singularities(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del t24, t26, t28, t33
     t58 = r_32 * (t40 + t42 + twist_tilt_x * t43) - t46 * (t56 - twist_tilt_x * t57)
     del t56
-    t59 = b - h_11 - px
+    t59 = b - h1_x - px
     del px
     t60 = t29 + 1.1547005383792515 * t32
     del t29, t32
@@ -1140,8 +1140,8 @@ def _singularities(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del t41, t61
     t63 = t46 * (t11 - twist_tilt_y * t57) + r_32 * (t44 - twist_tilt_y * t43)
     del t43, t44, t46, t57
-    A_13 = t59 * (t11 + t25 * t6 - t60 * twist_tilt_y) - r_12 * (h_11 - t36 * twist_tilt_y)
-    del h_11, t11, t25, t36, t59, t6, t60, twist_tilt_y
+    A_13 = t59 * (t11 + t25 * t6 - t60 * twist_tilt_y) - r_12 * (h1_x - t36 * twist_tilt_y)
+    del h1_x, t11, t25, t36, t59, t6, t60, twist_tilt_y
     t64 = t48 + 1.7320508075688772 * (t50 - t51) * 0.5 - t55
     del t48, t50, t51, t55
     A_22 = r_22 * (t40 - t42 + twist_tilt_x * t38) - t22 * (t64 - twist_tilt_x * t34)
@@ -1215,12 +1215,12 @@ def _skeleton(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     delta = np.sqrt(t3 * t3 + g * g)
     s = t3 / delta
     del t3
-    h_12 = a * (c_tilt_x * s)
-    t4 = h_12 * 0.5
+    h1_y = a * (c_tilt_x * s)
+    t4 = h1_y * 0.5
     c = g / delta
     del delta, g
-    h_11 = a * (c_tilt_y * c + t2 * s)
-    t5 = h_11 * 0.5
+    h1_x = a * (c_tilt_y * c + t2 * s)
+    t5 = h1_x * 0.5
     t6 = a * 1.7320508075688772
     t7 = t6 * (t2 * c - c_tilt_y * s) * 0.5
     del t2
@@ -1241,7 +1241,7 @@ def _skeleton(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del c, s, s_tilt_y, t12, t6
     return (
         px,
-        -h_12,
+        -h1_y,
         z,
         b,
         0.0,
@@ -1249,7 +1249,7 @@ def _skeleton(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
         b,
         0.0,
         rho1,
-        h_11 + px,
+        h1_x + px,
         0.0,
         z - t13,
         t14,
@@ -1259,7 +1259,7 @@ def _skeleton(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
         t15,
         rho2,
         px - t8,
-        -(h_12 + t10),
+        -(h1_y + t10),
         z + (t16 + t17),
         t14,
         -t15,
@@ -1268,7 +1268,7 @@ def _skeleton(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
         -t15,
         rho3,
         px - (t5 + t7),
-        -(h_12 + (t4 + t9)),
+        -(h1_y + (t4 + t9)),
         z + (t16 - t17),
     )
 
@@ -1339,11 +1339,11 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t8 = a * t7
     m_1 = z - t8
     R_11 = c_tilt_y * c + s_tilt_y * t6
-    h_11 = a * R_11
+    h1_x = a * R_11
     R_21 = c_tilt_x * s
-    h_12 = a * R_21
-    t9 = h_12 * 0.5
-    t10 = h_11 * 0.5
+    h1_y = a * R_21
+    t9 = h1_y * 0.5
+    t10 = h1_x * 0.5
     t11 = a * 1.7320508075688772
     t12 = s_tilt_x * c
     del s_tilt_x
@@ -1358,7 +1358,7 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t18 = t9 + (1.7320508075688772 * t14 * 0.5 + t17 * 0.5)
     px = 1.1547005383792515 * t18
     del t18
-    t19 = b - h_11 - px
+    t19 = b - h1_x - px
     t20 = l + t19
     t21 = l - t19
     root_1 = np.sqrt(np.maximum(t20, 0.0) * np.maximum(t21, 0.0))
@@ -1371,7 +1371,7 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t24
     size = b + a + l + np.abs(z)
     t25 = -(_runtime.FEASIBILITY * (size * 0.5))
-    t26 = t14 * 0.5 - 1.7320508075688772 * (h_12 + t17) * 0.5
+    t26 = t14 * 0.5 - 1.7320508075688772 * (h1_y + t17) * 0.5
     del t17
     t27 = b + px * 0.5
     del px
@@ -1383,7 +1383,7 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t20, t21
     t31 = t10 + t13
     del t10, t13
-    t32 = 1.7320508075688772 * (h_12 + (t9 + t16)) * 0.5
+    t32 = 1.7320508075688772 * (h1_y + (t9 + t16)) * 0.5
     del t16, t9
     aside_3 = t31 * 0.5 + t32 - t27
     del t27, t32
@@ -1396,15 +1396,15 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t37 = t8 * 0.5
     R_32 = c_tilt_y * t12 + s_tilt_y * s
     t38 = t11 * R_32 * 0.5
-    h_23 = t37 + t38
-    m_2 = z + h_23
+    h2_z = t37 + t38
+    m_2 = z + h2_z
     root_2 = np.sqrt(np.maximum(t28, 0.0) * np.maximum(t29, 0.0))
     del t28, t29
     slide_2 = m_2 - root_2
     t39 = slide_2 + t35
-    h_33 = t37 - t38
+    h3_z = t37 - t38
     del t37
-    m_3 = z + h_33
+    m_3 = z + h3_z
     root_3 = np.sqrt(np.maximum(t33, 0.0) * np.maximum(t34, 0.0))
     del t33, t34
     slide_3 = m_3 - root_3
@@ -1462,7 +1462,7 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t11, t12
     t71 = t70 * 0.5
     t72 = t50 * t6
-    t73 = s_tilt_y * h_12
+    t73 = s_tilt_y * h1_y
     del s_tilt_y
     t74 = 1.7320508075688772 * (t68 * 0.5 - t73 * 0.5) * 0.5
     del t68
@@ -1478,8 +1478,8 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t77
     t80 = c_tilt_y * t15 * 0.5
     del t15
-    t81 = c_tilt_y * h_12
-    del c_tilt_y, h_12
+    t81 = c_tilt_y * h1_y
+    del c_tilt_y, h1_y
     t82 = t81 * 0.5
     t83 = t61 - t63
     del t61, t63
@@ -1517,16 +1517,16 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t104 = z * t102
     t105 = t19 * (t38 + t50 * t7 - t97 * twist_tilt_y)
     del t38, t50, t7, t97
-    t106 = h_11 - t62 * twist_tilt_y
-    del h_11, t62, twist_tilt_y
+    t106 = h1_x - t62 * twist_tilt_y
+    del h1_x, t62, twist_tilt_y
     t107 = t105 - t106 * t101
     del t101
     t108 = t94 * t107
     t109 = z * t107
-    t110 = h_23 * t103 + t67 * t104 + (h_23 * t108 + t94 * t109)
+    t110 = h2_z * t103 + t67 * t104 + (h2_z * t108 + t94 * t109)
     t111 = t90 * t102
     t112 = t86 * t107
-    t113 = h_33 * t111 + t90 * t104 - (h_33 * t112 + t86 * t109)
+    t113 = h3_z * t111 + t90 * t104 - (h3_z * t112 + t86 * t109)
     t114 = t96 + t110 - t113 + slide_3 * t111 - slide_2 * t103
     t115 = t114 - slide_3 * t112 - slide_2 * t108 + slide_1 * t87
     del t114
@@ -1551,7 +1551,7 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t126 = t8 * t123 - z * t123 + (t8 * t125 - z * t125)
     t127 = t102 * t122
     t128 = t107 * t124
-    t129 = h_23 * t127 + t104 * t122 + (h_23 * t128 + t109 * t124)
+    t129 = h2_z * t127 + t104 * t122 + (h2_z * t128 + t109 * t124)
     t130 = t113 - t126 - t129 - slide_3_plus_plus_minus * t111
     del t111, t113
     t131 = t130 + slide_2 * t127 + slide_3_plus_plus_minus * t112
@@ -1573,7 +1573,7 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t102
     t141 = t107 * t135
     del t107
-    t142 = h_33 * t140 + t104 * t137 - (h_33 * t141 + t109 * t135)
+    t142 = h3_z * t140 + t104 * t137 - (h3_z * t141 + t109 * t135)
     del t104, t109
     t143 = t110 + t139 - t142 + slide_3 * t140 - slide_2_plus_minus_plus * t103
     del t103, t110
@@ -1607,11 +1607,11 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t105, t106, t155
     t159 = t94 * A_13_minus_plus_plus
     t160 = z * A_13_minus_plus_plus
-    t161 = h_23 * t157 + t67 * t158 + (h_23 * t159 + t94 * t160)
+    t161 = h2_z * t157 + t67 * t158 + (h2_z * t159 + t94 * t160)
     del t67, t94
     t162 = t90 * t156
     t163 = t86 * A_13_minus_plus_plus
-    t164 = h_33 * t162 + t90 * t158 - (h_33 * t163 + t86 * t160)
+    t164 = h3_z * t162 + t90 * t158 - (h3_z * t163 + t86 * t160)
     del t86, t90
     t165 = t96 + t161 - t164 + slide_3 * t162 - slide_2 * t157
     del t96
@@ -1623,8 +1623,8 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t167
     t169 = t122 * t156
     t170 = t124 * A_13_minus_plus_plus
-    t171 = h_23 * t169 + t122 * t158 + (h_23 * t170 + t124 * t160)
-    del h_23, t122, t124
+    t171 = h2_z * t169 + t122 * t158 + (h2_z * t170 + t124 * t160)
+    del h2_z, t122, t124
     t172 = t126 - t164 + t171 + slide_3_plus_plus_minus * t162
     del t126, t162, t164
     t173 = t172 - slide_2 * t169 - slide_3_plus_plus_minus * t163
@@ -1639,8 +1639,8 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     del t156
     t178 = t135 * A_13_minus_plus_plus
     del A_13_minus_plus_plus
-    t179 = h_33 * t177 + t137 * t158 - (h_33 * t178 + t135 * t160)
-    del h_33, t135, t137, t158, t160
+    t179 = h3_z * t177 + t137 * t158 - (h3_z * t178 + t135 * t160)
+    del h3_z, t135, t137, t158, t160
     t180 = t139 + t161 - t179 + slide_3 * t177 - slide_2_plus_minus_plus * t157
     del t139, t157, t161
     t181 = t180 - slide_3 * t178 - slide_2_plus_minus_plus * t159
@@ -1774,10 +1774,10 @@ def _workspace_contains(z, tilt_x, tilt_y, b, a, l):
     del g
     s = _runtime.select(untwisted, 0.0, t7 / delta)
     del delta, t7, untwisted
-    h_11 = a * (c_tilt_y * c + t6 * s)
-    h_12 = a * (c_tilt_x * s)
-    t8 = h_12 * 0.5
-    t9 = h_11 * 0.5
+    h1_x = a * (c_tilt_y * c + t6 * s)
+    h1_y = a * (c_tilt_x * s)
+    t8 = h1_y * 0.5
+    t9 = h1_x * 0.5
     t10 = a * 1.7320508075688772
     t11 = t10 * (t6 * c - c_tilt_y * s) * 0.5
     del c_tilt_y, s, t6
@@ -1788,9 +1788,9 @@ def _workspace_contains(z, tilt_x, tilt_y, b, a, l):
     t15 = t8 + (1.7320508075688772 * t12 * 0.5 + t14 * 0.5)
     px = 1.1547005383792515 * t15
     del t15
-    t16 = b - h_11 - px
-    del h_11
-    t17 = t12 * 0.5 - 1.7320508075688772 * (h_12 + t14) * 0.5
+    t16 = b - h1_x - px
+    del h1_x
+    t17 = t12 * 0.5 - 1.7320508075688772 * (h1_y + t14) * 0.5
     del t12, t14
     t18 = b + px * 0.5
     del px
@@ -1798,8 +1798,8 @@ def _workspace_contains(z, tilt_x, tilt_y, b, a, l):
     del t17
     t19 = (-t4 <= l + t16) & (-t4 <= l - t16) & (-t4 <= l - aside_2)
     del t16
-    t20 = 1.7320508075688772 * (h_12 + (t8 + t13)) * 0.5
-    del h_12, t13, t8
+    t20 = 1.7320508075688772 * (h1_y + (t8 + t13)) * 0.5
+    del h1_y, t13, t8
     aside_3 = (t9 + t11) * 0.5 + t20 - t18
     del t11, t18, t20, t9
     t21 = t19 & (-t4 <= l + aside_2) & (-t4 <= l - aside_3)

@@ -243,7 +243,7 @@ class _InAngles:
             self.totals.setdefault(usual, unknown)
 
     def _choose(self, unknown: sp.Symbol, solution: sp.Expr, usual: sp.Expr) -> None:
-        """Note the flags of free joints with which other names than the usual ones give an angle."""
+        """Note the flags of free joints that put other names than the usual ones in an angle."""
         for flag in self.freeing:
             there = self._angle(solution, flag)
             if not there.is_number and there != self._angle(usual, flag):

@@ -114,9 +114,9 @@ class _Reverse:
         m = self.m
         for point in m.points[body]:
             if point not in self.at:
-                place = m.carried(body, (near, far, point), self.at)
+                place = m.point_on(body, (near, far, point), self.at)
                 self.at[point] = named(self.program, f"p{point}", place)
-                self.meant[point] = m.carried(body, (near, far, point), self.meant)
+                self.meant[point] = m.point_on(body, (near, far, point), self.meant)
 
     def _crank(self, step: Dyad, body: str, k: int) -> None:
         """A driven body and the bar that it moves."""

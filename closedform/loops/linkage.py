@@ -269,16 +269,16 @@ class Linkage:
         """Add the points of both bodies of a dyad to those that are known."""
         (first, second), (near, other) = step.dyad.bodies, step.near
         if step.pin not in at:
-            at[step.pin] = self.carried(first, (near, step.goal, step.pin), at)
+            at[step.pin] = self.point_on(first, (near, step.goal, step.pin), at)
         self.carry_body(first, near, step.goal, at)
         self.carry_body(second, other, step.pin, at)
 
     def carry_body(self, body: str, near: str, far: str, at: dict[str, sp.Matrix]) -> None:
         for point in self.points[body]:
             if point not in at:
-                at[point] = self.carried(body, (near, far, point), at)
+                at[point] = self.point_on(body, (near, far, point), at)
 
-    def carried(
+    def point_on(
         self, body: str, three: tuple[str, str, str], at: Mapping[str, sp.Matrix]
     ) -> sp.Matrix:
         """The third point of a body, from the first two."""

@@ -14,7 +14,7 @@ from loop_files import apart, derived, newton, script_of
 from places import TESTS
 
 FOLDER = TESTS / "held_out_loops"
-OK, UNREACHABLE = 0, 1
+OK, UNREACHABLE, SINGULAR = range(3)
 STARTS, LINES = 30, 40
 
 
@@ -152,6 +152,8 @@ MISSES: dict[str, tuple[Callable, int]] = {
 }
 TRAVEL = {"cylinder": 0.8, "loader": 2.0, "scotch_yoke": 0.1, "slotted_crank": 3.0}
 """How far joints are tried, if it is not half a metre or half a radian."""
+FLAT = ("parallel_leg",)
+"""Those with postures in which a parallelogram is flat, where the answers are SINGULAR."""
 
 
 @pytest.fixture(scope="module", params=MISSES)
@@ -198,10 +200,11 @@ def test_all_postures_close_the_loop(loop: ModuleType) -> None:
     v, rng = loop.Parameters(), np.random.default_rng(4)
     q = rng.uniform(0, TRAVEL.get(name_of(loop), 0.5), (200, len(loop.JOINTS)))
     p, status = loop.fk(q)
+    usable = (OK, SINGULAR) if name_of(loop) in FLAT else (OK,)
     assert (status == OK).any()
     for target in p[status == OK]:
         answers = loop.ik(target)
-        assert (answers.status != UNREACHABLE).any()  # SINGULAR where a parallelogram is flat
+        assert np.isin(answers.status, usable).any()
         for joints in answers.q[answers.status == OK]:
             assert np.abs(misses(v, joints, target)).max() < 1e-12
 

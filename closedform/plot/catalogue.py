@@ -15,6 +15,7 @@ from closedform.plot.maps import field as field_map
 from closedform.plot.postures import branches, mechanism, spoken
 from closedform.plot.robot import Robot
 from closedform.plot.style import new_panels, styled
+from closedform.plot.symbols import symbol
 
 INVERSE = "ik"
 """The function whose section in an article has figures, beside the steps."""
@@ -127,7 +128,7 @@ def _shown(view: View) -> str:
     """Which dimensions are drawn that the example does not have."""
     if not view.shown:
         return ""
-    values = ", ".join(f"{name} = {value:g}" for name, value in view.shown.items())
+    values = ", ".join(f"{symbol(name)} = {value:g}" for name, value in view.shown.items())
     return f" Here {values}, so that it can be seen; in the example it is 0."
 
 

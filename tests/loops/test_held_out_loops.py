@@ -153,7 +153,7 @@ MISSES: dict[str, tuple[Callable, int]] = {
 TRAVEL = {"cylinder": 0.8, "loader": 2.0, "scotch_yoke": 0.1, "slotted_crank": 3.0}
 """How far joints are tried, if it is not half a metre or half a radian."""
 AT_EDGE = ("minitaur", "parallel_leg")
-"""Those with postures near a parallel singularity, where all answers are SINGULAR."""
+"""Those with a few postures near a parallel singularity, where all answers are SINGULAR."""
 
 
 @pytest.fixture(scope="module", params=MISSES)
@@ -200,13 +200,17 @@ def test_all_postures_close_the_loop(loop: ModuleType) -> None:
     v, rng = loop.Parameters(), np.random.default_rng(4)
     q = rng.uniform(0, TRAVEL.get(name_of(loop), 0.5), (200, len(loop.JOINTS)))
     p, status = loop.fk(q)
-    usable = (OK, SINGULAR) if name_of(loop) in AT_EDGE else (OK,)
     assert (status == OK).any()
-    for target in p[status == OK]:
+    singular = 0
+    targets = p[status == OK]
+    for target in targets:
         answers = loop.ik(target)
-        assert np.isin(answers.status, usable).any()
+        if not (answers.status == OK).any():
+            assert (answers.status == SINGULAR).any()
+            singular += 1
         for joints in answers.q[answers.status == OK]:
             assert np.abs(misses(v, joints, target)).max() < 1e-12
+    assert singular <= (len(targets) / 50 if name_of(loop) in AT_EDGE else 0)
 
 
 def test_the_words_for_a_single_loop_name_no_hand(tmp_path: Path) -> None:

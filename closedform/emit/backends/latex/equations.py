@@ -170,12 +170,11 @@ def reference(labels: Iterable[str]) -> str:
 def defined_in(names: Sequence[str], labels: Iterable[str]) -> str:
     """Where symbols are defined: ``$a$ is that of (3)``, ``$a$ and $b$ are those of (3)``."""
     told, one = listed([f"${name}$" for name in names]), len(names) == 1
-    found = [COORDINATE.fullmatch(name) for name in names]
-    if vectors := list(
-        dict.fromkeys(rf"$\mathbf {m[1]}_{m[2]}$" for m in found if m and all(found))
-    ):
+    found = [m for name in names if (m := COORDINATE.fullmatch(name))]
+    if len(found) == len(names):
+        vectors = dict.fromkeys(rf"$\mathbf {m[1]}_{m[2]}$" for m in found)
         what = "is a coordinate" if one else "are coordinates"
-        return f"{told} {what} of {listed(vectors)}, see {reference(labels)}"
+        return f"{told} {what} of {listed([*vectors])}, see {reference(labels)}"
     return f"{told} {'is that' if one else 'are those'} of {reference(labels)}"
 
 

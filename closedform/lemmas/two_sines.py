@@ -38,6 +38,7 @@ def two_sines(
     *,
     scale: sp.Expr,
     free: Sequence[sp.Symbol] = (),
+    leniency: sp.Expr = sp.S.One,
 ) -> Lemma:
     """``u sin x + v sin y = p`` for vectors of the plane, and cosines that are not negative.
 
@@ -63,11 +64,14 @@ def two_sines(
         the natural scale of p, which decides how far the equation may be missed
     free
         the joints that are free where u and v are parallel
+    leniency
+        how many times farther than usual a sine may miss its limit
     """
     (x, y), (u, v) = unknowns, vectors
     area = program.let("area_uv", u[0] * v[1] - u[1] * v[0])
     sigma = program.let("sigma_uv", sign_of(area))
     start = len(program.body)
+    within = leniency * scale
     size = sp.sqrt(u[0] ** 2 + u[1] ** 2)
     size = size if size.is_Symbol else program.let("size_u", size, nonnegative=True)
     aside = program.let("v_across_u", sigma * (u[0] * v[1] - u[1] * v[0]) / size)
@@ -78,26 +82,26 @@ def two_sines(
         "parallel", aside, 64 * sp.Abs(lean), "both vectors are parallel", free
     )
     for name, margin in (("margin_below", aside - across), ("margin_above", aside + across)):
-        program.bound(name, margin, scale, "a sine is at most 1")
+        program.bound(name, margin, within, "a sine is at most 1")
     with_v = sp.Piecewise((ahead, lean >= 0), (-ahead, True))
     whole = program.let("whole_y", choose(parallel, size + sp.Abs(lean), aside))
     part = program.let("part_y", choose(parallel, with_v, across))
-    _, sine = _from_sine(program, f"{y}_0", part, whole, scale)
+    _, sine = _from_sine(program, f"{y}_0", part, whole, scale, play=within)
     rest = program.let("rest", ahead - sine * lean)
     left = program.let("left_along", size - sp.Abs(rest))
     spent = program.vanishes(
         "spent_along", used_up(left), scale, "no margin left: a sine is at most 1"
     )
     loose = sp.Abs(lean) / (aside + sp.Rational(1, 10**9) * size)
-    play = PLAY * scale
-    allowance = program.let("play_along", play * (1 + choose(spent, loose, 0)))
+    missed = PLAY * within
+    allowance = program.let("play_along", missed * (1 + choose(spent, loose, 0)))
     program.bound("kept_along", left, allowance, "a sine is at most 1")
     lacking = (sp.Abs(left) - left) / 2 * lean / (lean**2 + aside**2)
     eased = sp.Piecewise((lacking, rest >= 0), (-lacking, True))
     part = program.let("eased", choose(spent, part + whole * eased, part))
-    cy, sy = _from_sine(program, str(y), part, whole, scale)
+    cy, sy = _from_sine(program, str(y), part, whole, scale, play=within)
     along = program.let("along_u", ahead - sy * lean)
-    cx, sx = _from_sine(program, str(x), along, size, scale, play=play)
+    cx, sx = _from_sine(program, str(x), along, size, scale, play=missed)
     bounds = [s.symbol for s in program.body[start:] if isinstance(s, Bound)]
     return Lemma(
         "two sines",
@@ -146,11 +150,11 @@ def _from_sine(
     whole: sp.Expr,
     scale: sp.Expr,
     *,
-    play: sp.Expr | None = None,
+    play: sp.Expr,
 ) -> tuple[sp.Symbol, sp.Symbol]:
     """Cosine and sine of the angle with ``sin x = part / whole`` and a cosine not negative."""
     below, above = (
-        program.bound(f"{name}_{x}", value, play or scale, meaning, above=scale)
+        program.bound(f"{name}_{x}", value, play, meaning, above=scale)
         for name, value, meaning in (
             ("below", whole - part, "a sine is at most 1"),
             ("above", whole + part, "a sine is at least -1"),

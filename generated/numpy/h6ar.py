@@ -12,9 +12,9 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
-#   ik: 629 compare and select, 516 add, 29 atan2, 163 divide, 670 multiply, 1 reduce to a turn, 3
+#   ik: 641 compare and select, 516 add, 29 atan2, 163 divide, 684 multiply, 1 reduce to a turn, 3
 #     sincos, 54 sqrt
-#   ik where nothing vanishes: 249 compare and select, 163 add, 16 atan2, 34 divide, 150 multiply,
+#   ik where nothing vanishes: 261 compare and select, 163 add, 16 atan2, 34 divide, 150 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
 #   wrist_length: 21 compare and select, 6 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
@@ -1908,7 +1908,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del h, lengths
     t171 = np.arctan2(x, y)
     t172 = _runtime.select(tangent, np.arctan2(t54, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
-    del above, below, root, t54, tangent
+    del above, below, root, t54
     t173 = _runtime.select(nowhere, 0.0, t171 - t172)
     t174 = _runtime.wrap(np.arctan2(waist_turn, 1.0) - t173)
     del waist_turn
@@ -1943,1094 +1943,1126 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t190 = t186 & (-t187 <= t60) & (-t189 <= t59)
     del t186, t187, t189, t59, t60
     t191 = _runtime.select(spent_alpha, gain_1_alpha + gain_0_alpha, 0.0)
-    del gain_0_alpha, gain_1_alpha, spent_alpha
+    del gain_0_alpha, gain_1_alpha
     t192 = -(_runtime.FEASIBILITY * (t84 + t191)) <= -t81
     del t191, t81
     t193 = _runtime.select(spent_beta, gain_1_beta + gain_0_beta, 0.0)
-    del gain_0_beta, gain_1_beta, spent_beta
+    del gain_0_beta, gain_1_beta
     t194 = -(_runtime.FEASIBILITY * (t130 + t193)) <= -t128
     del t128, t193
-    t195 = -(_runtime.FEASIBILITY * play)
-    t196 = t190 & t192 & t194 & (t195 <= t159 - t157) & (t195 <= -(t157 + t159))
+    t195 = _runtime.select(tangent & (spent_alpha | spent_beta), 64.0, 1.0)
+    del spent_alpha, spent_beta
+    t196 = -(_runtime.FEASIBILITY * (play * t195))
+    t197 = t190 & t192 & t194 & (t196 <= t159 - t157) & (t196 <= -(t157 + t159))
     del t159, t192, t194
-    t197 = 32.0 * play
-    del play
-    t198 = L1 / 1000000000.0
-    t199 = _runtime.select(spent_along, t158 / (t198 - t157), 0.0)
+    t198 = 32.0 * play
+    t199 = t195 * t198
+    del t195
+    t200 = L1 / 1000000000.0
+    t201 = _runtime.select(spent_along, t158 / (t200 - t157), 0.0)
     del t158
-    t200 = -(_runtime.FEASIBILITY * (t197 * (1.0 + t199)))
-    del t199
-    t201 = t196 & (t195 <= t161) & (t195 <= t163) & (t200 <= left_along)
-    del t161, t163, t196, t200
-    t202 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
+    t202 = -(_runtime.FEASIBILITY * (t199 * (1.0 + t201)))
+    del t201
+    t203 = t197 & (t196 <= t161) & (t196 <= t163) & (t202 <= left_along)
+    del t161, t163, t197, t202
+    t204 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
     del left_along
-    t203 = t202 / (t157 * t157 + v_2_beta * v_2_beta) * _runtime.sign(-t165)
-    del t157, t165, t202
-    t204 = _runtime.select(spent_along, t160 + whole_y * t203, t160)
-    del spent_along, t160, t203
-    t205 = whole_y + t204
-    t206 = whole_y - t204
-    del t204, whole_y
-    t207 = -(_runtime.FEASIBILITY * t197)
-    below_beta = np.maximum(t205, t162)
-    above_beta = np.maximum(t206, t162)
-    t208 = 1.0 / (below_beta + above_beta)
-    t209 = (below_beta - above_beta) * t208
-    t210 = t152 - v_2_beta * t209
+    t205 = t204 / (t157 * t157 + v_2_beta * v_2_beta) * _runtime.sign(-t165)
+    del t157, t165, t204
+    t206 = _runtime.select(spent_along, t160 + whole_y * t205, t160)
+    del spent_along, t160, t205
+    t207 = whole_y + t206
+    t208 = whole_y - t206
+    del t206, whole_y
+    t209 = -(_runtime.FEASIBILITY * t199)
+    del t199
+    below_beta = np.maximum(t207, t162)
+    above_beta = np.maximum(t208, t162)
+    t210 = 1.0 / (below_beta + above_beta)
+    t211 = (below_beta - above_beta) * t210
+    t212 = t152 - v_2_beta * t211
     del t152, v_2_beta
-    t211 = L1 + t210
-    t212 = t201 & (t195 <= t205) & (t195 <= t206) & (t207 <= t211)
-    del t201, t205, t206
-    t213 = L1 - t210
-    unreachable = np.logical_not(t212 & (t207 <= t213))
-    del t212
-    t214 = _runtime.poison(invalid | unreachable)
-    t215 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
-    t216 = np.arctan2(lean_alpha + lean_beta, 1.0 - lean_alpha * lean_beta)
+    t213 = L1 + t212
+    t214 = t203 & (t196 <= t207) & (t196 <= t208) & (t209 <= t213)
+    del t196, t203, t207, t208
+    t215 = L1 - t212
+    unreachable = np.logical_not(t214 & (t209 <= t215))
+    del t209, t214
+    t216 = _runtime.poison(invalid | unreachable)
+    t217 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
+    t218 = np.arctan2(lean_alpha + lean_beta, 1.0 - lean_alpha * lean_beta)
     del lean_alpha, lean_beta
-    t217 = t215 + t216
-    del t215
-    below_alpha = np.maximum(t211, t162)
-    del t211
-    above_alpha = np.maximum(t213, t162)
+    t219 = t217 + t218
+    del t217
+    below_alpha = np.maximum(t213, t162)
     del t213
-    t218 = 1.0 / (below_alpha + above_alpha)
-    t219 = (below_alpha - above_alpha) * t218
-    t220 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    above_alpha = np.maximum(t215, t162)
+    del t215
+    t220 = 1.0 / (below_alpha + above_alpha)
+    t221 = (below_alpha - above_alpha) * t220
+    t222 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
     del above_alpha, below_alpha
-    t221 = np.arctan2(t219, t218 * t220)
-    del t218, t220
-    t222 = np.arctan2(s_lag, c_lag)
+    t223 = np.arctan2(t221, t220 * t222)
+    del t220, t222
+    t224 = np.arctan2(s_lag, c_lag)
     del c_lag, s_lag
-    t223 = _runtime.select(short, 0.0, np.arctan2(t63, t72))
+    t225 = _runtime.select(short, 0.0, np.arctan2(t63, t72))
     del t63, t72
-    t224 = t222 - t223
-    t225 = np.arctan2(fore_turn_alpha + fore_turn_beta, 1.0 - fore_turn_alpha * fore_turn_beta)
+    t226 = t224 - t225
+    t227 = np.arctan2(fore_turn_alpha + fore_turn_beta, 1.0 - fore_turn_alpha * fore_turn_beta)
     del fore_turn_alpha, fore_turn_beta
-    t226 = t224 - (t216 - t225)
-    del t216, t225
-    t227 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    t228 = t226 - (t218 - t227)
+    del t218, t227
+    t229 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
     del above_beta, below_beta
-    t228 = t221 - np.arctan2(t209, t208 * t227)
-    del t208, t227
-    t229 = _runtime.wrap(principal_pitch)
+    t230 = t223 - np.arctan2(t211, t210 * t229)
+    del t210, t229
+    t231 = _runtime.wrap(principal_pitch)
     del principal_pitch
     out_front_elbow_down = t62 + t65
     del t62, t65
     up_front_elbow_down = t66 - t67
     del t66, t67
-    t230 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
-    t231 = 1.0 / np.sqrt(t230)
-    del t230
-    t232 = out_front_elbow_down * t231
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t232)
-    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t231)
-    del t231
-    t233 = higher * stheta2A_front_elbow_down
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t233
+    t232 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
+    t233 = 1.0 / np.sqrt(t232)
+    del t232
+    t234 = out_front_elbow_down * t233
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t234)
+    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t233)
+    del t233
+    t235 = higher * stheta2A_front_elbow_down
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t235
     s_relative_front_elbow_down = t73 + t74
     del t73, t74
     c_relative_front_elbow_down = t75 - t76
     del t75, t76
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    t234 = ahead * stheta2A_front_elbow_down
-    t235 = t234 - higher * ctheta2A_front_elbow_down
+    t236 = ahead * stheta2A_front_elbow_down
+    t237 = t236 - higher * ctheta2A_front_elbow_down
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
-    t236 = p_1_front_elbow_down * v_2_front_elbow_down + t235 * v_1_front_elbow_down
+    t238 = p_1_front_elbow_down * v_2_front_elbow_down + t237 * v_1_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t237 = np.abs(whole_alpha_front_elbow_down)
-    t238 = np.abs(t236) - t237
-    t239 = np.maximum(t238 * 9.094947017729282e-13, -t238)
-    spent_alpha_front_elbow_down = t239 <= t85
-    del t239
-    t240 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
+    t239 = np.abs(whole_alpha_front_elbow_down)
+    t240 = np.abs(t238) - t239
+    t241 = np.maximum(t240 * 9.094947017729282e-13, -t240)
+    spent_alpha_front_elbow_down = t241 <= t85
+    del t241
+    t242 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
-    slope_aside_alpha_front_elbow_down = L1 * t240
-    t241 = np.abs(slope_aside_alpha_front_elbow_down)
+    slope_aside_alpha_front_elbow_down = L1 * t242
+    t243 = np.abs(slope_aside_alpha_front_elbow_down)
     heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t90, 1.0)
-    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t241 / heavy_1_alpha_front_elbow_down, 0.0)
-    t242 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
+    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t243 / heavy_1_alpha_front_elbow_down, 0.0)
+    t244 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
-    t243 = np.abs(tilt_front_elbow_down)
-    t244 = t94 & (t95 <= t243)
+    t245 = np.abs(tilt_front_elbow_down)
+    t246 = t94 & (t95 <= t245)
     del t94, t95
-    t245 = stheta2A_front_elbow_down * tilt_front_elbow_down
-    aside_rate_front_elbow_down = _runtime.select(t244, -(t98 * t245), 0.0)
-    del t245
-    t246 = slope_aside_alpha_front_elbow_down * aside_rate_front_elbow_down
-    fore_rate_front_elbow_down = _runtime.select(t244, ctheta2A_front_elbow_down, 1.0)
+    t247 = stheta2A_front_elbow_down * tilt_front_elbow_down
+    aside_rate_front_elbow_down = _runtime.select(t246, -(t98 * t247), 0.0)
+    del t247
+    t248 = slope_aside_alpha_front_elbow_down * aside_rate_front_elbow_down
+    fore_rate_front_elbow_down = _runtime.select(t246, ctheta2A_front_elbow_down, 1.0)
     del ctheta2A_front_elbow_down
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
     del L_2W, a_3W, c_relative_front_elbow_down, s_relative_front_elbow_down
-    t247 = t240 * drawn_front_elbow_down
-    del t240
-    t248 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t235
-    t249 = fore_rate_front_elbow_down * (t247 - _runtime.sign(-t236) * t248)
-    del t236, t248
-    slope_alpha_front_elbow_down = t246 - t249
-    del t246, t249
-    t250 = np.abs(slope_alpha_front_elbow_down)
-    t251 = t243 * _runtime.select(t244, t104, 1.0)
-    del t104, t243
-    t252 = aside_rate_front_elbow_down + fore_rate_front_elbow_down
-    t253 = fore_rate_front_elbow_down * drawn_front_elbow_down
-    t254 = t252 - t98 * t253
-    del t252
-    t255 = fore_rate_front_elbow_down * fore_rate_front_elbow_down
-    t256 = tilt_front_elbow_down * tilt_front_elbow_down
-    t257 = _runtime.select(t244, t103, 0.0) * t256
-    del t103, t256
-    t258 = np.sqrt(L1 * (t254 * t254) + fore * t255 + t257)
-    del t254, t255
-    t259 = t88 * (t251 + t89 * t258 / 2000000.0)
-    del t258
-    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t259, 1.0)
-    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t250 / heavy_0_alpha_front_elbow_down, 0.0)
-    t260 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
-    t261 = _runtime.select(-t238 < 0.0, t242 / (t93 + t242 + t260), 0.0)
-    del t242, t260
-    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t261, 0.0)
-    del t261
-    t262 = _runtime.sign(slope_aside_alpha_front_elbow_down)
-    t263 = t84 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
-    del heavy_1_alpha_front_elbow_down
-    t264 = t238 * share_alpha_front_elbow_down * t262 / (t241 + t263)
+    t249 = t242 * drawn_front_elbow_down
+    del t242
+    t250 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t237
+    t251 = fore_rate_front_elbow_down * (t249 - _runtime.sign(-t238) * t250)
+    del t238, t250
+    slope_alpha_front_elbow_down = t248 - t251
+    del t248, t251
+    t252 = np.abs(slope_alpha_front_elbow_down)
+    t253 = t245 * _runtime.select(t246, t104, 1.0)
+    del t104, t245
+    t254 = aside_rate_front_elbow_down + fore_rate_front_elbow_down
+    t255 = fore_rate_front_elbow_down * drawn_front_elbow_down
+    t256 = t254 - t98 * t255
+    del t254
+    t257 = fore_rate_front_elbow_down * fore_rate_front_elbow_down
+    t258 = tilt_front_elbow_down * tilt_front_elbow_down
+    t259 = _runtime.select(t246, t103, 0.0) * t258
+    del t103, t258
+    t260 = np.sqrt(L1 * (t256 * t256) + fore * t257 + t259)
+    del t256, t257
+    t261 = t88 * (t253 + t89 * t260 / 2000000.0)
+    del t260
+    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t261, 1.0)
+    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t252 / heavy_0_alpha_front_elbow_down, 0.0)
+    t262 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
+    t263 = _runtime.select(-t240 < 0.0, t244 / (t93 + t244 + t262), 0.0)
+    del t244, t262
+    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t263, 0.0)
     del t263
-    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t264, 0.0)
-    del t264
-    lack_alpha_front_elbow_down = t238 * (1.0 - share_alpha_front_elbow_down)
+    t264 = _runtime.sign(slope_aside_alpha_front_elbow_down)
+    t265 = t84 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_front_elbow_down
+    t266 = t240 * share_alpha_front_elbow_down * t264 / (t243 + t265)
+    del t265
+    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t266, 0.0)
+    del t266
+    lack_alpha_front_elbow_down = t240 * (1.0 - share_alpha_front_elbow_down)
     del share_alpha_front_elbow_down
-    t265 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
-    t266 = t84 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
+    t267 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
+    t268 = t84 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
     del heavy_0_alpha_front_elbow_down
-    t267 = 1.0 / (t250 + t266)
-    del t250, t266
-    t268 = lack_alpha_front_elbow_down * t267
+    t269 = 1.0 / (t252 + t268)
+    del t252, t268
+    t270 = lack_alpha_front_elbow_down * t269
     del lack_alpha_front_elbow_down
-    t269 = (t265 * t267 <= 9.094947017729282e-13) & (0.0 < t268)
-    del t265, t267
-    t270 = _runtime.sign(slope_alpha_front_elbow_down) * _runtime.select(t269, t268, 0.0)
-    del slope_alpha_front_elbow_down, t268, t269
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t270, 0.0)
-    del t270
-    t271 = aside_rate_front_elbow_down * turn_alpha_front_elbow_down
-    t272 = fore_rate_front_elbow_down * turn_alpha_front_elbow_down
-    t273 = aside_alpha_front_elbow_down + t271 + t272 - t98 * (t253 * turn_alpha_front_elbow_down)
-    del aside_alpha_front_elbow_down, t271
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t273, 0.0)
-    del t273
-    t274 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t275 = np.sqrt(1.0 + t274)
-    del t274
-    t276 = 1.0 / t275
-    t277 = p_1_front_elbow_down * t276 - t235 * lean_alpha_front_elbow_down * t276
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t277, p_1_front_elbow_down)
-    del t277
-    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    fore_turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t272, 0.0)
+    t271 = (t267 * t269 <= 9.094947017729282e-13) & (0.0 < t270)
+    del t267, t269
+    t272 = _runtime.sign(slope_alpha_front_elbow_down) * _runtime.select(t271, t270, 0.0)
+    del slope_alpha_front_elbow_down, t270, t271
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t272, 0.0)
     del t272
-    t278 = fore_turn_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
-    t279 = 1.0 / (t275 * np.sqrt(1.0 + t278))
-    del t275, t278
-    t280 = lean_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
-    t281 = t279 + t279 * t280
-    del t280
-    t282 = fore_turn_alpha_front_elbow_down * t279 - lean_alpha_front_elbow_down * t279
+    t273 = aside_rate_front_elbow_down * turn_alpha_front_elbow_down
+    t274 = fore_rate_front_elbow_down * turn_alpha_front_elbow_down
+    t275 = aside_alpha_front_elbow_down + t273 + t274 - t98 * (t255 * turn_alpha_front_elbow_down)
+    del aside_alpha_front_elbow_down, t273
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t275, 0.0)
+    del t275
+    t276 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t277 = np.sqrt(1.0 + t276)
+    del t276
+    t278 = 1.0 / t277
+    t279 = p_1_front_elbow_down * t278 - t237 * lean_alpha_front_elbow_down * t278
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t279, p_1_front_elbow_down)
     del t279
-    t283 = v_1_front_elbow_down * t281 - v_2_front_elbow_down * t282
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t283, v_1_front_elbow_down)
-    del t283
-    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t284 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
-    t285 = np.maximum(t284 * 9.094947017729282e-13, -t284)
-    spent_beta_front_elbow_down = t285 <= t131
+    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
+    fore_turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t274, 0.0)
+    del t274
+    t280 = fore_turn_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
+    t281 = 1.0 / (t277 * np.sqrt(1.0 + t280))
+    del t277, t280
+    t282 = lean_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
+    t283 = t281 + t281 * t282
+    del t282
+    t284 = fore_turn_alpha_front_elbow_down * t281 - lean_alpha_front_elbow_down * t281
+    del t281
+    t285 = v_1_front_elbow_down * t283 - v_2_front_elbow_down * t284
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t285, v_1_front_elbow_down)
     del t285
-    t286 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
+    t286 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
+    t287 = np.maximum(t286 * 9.094947017729282e-13, -t286)
+    spent_beta_front_elbow_down = t287 <= t131
+    del t287
+    t288 = p_1_front_elbow_down * lean_alpha_front_elbow_down
     del p_1_front_elbow_down
-    t287 = _runtime.select(spent_alpha_front_elbow_down, t276 * t286 + t235 * t276, t235)
-    del t235, t276, t286
-    t288 = t287 * _runtime.sign(part_beta_front_elbow_down)
+    t289 = _runtime.select(spent_alpha_front_elbow_down, t278 * t288 + t237 * t278, t237)
+    del t237, t278, t288
+    t290 = t289 * _runtime.sign(part_beta_front_elbow_down)
     del part_beta_front_elbow_down
-    t289 = v_1_front_elbow_down * t282 + v_2_front_elbow_down * t281
-    del t281, t282
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t289, v_2_front_elbow_down)
-    del t289
-    t290 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
+    t291 = v_1_front_elbow_down * t284 + v_2_front_elbow_down * t283
+    del t283, t284
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t291, v_2_front_elbow_down)
+    del t291
+    t292 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
     del whole_beta_front_elbow_down
-    slope_aside_beta_front_elbow_down = L1 * (t288 + t290)
-    t291 = np.abs(slope_aside_beta_front_elbow_down)
+    slope_aside_beta_front_elbow_down = L1 * (t290 + t292)
+    t293 = np.abs(slope_aside_beta_front_elbow_down)
     heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t90, 1.0)
-    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t291 / heavy_1_beta_front_elbow_down, 0.0)
-    t292 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
-    t293 = aside_rate_front_elbow_down * slope_aside_beta_front_elbow_down
-    t294 = L1 - drawn_front_elbow_down
-    t295 = fore_rate_front_elbow_down * (drawn_front_elbow_down * t290 - t288 * t294)
-    del t288, t290
-    slope_beta_front_elbow_down = t293 - t295
-    del t293, t295
-    t296 = np.abs(slope_beta_front_elbow_down)
-    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t259, 1.0)
-    del t259
-    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t296 / heavy_0_beta_front_elbow_down, 0.0)
-    t297 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
-    t298 = _runtime.select(-t284 < 0.0, t292 / (t137 + t292 + t297), 0.0)
-    del t292, t297
-    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t298, 0.0)
-    del t298
-    t299 = _runtime.sign(slope_aside_beta_front_elbow_down)
+    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t293 / heavy_1_beta_front_elbow_down, 0.0)
+    t294 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
+    t295 = aside_rate_front_elbow_down * slope_aside_beta_front_elbow_down
+    t296 = L1 - drawn_front_elbow_down
+    t297 = fore_rate_front_elbow_down * (drawn_front_elbow_down * t292 - t290 * t296)
+    del t290, t292
+    slope_beta_front_elbow_down = t295 - t297
+    del t295, t297
+    t298 = np.abs(slope_beta_front_elbow_down)
+    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t261, 1.0)
+    del t261
+    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t298 / heavy_0_beta_front_elbow_down, 0.0)
+    t299 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
+    t300 = _runtime.select(-t286 < 0.0, t294 / (t137 + t294 + t299), 0.0)
+    del t294, t299
+    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t300, 0.0)
+    del t300
+    t301 = _runtime.sign(slope_aside_beta_front_elbow_down)
     del slope_aside_beta_front_elbow_down
-    t300 = t130 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
+    t302 = t130 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_1_beta_front_elbow_down
-    t301 = t284 * share_beta_front_elbow_down * t299 / (t291 + t300)
-    del t291, t299, t300
-    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t301, 0.0)
-    del t301
-    lack_beta_front_elbow_down = t284 * (1.0 - share_beta_front_elbow_down)
+    t303 = t286 * share_beta_front_elbow_down * t301 / (t293 + t302)
+    del t293, t301, t302
+    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t303, 0.0)
+    del t303
+    lack_beta_front_elbow_down = t286 * (1.0 - share_beta_front_elbow_down)
     del share_beta_front_elbow_down
-    t302 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
-    t303 = t130 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
+    t304 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
+    t305 = t130 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_0_beta_front_elbow_down
-    t304 = 1.0 / (t296 + t303)
-    del t296, t303
-    t305 = lack_beta_front_elbow_down * t304
+    t306 = 1.0 / (t298 + t305)
+    del t298, t305
+    t307 = lack_beta_front_elbow_down * t306
     del lack_beta_front_elbow_down
-    t306 = (t302 * t304 <= 9.094947017729282e-13) & (0.0 < t305)
-    del t302, t304
-    t307 = _runtime.sign(slope_beta_front_elbow_down) * _runtime.select(t306, t305, 0.0)
-    del slope_beta_front_elbow_down, t305, t306
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t307, 0.0)
-    del t307
-    t308 = aside_rate_front_elbow_down * turn_beta_front_elbow_down
-    del aside_rate_front_elbow_down
-    t309 = fore_rate_front_elbow_down * turn_beta_front_elbow_down
-    del fore_rate_front_elbow_down
-    t310 = aside_beta_front_elbow_down + t308 + t309 - t98 * (t253 * turn_beta_front_elbow_down)
-    del aside_beta_front_elbow_down, t253, t308
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t310, 0.0)
-    del t310
-    t311 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
-    t312 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
-    t313 = np.sqrt(1.0 + t312)
-    del t312
-    t314 = 1.0 / t313
-    t315 = _runtime.select(spent_beta_front_elbow_down, t311 * t314 + t287 * t314, t287)
-    del t311
-    fore_turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t309, 0.0)
+    t308 = (t304 * t306 <= 9.094947017729282e-13) & (0.0 < t307)
+    del t304, t306
+    t309 = _runtime.sign(slope_beta_front_elbow_down) * _runtime.select(t308, t307, 0.0)
+    del slope_beta_front_elbow_down, t307, t308
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t309, 0.0)
     del t309
-    t316 = fore_turn_beta_front_elbow_down * fore_turn_beta_front_elbow_down
-    t317 = 1.0 / (t313 * np.sqrt(1.0 + t316))
-    del t313, t316
-    t318 = fore_turn_beta_front_elbow_down * t317 - lean_beta_front_elbow_down * t317
-    t319 = lean_beta_front_elbow_down * fore_turn_beta_front_elbow_down
-    t320 = t317 + t317 * t319
-    del t317, t319
-    t321 = v_1_alpha_front_elbow_down * t318 + v_2_alpha_front_elbow_down * t320
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t321, v_2_alpha_front_elbow_down)
-    del t321
-    t322 = v_1_alpha_front_elbow_down * t320 - v_2_alpha_front_elbow_down * t318
-    del t318, t320, v_2_alpha_front_elbow_down
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t322, v_1_alpha_front_elbow_down)
-    del t322, v_1_alpha_front_elbow_down
+    t310 = aside_rate_front_elbow_down * turn_beta_front_elbow_down
+    del aside_rate_front_elbow_down
+    t311 = fore_rate_front_elbow_down * turn_beta_front_elbow_down
+    del fore_rate_front_elbow_down
+    t312 = aside_beta_front_elbow_down + t310 + t311 - t98 * (t255 * turn_beta_front_elbow_down)
+    del aside_beta_front_elbow_down, t255, t310
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t312, 0.0)
+    del t312
+    t313 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t314 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
+    t315 = np.sqrt(1.0 + t314)
+    del t314
+    t316 = 1.0 / t315
+    t317 = _runtime.select(spent_beta_front_elbow_down, t313 * t316 + t289 * t316, t289)
+    del t313
+    fore_turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t311, 0.0)
+    del t311
+    t318 = fore_turn_beta_front_elbow_down * fore_turn_beta_front_elbow_down
+    t319 = 1.0 / (t315 * np.sqrt(1.0 + t318))
+    del t315, t318
+    t320 = fore_turn_beta_front_elbow_down * t319 - lean_beta_front_elbow_down * t319
+    t321 = lean_beta_front_elbow_down * fore_turn_beta_front_elbow_down
+    t322 = t319 + t319 * t321
+    del t319, t321
+    t323 = v_1_alpha_front_elbow_down * t320 + v_2_alpha_front_elbow_down * t322
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t323, v_2_alpha_front_elbow_down)
+    del t323
+    t324 = v_1_alpha_front_elbow_down * t322 - v_2_alpha_front_elbow_down * t320
+    del t320, t322, v_2_alpha_front_elbow_down
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t324, v_1_alpha_front_elbow_down)
+    del t324, v_1_alpha_front_elbow_down
     sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
-    t323 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
-    t324 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t323 <= _runtime.VANISHING * (64.0 * t324)
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t324, -t323)
-    t325 = t315 * _runtime.sign(v_2_beta_front_elbow_down)
-    t326 = p_1_alpha_front_elbow_down * t314 - t314 * (t287 * lean_beta_front_elbow_down)
-    del t287, t314
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t326, p_1_alpha_front_elbow_down)
-    del p_1_alpha_front_elbow_down, t326
-    t327 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t325 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    t326 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t325 <= _runtime.VANISHING * (64.0 * t326)
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t326, -t325)
+    t327 = t317 * _runtime.sign(v_2_beta_front_elbow_down)
+    t328 = p_1_alpha_front_elbow_down * t316 - t316 * (t289 * lean_beta_front_elbow_down)
+    del t289, t316
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t328, p_1_alpha_front_elbow_down)
+    del p_1_alpha_front_elbow_down, t328
+    t329 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
     del sigma_uv_front_elbow_down
-    t328 = _runtime.select(parallel_front_elbow_down, t325, t327)
-    del t325
-    t329 = whole_y_front_elbow_down + t328
-    below_beta_0_front_elbow_down = np.maximum(t329, t162)
-    t330 = whole_y_front_elbow_down - t328
-    above_beta_0_front_elbow_down = np.maximum(t330, t162)
-    t331 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    t330 = _runtime.select(parallel_front_elbow_down, t327, t329)
+    del t327
+    t331 = whole_y_front_elbow_down + t330
+    below_beta_0_front_elbow_down = np.maximum(t331, t162)
+    t332 = whole_y_front_elbow_down - t330
+    above_beta_0_front_elbow_down = np.maximum(t332, t162)
+    t333 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t332 = v_2_beta_front_elbow_down * (t331 / total_beta_0_front_elbow_down)
-    del t331, total_beta_0_front_elbow_down
-    t333 = t315 - t332
-    del t332
-    left_along_front_elbow_down = L1 - np.abs(t333)
-    t334 = left_along_front_elbow_down * 9.094947017729282e-13
-    t335 = np.maximum(-t334, left_along_front_elbow_down)
+    t334 = v_2_beta_front_elbow_down * (t333 / total_beta_0_front_elbow_down)
+    del t333, total_beta_0_front_elbow_down
+    t335 = t317 - t334
     del t334
-    spent_along_front_elbow_down = t335 <= t167
-    del t335
-    t336 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
-    t337 = t336 | spent_beta_front_elbow_down
+    left_along_front_elbow_down = L1 - np.abs(t335)
+    t336 = left_along_front_elbow_down * 9.094947017729282e-13
+    t337 = np.maximum(-t336, left_along_front_elbow_down)
     del t336
-    t338 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
-    del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
-    t339 = _runtime.select(t244, -(t169 * (t10 * tilt_front_elbow_down)), 0.0)
-    del t10, t169
-    t340 = np.arctan2(_runtime.select(t337, t338 * t339, 0.0), 1.0)
+    spent_along_front_elbow_down = t337 <= t167
+    del t337
+    t338 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
+    t339 = t338 | spent_beta_front_elbow_down
     del t338
-    t341 = gain_1_alpha_front_elbow_down + gain_0_alpha_front_elbow_down
+    t340 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
+    t341 = _runtime.select(t246, -(t169 * (t10 * tilt_front_elbow_down)), 0.0)
+    del t10, t169
+    t342 = np.arctan2(_runtime.select(t339, t340 * t341, 0.0), 1.0)
+    del t340
+    t343 = gain_1_alpha_front_elbow_down + gain_0_alpha_front_elbow_down
     del gain_0_alpha_front_elbow_down, gain_1_alpha_front_elbow_down
-    t342 = _runtime.select(spent_alpha_front_elbow_down, t341, 0.0)
-    del spent_alpha_front_elbow_down, t341
-    t343 = -(_runtime.FEASIBILITY * (t84 + t342)) <= -t238
-    del t238, t342
-    t344 = gain_1_beta_front_elbow_down + gain_0_beta_front_elbow_down
+    t344 = _runtime.select(spent_alpha_front_elbow_down, t343, 0.0)
+    del t343
+    t345 = -(_runtime.FEASIBILITY * (t84 + t344)) <= -t240
+    del t240, t344
+    t346 = gain_1_beta_front_elbow_down + gain_0_beta_front_elbow_down
     del gain_0_beta_front_elbow_down, gain_1_beta_front_elbow_down
-    t345 = _runtime.select(spent_beta_front_elbow_down, t344, 0.0)
-    del spent_beta_front_elbow_down, t344
-    t346 = -(_runtime.FEASIBILITY * (t130 + t345)) <= -t284
-    del t284, t345
-    t347 = t190 & t343 & t346 & (t195 <= t327 - t323) & (t195 <= -(t323 + t327))
-    del t327, t343, t346
-    t348 = _runtime.select(spent_along_front_elbow_down, t324 / (t198 - t323), 0.0)
-    del t324
-    t349 = -(_runtime.FEASIBILITY * (t197 * (1.0 + t348)))
-    del t348
-    t350 = t347 & (t195 <= t329) & (t195 <= t330) & (t349 <= left_along_front_elbow_down)
-    del t329, t330, t347, t349
-    t351 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
+    t347 = _runtime.select(spent_beta_front_elbow_down, t346, 0.0)
+    del t346
+    t348 = -(_runtime.FEASIBILITY * (t130 + t347)) <= -t286
+    del t286, t347
+    t349 = spent_alpha_front_elbow_down | spent_beta_front_elbow_down
+    del spent_alpha_front_elbow_down, spent_beta_front_elbow_down
+    t350 = _runtime.select(tangent & t349, 64.0, 1.0)
+    del t349
+    t351 = -(_runtime.FEASIBILITY * (play * t350))
+    t352 = t190 & t345 & t348 & (t351 <= t329 - t325) & (t351 <= -(t325 + t329))
+    del t329, t345, t348
+    t353 = t198 * t350
+    del t350
+    t354 = _runtime.select(spent_along_front_elbow_down, t326 / (t200 - t325), 0.0)
+    del t326
+    t355 = -(_runtime.FEASIBILITY * (t353 * (1.0 + t354)))
+    del t354
+    t356 = t352 & (t351 <= t331) & (t351 <= t332) & (t355 <= left_along_front_elbow_down)
+    del t331, t332, t352, t355
+    t357 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
     del left_along_front_elbow_down
-    t352 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t353 = v_2_beta_front_elbow_down * t351 / (t323 * t323 + t352)
-    del t323, t351, t352
-    t354 = whole_y_front_elbow_down * (t353 * _runtime.sign(-t333))
-    del t333, t353
-    t355 = _runtime.select(spent_along_front_elbow_down, t328 + t354, t328)
-    del spent_along_front_elbow_down, t328, t354
-    t356 = whole_y_front_elbow_down + t355
-    t357 = whole_y_front_elbow_down - t355
-    del t355, whole_y_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t356, t162)
-    above_beta_front_elbow_down = np.maximum(t357, t162)
-    t358 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t358 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t359 = v_2_beta_front_elbow_down * t357 / (t325 * t325 + t358)
+    del t325, t357, t358
+    t360 = whole_y_front_elbow_down * (t359 * _runtime.sign(-t335))
+    del t335, t359
+    t361 = _runtime.select(spent_along_front_elbow_down, t330 + t360, t330)
+    del spent_along_front_elbow_down, t330, t360
+    t362 = whole_y_front_elbow_down + t361
+    t363 = whole_y_front_elbow_down - t361
+    del t361, whole_y_front_elbow_down
+    t364 = -(_runtime.FEASIBILITY * t353)
+    del t353
+    below_beta_front_elbow_down = np.maximum(t362, t162)
+    above_beta_front_elbow_down = np.maximum(t363, t162)
+    t365 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t359 = 1.0 / total_beta_front_elbow_down
+    t366 = 1.0 / total_beta_front_elbow_down
     del total_beta_front_elbow_down
-    t360 = t358 * t359
-    del t358
-    t361 = t315 - v_2_beta_front_elbow_down * t360
-    del t315, v_2_beta_front_elbow_down
-    t362 = L1 + t361
-    t363 = t350 & (t195 <= t356) & (t195 <= t357) & (t207 <= t362)
-    del t350, t356, t357
-    t364 = L1 - t361
-    unreachable_2 = np.logical_not(t363 & (t207 <= t364))
-    del t363
-    t365 = _runtime.poison(invalid | unreachable_2)
-    t366 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
-    t367 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
-    t368 = lean_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t367 = t365 * t366
+    del t365
+    t368 = t317 - v_2_beta_front_elbow_down * t367
+    del t317, v_2_beta_front_elbow_down
+    t369 = L1 + t368
+    t370 = t356 & (t351 <= t362) & (t351 <= t363) & (t364 <= t369)
+    del t351, t356, t362, t363
+    t371 = L1 - t368
+    unreachable_2 = np.logical_not(t370 & (t364 <= t371))
+    del t364, t370
+    t372 = _runtime.poison(invalid | unreachable_2)
+    t373 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
+    t374 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    t375 = lean_alpha_front_elbow_down * lean_beta_front_elbow_down
     del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t369 = np.arctan2(t367, 1.0 - t368)
-    del t367, t368
-    t370 = _runtime.select(folded, 0.0, t366) + t369
-    del t366
-    below_alpha_front_elbow_down = np.maximum(t362, t162)
-    del t362
-    above_alpha_front_elbow_down = np.maximum(t364, t162)
-    del t364
-    t371 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t372 = 1.0 / total_alpha_front_elbow_down
-    del total_alpha_front_elbow_down
-    t373 = t371 * t372
+    t376 = np.arctan2(t374, 1.0 - t375)
+    del t374, t375
+    t377 = _runtime.select(folded, 0.0, t373) + t376
+    del t373
+    below_alpha_front_elbow_down = np.maximum(t369, t162)
+    del t369
+    above_alpha_front_elbow_down = np.maximum(t371, t162)
     del t371
-    t374 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t378 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
+    t379 = 1.0 / total_alpha_front_elbow_down
+    del total_alpha_front_elbow_down
+    t380 = t378 * t379
+    del t378
+    t381 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t375 = np.arctan2(t373, t372 * t374)
-    del t372, t374
-    t376 = t222 + t223
-    del t222, t223
-    t377 = fore_turn_alpha_front_elbow_down + fore_turn_beta_front_elbow_down
-    t378 = fore_turn_alpha_front_elbow_down * fore_turn_beta_front_elbow_down
+    t382 = np.arctan2(t380, t379 * t381)
+    del t379, t381
+    t383 = t224 + t225
+    del t224, t225
+    t384 = fore_turn_alpha_front_elbow_down + fore_turn_beta_front_elbow_down
+    t385 = fore_turn_alpha_front_elbow_down * fore_turn_beta_front_elbow_down
     del fore_turn_alpha_front_elbow_down, fore_turn_beta_front_elbow_down
-    t379 = t376 - (t369 - np.arctan2(t377, 1.0 - t378))
-    del t369, t377, t378
-    t380 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t386 = t383 - (t376 - np.arctan2(t384, 1.0 - t385))
+    del t376, t384, t385
+    t387 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t381 = t375 - np.arctan2(t360, t359 * t380)
-    del t359, t380
+    t388 = t382 - np.arctan2(t367, t366 * t387)
+    del t366, t387
     ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t69)
     del t69
     p_1_rear_elbow_up = t70 + ahead * ctheta2A_rear_elbow_up
     del t70
-    t382 = t77 - higher * ctheta2A_rear_elbow_up
+    t389 = t77 - higher * ctheta2A_rear_elbow_up
     del t77
-    t383 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t382
-    margin_alpha_rear_elbow_up = t237 - np.abs(t383)
-    del t237
-    t384 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t385 = np.maximum(-t384, margin_alpha_rear_elbow_up)
-    del t384
-    spent_alpha_rear_elbow_up = t385 <= t85
-    del t385
-    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t90, 1.0)
-    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t241 / heavy_1_alpha_rear_elbow_up, 0.0)
-    t386 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
-    aside_rate_rear_elbow_up = _runtime.select(t244, -(t98 * (stheta2A * tilt_front_elbow_down)), 0.0)
-    del stheta2A, tilt_front_elbow_down
-    t387 = slope_aside_alpha_front_elbow_down * aside_rate_rear_elbow_up
-    del slope_aside_alpha_front_elbow_down
-    fore_rate_rear_elbow_up = _runtime.select(t244, ctheta2A_rear_elbow_up, 1.0)
-    del ctheta2A_rear_elbow_up, t244
-    t388 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t382
-    t389 = fore_rate_rear_elbow_up * (t247 - _runtime.sign(-t383) * t388)
-    del t247, t383, t388
-    slope_alpha_rear_elbow_up = t387 - t389
-    del t387, t389
-    t390 = np.abs(slope_alpha_rear_elbow_up)
-    t391 = aside_rate_rear_elbow_up + fore_rate_rear_elbow_up
-    t392 = drawn_front_elbow_down * fore_rate_rear_elbow_up
-    t393 = t391 - t98 * t392
+    t390 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t389
+    margin_alpha_rear_elbow_up = t239 - np.abs(t390)
+    del t239
+    t391 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t392 = np.maximum(-t391, margin_alpha_rear_elbow_up)
     del t391
-    t394 = fore_rate_rear_elbow_up * fore_rate_rear_elbow_up
-    t395 = np.sqrt(t257 + L1 * (t393 * t393) + fore * t394)
-    del t257, t393, t394
-    t396 = t88 * (t251 + t89 * t395 / 2000000.0)
-    del t251, t395
-    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t396, 1.0)
-    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t390 / heavy_0_alpha_rear_elbow_up, 0.0)
-    t397 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
-    t398 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t386 / (t93 + t386 + t397), 0.0)
-    del t386, t397
-    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t398, 0.0)
+    spent_alpha_rear_elbow_up = t392 <= t85
+    del t392
+    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t90, 1.0)
+    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t243 / heavy_1_alpha_rear_elbow_up, 0.0)
+    t393 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
+    aside_rate_rear_elbow_up = _runtime.select(t246, -(t98 * (stheta2A * tilt_front_elbow_down)), 0.0)
+    del stheta2A, tilt_front_elbow_down
+    t394 = slope_aside_alpha_front_elbow_down * aside_rate_rear_elbow_up
+    del slope_aside_alpha_front_elbow_down
+    fore_rate_rear_elbow_up = _runtime.select(t246, ctheta2A_rear_elbow_up, 1.0)
+    del ctheta2A_rear_elbow_up, t246
+    t395 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t389
+    t396 = fore_rate_rear_elbow_up * (t249 - _runtime.sign(-t390) * t395)
+    del t249, t390, t395
+    slope_alpha_rear_elbow_up = t394 - t396
+    del t394, t396
+    t397 = np.abs(slope_alpha_rear_elbow_up)
+    t398 = aside_rate_rear_elbow_up + fore_rate_rear_elbow_up
+    t399 = drawn_front_elbow_down * fore_rate_rear_elbow_up
+    t400 = t398 - t98 * t399
     del t398
-    t399 = t262 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
-    del t262
-    t400 = t84 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
+    t401 = fore_rate_rear_elbow_up * fore_rate_rear_elbow_up
+    t402 = np.sqrt(t259 + L1 * (t400 * t400) + fore * t401)
+    del t259, t400, t401
+    t403 = t88 * (t253 + t89 * t402 / 2000000.0)
+    del t253, t402
+    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t403, 1.0)
+    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t397 / heavy_0_alpha_rear_elbow_up, 0.0)
+    t404 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
+    t405 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t393 / (t93 + t393 + t404), 0.0)
+    del t393, t404
+    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t405, 0.0)
+    del t405
+    t406 = t264 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
+    del t264
+    t407 = t84 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_up
-    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t399 / (t241 + t400)), 0.0)
-    del t241, t399, t400
-    t401 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
+    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t406 / (t243 + t407)), 0.0)
+    del t243, t406, t407
+    t408 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
     del share_alpha_rear_elbow_up
-    t402 = t84 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
-    t403 = 1.0 / (t390 + t402)
-    del t390, t402
-    t404 = -(heavy_0_alpha_rear_elbow_up * t401 * t403) <= 9.094947017729282e-13
+    t409 = t84 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
+    t410 = 1.0 / (t397 + t409)
+    del t397, t409
+    t411 = -(heavy_0_alpha_rear_elbow_up * t408 * t410) <= 9.094947017729282e-13
     del heavy_0_alpha_rear_elbow_up
-    t405 = -(t401 * t403)
-    del t401, t403
-    t406 = _runtime.select(t404 & (0.0 < t405), t405, 0.0)
-    del t404, t405
-    t407 = _runtime.sign(slope_alpha_rear_elbow_up) * t406
-    del slope_alpha_rear_elbow_up, t406
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t407, 0.0)
-    del t407
-    t408 = aside_rate_rear_elbow_up * turn_alpha_rear_elbow_up
-    t409 = fore_rate_rear_elbow_up * turn_alpha_rear_elbow_up
-    t410 = aside_alpha_rear_elbow_up + t408 + t409 - t98 * (t392 * turn_alpha_rear_elbow_up)
-    del aside_alpha_rear_elbow_up, t408
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t410, 0.0)
-    del t410
-    t411 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t412 = np.sqrt(1.0 + t411)
-    del t411
-    t413 = 1.0 / t412
-    t414 = p_1_rear_elbow_up * t413 - t382 * lean_alpha_rear_elbow_up * t413
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t414, p_1_rear_elbow_up)
+    t412 = -(t408 * t410)
+    del t408, t410
+    t413 = _runtime.select(t411 & (0.0 < t412), t412, 0.0)
+    del t411, t412
+    t414 = _runtime.sign(slope_alpha_rear_elbow_up) * t413
+    del slope_alpha_rear_elbow_up, t413
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t414, 0.0)
     del t414
-    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    fore_turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t409, 0.0)
-    del t409
-    t415 = fore_turn_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
-    t416 = 1.0 / (t412 * np.sqrt(1.0 + t415))
-    del t412, t415
-    t417 = lean_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
-    t418 = t416 + t416 * t417
+    t415 = aside_rate_rear_elbow_up * turn_alpha_rear_elbow_up
+    t416 = fore_rate_rear_elbow_up * turn_alpha_rear_elbow_up
+    t417 = aside_alpha_rear_elbow_up + t415 + t416 - t98 * (t399 * turn_alpha_rear_elbow_up)
+    del aside_alpha_rear_elbow_up, t415
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t417, 0.0)
     del t417
-    t419 = fore_turn_alpha_rear_elbow_up * t416 - lean_alpha_rear_elbow_up * t416
+    t418 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t419 = np.sqrt(1.0 + t418)
+    del t418
+    t420 = 1.0 / t419
+    t421 = p_1_rear_elbow_up * t420 - t389 * lean_alpha_rear_elbow_up * t420
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t421, p_1_rear_elbow_up)
+    del t421
+    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
+    fore_turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t416, 0.0)
     del t416
-    t420 = v_1_front_elbow_down * t418 - v_2_front_elbow_down * t419
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t420, v_1_front_elbow_down)
-    del t420
+    t422 = fore_turn_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
+    t423 = 1.0 / (t419 * np.sqrt(1.0 + t422))
+    del t419, t422
+    t424 = lean_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
+    t425 = t423 + t423 * t424
+    del t424
+    t426 = fore_turn_alpha_rear_elbow_up * t423 - lean_alpha_rear_elbow_up * t423
+    del t423
+    t427 = v_1_front_elbow_down * t425 - v_2_front_elbow_down * t426
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t427, v_1_front_elbow_down)
+    del t427
     whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t421 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
-    t422 = np.maximum(t421 * 9.094947017729282e-13, -t421)
-    spent_beta_rear_elbow_up = t422 <= t131
-    del t422
-    t423 = t413 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
+    t428 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    t429 = np.maximum(t428 * 9.094947017729282e-13, -t428)
+    spent_beta_rear_elbow_up = t429 <= t131
+    del t429
+    t430 = t420 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
     del p_1_rear_elbow_up
-    t424 = _runtime.select(spent_alpha_rear_elbow_up, t423 + t382 * t413, t382)
-    del t382, t413, t423
-    t425 = t424 * _runtime.sign(part_beta_rear_elbow_up)
+    t431 = _runtime.select(spent_alpha_rear_elbow_up, t430 + t389 * t420, t389)
+    del t389, t420, t430
+    t432 = t431 * _runtime.sign(part_beta_rear_elbow_up)
     del part_beta_rear_elbow_up
-    t426 = v_1_front_elbow_down * t419 + v_2_front_elbow_down * t418
-    del t418, t419, v_1_front_elbow_down
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t426, v_2_front_elbow_down)
-    del t426, v_2_front_elbow_down
-    t427 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
+    t433 = v_1_front_elbow_down * t426 + v_2_front_elbow_down * t425
+    del t425, t426, v_1_front_elbow_down
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t433, v_2_front_elbow_down)
+    del t433, v_2_front_elbow_down
+    t434 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
     del whole_beta_rear_elbow_up
-    slope_aside_beta_rear_elbow_up = L1 * (t425 + t427)
-    t428 = np.abs(slope_aside_beta_rear_elbow_up)
+    slope_aside_beta_rear_elbow_up = L1 * (t432 + t434)
+    t435 = np.abs(slope_aside_beta_rear_elbow_up)
     heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t90, 1.0)
-    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t428 / heavy_1_beta_rear_elbow_up, 0.0)
-    t429 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
-    t430 = aside_rate_rear_elbow_up * slope_aside_beta_rear_elbow_up
-    t431 = fore_rate_rear_elbow_up * (drawn_front_elbow_down * t427 - t294 * t425)
-    del drawn_front_elbow_down, t294, t425, t427
-    slope_beta_rear_elbow_up = t430 - t431
-    del t430, t431
-    t432 = np.abs(slope_beta_rear_elbow_up)
-    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t396, 1.0)
-    del t396
-    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t432 / heavy_0_beta_rear_elbow_up, 0.0)
-    t433 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
-    t434 = _runtime.select(-t421 < 0.0, t429 / (t137 + t429 + t433), 0.0)
-    del t429, t433
-    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t434, 0.0)
-    del t434
-    t435 = _runtime.sign(slope_aside_beta_rear_elbow_up)
+    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t435 / heavy_1_beta_rear_elbow_up, 0.0)
+    t436 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
+    t437 = aside_rate_rear_elbow_up * slope_aside_beta_rear_elbow_up
+    t438 = fore_rate_rear_elbow_up * (drawn_front_elbow_down * t434 - t296 * t432)
+    del drawn_front_elbow_down, t296, t432, t434
+    slope_beta_rear_elbow_up = t437 - t438
+    del t437, t438
+    t439 = np.abs(slope_beta_rear_elbow_up)
+    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t403, 1.0)
+    del t403
+    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t439 / heavy_0_beta_rear_elbow_up, 0.0)
+    t440 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
+    t441 = _runtime.select(-t428 < 0.0, t436 / (t137 + t436 + t440), 0.0)
+    del t436, t440
+    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t441, 0.0)
+    del t441
+    t442 = _runtime.sign(slope_aside_beta_rear_elbow_up)
     del slope_aside_beta_rear_elbow_up
-    t436 = t130 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
+    t443 = t130 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_beta_rear_elbow_up
-    t437 = t421 * share_beta_rear_elbow_up * t435 / (t428 + t436)
-    del t428, t435, t436
-    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t437, 0.0)
-    del t437
-    lack_beta_rear_elbow_up = t421 * (1.0 - share_beta_rear_elbow_up)
+    t444 = t428 * share_beta_rear_elbow_up * t442 / (t435 + t443)
+    del t435, t442, t443
+    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t444, 0.0)
+    del t444
+    lack_beta_rear_elbow_up = t428 * (1.0 - share_beta_rear_elbow_up)
     del share_beta_rear_elbow_up
-    t438 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
-    t439 = t130 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
+    t445 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
+    t446 = t130 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
     del heavy_0_beta_rear_elbow_up
-    t440 = 1.0 / (t432 + t439)
-    del t432, t439
-    t441 = lack_beta_rear_elbow_up * t440
+    t447 = 1.0 / (t439 + t446)
+    del t439, t446
+    t448 = lack_beta_rear_elbow_up * t447
     del lack_beta_rear_elbow_up
-    t442 = (t438 * t440 <= 9.094947017729282e-13) & (0.0 < t441)
-    del t438, t440
-    t443 = _runtime.sign(slope_beta_rear_elbow_up) * _runtime.select(t442, t441, 0.0)
-    del slope_beta_rear_elbow_up, t441, t442
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t443, 0.0)
-    del t443
-    t444 = aside_rate_rear_elbow_up * turn_beta_rear_elbow_up
+    t449 = (t445 * t447 <= 9.094947017729282e-13) & (0.0 < t448)
+    del t445, t447
+    t450 = _runtime.sign(slope_beta_rear_elbow_up) * _runtime.select(t449, t448, 0.0)
+    del slope_beta_rear_elbow_up, t448, t449
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t450, 0.0)
+    del t450
+    t451 = aside_rate_rear_elbow_up * turn_beta_rear_elbow_up
     del aside_rate_rear_elbow_up
-    t445 = fore_rate_rear_elbow_up * turn_beta_rear_elbow_up
+    t452 = fore_rate_rear_elbow_up * turn_beta_rear_elbow_up
     del fore_rate_rear_elbow_up
-    t446 = aside_beta_rear_elbow_up + t444 + t445 - t98 * (t392 * turn_beta_rear_elbow_up)
-    del aside_beta_rear_elbow_up, t392, t444
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t446, 0.0)
-    del t446
-    t447 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
-    t448 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t449 = np.sqrt(1.0 + t448)
-    del t448
-    t450 = 1.0 / t449
-    t451 = _runtime.select(spent_beta_rear_elbow_up, t447 * t450 + t424 * t450, t424)
-    del t447
-    fore_turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t445, 0.0)
-    del t445
-    t452 = fore_turn_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
-    t453 = 1.0 / (t449 * np.sqrt(1.0 + t452))
-    del t449, t452
-    t454 = fore_turn_beta_rear_elbow_up * t453 - lean_beta_rear_elbow_up * t453
-    t455 = lean_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
-    t456 = t453 + t453 * t455
-    del t453, t455
-    t457 = v_1_alpha_rear_elbow_up * t454 + v_2_alpha_rear_elbow_up * t456
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t457, v_2_alpha_rear_elbow_up)
-    del t457
-    t458 = v_1_alpha_rear_elbow_up * t456 - v_2_alpha_rear_elbow_up * t454
-    del t454, t456, v_2_alpha_rear_elbow_up
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t458, v_1_alpha_rear_elbow_up)
-    del t458, v_1_alpha_rear_elbow_up
+    t453 = aside_beta_rear_elbow_up + t451 + t452 - t98 * (t399 * turn_beta_rear_elbow_up)
+    del aside_beta_rear_elbow_up, t399, t451
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t453, 0.0)
+    del t453
+    t454 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t455 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t456 = np.sqrt(1.0 + t455)
+    del t455
+    t457 = 1.0 / t456
+    t458 = _runtime.select(spent_beta_rear_elbow_up, t454 * t457 + t431 * t457, t431)
+    del t454
+    fore_turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t452, 0.0)
+    del t452
+    t459 = fore_turn_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    t460 = 1.0 / (t456 * np.sqrt(1.0 + t459))
+    del t456, t459
+    t461 = fore_turn_beta_rear_elbow_up * t460 - lean_beta_rear_elbow_up * t460
+    t462 = lean_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    t463 = t460 + t460 * t462
+    del t460, t462
+    t464 = v_1_alpha_rear_elbow_up * t461 + v_2_alpha_rear_elbow_up * t463
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t464, v_2_alpha_rear_elbow_up)
+    del t464
+    t465 = v_1_alpha_rear_elbow_up * t463 - v_2_alpha_rear_elbow_up * t461
+    del t461, t463, v_2_alpha_rear_elbow_up
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t465, v_1_alpha_rear_elbow_up)
+    del t465, v_1_alpha_rear_elbow_up
     sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
-    t459 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    t460 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t459 <= _runtime.VANISHING * (64.0 * t460)
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t460, -t459)
-    t461 = p_1_alpha_rear_elbow_up * t450 - t450 * (t424 * lean_beta_rear_elbow_up)
-    del t424, t450
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t461, p_1_alpha_rear_elbow_up)
-    del p_1_alpha_rear_elbow_up, t461
-    t462 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t466 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    t467 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t466 <= _runtime.VANISHING * (64.0 * t467)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t467, -t466)
+    t468 = p_1_alpha_rear_elbow_up * t457 - t457 * (t431 * lean_beta_rear_elbow_up)
+    del t431, t457
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t468, p_1_alpha_rear_elbow_up)
+    del p_1_alpha_rear_elbow_up, t468
+    t469 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
     del sigma_uv_rear_elbow_up
-    t463 = _runtime.select(parallel_rear_elbow_up, t451 * _runtime.sign(v_2_beta_rear_elbow_up), t462)
-    t464 = whole_y_rear_elbow_up + t463
-    below_beta_0_rear_elbow_up = np.maximum(t464, t162)
-    t465 = whole_y_rear_elbow_up - t463
-    above_beta_0_rear_elbow_up = np.maximum(t465, t162)
-    t466 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    t470 = _runtime.select(parallel_rear_elbow_up, t458 * _runtime.sign(v_2_beta_rear_elbow_up), t469)
+    t471 = whole_y_rear_elbow_up + t470
+    below_beta_0_rear_elbow_up = np.maximum(t471, t162)
+    t472 = whole_y_rear_elbow_up - t470
+    above_beta_0_rear_elbow_up = np.maximum(t472, t162)
+    t473 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t467 = v_2_beta_rear_elbow_up * (t466 / total_beta_0_rear_elbow_up)
-    del t466, total_beta_0_rear_elbow_up
-    t468 = t451 - t467
-    del t467
-    left_along_rear_elbow_up = L1 - np.abs(t468)
-    t469 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t469, left_along_rear_elbow_up) <= t167
-    del t469
-    t470 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
-    t471 = t470 | spent_beta_rear_elbow_up
-    del t470
-    t472 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    t474 = v_2_beta_rear_elbow_up * (t473 / total_beta_0_rear_elbow_up)
+    del t473, total_beta_0_rear_elbow_up
+    t475 = t458 - t474
+    del t474
+    left_along_rear_elbow_up = L1 - np.abs(t475)
+    t476 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t476, left_along_rear_elbow_up) <= t167
+    del t476
+    t477 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
+    t478 = t477 | spent_beta_rear_elbow_up
+    del t477
+    t479 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
     del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
-    t473 = np.arctan2(_runtime.select(t471, t339 * t472, 0.0), 1.0)
-    del t339, t472
-    t474 = _runtime.select(nowhere, 0.0, t171 + t172)
+    t480 = np.arctan2(_runtime.select(t478, t341 * t479, 0.0), 1.0)
+    del t341, t479
+    t481 = _runtime.select(nowhere, 0.0, t171 + t172)
     del t171, t172
-    t475 = gain_1_alpha_rear_elbow_up + gain_0_alpha_rear_elbow_up
+    t482 = gain_1_alpha_rear_elbow_up + gain_0_alpha_rear_elbow_up
     del gain_0_alpha_rear_elbow_up, gain_1_alpha_rear_elbow_up
-    t476 = _runtime.select(spent_alpha_rear_elbow_up, t475, 0.0)
-    del spent_alpha_rear_elbow_up, t475
-    t477 = -(_runtime.FEASIBILITY * (t84 + t476)) <= margin_alpha_rear_elbow_up
-    del margin_alpha_rear_elbow_up, t476
-    t478 = gain_1_beta_rear_elbow_up + gain_0_beta_rear_elbow_up
-    del gain_0_beta_rear_elbow_up, gain_1_beta_rear_elbow_up
-    t479 = _runtime.select(spent_beta_rear_elbow_up, t478, 0.0)
-    del spent_beta_rear_elbow_up, t478
-    t480 = -(_runtime.FEASIBILITY * (t130 + t479)) <= -t421
-    del t421, t479
-    t481 = t190 & t477 & t480 & (t195 <= t462 - t459) & (t195 <= -(t459 + t462))
-    del t462, t477, t480
-    t482 = _runtime.select(spent_along_rear_elbow_up, t460 / (t198 - t459), 0.0)
-    del t460
-    t483 = -(_runtime.FEASIBILITY * (t197 * (1.0 + t482)))
+    t483 = _runtime.select(spent_alpha_rear_elbow_up, t482, 0.0)
     del t482
-    t484 = t481 & (t195 <= t464) & (t195 <= t465) & (t483 <= left_along_rear_elbow_up)
-    del t464, t465, t481, t483
-    t485 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
+    t484 = -(_runtime.FEASIBILITY * (t84 + t483)) <= margin_alpha_rear_elbow_up
+    del margin_alpha_rear_elbow_up, t483
+    t485 = gain_1_beta_rear_elbow_up + gain_0_beta_rear_elbow_up
+    del gain_0_beta_rear_elbow_up, gain_1_beta_rear_elbow_up
+    t486 = _runtime.select(spent_beta_rear_elbow_up, t485, 0.0)
+    del t485
+    t487 = -(_runtime.FEASIBILITY * (t130 + t486)) <= -t428
+    del t428, t486
+    t488 = spent_alpha_rear_elbow_up | spent_beta_rear_elbow_up
+    del spent_alpha_rear_elbow_up, spent_beta_rear_elbow_up
+    t489 = _runtime.select(tangent & t488, 64.0, 1.0)
+    del t488
+    t490 = -(_runtime.FEASIBILITY * (play * t489))
+    t491 = t190 & t484 & t487 & (t490 <= t469 - t466) & (t490 <= -(t466 + t469))
+    del t469, t484, t487
+    t492 = t198 * t489
+    del t489
+    t493 = _runtime.select(spent_along_rear_elbow_up, t467 / (t200 - t466), 0.0)
+    del t467
+    t494 = -(_runtime.FEASIBILITY * (t492 * (1.0 + t493)))
+    del t493
+    t495 = t491 & (t490 <= t471) & (t490 <= t472) & (t494 <= left_along_rear_elbow_up)
+    del t471, t472, t491, t494
+    t496 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
     del left_along_rear_elbow_up
-    t486 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t487 = v_2_beta_rear_elbow_up * t485 / (t459 * t459 + t486)
-    del t459, t485, t486
-    t488 = whole_y_rear_elbow_up * (t487 * _runtime.sign(-t468))
-    del t468, t487
-    t489 = _runtime.select(spent_along_rear_elbow_up, t463 + t488, t463)
-    del spent_along_rear_elbow_up, t463, t488
-    t490 = whole_y_rear_elbow_up + t489
-    t491 = whole_y_rear_elbow_up - t489
-    del t489, whole_y_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t490, t162)
-    above_beta_rear_elbow_up = np.maximum(t491, t162)
-    t492 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
-    total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t493 = 1.0 / total_beta_rear_elbow_up
-    del total_beta_rear_elbow_up
-    t494 = t492 * t493
+    t497 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t498 = v_2_beta_rear_elbow_up * t496 / (t466 * t466 + t497)
+    del t466, t496, t497
+    t499 = whole_y_rear_elbow_up * (t498 * _runtime.sign(-t475))
+    del t475, t498
+    t500 = _runtime.select(spent_along_rear_elbow_up, t470 + t499, t470)
+    del spent_along_rear_elbow_up, t470, t499
+    t501 = whole_y_rear_elbow_up + t500
+    t502 = whole_y_rear_elbow_up - t500
+    del t500, whole_y_rear_elbow_up
+    t503 = -(_runtime.FEASIBILITY * t492)
     del t492
-    t495 = t451 - v_2_beta_rear_elbow_up * t494
-    del t451, v_2_beta_rear_elbow_up
-    t496 = L1 + t495
-    t497 = t484 & (t195 <= t490) & (t195 <= t491) & (t207 <= t496)
-    del t484, t490, t491
-    t498 = L1 - t495
-    unreachable_3 = np.logical_not(t497 & (t207 <= t498))
-    del t497
-    t499 = _runtime.poison(invalid | unreachable_3)
-    t500 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
+    below_beta_rear_elbow_up = np.maximum(t501, t162)
+    above_beta_rear_elbow_up = np.maximum(t502, t162)
+    t504 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
+    t505 = 1.0 / total_beta_rear_elbow_up
+    del total_beta_rear_elbow_up
+    t506 = t504 * t505
+    del t504
+    t507 = t458 - v_2_beta_rear_elbow_up * t506
+    del t458, v_2_beta_rear_elbow_up
+    t508 = L1 + t507
+    t509 = t495 & (t490 <= t501) & (t490 <= t502) & (t503 <= t508)
+    del t490, t495, t501, t502
+    t510 = L1 - t507
+    unreachable_3 = np.logical_not(t509 & (t503 <= t510))
+    del t503, t509
+    t511 = _runtime.poison(invalid | unreachable_3)
+    t512 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
     del out_2, up
-    t501 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
-    t502 = lean_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t513 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    t514 = lean_alpha_rear_elbow_up * lean_beta_rear_elbow_up
     del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t503 = np.arctan2(t501, 1.0 - t502)
-    del t501, t502
-    t504 = t500 + t503
-    del t500
-    below_alpha_rear_elbow_up = np.maximum(t496, t162)
-    del t496
-    above_alpha_rear_elbow_up = np.maximum(t498, t162)
-    del t498
-    t505 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t515 = np.arctan2(t513, 1.0 - t514)
+    del t513, t514
+    t516 = t512 + t515
+    del t512
+    below_alpha_rear_elbow_up = np.maximum(t508, t162)
+    del t508
+    above_alpha_rear_elbow_up = np.maximum(t510, t162)
+    del t510
+    t517 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t506 = 1.0 / total_alpha_rear_elbow_up
+    t518 = 1.0 / total_alpha_rear_elbow_up
     del total_alpha_rear_elbow_up
-    t507 = t505 * t506
-    del t505
-    t508 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
-    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t509 = np.arctan2(t507, t506 * t508)
-    del t506, t508
-    t510 = fore_turn_alpha_rear_elbow_up + fore_turn_beta_rear_elbow_up
-    t511 = fore_turn_alpha_rear_elbow_up * fore_turn_beta_rear_elbow_up
-    del fore_turn_alpha_rear_elbow_up, fore_turn_beta_rear_elbow_up
-    t512 = t376 - (t503 - np.arctan2(t510, 1.0 - t511))
-    del t376, t503, t510, t511
-    t513 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t514 = t509 - np.arctan2(t494, t493 * t513)
-    del t493, t513
-    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t232)
-    del t232
-    p_1_rear_elbow_down = t233 + ahead * ctheta2A_rear_elbow_down
-    del ahead, t233
-    t515 = t234 - higher * ctheta2A_rear_elbow_down
-    del higher, t234
-    t516 = v_2 * p_1_rear_elbow_down + v_1 * t515
-    margin_alpha_rear_elbow_down = t80 - np.abs(t516)
-    del t80
-    t517 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t518 = np.maximum(-t517, margin_alpha_rear_elbow_down)
+    t519 = t517 * t518
     del t517
-    spent_alpha_rear_elbow_down = t518 <= t85
-    del t518, t85
+    t520 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
+    t521 = np.arctan2(t519, t518 * t520)
+    del t518, t520
+    t522 = fore_turn_alpha_rear_elbow_up + fore_turn_beta_rear_elbow_up
+    t523 = fore_turn_alpha_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    del fore_turn_alpha_rear_elbow_up, fore_turn_beta_rear_elbow_up
+    t524 = t383 - (t515 - np.arctan2(t522, 1.0 - t523))
+    del t383, t515, t522, t523
+    t525 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
+    t526 = t521 - np.arctan2(t506, t505 * t525)
+    del t505, t525
+    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t234)
+    del t234
+    p_1_rear_elbow_down = t235 + ahead * ctheta2A_rear_elbow_down
+    del ahead, t235
+    t527 = t236 - higher * ctheta2A_rear_elbow_down
+    del higher, t236
+    t528 = v_2 * p_1_rear_elbow_down + v_1 * t527
+    margin_alpha_rear_elbow_down = t80 - np.abs(t528)
+    del t80
+    t529 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t530 = np.maximum(-t529, margin_alpha_rear_elbow_down)
+    del t529
+    spent_alpha_rear_elbow_down = t530 <= t85
+    del t530, t85
     heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t90, 1.0)
     gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t87 / heavy_1_alpha_rear_elbow_down, 0.0)
-    t519 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
+    t531 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
     aside_rate_rear_elbow_down = _runtime.select(t97, -(t98 * (tilt * stheta2A_front_elbow_down)), 0.0)
     del stheta2A_front_elbow_down, tilt
-    t520 = slope_aside_alpha * aside_rate_rear_elbow_down
+    t532 = slope_aside_alpha * aside_rate_rear_elbow_down
     del slope_aside_alpha
     fore_rate_rear_elbow_down = _runtime.select(t97, ctheta2A_rear_elbow_down, 1.0)
     del ctheta2A_rear_elbow_down, t97
-    t521 = _runtime.sign(-t516) * (v_1 * p_1_rear_elbow_down - v_2 * t515)
-    del t516
-    slope_alpha_rear_elbow_down = t520 - fore_rate_rear_elbow_down * (t99 - t521)
-    del t520, t521, t99
-    t522 = np.abs(slope_alpha_rear_elbow_down)
-    t523 = aside_rate_rear_elbow_down + fore_rate_rear_elbow_down
-    t524 = drawn * fore_rate_rear_elbow_down
-    t525 = t523 - t98 * t524
-    del t523
-    t526 = fore_rate_rear_elbow_down * fore_rate_rear_elbow_down
-    t527 = np.sqrt(t109 + L1 * (t525 * t525) + fore * t526)
-    del fore, t109, t525, t526
-    t528 = t88 * (t105 + t89 * t527 / 2000000.0)
-    del t105, t527, t88, t89
-    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t528, 1.0)
-    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t522 / heavy_0_alpha_rear_elbow_down, 0.0)
-    t529 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
-    t530 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t519 / (t93 + t519 + t529), 0.0)
-    del t519, t529, t93
-    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t530, 0.0)
-    del t530
-    t531 = t113 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
-    del t113
-    t532 = t84 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
-    del heavy_1_alpha_rear_elbow_down
-    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t531 / (t87 + t532)), 0.0)
-    del t531, t532, t87
-    t533 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
-    del share_alpha_rear_elbow_down
-    t534 = t84 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
-    t535 = 1.0 / (t522 + t534)
-    del t522, t534
-    t536 = -(heavy_0_alpha_rear_elbow_down * t533 * t535)
-    del heavy_0_alpha_rear_elbow_down
-    t537 = -(t533 * t535)
-    del t533, t535
-    t538 = (t536 <= 9.094947017729282e-13) & (0.0 < t537)
-    del t536
-    t539 = _runtime.sign(slope_alpha_rear_elbow_down) * _runtime.select(t538, t537, 0.0)
-    del slope_alpha_rear_elbow_down, t537, t538
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t539, 0.0)
-    del t539
-    t540 = aside_rate_rear_elbow_down * turn_alpha_rear_elbow_down
-    t541 = fore_rate_rear_elbow_down * turn_alpha_rear_elbow_down
-    t542 = aside_alpha_rear_elbow_down + t540 + t541 - t98 * (t524 * turn_alpha_rear_elbow_down)
-    del aside_alpha_rear_elbow_down, t540
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t542, 0.0)
+    t533 = _runtime.sign(-t528) * (v_1 * p_1_rear_elbow_down - v_2 * t527)
+    del t528
+    slope_alpha_rear_elbow_down = t532 - fore_rate_rear_elbow_down * (t99 - t533)
+    del t532, t533, t99
+    t534 = np.abs(slope_alpha_rear_elbow_down)
+    t535 = aside_rate_rear_elbow_down + fore_rate_rear_elbow_down
+    t536 = drawn * fore_rate_rear_elbow_down
+    t537 = t535 - t98 * t536
+    del t535
+    t538 = fore_rate_rear_elbow_down * fore_rate_rear_elbow_down
+    t539 = np.sqrt(t109 + L1 * (t537 * t537) + fore * t538)
+    del fore, t109, t537, t538
+    t540 = t88 * (t105 + t89 * t539 / 2000000.0)
+    del t105, t539, t88, t89
+    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t540, 1.0)
+    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t534 / heavy_0_alpha_rear_elbow_down, 0.0)
+    t541 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
+    t542 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t531 / (t93 + t531 + t541), 0.0)
+    del t531, t541, t93
+    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t542, 0.0)
     del t542
-    t543 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t544 = np.sqrt(1.0 + t543)
-    del t543
-    t545 = 1.0 / t544
-    t546 = p_1_rear_elbow_down * t545 - t515 * lean_alpha_rear_elbow_down * t545
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t546, p_1_rear_elbow_down)
-    del t546
-    part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    fore_turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t541, 0.0)
-    del t541
-    t547 = fore_turn_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
-    t548 = 1.0 / (t544 * np.sqrt(1.0 + t547))
-    del t544, t547
-    t549 = lean_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
-    t550 = t548 + t548 * t549
-    del t549
-    t551 = fore_turn_alpha_rear_elbow_down * t548 - lean_alpha_rear_elbow_down * t548
+    t543 = t113 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
+    del t113
+    t544 = t84 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_rear_elbow_down
+    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t543 / (t87 + t544)), 0.0)
+    del t543, t544, t87
+    t545 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
+    del share_alpha_rear_elbow_down
+    t546 = t84 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
+    t547 = 1.0 / (t534 + t546)
+    del t534, t546
+    t548 = -(heavy_0_alpha_rear_elbow_down * t545 * t547)
+    del heavy_0_alpha_rear_elbow_down
+    t549 = -(t545 * t547)
+    del t545, t547
+    t550 = (t548 <= 9.094947017729282e-13) & (0.0 < t549)
     del t548
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t550 - v_2 * t551, v_1)
+    t551 = _runtime.sign(slope_alpha_rear_elbow_down) * _runtime.select(t550, t549, 0.0)
+    del slope_alpha_rear_elbow_down, t549, t550
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t551, 0.0)
+    del t551
+    t552 = aside_rate_rear_elbow_down * turn_alpha_rear_elbow_down
+    t553 = fore_rate_rear_elbow_down * turn_alpha_rear_elbow_down
+    t554 = aside_alpha_rear_elbow_down + t552 + t553 - t98 * (t536 * turn_alpha_rear_elbow_down)
+    del aside_alpha_rear_elbow_down, t552
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t554, 0.0)
+    del t554
+    t555 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t556 = np.sqrt(1.0 + t555)
+    del t555
+    t557 = 1.0 / t556
+    t558 = p_1_rear_elbow_down * t557 - t527 * lean_alpha_rear_elbow_down * t557
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t558, p_1_rear_elbow_down)
+    del t558
+    part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
+    fore_turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t553, 0.0)
+    del t553
+    t559 = fore_turn_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
+    t560 = 1.0 / (t556 * np.sqrt(1.0 + t559))
+    del t556, t559
+    t561 = lean_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
+    t562 = t560 + t560 * t561
+    del t561
+    t563 = fore_turn_alpha_rear_elbow_down * t560 - lean_alpha_rear_elbow_down * t560
+    del t560
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t562 - v_2 * t563, v_1)
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t552 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
-    t553 = np.maximum(t552 * 9.094947017729282e-13, -t552)
-    spent_beta_rear_elbow_down = t553 <= t131
-    del t131, t553
-    t554 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    t564 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    t565 = np.maximum(t564 * 9.094947017729282e-13, -t564)
+    spent_beta_rear_elbow_down = t565 <= t131
+    del t131, t565
+    t566 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
     del p_1_rear_elbow_down
-    t555 = _runtime.select(spent_alpha_rear_elbow_down, t545 * t554 + t515 * t545, t515)
-    del t515, t545, t554
-    t556 = t555 * _runtime.sign(part_beta_rear_elbow_down)
+    t567 = _runtime.select(spent_alpha_rear_elbow_down, t557 * t566 + t527 * t557, t527)
+    del t527, t557, t566
+    t568 = t567 * _runtime.sign(part_beta_rear_elbow_down)
     del part_beta_rear_elbow_down
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t551 + v_2 * t550, v_2)
-    del t550, t551, v_1, v_2
-    t557 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t563 + v_2 * t562, v_2)
+    del t562, t563, v_1, v_2
+    t569 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
     del whole_beta_rear_elbow_down
-    slope_aside_beta_rear_elbow_down = L1 * (t556 + t557)
-    t558 = np.abs(slope_aside_beta_rear_elbow_down)
+    slope_aside_beta_rear_elbow_down = L1 * (t568 + t569)
+    t570 = np.abs(slope_aside_beta_rear_elbow_down)
     heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t90, 1.0)
     del t90
-    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t558 / heavy_1_beta_rear_elbow_down, 0.0)
-    t559 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
-    t560 = aside_rate_rear_elbow_down * slope_aside_beta_rear_elbow_down
-    t561 = fore_rate_rear_elbow_down * (drawn * t557 - t138 * t556)
-    del drawn, t138, t556, t557
-    slope_beta_rear_elbow_down = t560 - t561
-    del t560, t561
-    t562 = np.abs(slope_beta_rear_elbow_down)
-    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t528, 1.0)
-    del t528
-    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t562 / heavy_0_beta_rear_elbow_down, 0.0)
-    t563 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
-    t564 = _runtime.select(-t552 < 0.0, t559 / (t137 + t559 + t563), 0.0)
-    del t137, t559, t563
-    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t564, 0.0)
-    del t564
-    t565 = _runtime.sign(slope_aside_beta_rear_elbow_down)
-    del slope_aside_beta_rear_elbow_down
-    t566 = t130 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
-    del heavy_1_beta_rear_elbow_down
-    t567 = t552 * share_beta_rear_elbow_down * t565 / (t558 + t566)
-    del t558, t565, t566
-    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t567, 0.0)
-    del t567
-    lack_beta_rear_elbow_down = t552 * (1.0 - share_beta_rear_elbow_down)
-    del share_beta_rear_elbow_down
-    t568 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
-    t569 = t130 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
-    del heavy_0_beta_rear_elbow_down
-    t570 = 1.0 / (t562 + t569)
-    del t562, t569
-    t571 = lack_beta_rear_elbow_down * t570
-    del lack_beta_rear_elbow_down
-    t572 = (t568 * t570 <= 9.094947017729282e-13) & (0.0 < t571)
-    del t568, t570
-    t573 = _runtime.sign(slope_beta_rear_elbow_down) * _runtime.select(t572, t571, 0.0)
-    del slope_beta_rear_elbow_down, t571, t572
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t573, 0.0)
-    del t573
-    t574 = aside_rate_rear_elbow_down * turn_beta_rear_elbow_down
-    del aside_rate_rear_elbow_down
-    t575 = fore_rate_rear_elbow_down * turn_beta_rear_elbow_down
-    del fore_rate_rear_elbow_down
-    t576 = aside_beta_rear_elbow_down + t574 + t575 - t98 * (t524 * turn_beta_rear_elbow_down)
-    del aside_beta_rear_elbow_down, t524, t574, t98
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t576, 0.0)
+    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t570 / heavy_1_beta_rear_elbow_down, 0.0)
+    t571 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
+    t572 = aside_rate_rear_elbow_down * slope_aside_beta_rear_elbow_down
+    t573 = fore_rate_rear_elbow_down * (drawn * t569 - t138 * t568)
+    del drawn, t138, t568, t569
+    slope_beta_rear_elbow_down = t572 - t573
+    del t572, t573
+    t574 = np.abs(slope_beta_rear_elbow_down)
+    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t540, 1.0)
+    del t540
+    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t574 / heavy_0_beta_rear_elbow_down, 0.0)
+    t575 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
+    t576 = _runtime.select(-t564 < 0.0, t571 / (t137 + t571 + t575), 0.0)
+    del t137, t571, t575
+    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t576, 0.0)
     del t576
-    t577 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
-    t578 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t579 = np.sqrt(1.0 + t578)
-    del t578
-    t580 = 1.0 / t579
-    t581 = _runtime.select(spent_beta_rear_elbow_down, t577 * t580 + t555 * t580, t555)
-    del t577
-    fore_turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t575, 0.0)
-    del t575
-    t582 = fore_turn_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
-    t583 = 1.0 / (t579 * np.sqrt(1.0 + t582))
-    del t579, t582
-    t584 = fore_turn_beta_rear_elbow_down * t583 - lean_beta_rear_elbow_down * t583
-    t585 = lean_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
-    t586 = t583 + t583 * t585
-    del t583, t585
-    t587 = v_1_alpha_rear_elbow_down * t584 + v_2_alpha_rear_elbow_down * t586
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t587, v_2_alpha_rear_elbow_down)
+    t577 = _runtime.sign(slope_aside_beta_rear_elbow_down)
+    del slope_aside_beta_rear_elbow_down
+    t578 = t130 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_beta_rear_elbow_down
+    t579 = t564 * share_beta_rear_elbow_down * t577 / (t570 + t578)
+    del t570, t577, t578
+    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t579, 0.0)
+    del t579
+    lack_beta_rear_elbow_down = t564 * (1.0 - share_beta_rear_elbow_down)
+    del share_beta_rear_elbow_down
+    t580 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
+    t581 = t130 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_0_beta_rear_elbow_down
+    t582 = 1.0 / (t574 + t581)
+    del t574, t581
+    t583 = lack_beta_rear_elbow_down * t582
+    del lack_beta_rear_elbow_down
+    t584 = (t580 * t582 <= 9.094947017729282e-13) & (0.0 < t583)
+    del t580, t582
+    t585 = _runtime.sign(slope_beta_rear_elbow_down) * _runtime.select(t584, t583, 0.0)
+    del slope_beta_rear_elbow_down, t583, t584
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t585, 0.0)
+    del t585
+    t586 = aside_rate_rear_elbow_down * turn_beta_rear_elbow_down
+    del aside_rate_rear_elbow_down
+    t587 = fore_rate_rear_elbow_down * turn_beta_rear_elbow_down
+    del fore_rate_rear_elbow_down
+    t588 = aside_beta_rear_elbow_down + t586 + t587 - t98 * (t536 * turn_beta_rear_elbow_down)
+    del aside_beta_rear_elbow_down, t536, t586, t98
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t588, 0.0)
+    del t588
+    t589 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t590 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t591 = np.sqrt(1.0 + t590)
+    del t590
+    t592 = 1.0 / t591
+    t593 = _runtime.select(spent_beta_rear_elbow_down, t589 * t592 + t567 * t592, t567)
+    del t589
+    fore_turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t587, 0.0)
     del t587
-    t588 = v_1_alpha_rear_elbow_down * t586 - v_2_alpha_rear_elbow_down * t584
-    del t584, t586, v_2_alpha_rear_elbow_down
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t588, v_1_alpha_rear_elbow_down)
-    del t588, v_1_alpha_rear_elbow_down
+    t594 = fore_turn_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t595 = 1.0 / (t591 * np.sqrt(1.0 + t594))
+    del t591, t594
+    t596 = fore_turn_beta_rear_elbow_down * t595 - lean_beta_rear_elbow_down * t595
+    t597 = lean_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t598 = t595 + t595 * t597
+    del t595, t597
+    t599 = v_1_alpha_rear_elbow_down * t596 + v_2_alpha_rear_elbow_down * t598
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t599, v_2_alpha_rear_elbow_down)
+    del t599
+    t600 = v_1_alpha_rear_elbow_down * t598 - v_2_alpha_rear_elbow_down * t596
+    del t596, t598, v_2_alpha_rear_elbow_down
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t600, v_1_alpha_rear_elbow_down)
+    del t600, v_1_alpha_rear_elbow_down
     sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
-    t589 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
-    t590 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t589 <= _runtime.VANISHING * (64.0 * t590)
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t590, -t589)
-    t591 = t581 * _runtime.sign(v_2_beta_rear_elbow_down)
-    t592 = p_1_alpha_rear_elbow_down * t580 - t580 * (t555 * lean_beta_rear_elbow_down)
-    del t555, t580
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t592, p_1_alpha_rear_elbow_down)
-    del p_1_alpha_rear_elbow_down, t592
-    t593 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t601 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t602 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t601 <= _runtime.VANISHING * (64.0 * t602)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t602, -t601)
+    t603 = t593 * _runtime.sign(v_2_beta_rear_elbow_down)
+    t604 = p_1_alpha_rear_elbow_down * t592 - t592 * (t567 * lean_beta_rear_elbow_down)
+    del t567, t592
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t604, p_1_alpha_rear_elbow_down)
+    del p_1_alpha_rear_elbow_down, t604
+    t605 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
     del sigma_uv_rear_elbow_down
-    t594 = _runtime.select(parallel_rear_elbow_down, t591, t593)
-    del t591
-    t595 = whole_y_rear_elbow_down + t594
-    below_beta_0_rear_elbow_down = np.maximum(t595, t162)
-    t596 = whole_y_rear_elbow_down - t594
-    above_beta_0_rear_elbow_down = np.maximum(t596, t162)
-    t597 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t606 = _runtime.select(parallel_rear_elbow_down, t603, t605)
+    del t603
+    t607 = whole_y_rear_elbow_down + t606
+    below_beta_0_rear_elbow_down = np.maximum(t607, t162)
+    t608 = whole_y_rear_elbow_down - t606
+    above_beta_0_rear_elbow_down = np.maximum(t608, t162)
+    t609 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t598 = v_2_beta_rear_elbow_down * (t597 / total_beta_0_rear_elbow_down)
-    del t597, total_beta_0_rear_elbow_down
-    t599 = t581 - t598
-    del t598
-    left_along_rear_elbow_down = L1 - np.abs(t599)
-    t600 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t601 = np.maximum(-t600, left_along_rear_elbow_down)
-    del t600
-    spent_along_rear_elbow_down = t601 <= t167
-    del t167, t601
-    t602 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
-    t603 = t602 | spent_beta_rear_elbow_down
-    del t602
-    t604 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    t610 = v_2_beta_rear_elbow_down * (t609 / total_beta_0_rear_elbow_down)
+    del t609, total_beta_0_rear_elbow_down
+    t611 = t593 - t610
+    del t610
+    left_along_rear_elbow_down = L1 - np.abs(t611)
+    t612 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t613 = np.maximum(-t612, left_along_rear_elbow_down)
+    del t612
+    spent_along_rear_elbow_down = t613 <= t167
+    del t167, t613
+    t614 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
+    t615 = t614 | spent_beta_rear_elbow_down
+    del t614
+    t616 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
     del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
-    t605 = np.arctan2(_runtime.select(t603, t170 * t604, 0.0), 1.0)
-    del t170, t604
-    t606 = gain_1_alpha_rear_elbow_down + gain_0_alpha_rear_elbow_down
+    t617 = np.arctan2(_runtime.select(t615, t170 * t616, 0.0), 1.0)
+    del t170, t616
+    t618 = gain_1_alpha_rear_elbow_down + gain_0_alpha_rear_elbow_down
     del gain_0_alpha_rear_elbow_down, gain_1_alpha_rear_elbow_down
-    t607 = _runtime.select(spent_alpha_rear_elbow_down, t606, 0.0)
-    del spent_alpha_rear_elbow_down, t606
-    t608 = -(_runtime.FEASIBILITY * (t84 + t607)) <= margin_alpha_rear_elbow_down
-    del margin_alpha_rear_elbow_down, t607, t84
-    t609 = gain_1_beta_rear_elbow_down + gain_0_beta_rear_elbow_down
+    t619 = _runtime.select(spent_alpha_rear_elbow_down, t618, 0.0)
+    del t618
+    t620 = -(_runtime.FEASIBILITY * (t84 + t619)) <= margin_alpha_rear_elbow_down
+    del margin_alpha_rear_elbow_down, t619, t84
+    t621 = gain_1_beta_rear_elbow_down + gain_0_beta_rear_elbow_down
     del gain_0_beta_rear_elbow_down, gain_1_beta_rear_elbow_down
-    t610 = _runtime.select(spent_beta_rear_elbow_down, t609, 0.0)
-    del spent_beta_rear_elbow_down, t609
-    t611 = -(_runtime.FEASIBILITY * (t130 + t610)) <= -t552
-    del t130, t552, t610
-    t612 = t190 & t608 & t611 & (t195 <= t593 - t589) & (t195 <= -(t589 + t593))
-    del t190, t593, t608, t611
-    t613 = _runtime.select(spent_along_rear_elbow_down, t590 / (t198 - t589), 0.0)
-    del t198, t590
-    t614 = -(_runtime.FEASIBILITY * (t197 * (1.0 + t613)))
-    del t197, t613
-    t615 = t612 & (t195 <= t595) & (t195 <= t596) & (t614 <= left_along_rear_elbow_down)
-    del t595, t596, t612, t614
-    t616 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
+    t622 = _runtime.select(spent_beta_rear_elbow_down, t621, 0.0)
+    del t621
+    t623 = -(_runtime.FEASIBILITY * (t130 + t622)) <= -t564
+    del t130, t564, t622
+    t624 = spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down
+    del spent_alpha_rear_elbow_down, spent_beta_rear_elbow_down
+    t625 = _runtime.select(tangent & t624, 64.0, 1.0)
+    del t624, tangent
+    t626 = -(_runtime.FEASIBILITY * (play * t625))
+    del play
+    t627 = t190 & t620 & t623 & (t626 <= t605 - t601) & (t626 <= -(t601 + t605))
+    del t190, t605, t620, t623
+    t628 = t198 * t625
+    del t198, t625
+    t629 = _runtime.select(spent_along_rear_elbow_down, t602 / (t200 - t601), 0.0)
+    del t200, t602
+    t630 = -(_runtime.FEASIBILITY * (t628 * (1.0 + t629)))
+    del t629
+    t631 = t627 & (t626 <= t607) & (t626 <= t608) & (t630 <= left_along_rear_elbow_down)
+    del t607, t608, t627, t630
+    t632 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
     del left_along_rear_elbow_down
-    t617 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t618 = v_2_beta_rear_elbow_down * t616 / (t589 * t589 + t617)
-    del t589, t616, t617
-    t619 = whole_y_rear_elbow_down * (t618 * _runtime.sign(-t599))
-    del t599, t618
-    t620 = _runtime.select(spent_along_rear_elbow_down, t594 + t619, t594)
-    del spent_along_rear_elbow_down, t594, t619
-    t621 = whole_y_rear_elbow_down + t620
-    t622 = whole_y_rear_elbow_down - t620
-    del t620, whole_y_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t621, t162)
-    above_beta_rear_elbow_down = np.maximum(t622, t162)
-    t623 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t633 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t634 = v_2_beta_rear_elbow_down * t632 / (t601 * t601 + t633)
+    del t601, t632, t633
+    t635 = whole_y_rear_elbow_down * (t634 * _runtime.sign(-t611))
+    del t611, t634
+    t636 = _runtime.select(spent_along_rear_elbow_down, t606 + t635, t606)
+    del spent_along_rear_elbow_down, t606, t635
+    t637 = whole_y_rear_elbow_down + t636
+    t638 = whole_y_rear_elbow_down - t636
+    del t636, whole_y_rear_elbow_down
+    t639 = -(_runtime.FEASIBILITY * t628)
+    del t628
+    below_beta_rear_elbow_down = np.maximum(t637, t162)
+    above_beta_rear_elbow_down = np.maximum(t638, t162)
+    t640 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t624 = 1.0 / total_beta_rear_elbow_down
+    t641 = 1.0 / total_beta_rear_elbow_down
     del total_beta_rear_elbow_down
-    t625 = t623 * t624
-    del t623
-    t626 = t581 - v_2_beta_rear_elbow_down * t625
-    del t581, v_2_beta_rear_elbow_down
-    t627 = L1 + t626
-    t628 = t615 & (t195 <= t621) & (t195 <= t622) & (t207 <= t627)
-    del t195, t615, t621, t622
-    t629 = L1 - t626
-    unreachable_4 = np.logical_not(t628 & (t207 <= t629))
-    del t207, t628
-    t630 = _runtime.poison(invalid | unreachable_4)
-    t631 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
+    t642 = t640 * t641
+    del t640
+    t643 = t593 - v_2_beta_rear_elbow_down * t642
+    del t593, v_2_beta_rear_elbow_down
+    t644 = L1 + t643
+    t645 = t631 & (t626 <= t637) & (t626 <= t638) & (t639 <= t644)
+    del t626, t631, t637, t638
+    t646 = L1 - t643
+    unreachable_4 = np.logical_not(t645 & (t639 <= t646))
+    del t639, t645
+    t647 = _runtime.poison(invalid | unreachable_4)
+    t648 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
     del out_front_elbow_down, up_front_elbow_down
-    t632 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
-    t633 = lean_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t649 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    t650 = lean_alpha_rear_elbow_down * lean_beta_rear_elbow_down
     del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t634 = np.arctan2(t632, 1.0 - t633)
-    del t632, t633
-    t635 = _runtime.select(folded, 0.0, t631) + t634
-    del t631
-    below_alpha_rear_elbow_down = np.maximum(t627, t162)
-    del t627
-    above_alpha_rear_elbow_down = np.maximum(t629, t162)
-    del t162, t629
-    t636 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t637 = 1.0 / total_alpha_rear_elbow_down
-    del total_alpha_rear_elbow_down
-    t638 = t636 * t637
-    del t636
-    t639 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
-    del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t640 = np.arctan2(t638, t637 * t639)
-    del t637, t639
-    t641 = fore_turn_alpha_rear_elbow_down + fore_turn_beta_rear_elbow_down
-    t642 = fore_turn_alpha_rear_elbow_down * fore_turn_beta_rear_elbow_down
-    del fore_turn_alpha_rear_elbow_down, fore_turn_beta_rear_elbow_down
-    t643 = t224 - (t634 - np.arctan2(t641, 1.0 - t642))
-    del t224, t634, t641, t642
-    t644 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
-    del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t645 = t640 - np.arctan2(t625, t624 * t644)
-    del t624, t644
-    t646 = (wrist <= al * _runtime.DETERMINED) | nowhere
-    del nowhere, wrist
-    t647 = t646 | folded | short
-    del folded, short, t646
-    t648 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
-    t649 = t648 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
+    t651 = np.arctan2(t649, 1.0 - t650)
+    del t649, t650
+    t652 = _runtime.select(folded, 0.0, t648) + t651
     del t648
-    t650 = t649 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
-    del t649
-    t651 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
-    del t_phi, t_psi
-    t652 = t650 * t651
-    del t650, t651
-    t653 = np.abs(p_1_beta + v_1_beta * t209) + np.abs(t210 - L1 * t219)
-    del p_1_beta, t209, t210, t219, v_1_beta
-    t654 = 1125899906842624.0 * _runtime.select(t168, t653, 0.0)
+    below_alpha_rear_elbow_down = np.maximum(t644, t162)
+    del t644
+    above_alpha_rear_elbow_down = np.maximum(t646, t162)
+    del t162, t646
+    t653 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
+    t654 = 1.0 / total_alpha_rear_elbow_down
+    del total_alpha_rear_elbow_down
+    t655 = t653 * t654
     del t653
-    t655 = _runtime.select(t168, t652, 1.0) <= _runtime.DETERMINED * t654
-    del t168, t654
-    t656 = _runtime.status(invalid, unreachable, t647 | parallel | t655)
-    del parallel, t655, unreachable
-    t657 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t360
-    del p_1_beta_front_elbow_down, t360, v_1_beta_front_elbow_down
-    missed_front_elbow_down = _runtime.select(t337, np.abs(t657) + np.abs(t361 - L1 * t373), 0.0)
-    del t361, t373, t657
-    t658 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
+    t656 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
+    t657 = np.arctan2(t655, t654 * t656)
+    del t654, t656
+    t658 = fore_turn_alpha_rear_elbow_down + fore_turn_beta_rear_elbow_down
+    t659 = fore_turn_alpha_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    del fore_turn_alpha_rear_elbow_down, fore_turn_beta_rear_elbow_down
+    t660 = t226 - (t651 - np.arctan2(t658, 1.0 - t659))
+    del t226, t651, t658, t659
+    t661 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    del above_beta_rear_elbow_down, below_beta_rear_elbow_down
+    t662 = t657 - np.arctan2(t642, t641 * t661)
+    del t641, t661
+    t663 = (wrist <= al * _runtime.DETERMINED) | nowhere
+    del nowhere, wrist
+    t664 = t663 | folded | short
+    del folded, short, t663
+    t665 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
+    t666 = t665 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
+    del t665
+    t667 = t666 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
+    del t666
+    t668 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
+    del t_phi, t_psi
+    t669 = t667 * t668
+    del t667, t668
+    t670 = np.abs(p_1_beta + v_1_beta * t211) + np.abs(t212 - L1 * t221)
+    del p_1_beta, t211, t212, t221, v_1_beta
+    t671 = 1125899906842624.0 * _runtime.select(t168, t670, 0.0)
+    del t670
+    t672 = _runtime.select(t168, t669, 1.0) <= _runtime.DETERMINED * t671
+    del t168, t671
+    t673 = _runtime.status(invalid, unreachable, t664 | parallel | t672)
+    del parallel, t672, unreachable
+    t674 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t367
+    del p_1_beta_front_elbow_down, t367, v_1_beta_front_elbow_down
+    missed_front_elbow_down = _runtime.select(t339, np.abs(t674) + np.abs(t368 - L1 * t380), 0.0)
+    del t368, t380, t674
+    t675 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
     del missed_front_elbow_down
-    t659 = t647 | parallel_front_elbow_down | (_runtime.select(t337, t652, 1.0) <= t658)
-    del parallel_front_elbow_down, t337, t658
-    t660 = _runtime.status(invalid, unreachable_2, t659)
-    del t659, unreachable_2
-    t661 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t494
-    del p_1_beta_rear_elbow_up, t494, v_1_beta_rear_elbow_up
-    missed_rear_elbow_up = _runtime.select(t471, np.abs(t661) + np.abs(t495 - L1 * t507), 0.0)
-    del t495, t507, t661
-    t662 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
+    t676 = t664 | parallel_front_elbow_down | (_runtime.select(t339, t669, 1.0) <= t675)
+    del parallel_front_elbow_down, t339, t675
+    t677 = _runtime.status(invalid, unreachable_2, t676)
+    del t676, unreachable_2
+    t678 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t506
+    del p_1_beta_rear_elbow_up, t506, v_1_beta_rear_elbow_up
+    missed_rear_elbow_up = _runtime.select(t478, np.abs(t678) + np.abs(t507 - L1 * t519), 0.0)
+    del t507, t519, t678
+    t679 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
     del missed_rear_elbow_up
-    t663 = t647 | parallel_rear_elbow_up | (_runtime.select(t471, t652, 1.0) <= t662)
-    del parallel_rear_elbow_up, t471, t662
-    t664 = _runtime.status(invalid, unreachable_3, t663)
-    del t663, unreachable_3
-    t665 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t625
-    del p_1_beta_rear_elbow_down, t625, v_1_beta_rear_elbow_down
-    missed_rear_elbow_down = _runtime.select(t603, np.abs(t665) + np.abs(t626 - L1 * t638), 0.0)
-    del t626, t638, t665
-    t666 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
+    t680 = t664 | parallel_rear_elbow_up | (_runtime.select(t478, t669, 1.0) <= t679)
+    del parallel_rear_elbow_up, t478, t679
+    t681 = _runtime.status(invalid, unreachable_3, t680)
+    del t680, unreachable_3
+    t682 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t642
+    del p_1_beta_rear_elbow_down, t642, v_1_beta_rear_elbow_down
+    missed_rear_elbow_down = _runtime.select(t615, np.abs(t682) + np.abs(t643 - L1 * t655), 0.0)
+    del t643, t655, t682
+    t683 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
     del missed_rear_elbow_down
-    t667 = t647 | parallel_rear_elbow_down | (_runtime.select(t603, t652, 1.0) <= t666)
-    del parallel_rear_elbow_down, t603, t647, t652, t666
-    t668 = _runtime.status(invalid, unreachable_4, t667)
-    del invalid, t667, unreachable_4
+    t684 = t664 | parallel_rear_elbow_down | (_runtime.select(t615, t669, 1.0) <= t683)
+    del parallel_rear_elbow_down, t615, t664, t669, t683
+    t685 = _runtime.status(invalid, unreachable_4, t684)
+    del invalid, t684, unreachable_4
     return (
-        t174 + t214,
-        _runtime.wrap(t217 - t221) + t214,
-        _runtime.wrap(t226 + t228) + t214,
-        _runtime.wrap(t217 + t221) + t214,
-        _runtime.wrap(t226 - t228) + t214,
-        t229 + t214,
-        _runtime.wrap(t340 - t173) + t365,
-        _runtime.wrap(t370 - t375) + t365,
-        _runtime.wrap(t379 + t381) + t365,
-        _runtime.wrap(t370 + t375) + t365,
-        _runtime.wrap(t379 - t381) + t365,
-        t229 + t365,
-        _runtime.wrap(t473 - t474) + t499,
-        _runtime.wrap(t504 - t509) + t499,
-        _runtime.wrap(t512 + t514) + t499,
-        _runtime.wrap(t504 + t509) + t499,
-        _runtime.wrap(t512 - t514) + t499,
-        t229 + t499,
-        _runtime.wrap(t605 - t474) + t630,
-        _runtime.wrap(t635 - t640) + t630,
-        _runtime.wrap(t643 + t645) + t630,
-        _runtime.wrap(t635 + t640) + t630,
-        _runtime.wrap(t643 - t645) + t630,
-        t229 + t630,
-        t656,
-        t660,
-        t664,
-        t668,
+        t174 + t216,
+        _runtime.wrap(t219 - t223) + t216,
+        _runtime.wrap(t228 + t230) + t216,
+        _runtime.wrap(t219 + t223) + t216,
+        _runtime.wrap(t228 - t230) + t216,
+        t231 + t216,
+        _runtime.wrap(t342 - t173) + t372,
+        _runtime.wrap(t377 - t382) + t372,
+        _runtime.wrap(t386 + t388) + t372,
+        _runtime.wrap(t377 + t382) + t372,
+        _runtime.wrap(t386 - t388) + t372,
+        t231 + t372,
+        _runtime.wrap(t480 - t481) + t511,
+        _runtime.wrap(t516 - t521) + t511,
+        _runtime.wrap(t524 + t526) + t511,
+        _runtime.wrap(t516 + t521) + t511,
+        _runtime.wrap(t524 - t526) + t511,
+        t231 + t511,
+        _runtime.wrap(t617 - t481) + t647,
+        _runtime.wrap(t652 - t657) + t647,
+        _runtime.wrap(t660 + t662) + t647,
+        _runtime.wrap(t652 + t657) + t647,
+        _runtime.wrap(t660 - t662) + t647,
+        t231 + t647,
+        t673,
+        t677,
+        t681,
+        t685,
     )
 
 
@@ -3427,7 +3459,7 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     tangent = 4.0 * root * t29 - t167 * 0.00390625 <= _runtime.VANISHING * t167
     del t167
     t168 = stretched | tangent | (h <= _runtime.VANISHING * lengths)
-    del h, lengths, stretched, tangent
+    del h, lengths, stretched
     t169 = t168 | (L1 * fore <= _runtime.VANISHING * t30)
     del t168, t30
     t170 = _runtime.VANISHING * t29
@@ -3438,55 +3470,79 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del margin_alpha
     t173 = _runtime.VANISHING * play_alpha
     del play_alpha
+    spent_alpha = t172 <= t173
+    del t172
     t174 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
     del margin_beta
     t175 = _runtime.VANISHING * play_beta
     del play_beta
+    spent_beta = t174 <= t175
+    del t174
     parallel = -t66 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
     del t66, v_2
-    t176 = t171 | (t172 <= t173) | (t174 <= t175) | parallel
-    del parallel, t171, t172, t174
-    t177 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t176 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
     del left_along
-    t178 = _runtime.VANISHING * play
+    t177 = _runtime.VANISHING * play
     del play
-    t179 = margin_alpha_front_elbow_down * 9.094947017729282e-13
-    t180 = np.maximum(-t179, margin_alpha_front_elbow_down)
-    del margin_alpha_front_elbow_down, t179
-    t181 = margin_beta_front_elbow_down * 9.094947017729282e-13
-    t182 = np.maximum(-t181, margin_beta_front_elbow_down)
-    del margin_beta_front_elbow_down, t181
-    t183 = t176 | (t177 <= t178) | (t180 <= t173) | (t182 <= t175)
-    del t176, t177, t180, t182
-    t184 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
+    t178 = t171 | spent_alpha | spent_beta | parallel | (t176 <= t177)
+    del parallel, t171, t176
+    t179 = t178 | (tangent & (spent_alpha | spent_beta))
+    del spent_alpha, spent_beta, t178
+    t180 = margin_alpha_front_elbow_down * 9.094947017729282e-13
+    t181 = np.maximum(-t180, margin_alpha_front_elbow_down)
+    del margin_alpha_front_elbow_down, t180
+    spent_alpha_front_elbow_down = t181 <= t173
+    del t181
+    t182 = margin_beta_front_elbow_down * 9.094947017729282e-13
+    t183 = np.maximum(-t182, margin_beta_front_elbow_down)
+    del margin_beta_front_elbow_down, t182
+    spent_beta_front_elbow_down = t183 <= t175
+    del t183
+    t184 = t179 | spent_alpha_front_elbow_down | spent_beta_front_elbow_down
+    del t179
+    t185 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
     del v_2_front_elbow_down
-    t185 = left_along_front_elbow_down * 9.094947017729282e-13
-    t186 = np.maximum(-t185, left_along_front_elbow_down)
-    del left_along_front_elbow_down, t185
-    t187 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t188 = np.maximum(-t187, margin_alpha_rear_elbow_up)
-    del margin_alpha_rear_elbow_up, t187
-    t189 = t183 | (-t101 <= t184) | (t186 <= t178) | (t188 <= t173)
-    del t101, t183, t184, t186, t188
-    t190 = margin_beta_rear_elbow_up * 9.094947017729282e-13
-    spent_beta_rear_elbow_up = np.maximum(-t190, margin_beta_rear_elbow_up) <= t175
-    del margin_beta_rear_elbow_up, t190
-    t191 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t191, left_along_rear_elbow_up) <= t178
-    del left_along_rear_elbow_up, t191
-    t192 = t189 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up
-    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t189
-    t193 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t194 = np.maximum(-t193, margin_alpha_rear_elbow_down)
-    del margin_alpha_rear_elbow_down, t193
-    t195 = margin_beta_rear_elbow_down * 9.094947017729282e-13
-    t196 = np.maximum(-t195, margin_beta_rear_elbow_down)
-    del margin_beta_rear_elbow_down, t195
-    t197 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t198 = np.maximum(-t197, left_along_rear_elbow_down)
-    del left_along_rear_elbow_down, t197
-    t199 = t192 | (t194 <= t173) | (t196 <= t175) | (t198 <= t178)
-    del t173, t175, t178, t192, t194, t196, t198
+    t186 = left_along_front_elbow_down * 9.094947017729282e-13
+    t187 = np.maximum(-t186, left_along_front_elbow_down)
+    del left_along_front_elbow_down, t186
+    t188 = spent_alpha_front_elbow_down | spent_beta_front_elbow_down
+    del spent_alpha_front_elbow_down, spent_beta_front_elbow_down
+    t189 = t184 | (-t101 <= t185) | (t187 <= t177) | (tangent & t188)
+    del t101, t184, t185, t187, t188
+    t190 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t191 = np.maximum(-t190, margin_alpha_rear_elbow_up)
+    del margin_alpha_rear_elbow_up, t190
+    spent_alpha_rear_elbow_up = t191 <= t173
+    del t191
+    t192 = margin_beta_rear_elbow_up * 9.094947017729282e-13
+    spent_beta_rear_elbow_up = np.maximum(-t192, margin_beta_rear_elbow_up) <= t175
+    del margin_beta_rear_elbow_up, t192
+    t193 = t189 | spent_alpha_rear_elbow_up | spent_beta_rear_elbow_up
+    del t189
+    t194 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t194, left_along_rear_elbow_up) <= t177
+    del left_along_rear_elbow_up, t194
+    t195 = spent_alpha_rear_elbow_up | spent_beta_rear_elbow_up
+    del spent_alpha_rear_elbow_up, spent_beta_rear_elbow_up
+    t196 = t193 | spent_along_rear_elbow_up | (tangent & t195)
+    del spent_along_rear_elbow_up, t193, t195
+    t197 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t198 = np.maximum(-t197, margin_alpha_rear_elbow_down)
+    del margin_alpha_rear_elbow_down, t197
+    spent_alpha_rear_elbow_down = t198 <= t173
+    del t173, t198
+    t199 = margin_beta_rear_elbow_down * 9.094947017729282e-13
+    t200 = np.maximum(-t199, margin_beta_rear_elbow_down)
+    del margin_beta_rear_elbow_down, t199
+    spent_beta_rear_elbow_down = t200 <= t175
+    del t175, t200
+    t201 = t196 | spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down
+    del t196
+    t202 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t203 = np.maximum(-t202, left_along_rear_elbow_down)
+    del left_along_rear_elbow_down, t202
+    t204 = spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down
+    del spent_alpha_rear_elbow_down, spent_beta_rear_elbow_down
     return (
         t14 + t79,
         _runtime.wrap(t80 - t81) + t79,
@@ -3516,7 +3572,7 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         t164,
         t165,
         t166,
-        t199,
+        t201 | (t203 <= t177) | (tangent & t204),
     )
 
 

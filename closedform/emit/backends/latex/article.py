@@ -71,8 +71,10 @@ BARE: Mapping[str, Any] = {
     "after": "",
 }
 """A function without a listing."""
-ROOM = 9
+ROOM = 18
 """A table that needs no more lines than that is kept on one page; a longer one may be broken."""
+LEFT = 9
+"""The lines that a longer table has to find on a page, to begin there."""
 HEADING = 5
 """The lines of a heading and a short reason, which stay with the table below them."""
 SENTENCE = 60
@@ -203,7 +205,7 @@ class Page(Sheet):
         counted = f"{n} {'identity' if n == 1 else 'identities'}" if n and proved else ""
         if counted and step.nonnegative:
             counted += ", where " + ", ".join(rf"${self.math(e)} \ge 0$" for e in step.nonnegative)
-        room = min(2 * len(step.rows) + 3, ROOM)
+        room = room_of(2 * len(step.rows) + 3)
         return {
             "title": escape(step.title),
             "index": indexed(step.title),
@@ -428,6 +430,11 @@ def tied(title: str) -> str:
     return re.sub(r"(?<=[A-Za-z]) (?=\d+\b)", "~", title)
 
 
+def room_of(lines: int) -> int:
+    """The lines that a table of so many lines has to find on a page, to begin there."""
+    return lines if lines <= ROOM else LEFT
+
+
 def column(cells: Sequence[Any]) -> str:
     """The type of a column of a table: long sentences are broken into lines."""
     longest = max(len(c) for c in (*cells, "") if isinstance(c, str))
@@ -509,6 +516,10 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
         ],
         "source_of_all": source_of_all(derivation, text),
         "joints": [page.joint(j) for j in derivation.joints],
+        "joints_room": room_of(len(derivation.joints) + 4),
+        "parameters_room": room_of(
+            4 + sum(1 + len(p.meaning) // SENTENCE for p in derivation.parameters)
+        ),
         "steps": [{**page.step(s), "number": k} for k, s in enumerate(derivation.steps, 1)],
         "modes": derivation.assembly_modes,
         "inverses": [page.inverse(f) for f in derivation.functions if f.has_status],

@@ -87,7 +87,7 @@ def parallel(
     posture = _forward(mechanism, modes, loop, passive)
     if passive:
         _passive_angles(mechanism, posture, passive)
-    draw(mechanism, posture.hand, posture.program, posture.modes)
+    draw(mechanism, posture.hand, posture.program, posture.modes, passive)
     _velocity(mechanism, posture, loop)
     _inverse(mechanism, loop)
 

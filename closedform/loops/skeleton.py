@@ -40,7 +40,7 @@ class Drawing:
 
     def _add_rod(self, k: int, leg: Leg, far: str, equation: sp.Expr) -> None:
         """The rod; of a leg that stretches it is the driven joint."""
-        near = f"A{k}" if isinstance(leg, Stretch | Strut) else f"B{k}"
+        near = near_of(k, leg)
         self.lengths[near, far] = sp.sympify(leg.rod, strict=True)
         self.closing[near, far] = equation
         if isinstance(leg, Stretch):
@@ -110,11 +110,23 @@ class _OnHand(Drawing):
         self.closing[end, far] = equation**2
 
 
-def draw(m: Hand, hand: sp.Matrix, program: Program, modes: Branches) -> None:
-    """Record the skeleton, with the hand in an assembly mode in the names of a program."""
+def near_of(k: int, leg: Leg) -> str:
+    """The point at the near end of the rod of a leg."""
+    return f"A{k}" if isinstance(leg, Stretch | Strut) else f"B{k}"
+
+
+def draw(
+    m: Hand, hand: sp.Matrix, program: Program, modes: Branches, passive: Sequence[sp.Symbol] = ()
+) -> None:
+    """Record the skeleton, with the hand in an assembly mode in the names of a program.
+
+    ``passive`` are the angles of the rods, or of the first of them.
+    """
     drawn = _OnHand()
     for (k, leg), equation in zip(m.numbered, m.loop, strict=True):
         drawn.add(m, k, leg, equation)
+    for (k, leg), angle in zip(m.numbered, passive, strict=False):
+        drawn.joints[angle] = (near_of(k, leg),)
     ground = tuple(f"A{k}" for k, _ in m.numbered)
     v = Program(list(program.body), program.taken)
     points = _points(m, hand)

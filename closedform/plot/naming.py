@@ -19,6 +19,8 @@ FRAME = 0.13
 """The length of the axes of the base, as a share of the drawing."""
 SMALL = 0.03
 """An arm of a joint that is shorter than this part of the drawing is too short for an arc."""
+EXACT = 1e-9
+"""By how much a cosine of parallel directions differs from 1."""
 FLAT = 0.05
 """Angles that are smaller than this have no arc."""
 ARC, RADII = 0.09, (0.1, 0.18)
@@ -94,7 +96,8 @@ def _named_beside(drawn: Drawn, name: str, room: Room) -> bool:
     elif name not in drawn.along:
         drawn.diagram.label(place[joint.points[0]], symbol(name))
     elif name not in drawn.r.module.JOINTS:
-        drawn.diagram.label(drawn.along[name][0], symbol(name))
+        if not _passive_arc(drawn, name, room):
+            drawn.diagram.label(drawn.along[name][0], symbol(name))
     else:
         return len(joint.points) == 1 and _arc(drawn, name, room)
     return True
@@ -123,6 +126,35 @@ def _arc(drawn: Drawn, name: str, room: Room) -> bool:
         ray = np.cos(part * turn) * back + np.sin(part * turn) * np.cross(way, back)
         room.take(at + radius * diagram.size * ray / size)
     return True
+
+
+def _passive_arc(drawn: Drawn, name: str, room: Room) -> bool:
+    """Draw the arc of a passive angle, if a link has this angle from an axis of the base."""
+    r, (at, way) = drawn.r, drawn.along[name]
+    joints = [n for n, j in drawn.skeleton.joints.items() if j.kind == "revolute"]
+    passive = [n for n in joints if n not in r.module.JOINTS]
+    if not r.has("passive_angles"):
+        return False
+    turn = float(r.call("passive_angles", drawn.q)[drawn.mode][passive.index(name)])
+    if not FLAT < abs(turn) < np.pi:
+        return False
+    skeleton = drawn.skeleton
+    foot = skeleton.joints[name].points[0]
+    lines = [*skeleton.links.values(), *(j.points for j in skeleton.joints.values())]
+    for point in dict.fromkeys(p for line in lines if foot in line for p in line):
+        arm = drawn.place[point] - drawn.place[foot]
+        for axis in (way, -way):  # the sense of a passive joint is not known
+            back = np.cos(turn) * arm - np.sin(turn) * np.cross(axis, arm)
+            if point != foot and np.max(back) > (1 - EXACT) * np.linalg.norm(back):
+                radius = float(np.clip(ARC / abs(turn), *RADII))
+                reference = radius + 0.05
+                drawn.diagram.angle(
+                    at, back, axis, turn, symbol(name), radius=radius, reference=reference
+                )
+                ray = np.cos(turn / 2) * back + np.sin(turn / 2) * np.cross(axis, back)
+                room.take(at + radius * drawn.diagram.size * ray / np.linalg.norm(back))
+                return True
+    return False
 
 
 def _lettered(drawn: Drawn) -> list[str]:

@@ -342,18 +342,30 @@ def draw(
         if joint.kind == "prismatic":
             _slide(diagram, ends, shade, width, named)
             named = {}
-    if free := [place[point] for point in _passive(skeleton)]:
+    pivots = _pivots(r, diagram)
+    if free := [place[point] for point in _passive(skeleton, pivots)]:
         diagram.passive(free, shade, 1.4 * width)
-    for name, joint in skeleton.joints.items():
-        if joint.kind == "revolute":
-            _, way = (along or {}).get(name, (None, None))
-            diagram.revolute(place[joint.points[0]], shade, axis=way)
+    for name in pivots:
+        _, way = (along or {}).get(name, (None, None))
+        diagram.revolute(place[skeleton.joints[name].points[0]], shade, axis=way)
     diagram.hand(place[skeleton.hand], shade)
 
 
-def _passive(skeleton: Any) -> list[str]:
-    """The points where links meet that have no joint of the module: what turns freely there."""
-    known = {p for joint in skeleton.joints.values() for p in joint.points} | {skeleton.hand}
+def _pivots(r: Robot, diagram: Diagram) -> list[str]:
+    """The joints that have a symbol: in a plane those that are driven or on the ground."""
+    skeleton = r.module.SKELETON
+    return [
+        name
+        for name, joint in skeleton.joints.items()
+        if joint.kind == "revolute"
+        and (diagram.spatial or name in r.module.JOINTS or joint.points[0] in skeleton.ground)
+    ]
+
+
+def _passive(skeleton: Any, pivots: Collection[str]) -> list[str]:
+    """The points where links meet that have no other symbol: what turns freely there."""
+    joints = [j for name, j in skeleton.joints.items() if name in pivots or j.kind == "prismatic"]
+    known = {p for joint in joints for p in joint.points} | {skeleton.hand}
     links = [set(link) for link in skeleton.links.values()]
     met = [p for p in skeleton.points if sum(p in link for link in links) > 1]
     return [p for p in met if p not in known]

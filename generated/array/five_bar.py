@@ -57,6 +57,8 @@ SKELETON = Skeleton(
     joints={
         "theta1": SkeletonJoint("revolute", ('A1',)),
         "theta2": SkeletonJoint("revolute", ('A2',)),
+        "theta3": SkeletonJoint("revolute", ('B1',)),
+        "theta4": SkeletonJoint("revolute", ('B2',)),
     },
     hand="P",
     ground=('A1', 'A2'),

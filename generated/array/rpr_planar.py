@@ -49,6 +49,8 @@ SKELETON = Skeleton(
     joints={
         "rho1": SkeletonJoint("prismatic", ('A1', 'P')),
         "rho2": SkeletonJoint("prismatic", ('A2', 'P')),
+        "theta1": SkeletonJoint("revolute", ('A1',)),
+        "theta2": SkeletonJoint("revolute", ('A2',)),
     },
     hand="P",
     ground=('A1', 'A2'),

@@ -57,6 +57,8 @@ export const SKELETON = Object.freeze(/** @type {const} */ ({
     joints: {
         theta1: { kind: "revolute", points: ["A1"] },
         theta2: { kind: "revolute", points: ["A2"] },
+        theta3: { kind: "revolute", points: ["B1"] },
+        theta4: { kind: "revolute", points: ["B2"] },
     },
     hand: "P",
     ground: ["A1", "A2"],

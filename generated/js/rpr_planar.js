@@ -49,6 +49,8 @@ export const SKELETON = Object.freeze(/** @type {const} */ ({
     joints: {
         rho1: { kind: "prismatic", points: ["A1", "P"] },
         rho2: { kind: "prismatic", points: ["A2", "P"] },
+        theta1: { kind: "revolute", points: ["A1"] },
+        theta2: { kind: "revolute", points: ["A2"] },
     },
     hand: "P",
     ground: ["A1", "A2"],

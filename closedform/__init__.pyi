@@ -85,6 +85,8 @@ from closedform.loops.on_rod import on_rod as on_rod
 from closedform.loops.parallel import parallel as parallel
 from closedform.loops.platform import platform as platform
 from closedform.loops.platform_legs import Half as Half
+from closedform.loops.sliding import Sliding as Sliding
+from closedform.loops.sliding_forward import sliding_linkage as sliding_linkage
 from closedform.loops.slotted import Lever as Lever
 from closedform.loops.slotted import slotted as slotted
 from closedform.loops.tripod import tripod as tripod

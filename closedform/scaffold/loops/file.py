@@ -51,7 +51,7 @@ from closedform.scaffold.loops.copies import copy_numbered
 
 KINDS = ("revolute", "prismatic", "spherical", "universal")
 USED = {"d", "pi", "real", "coupled", "parallel", "platform", "tripod", "on_rod", "linkage"}
-USED |= {"slotted", "guided"}
+USED |= {"slotted", "guided", "sliding_linkage"}
 USED |= {
     "Derivation",
     "Paper",
@@ -67,6 +67,7 @@ USED |= {
     "Plane",
     "Rail",
     "Slide",
+    "Sliding",
     "StandingPlane",
     "Stretch",
     "Strut",

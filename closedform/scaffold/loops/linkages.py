@@ -24,6 +24,7 @@ class LinkageLines:
     bodies: tuple[str, ...]
     hand: str
     words: str
+    slides: tuple[str, ...] = ()
 
 
 def linkage(loop: Loop) -> LinkageLines | None:
@@ -57,9 +58,9 @@ def linkage(loop: Loop) -> LinkageLines | None:
         turning[follower.other(GROUND)] = follower
     elif not any(loop.hand in at for at in points.values()):
         raise loop.error(f"the hand {loop.hand} is neither a point of a body nor a joint")
-    bodies = tuple(_line(loop, name, at, turning) for name, at in points.items())
+    bodies = tuple(line_of(name, at, turning) for name, at in points.items())
     return LinkageLines(
-        bodies, "" if follower else _safe(loop.hand), _words(turned, cylinders, found)
+        bodies, "" if follower else safe(loop.hand), _words(turned, cylinders, found)
     )
 
 
@@ -82,11 +83,11 @@ def _points(loop: Loop) -> dict[str, dict[str, sp.Matrix]]:
     found: dict[str, dict[str, sp.Matrix]] = {}
     for name, points in loop.bodies.items():
         if name not in loop.rods:
-            found[name] = {_safe(p): at for p, at in points.items()}
+            found[name] = {safe(p): at for p, at in points.items()}
             if missing := _without(loop, name):
                 raise loop.error(f"{name} has no point {missing[0].at}, where {missing[0].name} is")
             continue
-        ends = list(dict.fromkeys(_safe(j.at) for j in loop.of(name)))
+        ends = list(dict.fromkeys(safe(j.at) for j in loop.of(name)))
         if len(ends) != 2:
             raise loop.error(
                 f"the rod {name} must be joined at its two ends, and is at {listed(ends) or 'none'}"
@@ -109,7 +110,7 @@ def _check_pins(loop: Loop, points: Mapping[str, Mapping[str, sp.Matrix]]) -> No
     for point in dict.fromkeys(p for at in points.values() for p in at):
         holders = [name for name, at in points.items() if point in at]
         held = {holders[0]}
-        pins = [j for j in loop.joints.values() if _safe(j.at) == point]
+        pins = [j for j in loop.joints.values() if safe(j.at) == point]
         for _ in pins:
             held |= {b for j in pins if held & {*j.between} for b in j.between}
         if apart := [name for name in holders if name not in held]:
@@ -155,28 +156,27 @@ def _ordered(
     )
 
 
-def _line(
-    loop: Loop, name: str, points: Mapping[str, sp.Matrix], turning: Mapping[str, Joint]
-) -> str:
+def line_of(name: str, points: Mapping[str, sp.Matrix], turning: Mapping[str, Joint]) -> str:
+    """A body as it is written."""
     places = ", ".join(f'"{p}": ({", ".join(map(source, at))})' for p, at in points.items())
     joint = f", {turning[name].name}" if name in turning else ""
-    return f"{literal(_safe(name))}: Body({{{places}}}{joint})"
+    return f"{literal(safe(name))}: Body({{{places}}}{joint})"
 
 
 def _words(turned: Mapping[str, Joint], cylinders: Mapping[str, Joint], found: Order) -> str:
-    moved = [f"{j.name} turns {_safe(body)}" for body, j in turned.items()]
-    moved += [f"{j.name} is the length of {_safe(body)}" for body, j in cylinders.items()]
+    moved = [f"{j.name} turns {safe(body)}" for body, j in turned.items()]
+    moved += [f"{j.name} is the length of {safe(body)}" for body, j in cylinders.items()]
     dyads = (
-        f"{_safe(s.bodies[0])} and {_safe(s.bodies[1])} meet in {s.pin}"
+        f"{safe(s.bodies[0])} and {safe(s.bodies[1])} meet in {s.pin}"
         for s in found.steps
         if isinstance(s, Dyad)
     )
     return f"Joint {listed(moved)}.  Then {', '.join(dyads)}."
 
 
-def _safe(name: str) -> str:
+def safe(name: str) -> str:
     """A name as it may stand in names of variables."""
     return name.replace("-", "_")
 
 
-__all__ = ["LinkageLines", "linkage"]
+__all__ = ["FEW", "LinkageLines", "line_of", "linkage", "safe"]

@@ -18,6 +18,7 @@ from closedform.scaffold.loops.hinges import hinged
 from closedform.scaffold.loops.legs import TURNING, UPRIGHT, Legs, LoopLeg
 from closedform.scaffold.loops.linkages import LinkageLines, linkage
 from closedform.scaffold.loops.on_rod import on_rod
+from closedform.scaffold.loops.sliding import sliding
 from closedform.scaffold.loops.slotted import slotted
 from closedform.scaffold.loops.uprights import HINGED, uprights
 from closedform.scaffold.source import file_name, literal
@@ -45,6 +46,7 @@ KINDS = {
     "coupled": "a single loop",
     "slotted": "a pin on a line",
     "linkage": "a linkage of many bars",
+    "sliding_linkage": "a linkage of many bars with slides",
 }
 """What each function derives, in the words of the guide."""
 
@@ -64,7 +66,7 @@ def _way(found: Legs) -> _Way:
     """What derives the loop, by the first of the kinds that it is of."""
     loop = found.loop
     follower = loop.joints.get(loop.hand)
-    if lines := linkage(loop):
+    if lines := sliding(loop) or linkage(loop):
         if follower:
             return _Way([], [loop.hand], linkage=lines)
         return _Way([], list(AXES[:2]), f"at={literal(lines.hand)}", lines)
@@ -247,7 +249,7 @@ class _Way:
     def name(self) -> str:
         """The function that is called; a hand that turns sets its task itself."""
         if self.linkage:
-            return "linkage"
+            return "sliding_linkage" if self.linkage.slides else "linkage"
         if self.guide:
             return "guided"
         if self.legs[0].call.startswith("Upright"):
@@ -271,7 +273,9 @@ class _Way:
         """Those after the derivation and the task."""
         if self.linkage:
             bodies = [f"        {body}," for body in self.linkage.bodies]
-            return ["    {", *bodies, "    },", *[f"    {self.at},"] * bool(self.at)]
+            lines = [f"        {slide}," for slide in self.linkage.slides]
+            slides = ["    [", *lines, "    ],"] if lines else []
+            return ["    {", *bodies, "    },", *slides, *[f"    {self.at},"] * bool(self.at)]
         legs = [leg.call for leg in self.legs]
         if self.name in ("coupled", "slotted", "on_rod"):
             return [f"    {argument}," for argument in [*legs, *[self.at] * bool(self.at)]]
@@ -283,7 +287,7 @@ class _Way:
     def parts(self) -> Sequence[str]:
         """The legs or the bodies, as they are written."""
         if self.linkage:
-            return self.linkage.bodies
+            return [*self.linkage.bodies, *self.linkage.slides]
         return [*([self.guide.call] if self.guide else []), *(leg.call for leg in self.legs)]
 
     @property

@@ -1,0 +1,216 @@
+"""The points that a line shares with a circle or with another line, and the direction of a line."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from closedform.lemmas.legs import Naming, cross_in_plane
+from closedform.lemmas.registry import theorem
+from closedform.model.functions import choose
+from closedform.model.inverse import Degenerate, Link
+from closedform.model.lemma import Lemma
+
+theorem(
+    "line and circle",
+    statement=r"""Let $\mathbf t \ne 0$ and $\mathbf w$ be vectors of a plane, $h = \mathbf
+t\cdot\mathbf t$, $m = \mathbf t\cdot\mathbf w$ and $p = t_1 w_2 - t_2 w_1$.  The points $\mathbf x$
+of the line of $\mathbf t$ through the origin at the distance $r \ge 0$ from $\mathbf w$ are
+$$\mathbf x = \frac{m - \sigma\sqrt{h r^2 - p^2}}{h}\,\mathbf t, \qquad \sigma = \pm 1.$$""",
+    proof=r"""With $\mathbf x = \lambda\,\mathbf t$ the distance gives $h\lambda^2 - 2 m\lambda +
+\mathbf w\cdot\mathbf w = r^2$, a quadratic equation in $\lambda$.  By Lagrange's identity $m^2 +
+p^2 = h\,\mathbf w\cdot\mathbf w$, so a quarter of its discriminant is $m^2 - h\,\mathbf
+w\cdot\mathbf w + h r^2 = h r^2 - p^2$.""",
+)
+theorem(
+    "direction of a line",
+    statement=r"""Let $\mathbf w \ne 0$ be a vector of a plane.  The unit vectors $\mathbf t$ with
+$t_1 w_2 - t_2 w_1 = e$ are
+$$\mathbf t = \frac{1}{d^2}\left(k\,\mathbf w + e\begin{pmatrix} w_2\\ -w_1\end{pmatrix}\right),
+\qquad d^2 = \mathbf w\cdot\mathbf w, \qquad k = \sigma\sqrt{d^2 - e^2}, \qquad \sigma = \pm 1.$$
+They exist if and only if $|e| \le d$.""",
+    proof=r"""The vectors $\mathbf w$ and $(w_2, -w_1)$ are at right angles and equally long.  So
+$\mathbf t$ is a sum of both, and its products with them are $k = \mathbf t\cdot\mathbf w$ and $e$.
+It is a unit vector if and only if $k^2 + e^2 = d^2$.""",
+    exception=r"""If $\mathbf w = 0$, every direction is a solution for $e = 0$, and none for
+another $e$.""",
+)
+theorem(
+    "intersection of lines",
+    statement=r"""Let $\mathbf s$ and $\mathbf t$ be vectors of a plane with $D = s_1 t_2 - s_2 t_1
+\ne 0$.  The line through the origin along $\mathbf s$ and the line through $\mathbf w$ along
+$\mathbf t$ have one point in common,
+$$\mathbf x = \frac{w_1 t_2 - w_2 t_1}{D}\,\mathbf s.$$""",
+    proof=r"""With $\mathbf x = \lambda\,\mathbf s$ the second line gives $\lambda D = w_1 t_2 - w_2
+t_1$.""",
+    exception=r"""If $D = 0$, the lines are parallel.  They are the same or have no point in
+common.""",
+)
+
+
+@dataclass(frozen=True)
+class Ray:
+    """A line: a point of it, and a vector along it, which is a unit vector but for rounding."""
+
+    at: sp.Matrix
+    way: sp.Matrix
+
+    def equation(self, x: sp.Matrix) -> sp.Expr:
+        """What vanishes if a point is on the line."""
+        return cross_in_plane(self.way, x - self.at)
+
+
+def line_and_circle(
+    names: Naming,
+    line: Ray,
+    circle: tuple[sp.Matrix, sp.Symbol],
+    unknowns: sp.Matrix,
+    sigma: sp.Symbol,
+) -> tuple[Link, sp.Expr]:
+    """The points of a line at a distance from a centre; the sign is that of the determinant.
+
+    Returns the link, and the length by which the line misses the circle.
+
+    Parameters
+    ----------
+    names
+        names quantities of the program that the names and bounds are added to
+    line
+        a line, in symbols or numbers
+    circle
+        its centre and its radius, in symbols or numbers
+    unknowns
+        the coordinates of the point that is sought
+    sigma
+        the sign that names the two points
+    """
+    (centre, r), t, start = circle, line.way, len(names.program.body)
+    w = sp.Matrix([names.let(f"w_{i}", e) for i, e in zip("xy", centre - line.at, strict=True)])
+    h = sp.simplify(t.dot(t))
+    m, aside = names.let("m", w.dot(t)), names.let("aside", cross_in_plane(t, w))
+    wide = r
+    if h != 1:
+        h = names.let("h", h, nonnegative=True)
+        wide = names.let("wide", sp.sqrt(h) * r, nonnegative=True)
+    root = names.half_chord("root", wide, aside, "the bar reaches the line of its slide")
+    far = names.let("along", (m - sigma * root) / h)
+    plain = (m - sigma * sp.sqrt(h * r**2 - aside**2)) / h
+    lemma = Lemma(
+        "line and circle",
+        r"\mathbf x = \frac{m - \sigma\sqrt{h r^2 - p^2}}{h}\,\mathbf t",
+        (line.equation(unknowns), (unknowns - centre).dot(unknowns - centre) - r**2),
+        dict(zip(unknowns, line.at + far * t, strict=True)),
+        2,
+        signs=(sigma,),
+        roles=((r"\mathbf t", t), (r"\mathbf w", w), ("m", m), ("r", r), ("p", aside)),
+        plainly=dict(zip(unknowns, line.at + plain * t, strict=True)),
+    )
+    missed = names.let("missed", sp.Max(0, sp.Abs(aside) - wide))
+    body = tuple(names.program.body[start:])
+    return Link(tuple(unknowns), lemma.equations, {}, lemma, body), missed
+
+
+def two_lines(
+    names: Naming, lines: tuple[Ray, Ray], unknowns: sp.Matrix, free: Sequence[sp.Symbol] = ()
+) -> Link:
+    """The point that two lines share; free joints are those that are free if they are the same."""
+    (a, b), p, start = lines, names.program, len(names.program.body)
+    across, w = sp.simplify(cross_in_plane(a.way, b.way)), b.at - a.at
+    off = names.let("off", cross_in_plane(w, b.way))
+    cases: tuple[Degenerate, ...] = ()
+    if across.is_number:
+        far = names.let("along", off / across)
+    else:
+        cross = names.let("cross", across)
+        flag = p.vanishes(
+            f"parallel{names.tag}", sp.Abs(cross), 1, "two slides are parallel", tuple(free)
+        )
+        p.match(choose(flag, off, 0), names.size * names.share, "both lines of a slider meet")
+        far = names.let("along", choose(flag, 0, off / cross))
+        locus = dict(zip((*b.at, *b.way), (*a.at, *a.way), strict=True))
+        locus = {x: e for x, e in locus.items() if x.is_Symbol}
+        cases = (Degenerate((flag,), locus, free[0] if free else None, "two slides are parallel"),)
+    lemma = Lemma(
+        "intersection of lines",
+        r"\mathbf x = \frac{w_1 t_2 - w_2 t_1}{D}\,\mathbf s",
+        (a.equation(unknowns), b.equation(unknowns)),
+        dict(zip(unknowns, a.at + far * a.way, strict=True)),
+        1,
+        roles=((r"\mathbf s", a.way), (r"\mathbf t", b.way), (r"\mathbf w", sp.Matrix(w))),
+    )
+    body = tuple(p.body[start:])
+    return Link(tuple(unknowns), lemma.equations, {}, lemma, body, degenerate=cases)
+
+
+def direction(
+    names: Naming,
+    w: sp.Matrix,
+    offset: sp.Expr,
+    unknowns: sp.Matrix,
+    sigma: sp.Symbol,
+    free: Sequence[sp.Symbol] = (),
+) -> tuple[Link, sp.Expr]:
+    """The unit vectors whose line through the origin passes a point at a distance.
+
+    The sign is that of the product with ``w``.  Returns the link, and by how much the point is too
+    near.
+
+    Parameters
+    ----------
+    names
+        names quantities of the program that the names and bounds are added to
+    w
+        the point, in symbols or numbers
+    offset
+        its distance from the line, positive on the left; a symbol or a number
+    unknowns
+        the vector that is sought
+    sigma
+        the sign that names the two vectors
+    free
+        the joints that are free if the vector is
+    """
+    p, start = names.program, len(names.program.body)
+    square = names.let("square", w.dot(w), nonnegative=True)
+    d = names.let("apart", sp.sqrt(square), nonnegative=True)
+    flag = p.vanishes(
+        f"coincide{names.tag}", d, names.size, "both pivots of a slide coincide", tuple(free)
+    )
+    if offset == 0:
+        root, missed, plain = d, sp.S.Zero, d
+    else:
+        root = names.half_chord("root", d, offset, "the line of a slide passes its pivots")
+        missed, plain = names.let("missed", sp.Max(0, sp.Abs(offset) - d)), sp.sqrt(
+            square - offset**2
+        )
+
+    def vector(k: sp.Expr) -> list[sp.Expr]:
+        """With k along ``w``."""
+        aside = sp.Matrix([w[1], -w[0]])
+        return [
+            choose(flag, e, f / square)
+            for e, f in zip((1, 0), k * w + offset * aside, strict=True)
+        ]
+
+    x = unknowns
+    found = [names.let(f"t_{i}", e) for i, e in zip("xy", vector(sigma * root), strict=True)]
+    lemma = Lemma(
+        "direction of a line",
+        r"\mathbf t = \frac{1}{d^2}(k\,\mathbf w + e\,(w_2, -w_1)),\quad "
+        r"k = \sigma\sqrt{d^2 - e^2}",
+        (cross_in_plane(x, w) - offset, x.dot(x) - 1),
+        dict(zip(x, found, strict=True)),
+        2,
+        signs=(sigma,),
+        roles=((r"\mathbf w", w), ("e", offset)),
+        plainly=dict(zip(x, vector(sigma * plain), strict=True)),
+    )
+    locus = {e: sp.S.Zero for e in (*w, offset) if sp.sympify(e).is_Symbol}
+    case = Degenerate((flag,), locus, free[0] if free else None, "both pivots coincide")
+    body = tuple(p.body[start:])
+    return Link(tuple(x), lemma.equations, {}, lemma, body, degenerate=(case,)), missed
+
+
+__all__ = ["Ray", "direction", "line_and_circle", "two_lines"]

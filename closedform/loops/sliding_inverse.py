@@ -1,0 +1,254 @@
+"""The inverse of a planar linkage with slides: the same groups, from the hand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from closedform.lemmas.legs import Naming, Stretch, cross_in_plane
+from closedform.loops.hand import square
+from closedform.loops.leg_by_leg import MISSED, SIGN, record_lemma
+from closedform.loops.linkage import GROUND
+from closedform.loops.reached import bounds_of_any, export_reach
+from closedform.loops.sliding import Frame, SlidingLinkage, swing_name
+from closedform.loops.sliding_solver import Block, Solver
+from closedform.mechanics.assur_slides import (
+    Hold,
+    Meet,
+    OnLine,
+    SlidingOrder,
+    Swing,
+    sliding_order,
+)
+from closedform.model.functions import SINGLE, branches, choose, real
+from closedform.model.inverse import Inverse
+from closedform.model.step import Step
+
+
+def inverse(m: SlidingLinkage, loop: Step, poles: Sequence[Block]) -> None:
+    """Derive and export the inverse, or say why there is none."""
+    known = [GROUND, *[m.follower] * bool(m.follower)]
+    bars = {name: at for name, at in m.points.items() if name not in m.cylinders}
+    found = sliding_order(bars, m.pairs, known, [m.hand_at] * bool(m.hand_at))
+    if found.left:
+        m.d.no_inverse(f"with the hand held, {found.undone}")
+        return
+    if any(len(h.points) > 1 and h.slides or len(h.slides) > 1 for h in found.held):
+        m.d.no_inverse(f"with the hand held, {found.held[0].body} is held more than once")
+        return
+    there = {m.hand_at, *(p for at in bars.values() for p in at)}
+    for name in m.cylinders:
+        if loose := [p for p in m.points[name] if p not in there]:
+            m.d.no_inverse(f"with the hand held, the end {loose[0]} of {name} can still move")
+            return
+    _Reverse(m, loop, found, poles).export()
+
+
+@dataclass
+class _Reverse:
+    """The inverse as it is written into a program."""
+
+    m: SlidingLinkage
+    loop: Step
+    order: SlidingOrder
+    poles: Sequence[Block]
+    values: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    lost: list[sp.Expr] = field(default_factory=list)
+    """How much each group enlarges an error of the target."""
+    equations: list[sp.Expr] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        m = self.m
+        self.program = p = m.d.program()
+        moved = [sp.Abs(x) for x in m.hand if m.moving and m.follower not in m.turning]
+        self.size = p.let("size", m.size + sp.Add(*moved))
+        self.solver = Solver(m, p, self.size, sp.S.Half, m.d.actuated)
+        self.solver.start([GROUND, *[m.follower] * bool(m.follower)])
+        if m.hand_at:
+            self.solver.here.at[m.hand_at] = self.solver.meant.at[m.hand_at] = m.hand
+
+    def export(self) -> None:
+        for k, group in enumerate(self.order.groups, 1):
+            if isinstance(group, Hold):
+                self._hold(group, k)
+            else:
+                before = len(self.solver.blocks)
+                self.solver.solve(group, k)
+                for block in self.solver.blocks[before:]:
+                    self._lose(block, k)
+        self._joints()
+        self.equations = [e for b in self.solver.blocks for e in b.equations]
+        self._determined()
+        self._write()
+
+    def _lose(self, block: Block, k: int) -> None:
+        det = block.matrix.applyfunc(lambda e: e.xreplace(self.solver.values)).det()
+        if not det.is_number and self.order.held:
+            size = self.program.let(f"det_{k}", sp.Abs(det), nonnegative=True)
+            self.lost.append(block.scale / (size + block.scale / 2**20))
+
+    def _hold(self, group: Hold, k: int) -> None:
+        """A body that is known already: the target has to be on the curve of the hand."""
+        m, p, solver = self.m, self.program, self.solver
+        here, meant = solver.here, solver.meant
+        near, *others = group.points
+        free = [flag for link in solver.links for case in link.degenerate for flag in case.flags]
+        lost = sp.Min(2**40, sp.Mul(*self.lost))
+
+        def compare(gap: sp.Expr, name: str) -> None:
+            # a pin that is free may be chosen such that the distance is right
+            off = p.let(name, choose(sp.Or(*free), 0, gap) if free else gap)
+            p.match(off, self.size * lost / 2, "the hand is on its curve")
+            solver.missed.append(sp.Abs(off))
+
+        for slide in group.slides:
+            ray = solver.ray(OnLine(group.body, slide), near, here)
+            compare(cross_in_plane(ray.way, here.at[near] - ray.at), f"off_{k}")
+            other = m.slides[slide].other(group.body)
+            solver.parallel(group.body, other, near)
+            return
+        for point in others:
+            between = square(here.at[point] - here.at[near])
+            apart = p.let(f"apart_{k}{point}", sp.sqrt(between), nonnegative=True)
+            compare(apart - m.length(group.body, near, point), f"off_{k}{point}")
+        local = m.local(group.body, near)
+        span = m.local(group.body, others[0]) - local
+        frames = [
+            Frame(w.at[near], local, w.at[others[0]] - w.at[near], span) for w in (here, meant)
+        ]
+        solver.know(group.body, *frames)
+
+    def _joints(self) -> None:
+        """The driven joints, from where the bodies are."""
+        m, solver = self.m, self.solver
+        for body, q in m.driven.items():
+            if body in m.turning:
+                self.values[q] = solver.angle(body, q, (q,))
+            else:
+                places = (solver.slid(body, w) for w in (solver.here, solver.meant))
+                self.values[q] = solver.linear(q, *places)
+        for body, q in m.cylinders.items():
+            near, far = m.points[body]
+            names = Naming(self.program, self.size, f"_{q}")
+            w = solver.here.at[far] - solver.here.at[near]
+            solved = Stretch(q, (0, 0)).solve(names, w, real("none"))
+            solver.links.append(solved.link)
+            self.values[q] = solved.value
+            between = square(solver.meant.at[far] - solver.meant.at[near])
+            solver.blocks.append(Block("", (q,), (between - q**2,), (True,), sp.S.One))
+
+    def _determined(self) -> None:
+        """Whether the joints determine the posture: the groups of the forward map."""
+        m, g, solver = self.m, self.program, self.solver
+        known: dict[sp.Basic, sp.Expr] = dict(self.values)
+        for body, q in m.driven.items():
+            if body in m.turning:
+                a, b = solver.here.frames[body].vector(sp.Matrix([1, 0]))
+                known |= {sp.cos(q): a, sp.sin(q): b}
+        for group in m.groups:
+            if isinstance(group, Meet):
+                known |= dict(zip(m.unknown(group.pin), solver.here.at[group.pin], strict=True))
+            elif isinstance(group, Swing):
+                way = m.slides[group.slide].way
+                here = solver.here.frames[group.bodies[0]].vector(way)
+                known |= dict(zip(m.unknown(swing_name(group)), here, strict=True))
+        volumes, scales = [], []
+        for k, block in enumerate(self.poles, 1):
+            A = g.matrix(f"A_{k}", block.matrix.applyfunc(lambda e: e.xreplace(known)))
+            volumes.append(g.let(f"Delta_{k}", sp.Abs(A.det()), nonnegative=True))
+            scales.append(block.scale.xreplace(known))
+        for group in m.groups:
+            if isinstance(group, Meet):
+                for hold in group.holds:
+                    if not isinstance(hold, OnLine):
+                        scales += self._stretches(hold.body, hold.near, group.pin)
+        if not volumes:
+            return
+        missed = g.let("missed", sp.Add(*solver.missed))
+        g.determined(
+            sp.Mul(*volumes),
+            sp.Mul(*scales),
+            "a group can move while the joints stand still",
+            name=r"|\det A|",
+            missed=missed,
+            size=self.size,
+        )
+
+    def _stretches(self, body: str, near: str, pin: str) -> list[sp.Expr]:
+        """By how much points of a body move more than its pin, or the angle of a follower."""
+        m = self.m
+        if body in m.cylinders:
+            return []
+        length = m.length(body, near, pin)
+        if body == m.follower:
+            return [self.size / length]
+        others = [p for p in m.points[body] if p not in (near, pin)]
+        return [sp.Max(1, m.length(body, near, p) / length) for p in others]
+
+    def _write(self) -> None:
+        m, d, g, solver = self.m, self.m.d, self.program, self.solver
+        on_curve = bool(self.order.held)
+        near_pole = bool(self.poles)
+        d.step(
+            "Inverse: group by group, from the hand",
+            "The hand is known instead of the joints.  The bodies are found in this order, again "
+            f"group by group: {', '.join(' and '.join(g.bodies) for g in self.order.groups)}.  "
+            + "The length of a cylinder is the distance of its ends.  " * bool(m.cylinders)
+            + "The target has to be on the curve of the hand, which the body that is held tells.  "
+            * on_curve
+            + (
+                "Near a parallel singularity rounded joints do not determine the hand.  The status "
+                "is SINGULAR if the product of the determinants of all groups is less than 2^-10 of "
+                f"that of their scales.  {MISSED}"
+            )
+            * near_pole,
+            {},
+            uses=[self.loop],
+            solves={"ik": ()},
+        )
+        chosen = [(sigma, SIGN) for sigma in solver.signs]
+        working = branches(*chosen) if chosen else SINGLE
+        d.branches = working.labels
+        d.function(
+            "ik",
+            "The driven joints of all working modes.",
+            {"x": tuple(m.hand)},
+            {"q": [self.values[q] for q in d.actuated]},
+            program=g,
+            branches=working,
+            result="Solutions",
+            notes=(
+                "UNREACHABLE: the bodies do not meet"
+                + ", or the target is not on the curve of the hand" * on_curve
+                + ".",
+                "SINGULAR: a group is free to move, as where its pivots coincide; one posture is "
+                "used.",
+                *["SINGULAR also near a parallel singularity."] * near_pole,
+            ),
+        )
+        if not on_curve:
+            what = m.follower or "the hand"
+            inside = bounds_of_any(g, solver.signs)
+            export_reach(d, inside, {"p": tuple(m.hand)}, what)
+        for link in solver.links:
+            record_lemma(d, "ik", link)
+        passive = tuple(
+            x for b in solver.blocks for x in b.unknowns if x not in {*d.actuated}
+        )
+        d.inverses.append(
+            Inverse(
+                "ik",
+                d.actuated,
+                (sp.S.Zero,) * len(self.equations),
+                tuple(self.equations),
+                images="fk",
+                links=tuple(solver.links),
+                passive=passive,
+                angles=tuple(m.hand) if m.follower in m.turning else (),
+            )
+        )
+
+
+__all__ = ["inverse"]

@@ -1,0 +1,290 @@
+"""Solves the groups of a linkage with slides in a program, in either direction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import sympy as sp
+
+from closedform.lemmas.circles import two_circles
+from closedform.lemmas.legs import Naming, cross_in_plane
+from closedform.lemmas.lines import Ray, direction, line_and_circle, two_lines
+from closedform.lemmas.registry import theorem
+from closedform.loops.hand import square
+from closedform.loops.leg_by_leg import named_in
+from closedform.loops.sliding import Frame, Sliding, SlidingLinkage, swing_name
+from closedform.mechanics.assur_slides import (
+    Group,
+    Hold,
+    Meet,
+    OnCircle,
+    OnLine,
+    Place,
+    Swing,
+)
+from closedform.model.functions import Program, choose, real
+from closedform.model.inverse import Degenerate, Link
+from closedform.model.lemma import Lemma
+
+theorem(
+    "point of a known body",
+    statement=r"""If a body is known, so is each coordinate $x$ of its points, and the position of a
+slide on it: $x = c$, with $c$ computed from what is known.""",
+    proof=r"""The equation is solved already.""",
+)
+
+
+def named(p: Program, name: str, place: sp.Matrix) -> sp.Matrix:
+    """A vector with its coordinates under names."""
+    return sp.Matrix([named_in(p, f"{name}_{i}", e) for i, e in zip("xy", place, strict=True)])
+
+
+@dataclass(frozen=True)
+class Block:
+    """The equations of a group in symbols, and its unknowns."""
+
+    name: str
+    unknowns: tuple[sp.Symbol, ...]
+    equations: tuple[sp.Expr, ...]
+    halved: tuple[bool, ...]
+    """Which equations are squares, whose derivatives are halved."""
+    scale: sp.Expr
+    """The largest value of the determinant."""
+
+    def rows(self, symbols: Sequence[sp.Symbol]) -> sp.Matrix:
+        """The derivatives of the equations."""
+        rows = sp.Matrix(self.equations).jacobian(list(symbols))
+        half = [sp.Rational(1, 2) if h else 1 for h in self.halved]
+        return sp.diag(*half) * rows
+
+    @property
+    def matrix(self) -> sp.Matrix:
+        return self.rows(self.unknowns).applyfunc(sp.expand)
+
+
+@dataclass
+class World:
+    """What is known of the bodies and their points: in names of a program, or in symbols."""
+
+    frames: dict[str, Frame] = field(default_factory=dict)
+    at: dict[str, sp.Matrix] = field(default_factory=dict)
+
+
+@dataclass
+class Solver:
+    """The groups as they are written into a program."""
+
+    m: SlidingLinkage
+    program: Program
+    size: sp.Expr
+    share: sp.Rational
+    free: tuple[sp.Symbol, ...] = ()
+    here: World = field(default_factory=World)
+    meant: World = field(default_factory=World)
+    links: list[Link] = field(default_factory=list)
+    blocks: list[Block] = field(default_factory=list)
+    signs: list[sp.Symbol] = field(default_factory=list)
+    missed: list[sp.Expr] = field(default_factory=list)
+    values: dict[sp.Basic, sp.Expr] = field(default_factory=dict)
+    """The unknowns in the names of the program."""
+
+    def names(self, tag: str) -> Naming:
+        return Naming(self.program, self.size, f"_{tag}", self.share)
+
+    def know(self, body: str, frame: Frame, meant: Frame) -> None:
+        """Add a body and all its points."""
+        self.here.frames[body], self.meant.frames[body] = frame, meant
+        for point in self.m.points[body]:
+            if point not in self.here.at:
+                local = self.m.local(body, point)
+                self.here.at[point] = named(self.program, f"p{point}", frame.at(local))
+                self.meant.at[point] = meant.at(local)
+
+    def start(self, bodies: Sequence[str]) -> None:
+        """Add bodies with known joints."""
+        for body in bodies:
+            self.know(body, self.m.moved(body), self.m.moved(body))
+
+    def solve(self, group: Group, k: int) -> None:
+        """Write a group that has one or two solutions, or none to choose."""
+        if isinstance(group, Meet):
+            self._meet(group, k)
+        elif isinstance(group, Swing):
+            self._swing(group, k)
+        elif isinstance(group, Place):
+            like, at = group.like, group.near
+            self.parallel(group.body, like, at)
+
+    def parallel(self, body: str, like: str, point: str) -> None:
+        """A body with a known point that is not turned to another one."""
+        local = self.m.local(body, point)
+        frames = [
+            Frame(w.at[point], local, w.frames[like].arm, w.frames[like].span, w.frames[like].still)
+            for w in (self.here, self.meant)
+        ]
+        self.know(body, *frames)
+
+    def ray(self, hold: OnLine, point: str, world: World) -> Ray:
+        """The line on which a body holds a point."""
+        slide = self.m.slides[hold.slide]
+        frame = world.frames[slide.other(hold.body)]
+        at = self.m.local(hold.body, point) + slide.shift(hold.body)
+        return Ray(frame.at(at), frame.vector(slide.way))
+
+    def _sign(self, name: str) -> sp.Symbol:
+        self.signs.append(sigma := real(f"sigma_{name}"))
+        return sigma
+
+    def _done(self, link: Link, unknowns: sp.Matrix, name: str) -> sp.Matrix:
+        """Record a link; returns the names of its solution."""
+        p, lemma = self.program, link.lemma
+        assert lemma is not None
+        start = len(p.body)
+        place = named(p, name, sp.Matrix([lemma[x] for x in unknowns]))
+        means = {n: x for n, x in zip(place, unknowns, strict=True) if n.is_Symbol}
+        self.links.append(replace(link, body=(*link.body, *p.body[start:]), means=means))
+        self.values |= dict(zip(unknowns, place, strict=True))
+        return place
+
+    def _meet(self, group: Meet, k: int) -> None:
+        m, p, tag = self.m, self.program, self.names(f"{k}")
+        lines = [h for h in group.holds if isinstance(h, OnLine)]
+        circles = [h for h in group.holds if isinstance(h, OnCircle)]
+        unknowns = m.unknown(group.pin)
+        lengths = [m.length(c.body, c.near, group.pin) for c in circles]
+        radii = [
+            r if r.is_Symbol else tag.let(f"r{i}", r, nonnegative=True)
+            for i, r in enumerate(lengths, 1)
+        ]
+        centres = [named(p, f"b{i}_{k}", self.here.at[c.near]) for i, c in enumerate(circles, 1)]
+        rays = [
+            Ray(named(p, f"a{i}_{k}", ray.at), named(p, f"l{i}_{k}", ray.way))
+            for i, ray in enumerate((self.ray(h, group.pin, self.here) for h in lines), 1)
+        ]
+        if len(circles) == 2:
+            sigma = self._sign(f"{k}")
+            met = two_circles(
+                p,
+                centres,
+                radii,
+                tuple(unknowns),
+                sigma,
+                scale=self.size,
+                share=self.share,
+                free=self.free,
+                suffix=f"_{k}",
+            )
+            link = met.link
+        elif circles:
+            sigma = self._sign(f"{k}")
+            link, missed = line_and_circle(tag, rays[0], (centres[0], radii[0]), unknowns, sigma)
+            self.missed.append(missed)
+        else:
+            link = two_lines(tag, (rays[0], rays[1]), unknowns, self.free)
+        place = self._done(link, unknowns, f"p{group.pin}")
+        drawn = [self.ray(h, group.pin, self.meant) for h in lines]
+        squares = [
+            square(unknowns - self.meant.at[c.near]) - r**2
+            for c, r in zip(circles, lengths, strict=True)
+        ]
+        # a lemma on a circle and a line has the line first
+        equations = [*(ray.equation(unknowns) for ray in drawn), *squares]
+        halved = [*(False for _ in drawn), *(True for _ in squares)]
+        names = " and ".join(group.bodies)
+        what = {0: f"{names} in line", 1: f"{names} crosswise", 2: f"slides of {names} parallel"}
+        scale = sp.Mul(*lengths)
+        self.blocks.append(
+            Block(what[len(lines)], tuple(unknowns), tuple(equations), tuple(halved), scale)
+        )
+        self.here.at[group.pin], self.meant.at[group.pin] = place, unknowns
+        for hold in lines[:1] if len(group.bodies) == 1 else lines:
+            like = m.slides[hold.slide].other(hold.body)
+            self.parallel(hold.body, like, group.pin)
+        for circle, equation, r in zip(circles, squares, lengths, strict=True):
+            local = m.local(circle.body, circle.near)
+            span = m.local(circle.body, group.pin) - local
+            frames = [
+                Frame(w.at[circle.near], local, w.at[group.pin] - w.at[circle.near], span, still)
+                for w, still in ((self.here, sp.S.Zero), (self.meant, equation / r**2))
+            ]
+            self.know(circle.body, *frames)
+
+    def _swing(self, group: Swing, k: int) -> None:
+        m, p, tag = self.m, self.program, self.names(f"{k}")
+        (first, second), slide = group.near, m.slides[group.slide]
+        a, b = group.bodies
+        local = m.local(b, second) + slide.shift(b) - m.local(a, first)
+        offset = sp.simplify(cross_in_plane(slide.way, local))
+        unknowns, sigma = m.unknown(swing_name(group)), self._sign(f"{k}")
+        w = named(p, f"w_{k}", self.here.at[second] - self.here.at[first])
+        e = offset if offset == 0 else tag.coefficient("e", offset)
+        link, missed = direction(tag, w, e, unknowns, sigma, self.free)
+        self.missed.append(missed)
+        t = self._done(link, unknowns, f"t{a}")
+        between = self.meant.at[second] - self.meant.at[first]
+        equations = (cross_in_plane(unknowns, between) - offset, square(unknowns) - 1)
+        name = f"{a} and {b} with both pivots at right angles to their slide"
+        block = Block(name, tuple(unknowns), equations, (False, True), self.size)
+        self.blocks.append(block)
+        for body, near in zip(group.bodies, group.near, strict=True):
+            frames = [
+                Frame(world.at[near], m.local(body, near), arm, slide.way, still)
+                for world, arm, still in (
+                    (self.here, t, sp.S.Zero),
+                    (self.meant, unknowns, equations[1]),
+                )
+            ]
+            self.know(body, *frames)
+
+    def linear(self, x: sp.Symbol, value: sp.Expr, meant: sp.Expr) -> sp.Expr:
+        """A coordinate that is known; returns its value."""
+        name = named_in(self.program, f"at_{x}", value)
+        lemma = Lemma(
+            "point of a known body", "x = c", (x - name,), {x: name}, 1, roles=(("x", x),)
+        )
+        self.links.append(Link((x,), lemma.equations, {}, lemma))
+        self.blocks.append(Block("", (x,), (x - meant,), (False,), sp.S.One))
+        self.values[x] = name
+        return name
+
+    def angle(self, body: str, x: sp.Symbol, free: Sequence[sp.Symbol]) -> sp.Expr:
+        """The joint of a body that turns about the ground."""
+        p, right = self.program, sp.Matrix([1, 0])
+        a, b = (
+            named_in(p, f"v{i}_{x}", e)
+            for i, e in enumerate(self.here.frames[body].vector(right))
+        )
+        start = len(p.body)
+        r = p.let(f"reach_{x}", sp.sqrt(a**2 + b**2), nonnegative=True)
+        none = p.vanishes(f"none_{x}", r, 1, f"{body} has no length", tuple(free))
+        s, c = (choose(none, e, f) for e, f in ((0, b), (1, a)))
+        rho = real(f"rho_{x}")
+        lemma = Lemma(
+            "polar coordinates",
+            r"\rho\,u(\theta) = (x, y) \;\Rightarrow\; \rho = \sqrt{x^2 + y^2},\ "
+            r"\theta = \operatorname{atan2}(y, x)",
+            (rho * sp.cos(x) - a, rho * sp.sin(x) - b),
+            {x: sp.atan2(s, c), rho: r},
+            1,
+            excluded=1,
+            roles=((r"\rho", rho), (r"\theta", x), ("x", a), ("y", b)),
+        )
+        case = Degenerate((none,), {a: 0, b: 0}, x, f"{body} has no length")
+        body_of = tuple(p.body[start:])
+        self.links.append(Link((x, rho), lemma.equations, {}, lemma, body_of, degenerate=(case,)))
+        meant = self.meant.frames[body].vector(right)
+        equations = (rho * sp.cos(x) - meant[0], rho * sp.sin(x) - meant[1])
+        self.blocks.append(Block("", (x, rho), equations, (False, False), sp.S.One))
+        self.values |= {sp.cos(x): a, sp.sin(x): b, rho: sp.S.One, x: lemma[x]}
+        return lemma[x]
+
+    def slid(self, body: str, world: World) -> sp.Expr:
+        """How far a body with a joint slid on the ground."""
+        slide: Sliding = self.m.slide_of(body)
+        point = self.m.points[body][0]
+        from_zero = world.at[point] - self.m.local(body, point) - slide.shift(body)
+        return slide.way.dot(from_zero)
+
+
+__all__ = ["Block", "Hold", "Solver", "World", "named"]

@@ -1,0 +1,242 @@
+"""The order in which a planar linkage with slides is solved: one group after the other.
+
+Bodies that slide on each other are not turned to each other.  So a body that slides on a known one
+is known but for one number, and each of its points is on a line.  A group is a pin of two bodies,
+each of which holds it on a circle or on such a line; a body that slides on two known ones; or two
+bodies that slide on each other, each of which is pinned to a known point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+
+PAIR = 2
+
+
+@dataclass(frozen=True)
+class OnCircle:
+    """A body holds a point at a distance from ``near``, another point of it that is known."""
+
+    body: str
+    near: str
+
+
+@dataclass(frozen=True)
+class OnLine:
+    """A body holds a point on a line, because it slides on a known body by the ``slide``."""
+
+    body: str
+    slide: int
+
+
+@dataclass(frozen=True)
+class Meet:
+    """A ``pin`` that two bodies hold; both are the same if it slides on two bodies."""
+
+    pin: str
+    holds: tuple[OnCircle | OnLine, OnCircle | OnLine]
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(h.body for h in self.holds))
+
+
+@dataclass(frozen=True)
+class Swing:
+    """Two bodies that slide on each other; the points in ``near`` are known."""
+
+    bodies: tuple[str, str]
+    near: tuple[str, str]
+    slide: int
+
+
+@dataclass(frozen=True)
+class Place:
+    """A body that is not turned to ``like``, by a slide, and that has the known point ``near``."""
+
+    body: str
+    like: str
+    slide: int
+    near: str
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        return (self.body,)
+
+
+@dataclass(frozen=True)
+class Hold:
+    """A body that is held at known points, or at one and by slides on known bodies."""
+
+    body: str
+    points: tuple[str, ...]
+    slides: tuple[int, ...] = ()
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        return (self.body,)
+
+
+Group = Meet | Swing | Place | Hold
+
+
+@dataclass
+class SlidingOrder:
+    """The groups in their order, and the bodies that are left."""
+
+    groups: list[Group] = field(default_factory=list)
+    left: list[str] = field(default_factory=list)
+
+    @property
+    def held(self) -> list[Hold]:
+        return [g for g in self.groups if isinstance(g, Hold)]
+
+    @property
+    def undone(self) -> str:
+        """Why the bodies that are left are not solved."""
+        return (
+            f"no two of the bodies {', '.join(self.left)} are a group that is solved alone: they "
+            f"are a group of a class above II"
+        )
+
+
+@dataclass
+class _Known:
+    """The bodies with their points, the pairs of them that slide, and what is known of them."""
+
+    on: dict[str, tuple[str, ...]]
+    slides: Sequence[tuple[str, str]]
+    bodies: set[str]
+    points: set[str]
+
+    def near(self, body: str) -> tuple[str, ...]:
+        return tuple(p for p in self.on[body] if p in self.points)
+
+    def of(self, body: str) -> Iterator[tuple[int, str]]:
+        """The slides of a body, with the body at the other side."""
+        for k, pair in enumerate(self.slides):
+            if body in pair:
+                yield k, pair[1 - pair.index(body)]
+
+    def lines(self, body: str) -> tuple[int, ...]:
+        """The slides of a body on known ones."""
+        return tuple(k for k, other in self.of(body) if other in self.bodies)
+
+    def like(self, body: str) -> tuple[int, str] | None:
+        """A slide of a body on one whose direction is known, and this one."""
+        reached: dict[str, tuple[int, str]] = {}
+        ways = [body]
+        for at in ways:
+            for k, other in self.of(at):
+                if other in self.bodies:
+                    return reached.get(at, (k, other))
+                if other not in reached and other != body:
+                    reached[other] = (k, other)
+                    ways.append(other)
+        return None
+
+    def holds(self, body: str) -> OnCircle | OnLine | None:
+        """How an unknown body holds its other points."""
+        if lines := self.lines(body):
+            return OnLine(body, lines[0])
+        near = self.near(body)
+        return OnCircle(body, near[0]) if near and not self.like(body) else None
+
+
+def sliding_order(
+    bodies: Mapping[str, Iterable[str]],
+    slides: Sequence[tuple[str, str]],
+    known: Iterable[str],
+    points: Iterable[str] = (),
+) -> SlidingOrder:
+    """The order for bodies with named points, some of which slide on each other.
+
+    Bodies that have a point of the same name are pinned together there.  Some bodies are ``known``,
+    and some ``points`` besides theirs.
+    """
+    on = {name: tuple(dict.fromkeys(at)) for name, at in bodies.items()}
+    here = {*known}
+    now = _Known(on, slides, here, {p for name in here for p in on[name]} | {*points})
+    found = SlidingOrder(left=[name for name in on if name not in here])
+    while group := _next(now, found.left):
+        found.groups.append(group)
+        now.bodies |= {*group.bodies}
+        now.points |= {p for name in group.bodies for p in on[name]}
+        if isinstance(group, Meet):
+            now.points.add(group.pin)
+        found.left = [name for name in found.left if name not in group.bodies]
+    return found
+
+
+def _next(now: _Known, left: Sequence[str]) -> Group | None:
+    for name in left:
+        near, lines, like = now.near(name), now.lines(name), now.like(name)
+        if len(near) >= PAIR or (near and lines):
+            return Hold(name, near, lines)
+        if near and like:
+            return Place(name, like[1], like[0], near[0])
+    for name in left:
+        if len(lines := now.lines(name)) >= PAIR and now.on[name]:
+            first, second = (OnLine(name, k) for k in lines[:2])
+            return Meet(now.on[name][0], (first, second))
+    for a, b in combinations(left, 2):
+        shared = [p for p in now.on[a] if p in now.on[b] and p not in now.points]
+        first_hold, second_hold = now.holds(a), now.holds(b)
+        if shared and first_hold and second_hold:
+            return Meet(shared[0], (first_hold, second_hold))
+        between = [k for k, other in now.of(a) if other == b]
+        if between and now.near(a) and now.near(b) and not now.like(a):
+            return Swing((a, b), (now.near(a)[0], now.near(b)[0]), between[0])
+    return None
+
+
+def groups_for(
+    groups: Sequence[Group],
+    bodies: Mapping[str, Iterable[str]],
+    slides: Sequence[tuple[str, str]],
+    wanted: str,
+) -> list[Group]:
+    """The groups that the body ``wanted`` depends on, in their order, and that of this body."""
+    kept: list[Group] = []
+    points: set[str] = set()
+    names = {wanted}
+    for group in reversed(groups):
+        near, on = _needs(group, slides)
+        given = {p for name in group.bodies for p in bodies[name]} - near
+        if names & {*group.bodies} or points & given:
+            kept.insert(0, group)
+            points |= near
+            names |= on
+    return kept
+
+
+def _needs(group: Group, slides: Sequence[tuple[str, str]]) -> tuple[set[str], set[str]]:
+    """The points and the bodies that have to be known before a group."""
+
+    def other(k: int, body: str) -> str:
+        return slides[k][1 - slides[k].index(body)]
+
+    if isinstance(group, Meet):
+        near = {h.near for h in group.holds if isinstance(h, OnCircle)}
+        return near, {other(h.slide, h.body) for h in group.holds if isinstance(h, OnLine)}
+    if isinstance(group, Swing):
+        return {*group.near}, set()
+    if isinstance(group, Place):
+        return {group.near}, {group.like}
+    return {*group.points}, {other(k, group.body) for k in group.slides}
+
+
+__all__ = [
+    "Group",
+    "Hold",
+    "Meet",
+    "OnCircle",
+    "OnLine",
+    "Place",
+    "SlidingOrder",
+    "Swing",
+    "groups_for",
+    "sliding_order",
+]

@@ -1,0 +1,278 @@
+"""Recognises a planar linkage in which bodies also slide on each other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import sympy as sp
+
+from closedform.mechanics.assur import freedoms
+from closedform.mechanics.assur_slides import Meet, SlidingOrder, Swing, sliding_order
+from closedform.model.names import listed
+from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
+from closedform.scaffold.loops.cylinders import joined
+from closedform.scaffold.loops.linkages import FEW, LinkageLines, line_of, safe
+from closedform.scaffold.source import literal, source
+
+Points = dict[str, dict[str, sp.Matrix]]
+
+
+@dataclass(frozen=True)
+class Slide:
+    """A slide of the file: both bodies, the axis, and the offset of the second when it is zero."""
+
+    joint: Joint
+    between: tuple[str, str]
+    offset: sp.Matrix
+
+
+@dataclass
+class Found:
+    """The bodies and slides of a file, as they are written."""
+
+    loop: Loop
+    cylinders: dict[str, Joint]
+    points: Points = field(default_factory=dict)
+    slides: list[Slide] = field(default_factory=list)
+
+    @property
+    def with_joint(self) -> dict[str, Joint]:
+        """The bodies on the ground that are driven or are the task."""
+        joints = self.loop.joints.values()
+        return {
+            j.other(GROUND): j
+            for j in joints
+            if GROUND in j.between and (j.driven or j.name == self.loop.hand)
+        }
+
+    @property
+    def driven(self) -> dict[str, Joint]:
+        return {body: j for body, j in self.with_joint.items() if j.driven}
+
+    @property
+    def pairs(self) -> list[tuple[str, str]]:
+        return [s.between for s in self.slides]
+
+
+def sliding(loop: Loop) -> LinkageLines | None:
+    """The lines of a linkage with slides; None if the file is of another kind."""
+    joined_loop, cylinders = joined(loop)
+    found = Found(joined_loop, cylinders)
+    if not _is_one(found):
+        return None
+    _read_points(found)
+    _read_slides(found)
+    _separate(found)
+    order = _ordered(found)
+    follower = loop.joints.get(loop.hand)
+    hand = "" if follower else _hand(found)
+    turning = {b: j for b, j in found.with_joint.items() if j.kind == "revolute"}
+    bodies = tuple(line_of(name, at, turning) for name, at in found.points.items())
+    slides = tuple(_line(found, s) for s in found.slides)
+    return LinkageLines(bodies, hand, _words(found, order), slides)
+
+
+def _is_one(found: Found) -> bool:
+    """Whether the file is of this kind, and of no kind that has fewer bodies."""
+    loop = found.loop
+    joints = list(loop.joints.values())
+    follower = loop.joints.get(loop.hand)
+    driven = [j for j in joints if j.driven]
+    slides = [j for j in joints if j.kind == "prismatic"]
+    inputs, moving = len(driven) + len(found.cylinders), len(loop.bodies) - 1
+    if (
+        loop.dimensions != 2
+        or inputs not in FEW
+        or not slides
+        or loop.parallelograms
+        or any(j.kind not in ("revolute", "prismatic") for j in joints)
+        or any(GROUND not in j.between for j in driven)
+        or (follower and (follower.driven or GROUND not in follower.between))
+    ):
+        return False
+    few = FEW[inputs] - len(found.cylinders)
+    return moving > few or (moving == few and inputs == 1 and not follower)
+
+
+def _read_points(found: Found) -> None:
+    """The points of all bodies; a rod has one at each end, and a block those of its pins."""
+    loop = found.loop
+    for name, points in loop.bodies.items():
+        if name not in loop.rods:
+            found.points[name] = dict(points)
+            continue
+        if sliding_joints := [j.name for j in loop.of(name) if j.kind == "prismatic"]:
+            raise loop.error(
+                f"the rod {name} slides by {sliding_joints[0]}; give it points instead of a "
+                f"length, so that it is known along which line"
+            )
+        ends = list(dict.fromkeys(j.at for j in loop.of(name)))
+        if len(ends) != 2:
+            raise loop.error(
+                f"the rod {name} must be joined at its two ends, and is at {listed(ends) or 'none'}"
+            )
+        far = sp.Matrix([loop.rods[name], 0])
+        found.points[name] = dict(zip(ends, (sp.zeros(2, 1), far), strict=True))
+
+
+def _read_slides(found: Found) -> None:
+    loop = found.loop
+    for joint in loop.joints.values():
+        if joint.kind == "prismatic":
+            first, second = joint.between
+            between = (second, first) if second == GROUND else (first, second)
+            if joint.axis is None:
+                raise loop.error(f"{joint.name} slides; say in which direction with axis")
+            found.slides.append(Slide(joint, between, _offset(found, joint, between)))
+    for name in loop.bodies:
+        pins = [j for j in loop.of(name) if j.kind == "revolute"]
+        if missing := [j for j in pins if j.at not in found.points[name]]:
+            raise loop.error(f"{name} has no point {missing[0].at}, where {missing[0].name} is")
+
+
+def _offset(found: Found, joint: Joint, between: tuple[str, str]) -> sp.Matrix:
+    """Where the second body is when the slide is at zero, seen from its own coordinates.
+
+    The line of the slide passes ``at``.  A body without points has its pins there, and one with a
+    single point has it on this line.
+    """
+    loop, zero = found.loop, sp.zeros(2, 1)
+    places = [found.points[body].get(joint.at) for body in between]
+    first, second = places
+    if first is not None and second is not None:
+        if joint in found.with_joint.values() and any(first - second):
+            raise loop.error(
+                f"{joint.at} has different coordinates on {between[0]} and on {between[1]}, which "
+                f"is where it is when {joint.name} is zero"
+            )
+        return first - second
+    for k, place in enumerate(places):
+        own, other = between[k], found.points[between[1 - k]]
+        if place is None or own in loop.rods:
+            continue
+        if not other:
+            pins = [j.at for j in loop.of(between[1 - k]) if j.kind == "revolute"]
+            other |= {p: place for p in pins or [joint.at]}
+            return zero
+        if len(other) == 1 and between[1] not in found.with_joint:
+            (only,) = other.values()
+            return (place - only) * (1 if k == 0 else -1)
+    if first is None and second is None:
+        raise loop.error(
+            f"neither {between[0]} nor {between[1]} has the point {joint.at}, where {joint.name} "
+            f"slides"
+        )
+    return zero
+
+
+def _separate(found: Found) -> None:
+    """Give points that bodies have in common, but that no pin holds together, other names."""
+    loop = found.loop
+    separated: Points = {name: {} for name in found.points}
+    for point in dict.fromkeys(p for at in found.points.values() for p in at):
+        holders = [name for name, at in found.points.items() if point in at]
+        pins = [j for j in loop.joints.values() if j.at == point and j.kind == "revolute"]
+        parts: list[set[str]] = []
+        for name in holders:
+            part = {name}
+            for _ in pins:
+                part |= {b for j in pins if part & {*j.between} for b in j.between}
+            if part not in parts:
+                parts.append(part)
+        for part in parts:
+            slid = any(s.joint.at == point and {*s.between} & part for s in found.slides)
+            plain = GROUND in part or len(parts) == 1
+            if not (plain or slid or parts.index(part) == 0):
+                raise loop.error(
+                    f"{point} is a point of {holders[0]} and of {min(part)}, but no joint holds "
+                    f"them together there; give one of them another name"
+                )
+            owner = next(name for name in holders if name in part)
+            label = safe(point) if plain else f"{safe(point)}_{safe(owner)}"
+            for name in part:
+                separated[name][label] = found.points[name][point]
+    found.points = separated
+
+
+def _hand(found: Found) -> str:
+    """The name of the point that is the hand."""
+    loop = found.loop
+    names = [
+        (body, p)
+        for body, at in found.points.items()
+        for p in at
+        if body != GROUND and (p == safe(loop.hand) or p.startswith(f"{safe(loop.hand)}_"))
+    ]
+    known = {p for body in (GROUND, *found.driven) for p in found.points[body]}
+    moved = [p for body, p in names if p not in known and loop.hand in loop.bodies[body]]
+    moved += [p for body, p in names if p not in known]
+    if not moved:
+        raise loop.error(f"the hand {loop.hand} is neither a point that moves nor a joint")
+    return moved[0]
+
+
+def _ordered(found: Found) -> SlidingOrder:
+    """The groups of the linkage, if all are solved alone."""
+    loop = found.loop
+    free = freedoms(found.points) - 2 * len(found.slides) + len(found.cylinders)
+    driven = [*found.driven.values(), *found.cylinders.values()]
+    if free != len(driven):
+        raise loop.error(
+            f"{listed([j.name for j in driven])} drive{'s' * (len(driven) == 1)} this linkage, but "
+            f"by the count of its bodies, pins and slides it has {free} degrees of freedom"
+        )
+    order = sliding_order(found.points, found.pairs, [GROUND, *found.driven])
+    for step in order.held:
+        raise loop.error(
+            f"the driven joints and the bodies before it hold {step.body} already, so they could "
+            f"not move"
+        )
+    if order.left:
+        others = [
+            j.name
+            for j in loop.of(GROUND)
+            if len(driven) == 1
+            and not found.cylinders
+            and not j.driven
+            and not sliding_order(found.points, found.pairs, [GROUND, j.other(GROUND)]).left
+        ]
+        instead = f"; it can be solved if {' or '.join(others)} is driven" if others else ""
+        raise loop.error(f"this is a planar linkage with slides, but {order.undone}{instead}")
+    return order
+
+
+def _line(found: Found, slide: Slide) -> str:
+    axis, (first, second) = slide.joint.axis, slide.between
+    assert axis is not None
+    own = slide.joint.driven or slide.joint.name == found.loop.hand
+    parts = [
+        f"({literal(safe(first))}, {literal(safe(second))})",
+        f"({', '.join(map(source, axis))})",
+    ]
+    if any(slide.offset):
+        parts.append(f"({', '.join(source(sp.simplify(e)) for e in slide.offset)})")
+    if own:
+        parts.append(f"joint={slide.joint.name}")
+    return f"Sliding({', '.join(parts)})"
+
+
+def _words(found: Found, order: SlidingOrder) -> str:
+    moved = [
+        f"{j.name} {'turns' if j.kind == 'revolute' else 'moves'} {safe(body)}"
+        for body, j in found.driven.items()
+    ]
+    moved += [f"{j.name} is the length of {safe(body)}" for body, j in found.cylinders.items()]
+    told = []
+    for group in order.groups:
+        names = " and ".join(map(safe, group.bodies))
+        if isinstance(group, Meet):
+            told.append(f"{names} meet in {group.pin}" if len(group.bodies) > 1 else names)
+        elif isinstance(group, Swing):
+            told.append(f"{names} slide on each other")
+        else:
+            told.append(names)
+    return f"Joint {listed(moved)}.  Then {', '.join(told)}."
+
+
+__all__ = ["sliding"]

@@ -114,7 +114,9 @@ def _forward(m: SlidingLinkage, choice: Choice, loop: Step) -> tuple[Solver, Bra
         places = (solved.slid(m.follower, w) for w in (solved.here, solved.meant))
         outputs = [solved.linear(m.hand[0], *places)]
     elif m.direct:
-        outputs = list(solved.here.at[m.hand_at])
+        lemma = solved.links[-1].lemma
+        assert lemma is not None
+        outputs = [lemma[x] for x in m.hand]
     else:
         here, meant = (w.at[m.hand_at] for w in (solved.here, solved.meant))
         outputs = [solved.linear(x, *e) for x, e in zip(m.hand, zip(here, meant), strict=True)]

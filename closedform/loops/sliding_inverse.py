@@ -87,7 +87,11 @@ class _Reverse:
         det = block.matrix.applyfunc(lambda e: e.xreplace(self.solver.values)).det()
         if not det.is_number and self.order.held:
             size = self.program.let(f"det_{k}", sp.Abs(det), nonnegative=True)
-            self.lost.append(block.scale / (size + block.scale / 2**20))
+            scale = self._scale(block)
+            self.lost.append(scale / (size + scale / 2**20))
+
+    def _scale(self, block: Block) -> sp.Expr:
+        return self.size if block.scale is None else block.scale
 
     def _hold(self, group: Hold, k: int) -> None:
         """A body that is known already: the target has to be on the curve of the hand."""
@@ -158,7 +162,7 @@ class _Reverse:
         for k, block in enumerate(self.poles, 1):
             A = g.matrix(f"A_{k}", block.matrix.applyfunc(lambda e: e.xreplace(known)))
             volumes.append(g.let(f"Delta_{k}", sp.Abs(A.det()), nonnegative=True))
-            scales.append(block.scale.xreplace(known))
+            scales.append(self._scale(block).xreplace(known))
         for group in m.groups:
             if isinstance(group, Meet):
                 for hold in group.holds:

@@ -49,8 +49,8 @@ class Block:
     equations: tuple[sp.Expr, ...]
     halved: tuple[bool, ...]
     """Which equations are squares, whose derivatives are halved."""
-    scale: sp.Expr
-    """The largest value of the determinant."""
+    scale: sp.Expr | None = None
+    """The largest value of the determinant; none if it is the size of the linkage."""
 
     def rows(self, symbols: Sequence[sp.Symbol]) -> sp.Matrix:
         """The derivatives of the equations."""
@@ -113,8 +113,7 @@ class Solver:
         elif isinstance(group, Swing):
             self._swing(group, k)
         elif isinstance(group, Place):
-            like, at = group.like, group.near
-            self.parallel(group.body, like, at)
+            self.parallel(group.body, group.like, group.near)
 
     def parallel(self, body: str, like: str, point: str) -> None:
         """A body with a known point that is not turned to another one."""
@@ -141,8 +140,10 @@ class Solver:
         p, lemma = self.program, link.lemma
         assert lemma is not None
         start = len(p.body)
-        place = named(p, name, sp.Matrix([lemma[x] for x in unknowns]))
-        means = {n: x for n, x in zip(place, unknowns, strict=True) if n.is_Symbol}
+        place = sp.Matrix(
+            [p.let(f"{name}_{i}", lemma[x]) for i, x in zip("xy", unknowns, strict=True)]
+        )
+        means = dict(zip(place, unknowns, strict=True))
         self.links.append(replace(link, body=(*link.body, *p.body[start:]), means=means))
         self.values |= dict(zip(unknowns, place, strict=True))
         return place
@@ -154,7 +155,7 @@ class Solver:
         unknowns = m.unknown(group.pin)
         lengths = [m.length(c.body, c.near, group.pin) for c in circles]
         radii = [
-            r if r.is_Symbol else tag.let(f"r{i}", r, nonnegative=True)
+            r if r in m.moving else tag.let(f"r{i}", r, nonnegative=True)
             for i, r in enumerate(lengths, 1)
         ]
         centres = [named(p, f"b{i}_{k}", self.here.at[c.near]) for i, c in enumerate(circles, 1)]
@@ -222,10 +223,13 @@ class Solver:
         link, missed = direction(tag, w, e, unknowns, sigma, self.free)
         self.missed.append(missed)
         t = self._done(link, unknowns, f"t{a}")
+        # a direction between near points is less accurate, and so is what follows from it
+        less = self.size**2 / (2**10 * sp.sqrt(square(w)) + self.size / 2**30)
+        self.size = tag.let("size", sp.Max(self.size, less), nonnegative=True)
         between = self.meant.at[second] - self.meant.at[first]
         equations = (cross_in_plane(unknowns, between) - offset, square(unknowns) - 1)
         name = f"{a} and {b} with both pivots at right angles to their slide"
-        block = Block(name, tuple(unknowns), equations, (False, True), self.size)
+        block = Block(name, tuple(unknowns), equations, (False, True))
         self.blocks.append(block)
         for body, near in zip(group.bodies, group.near, strict=True):
             frames = [

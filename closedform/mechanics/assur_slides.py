@@ -54,11 +54,10 @@ class Swing:
 
 @dataclass(frozen=True)
 class Place:
-    """A body that is not turned to ``like``, by a slide, and that has the known point ``near``."""
+    """A body that is not turned to ``like``, because of slides, and has the known point ``near``."""
 
     body: str
     like: str
-    slide: int
     near: str
 
     @property
@@ -124,18 +123,16 @@ class _Known:
         """The slides of a body on known ones."""
         return tuple(k for k, other in self.of(body) if other in self.bodies)
 
-    def like(self, body: str) -> tuple[int, str] | None:
-        """A slide of a body on one whose direction is known, and this one."""
-        reached: dict[str, tuple[int, str]] = {}
+    def like(self, body: str) -> str:
+        """A known body that is not turned to another one; empty if there is none."""
         ways = [body]
         for at in ways:
-            for k, other in self.of(at):
+            for _, other in self.of(at):
                 if other in self.bodies:
-                    return reached.get(at, (k, other))
-                if other not in reached and other != body:
-                    reached[other] = (k, other)
+                    return other
+                if other not in ways:
                     ways.append(other)
-        return None
+        return ""
 
     def holds(self, body: str) -> OnCircle | OnLine | None:
         """How an unknown body holds its other points."""
@@ -176,19 +173,21 @@ def _next(now: _Known, left: Sequence[str]) -> Group | None:
         if len(near) >= PAIR or (near and lines):
             return Hold(name, near, lines)
         if near and like:
-            return Place(name, like[1], like[0], near[0])
+            return Place(name, like, near[0])
     for name in left:
         if len(lines := now.lines(name)) >= PAIR and now.on[name]:
             first, second = (OnLine(name, k) for k in lines[:2])
             return Meet(now.on[name][0], (first, second))
+    # where there is a choice, a direction is less sensitive than circles that nearly touch
+    for a, b in combinations(left, 2):
+        between = [k for k, other in now.of(a) if other == b]
+        if between and now.near(a) and now.near(b) and not now.like(a):
+            return Swing((a, b), (now.near(a)[0], now.near(b)[0]), between[0])
     for a, b in combinations(left, 2):
         shared = [p for p in now.on[a] if p in now.on[b] and p not in now.points]
         first_hold, second_hold = now.holds(a), now.holds(b)
         if shared and first_hold and second_hold:
             return Meet(shared[0], (first_hold, second_hold))
-        between = [k for k, other in now.of(a) if other == b]
-        if between and now.near(a) and now.near(b) and not now.like(a):
-            return Swing((a, b), (now.near(a)[0], now.near(b)[0]), between[0])
     return None
 
 

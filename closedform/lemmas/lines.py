@@ -49,6 +49,8 @@ t_1$.""",
 common.""",
 )
 
+FAR = 2**20
+
 
 @dataclass(frozen=True)
 class Ray:
@@ -113,9 +115,16 @@ def line_and_circle(
 
 
 def two_lines(
-    names: Naming, lines: tuple[Ray, Ray], unknowns: sp.Matrix, free: Sequence[sp.Symbol] = ()
+    names: Naming,
+    lines: tuple[Ray, Ray],
+    unknowns: sp.Matrix,
+    size: sp.Expr,
+    free: Sequence[sp.Symbol] = (),
 ) -> Link:
-    """The point that two lines share; free joints are those that are free if they are the same."""
+    """The point that two lines share; ``free`` are the joints that are free if they are the same.
+
+    Lines that meet at more than ``FAR`` times the ``size`` of the mechanism count as parallel.
+    """
     (a, b), p, start = lines, names.program, len(names.program.body)
     across, w = sp.simplify(cross_in_plane(a.way, b.way)), b.at - a.at
     off = names.let("off", cross_in_plane(w, b.way))
@@ -127,7 +136,9 @@ def two_lines(
         flag = p.vanishes(
             f"parallel{names.tag}", sp.Abs(cross), 1, "two slides are parallel", tuple(free)
         )
-        p.match(choose(flag, off, 0), names.size * names.share, "both lines of a slider meet")
+        least = FAR * size * sp.Abs(cross) - sp.Abs(off)
+        scale = FAR * names.size * names.share
+        p.bound(f"near{names.tag}", least, scale, "both lines meet nearby")
         far = names.let("along", choose(flag, 0, off / cross))
         locus = dict(zip((*b.at, *b.way), (*a.at, *a.way), strict=True))
         locus = {x: e for x, e in locus.items() if x.is_Symbol}

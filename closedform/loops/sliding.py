@@ -38,13 +38,14 @@ class Sliding:
 
     When the slide is at zero, the points of the second body are at their coordinates plus
     ``offset``, in the coordinates of the first.  A slide on the ground may have a ``joint``, which
-    is driven or is the task.
+    is driven or is the task.  ``slide`` is the passive joint of another slide, which is drawn.
     """
 
     between: tuple[str, str]
     along: Sequence[Any]
     offset: Sequence[Any] = (0, 0)
     joint: sp.Symbol | None = None
+    slide: sp.Symbol | None = None
 
     @property
     def way(self) -> sp.Matrix:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, product
 
 import sympy as sp
 
+from closedform.lemmas.legs import cross_in_plane
 from closedform.lemmas.missed import MOVED, SHARE
 from closedform.loops.conditioning import JACOBIAN, conditioning
 from closedform.loops.hand import in_space, square
@@ -180,7 +181,7 @@ def _draw(m: SlidingLinkage, at: Solver, modes: Branches) -> None:
             still = at.meant.frames[body].still
             if still != 0:
                 closing[a, b] = lengths[a, b] ** 2 * still
-    joints: dict[sp.Symbol, tuple[str, ...]] = {}
+    joints = _passive(m)
     for body, q in m.driven.items():
         if body in m.turning:
             joints[q] = (m.pivot(body),)
@@ -195,23 +196,37 @@ def _draw(m: SlidingLinkage, at: Solver, modes: Branches) -> None:
         joints[q] = (start, point)
         lengths[start, point] = q
     joints |= {q: m.points[body] for body, q in m.cylinders.items()}
-    of_hand = m.points[m.follower] if m.follower else ()
-    hand = m.hand_at or next((p for p in of_hand if p not in ground), of_hand[0])
+    drawn = {p for line in (*links.values(), *joints.values()) for p in line}
+    of_hand = [p for p in m.points[m.follower] if p in drawn] if m.follower else []
+    hand = m.hand_at or next((p for p in of_hand if p not in ground), [*of_hand, *drawn][0])
+    drawn.add(hand)
     skeleton(
         m.d,
-        {name: in_space(place) for name, place in here.items()},
+        {name: in_space(place) for name, place in here.items() if name in drawn},
         links=links,
         joints=joints,
         hand=hand,
         hand_at=in_space(meant[hand]),
-        ground=ground,
+        ground=[p for p in ground if p in drawn],
         lengths=lengths,
         program=at.program,
         branches=modes,
         notes=(NO_MODE,) * bool(at.signs),
-        at_posture=[{name: in_space(place) for name, place in meant.items()}],
+        at_posture=[{name: in_space(place) for name, place in meant.items() if name in drawn}],
         closing=closing,
     )
+
+
+def _passive(m: SlidingLinkage) -> dict[sp.Symbol, tuple[str, ...]]:
+    """The passive slides that are drawn, with a point of each body, both on a line along it."""
+    found: dict[sp.Symbol, tuple[str, ...]] = {}
+    for slide in m.slides:
+        first, second = slide.between
+        for p, q in product(m.points[first], m.points[second]):
+            apart = m.local(second, q) + slide.shift(second) - m.local(first, p)
+            if slide.slide and p != q and sp.simplify(cross_in_plane(slide.way, apart)) == 0:
+                found.setdefault(slide.slide, (p, q))
+    return found
 
 
 @dataclass(frozen=True)

@@ -166,7 +166,10 @@ class _Reverse:
         for group in m.groups:
             if isinstance(group, Meet):
                 for hold in group.holds:
-                    if not isinstance(hold, OnLine):
+                    if isinstance(hold, OnLine):
+                        other = m.slides[hold.slide].other(hold.body)
+                        scales += [self._away(other, group.pin)] * (other != GROUND)
+                    else:
                         scales += self._stretches(hold.body, hold.near, group.pin)
         if not volumes:
             return
@@ -179,6 +182,12 @@ class _Reverse:
             missed=missed,
             size=self.size,
         )
+
+    def _away(self, body: str, pin: str) -> sp.Expr:
+        """By how much a pin that slides on a body moves more than a point near its centre."""
+        here = self.solver.here
+        apart = here.at[pin] - here.frames[body].start
+        return sp.Max(1, sp.sqrt(square(apart)) / self.size)
 
     def _stretches(self, body: str, near: str, pin: str) -> list[sp.Expr]:
         """By how much points of a body move more than its pin, or the angle of a follower."""

@@ -13,6 +13,7 @@ from closedform.lemmas.lines import Ray, direction, line_and_circle, two_lines
 from closedform.lemmas.registry import theorem
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import named_in
+from closedform.loops.linkage import GROUND
 from closedform.loops.sliding import Frame, Sliding, SlidingLinkage, swing_name
 from closedform.mechanics.assur_slides import (
     Group,
@@ -88,6 +89,11 @@ class Solver:
     missed: list[sp.Expr] = field(default_factory=list)
     values: dict[sp.Basic, sp.Expr] = field(default_factory=dict)
     """The unknowns in the names of the program."""
+    whole: sp.Expr = sp.S.One
+    """The size of the linkage; ``size`` grows where accuracy is lost."""
+
+    def __post_init__(self) -> None:
+        self.whole = self.size
 
     def names(self, tag: str) -> Naming:
         return Naming(self.program, self.size, f"_{tag}", self.share)
@@ -151,6 +157,8 @@ class Solver:
     def _meet(self, group: Meet, k: int) -> None:
         m, p, tag = self.m, self.program, self.names(f"{k}")
         lines = [h for h in group.holds if isinstance(h, OnLine)]
+        # a point of two lines is computed on the first, which may be the more accurate one
+        lines.sort(key=lambda h: m.slides[h.slide].other(h.body) != GROUND)
         circles = [h for h in group.holds if isinstance(h, OnCircle)]
         unknowns = m.unknown(group.pin)
         lengths = [m.length(c.body, c.near, group.pin) for c in circles]
@@ -163,6 +171,8 @@ class Solver:
             Ray(named(p, f"a{i}_{k}", ray.at), named(p, f"l{i}_{k}", ray.way))
             for i, ray in enumerate((self.ray(h, group.pin, self.here) for h in lines), 1)
         ]
+        if len(rays) == 2 and not cross_in_plane(rays[0].way, rays[1].way).is_number:
+            rays = [rays[0], self._all_named(rays[1], f"2_{k}")]
         if len(circles) == 2:
             sigma = self._sign(f"{k}")
             met = two_circles(
@@ -182,7 +192,7 @@ class Solver:
             link, missed = line_and_circle(tag, rays[0], (centres[0], radii[0]), unknowns, sigma)
             self.missed.append(missed)
         else:
-            link = two_lines(tag, (rays[0], rays[1]), unknowns, self.free)
+            link = two_lines(tag, (rays[0], rays[1]), unknowns, self.whole, self.free)
         place = self._done(link, unknowns, f"p{group.pin}")
         drawn = [self.ray(h, group.pin, self.meant) for h in lines]
         squares = [
@@ -210,6 +220,17 @@ class Solver:
                 for w, still in ((self.here, sp.S.Zero), (self.meant, equation / r**2))
             ]
             self.know(circle.body, *frames)
+
+    def _all_named(self, ray: Ray, tag: str) -> Ray:
+        """A line all of whose numbers are under names, for a lemma with a case in which they vary."""
+        p = self.program
+        at, way = (
+            sp.Matrix(
+                [e if e.is_Symbol else p.let(f"{n}{i}{tag}", e) for i, e in zip("xy", v, strict=True)]
+            )
+            for n, v in (("a", ray.at), ("l", ray.way))
+        )
+        return Ray(at, way)
 
     def _swing(self, group: Swing, k: int) -> None:
         m, p, tag = self.m, self.program, self.names(f"{k}")

@@ -25,6 +25,8 @@ class LinkageLines:
     hand: str
     words: str
     slides: tuple[str, ...] = ()
+    passive: tuple[str, ...] = ()
+    """The passive slides."""
 
 
 def linkage(loop: Loop) -> LinkageLines | None:

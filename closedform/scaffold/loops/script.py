@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Sequence
+from copy import deepcopy
 from dataclasses import dataclass
 
 import sympy as sp
 
 from closedform.algebra.formulas import number
 from closedform.model.names import listed
-from closedform.scaffold.inputs.tables import Table, add_joint
+from closedform.scaffold.inputs.tables import Table, TableError, add_joint
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 from closedform.scaffold.loops.guides import GuideLine, guide
 from closedform.scaffold.loops.hinges import hinged
@@ -53,7 +54,7 @@ KINDS = {
 
 def loop_script(name: str, loop: Loop, origin: str) -> tuple[str, str]:
     """The derivation of a loop, as Python, and the kind of the mechanism in words."""
-    origin, way, table = file_name(origin), _way(Legs(loop)), Table()
+    origin, way, table = file_name(origin), _way(loop), Table()
     for joint in (leg.joint for leg in way.legs) if way.legs else loop.joints.values():
         if joint.driven:
             kind = "prismatic" if joint.kind == "prismatic" else "revolute"
@@ -62,14 +63,33 @@ def loop_script(name: str, loop: Loop, origin: str) -> tuple[str, str]:
     return text, way.kind
 
 
-def _way(found: Legs) -> _Way:
+def _way(loop: Loop) -> _Way:
     """What derives the loop, by the first of the kinds that it is of."""
+    again = deepcopy(loop)
+    try:
+        return _first_way(Legs(loop))
+    except TableError:
+        try:
+            lines = sliding(again, few=True)
+        except TableError:
+            lines = None  # what the other kinds say of it is nearer
+        if lines is None:
+            raise
+        return _bodies(again, lines)
+
+
+def _bodies(loop: Loop, lines: LinkageLines) -> _Way:
+    """A linkage of bodies."""
+    if loop.hand in loop.joints:
+        return _Way([], [loop.hand], linkage=lines)
+    return _Way([], list(AXES[:2]), f"at={literal(lines.hand)}", lines)
+
+
+def _first_way(found: Legs) -> _Way:
     loop = found.loop
     follower = loop.joints.get(loop.hand)
     if lines := sliding(loop) or linkage(loop):
-        if follower:
-            return _Way([], [loop.hand], linkage=lines)
-        return _Way([], list(AXES[:2]), f"at={literal(lines.hand)}", lines)
+        return _bodies(loop, lines)
     if follower and not follower.driven and (turning := slotted(found, follower)):
         found.check_all_used()
         return _Way(turning, [loop.hand])
@@ -370,6 +390,7 @@ def _body(table: Table, way: _Way) -> list[str]:
         argument = ', "prismatic"' if kind == "prismatic" else ""
         lines.append(f'{joint} = d.joint("{joint}"{argument})')
     passive = [leg.passive for leg in way.legs if leg.passive]
+    passive += way.linkage.passive if way.linkage else ()
     passive += [way.guide.slide] if way.guide and way.guide.slide else []
     lines += [f'{slide} = d.joint("{slide}", "prismatic", passive=True)' for slide in passive]
     if way.name in ("coupled", "slotted") or (way.linkage and len(way.task) == 1):

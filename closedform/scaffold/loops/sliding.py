@@ -55,11 +55,14 @@ class Found:
         return [s.between for s in self.slides]
 
 
-def sliding(loop: Loop) -> LinkageLines | None:
-    """The lines of a linkage with slides; None if the file is of another kind."""
+def sliding(loop: Loop, *, few: bool = False) -> LinkageLines | None:
+    """The lines of a linkage with slides; None if the file is of another kind.
+
+    Kinds with ``few`` bodies come first, unless one asks for them.
+    """
     joined_loop, cylinders = joined(loop)
     found = Found(joined_loop, cylinders)
-    if not _is_one(found):
+    if not _is_one(found, few=few):
         return None
     _read_points(found)
     _read_slides(found)
@@ -70,11 +73,12 @@ def sliding(loop: Loop) -> LinkageLines | None:
     turning = {b: j for b, j in found.with_joint.items() if j.kind == "revolute"}
     bodies = tuple(line_of(name, at, turning) for name, at in found.points.items())
     slides = tuple(_line(found, s) for s in found.slides)
-    return LinkageLines(bodies, hand, _words(found, order), slides)
+    passive = tuple(s.joint.name for s in found.slides if not _own(found, s))
+    return LinkageLines(bodies, hand, _words(found, order), slides, passive)
 
 
-def _is_one(found: Found) -> bool:
-    """Whether the file is of this kind, and of no kind that has fewer bodies."""
+def _is_one(found: Found, *, few: bool) -> bool:
+    """Whether the file is of this kind, and of no kind that has fewer bodies unless ``few``."""
     loop = found.loop
     joints = list(loop.joints.values())
     follower = loop.joints.get(loop.hand)
@@ -91,8 +95,8 @@ def _is_one(found: Found) -> bool:
         or (follower and (follower.driven or GROUND not in follower.between))
     ):
         return False
-    few = FEW[inputs] - len(found.cylinders)
-    return moving > few or (moving == few and inputs == 1 and not follower)
+    least = FEW[inputs] - len(found.cylinders)
+    return few or moving > least or (moving == least and inputs == 1 and not follower)
 
 
 def _read_points(found: Found) -> None:
@@ -242,18 +246,22 @@ def _ordered(found: Found) -> SlidingOrder:
     return order
 
 
+def _own(found: Found, slide: Slide) -> bool:
+    """Whether a slide is driven or is the task."""
+    return slide.joint.driven or slide.joint.name == found.loop.hand
+
+
 def _line(found: Found, slide: Slide) -> str:
     axis, (first, second) = slide.joint.axis, slide.between
     assert axis is not None
-    own = slide.joint.driven or slide.joint.name == found.loop.hand
+    own = _own(found, slide)
     parts = [
         f"({literal(safe(first))}, {literal(safe(second))})",
         f"({', '.join(map(source, axis))})",
     ]
     if any(slide.offset):
         parts.append(f"({', '.join(source(sp.simplify(e)) for e in slide.offset)})")
-    if own:
-        parts.append(f"joint={slide.joint.name}")
+    parts.append(f"{'joint' if own else 'slide'}={slide.joint.name}")
     return f"Sliding({', '.join(parts)})"
 
 

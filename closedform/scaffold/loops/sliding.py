@@ -141,7 +141,8 @@ def _offset(found: Found, joint: Joint, between: tuple[str, str]) -> sp.Matrix:
     The line of the slide passes ``at``.  A body without points has its pins there, and one with a
     single point has it on this line.
     """
-    loop, zero = found.loop, sp.zeros(2, 1)
+    loop, zero, axis = found.loop, sp.zeros(2, 1), joint.axis
+    assert axis is not None
     places = [found.points[body].get(joint.at) for body in between]
     first, second = places
     if first is not None and second is not None:
@@ -159,9 +160,19 @@ def _offset(found: Found, joint: Joint, between: tuple[str, str]) -> sp.Matrix:
             pins = [j.at for j in loop.of(between[1 - k]) if j.kind == "revolute"]
             other |= {p: place for p in pins or [joint.at]}
             return zero
-        if len(other) == 1 and between[1] not in found.with_joint:
+        if joint in found.with_joint.values():
+            continue
+        if len(other) == 1:
             (only,) = other.values()
             return (place - only) * (1 if k == 0 else -1)
+        across = sp.Matrix([-axis[1], axis[0]])
+        if all(sp.simplify(across.dot(at - place)) != 0 for at in other.values()):
+            body = between[1 - k]
+            raise loop.error(
+                f"{joint.name} slides along the line through {joint.at} of {own}, on which {body} "
+                f"has no point; give {body} the point {joint.at}, which is there when "
+                f"{joint.name} is zero"
+            )
     if first is None and second is None:
         raise loop.error(
             f"neither {between[0]} nor {between[1]} has the point {joint.at}, where {joint.name} "

@@ -1,0 +1,201 @@
+"""Planar linkages in which bodies slide on each other, from files.
+
+The other route knows no groups: bodies have poses, joints hold points and lines of two bodies
+together, and Newton's method solves for all poses at once.
+"""
+
+import tomllib
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+import sympy as sp
+from loop_files import derived, script_of
+from places import TESTS
+
+FOLDER = TESTS / "held_out_loops"
+MODES = {"shaper": 4, "scissor_lift": 4}
+OK, UNREACHABLE, SINGULAR = 0, 1, 2
+LINES = 40
+
+
+class Poses:
+    """The bodies of a file: where their points are is a function of the poses of all bodies."""
+
+    def __init__(self, text: str):
+        data = tomllib.loads(text)
+        sizes = {k: float(v["value"]) for k, v in data["parameters"].items()}
+        self.hand, self.joints = data["hand"], data["joints"]
+        self.bodies: dict[str, dict[str, np.ndarray]] = {}
+        for body, points in data["bodies"].items():
+            if "length" in points:
+                ends = dict.fromkeys(
+                    j["at"] for j in self.joints.values() if body in j["between"]
+                )
+                points = dict(zip(ends, ([0, 0], [points["length"], 0]), strict=True))
+            self.bodies[body] = {
+                p: np.array([float(sp.sympify(e).subs(sizes)) for e in at])
+                for p, at in points.items()
+            }
+        self.moving = [body for body in self.bodies if body != "ground"]
+        self.driven = [n for n, j in self.joints.items() if j.get("driven")]
+
+    def place(self, body: str, joint: dict) -> np.ndarray:
+        """The point of a body on the line of a slide, or at a pin; a block is a point."""
+        points = self.bodies[body]
+        alone = next(iter(points.values())) if len(points) == 1 else np.zeros(2)
+        return points.get(joint["at"], alone)
+
+    def frame(self, poses: np.ndarray, body: str) -> tuple[np.ndarray, ...]:
+        if body == "ground":
+            return tuple(np.zeros(poses.shape[:-1]) for _ in range(3))
+        k = 3 * self.moving.index(body)
+        return poses[..., k], poses[..., k + 1], poses[..., k + 2]
+
+    def at(self, poses: np.ndarray, body: str, local: np.ndarray) -> np.ndarray:
+        x, y, phi = self.frame(poses, body)
+        c, s = np.cos(phi), np.sin(phi)
+        return np.stack([x + c * local[0] - s * local[1], y + s * local[0] + c * local[1]], -1)
+
+    def slid(self, poses: np.ndarray, joint: dict) -> np.ndarray:
+        """How far the second body slid along the line and away from it."""
+        first, second = joint["between"]
+        axis = np.array(joint["axis"], dtype=float) / np.hypot(*joint["axis"])
+        gap = self.at(poses, second, self.place(second, joint))
+        gap = gap - self.at(poses, first, self.place(first, joint))
+        phi = self.frame(poses, first)[2]
+        along = np.stack([np.cos(phi), np.sin(phi)], -1) * axis[0]
+        along = along + np.stack([-np.sin(phi), np.cos(phi)], -1) * axis[1]
+        across = along[..., 0] * gap[..., 1] - along[..., 1] * gap[..., 0]
+        return np.stack([(along * gap).sum(axis=-1), across], -1)
+
+    def missed(self, poses: np.ndarray, q: np.ndarray) -> np.ndarray:
+        gaps = []
+        for joint in self.joints.values():
+            first, second = joint["between"]
+            if joint.get("kind") == "prismatic":
+                turned = self.frame(poses, first)[2] - self.frame(poses, second)[2]
+                gaps += [self.slid(poses, joint)[..., 1], turned]
+                continue
+            ends = [self.at(poses, b, self.place(b, joint)) for b in (first, second)]
+            gaps += [*np.moveaxis(ends[1] - ends[0], -1, 0)]
+        for name, value in zip(self.driven, q, strict=True):
+            gaps.append(self.value(poses, name) - value)
+        return np.stack(gaps, axis=-1)
+
+    def value(self, poses: np.ndarray, name: str) -> np.ndarray:
+        """A joint on the ground."""
+        joint = self.joints[name]
+        if joint.get("kind") == "prismatic":
+            return self.slid(poses, joint)[..., 0]
+        (body,) = (b for b in joint["between"] if b != "ground")
+        return self.frame(poses, body)[2]
+
+    def found(self, q: np.ndarray, starts: np.ndarray) -> np.ndarray:
+        """The task in the postures that Newton's method finds from some starts."""
+        x, h = starts.copy(), 1e-6
+        steps = h * np.eye(x.shape[-1])
+        with np.errstate(all="ignore"):
+            for _ in range(25):
+                here = self.missed(x, q)
+                ends = [self.missed(x + s, q) - self.missed(x - s, q) for s in steps]
+                rates = np.stack(ends, axis=-1) / (2 * h)
+                step = np.linalg.solve(rates + 1e-9 * np.eye(len(steps)), here[..., None])[..., 0]
+                x = x - step / np.maximum(1, np.abs(step).max(axis=-1, keepdims=True))
+        x = x[np.abs(self.missed(x, q)).max(axis=-1) < 1e-12]
+        if self.hand in self.joints:
+            return self.value(x, self.hand)[:, None]
+        body = next(b for b in self.moving if self.hand in self.bodies[b])
+        return self.at(x, body, self.bodies[body][self.hand])
+
+    def gaps(self, answers: np.ndarray, given: np.ndarray) -> np.ndarray:
+        """The largest difference of coordinates; angles up to whole turns."""
+        difference = answers - given
+        turns = self.joints.get(self.hand, {}).get("kind", "revolute") == "revolute"
+        if self.hand in self.joints and turns:
+            difference = np.angle(np.exp(1j * difference))
+        return np.abs(difference).max(axis=-1)
+
+
+def inputs(poses: Poses, rng: np.random.Generator, count: int) -> np.ndarray:
+    """Values of the driven joints: angles, and lengths from 0.1 to 0.9."""
+    slides = [poses.joints[n].get("kind") == "prismatic" for n in poses.driven]
+    shape = (count, len(slides))
+    return np.where(slides, rng.uniform(0.1, 0.9, shape), rng.uniform(-3, 3, shape))
+
+
+def check_against_newton(loop: ModuleType, text: str) -> int:
+    poses, rng = Poses(text), np.random.default_rng(1)
+    count, hit = 0, np.zeros(len(loop.ASSEMBLY_MODES), bool)
+    for q in inputs(poses, rng, 3):
+        starts = rng.uniform(-1.5, 1.5, (60, 3 * len(poses.moving)))
+        p, status = loop.fk(q)
+        for hand in poses.found(q, starts):
+            gaps = poses.gaps(p, hand)
+            assert np.nanmin(gaps) < 1e-6, (q, hand, p)
+            hit |= gaps < 1e-6
+            count += 1
+    there = (loop.fk(inputs(poses, rng, 1000)).status == OK).any(axis=0)
+    assert (hit == there).all()
+    return count
+
+
+def check_inverse(loop: ModuleType, text: str) -> None:
+    poses, rng = Poses(text), np.random.default_rng(3)
+    q = inputs(poses, rng, 5000)
+    p, status = loop.fk(q)
+    rows, modes = np.nonzero(status == OK)
+    assert len(rows) > 100
+    answers, told = loop.ik(p[rows, modes])
+    with np.errstate(all="ignore"):
+        off = np.nanmin(np.abs(np.angle(np.exp(1j * (answers - q[rows, None])))).max(-1), axis=-1)
+    assert np.median(off) < 1e-12
+    assert (off < 1e-5).all(), off.max()
+    row, branch = np.nonzero(told == OK)
+    again = loop.fk(answers[row, branch]).p
+    missed = np.nanmin(poses.gaps(again, p[rows, modes][row][:, None]), axis=-1)
+    assert (missed < 1e-11).all()
+
+
+def check_jacobian(loop: ModuleType, text: str) -> None:
+    poses, rng, h = Poses(text), np.random.default_rng(4), 1e-6
+    q = inputs(poses, rng, 200)
+    J, status = loop.jacobian(q), loop.fk(q).status
+    for k in range(q.shape[1]):
+        step = h * np.eye(q.shape[1])[k]
+        ends = [loop.fk(q + step).p, loop.fk(q - step).p]
+        rate = (ends[0] - ends[1]) / (2 * h)
+        there = (status == OK) & (np.abs(J[..., k]).max(-1) < 10)
+        assert there.any()
+        assert np.nanmax(np.abs(rate - J[..., k])[there]) < 1e-4
+
+
+@pytest.fixture(scope="module", params=tuple(MODES))
+def loop(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+    name, folder = request.param, tmp_path_factory.mktemp("sliding")
+    content = text(name)
+    assert len(content.splitlines()) < LINES
+    return derived(f"{name}_groups", script_of(f"{name}_groups", content, folder), folder)
+
+
+def text(name: str) -> str:
+    return Path(FOLDER / f"{name}.toml").read_text("utf-8")
+
+
+def name_of(loop: ModuleType) -> str:
+    return loop.__name__.split(".")[-1].removesuffix("_groups")
+
+
+def test_newton_finds_no_posture_that_the_closed_form_lacks(loop: ModuleType) -> None:
+    assert len(loop.ASSEMBLY_MODES) == MODES[name_of(loop)]
+    assert check_against_newton(loop, text(name_of(loop))) > 20
+
+
+def test_the_inverse_finds_every_posture(loop: ModuleType) -> None:
+    if hasattr(loop, "ik"):
+        check_inverse(loop, text(name_of(loop)))
+
+
+def test_the_jacobian_is_the_derivative(loop: ModuleType) -> None:
+    check_jacobian(loop, text(name_of(loop)))

@@ -14,6 +14,8 @@ import sympy as sp
 from loop_files import derived, script_of
 from places import TESTS
 
+from closedform.scaffold.inputs.tables import TableError
+
 FOLDER = TESTS / "held_out_loops"
 MODES = {"shaper": 4, "scissor_lift": 4}
 OK, UNREACHABLE, SINGULAR = 0, 1, 2
@@ -199,3 +201,23 @@ def test_the_inverse_finds_every_posture(loop: ModuleType) -> None:
 
 def test_the_jacobian_is_the_derivative(loop: ModuleType) -> None:
     check_jacobian(loop, text(name_of(loop)))
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "message"),
+    [
+        ("shaper", "lever = {C = [0, 0], B", "lever = {C = [0, 0], D", "lever has no point B"),
+        ("shaper", 'block = {P = [0, 0]}', 'block = {length = "l"}', "rod block slides by s; give"),
+        ("shaper", 'c = {between = ["ground", "lever"], at = "C"}\n', "", "3 degrees of freedom"),
+        ("scissor_lift", "roller = {U = [0, 0]}", "roller = {U = [0, 1], K = [1, 1]}",
+         "s slides along the line through V of table, on which roller has no point"),
+        ("scissor_lift", 'kind = "prismatic", axis = [1, 0]}\n', 'kind = "prismatic"}\n', "with axis"),
+    ],
+)  # fmt: skip
+def test_a_file_that_does_not_fit_says_why(
+    name: str, old: str, new: str, message: str, tmp_path: Path
+) -> None:
+    content = text(name)
+    assert old in content
+    with pytest.raises(TableError, match=message):
+        script_of(name, content.replace(old, new), tmp_path)

@@ -67,16 +67,16 @@ def linkage(loop: Loop) -> LinkageLines | None:
 
 
 def _check_slides(loop: Loop, inputs: int, more: bool) -> None:
-    """Refuse slides in a linkage of one driven joint that is more than a single loop."""
+    """Refuse what slides in a linkage of one driven joint if it is of no kind with slides."""
     moving = len(loop.bodies) - 1
     slides = [j.name for j in loop.joints.values() if j.kind == "prismatic"]
     if loop.dimensions == 2 and inputs == 1 and more and slides:
         raise loop.error(
             f"this is a planar linkage of {moving} moving bodies, in which {listed(slides)} "
             f"slide{'s' * (len(slides) == 1)}; a linkage of more than {FEW[1]} is supported with "
-            f"revolute joints and driven cylinders, which are pinned at both ends.  If a slide "
-            f"only ends the linkage, leave it and its rod out, and take the point that drives the "
-            f"rod as the hand"
+            f"revolute joints and slides.  The driven joint must be on the ground, or the slide of "
+            f"a cylinder, which is pinned at both ends, and a joint that is the hand must be on the "
+            f"ground"
         )
 
 

@@ -193,16 +193,16 @@ def direction(
         root, missed, plain = d, sp.S.Zero, d
     else:
         root = names.half_chord("root", d, offset, "the line of a slide passes its pivots")
-        missed, plain = names.let("missed", sp.Max(0, sp.Abs(offset) - d)), sp.sqrt(
-            square - offset**2
+        missed, plain = (
+            names.let("missed", sp.Max(0, sp.Abs(offset) - d)),
+            sp.sqrt(square - offset**2),
         )
 
     def vector(k: sp.Expr) -> list[sp.Expr]:
         """With k along ``w``."""
         aside = sp.Matrix([w[1], -w[0]])
         return [
-            choose(flag, e, f / square)
-            for e, f in zip((1, 0), k * w + offset * aside, strict=True)
+            choose(flag, e, f / square) for e, f in zip((1, 0), k * w + offset * aside, strict=True)
         ]
 
     x = unknowns

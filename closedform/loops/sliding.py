@@ -142,10 +142,12 @@ class SlidingLinkage:
     @cached_property
     def cylinders(self) -> dict[str, sp.Symbol]:
         """The bodies whose length is a driven joint."""
-        found = {}
+        found: dict[str, sp.Symbol] = {}
         for name, body in self.bodies.items():
             entries = [sp.sympify(e, strict=True) for at in body.points.values() for e in at]
-            found |= {name: q for q in self.d.actuated if any(e.has(q) for e in entries)}
+            for q in self.d.actuated:
+                if any(e.has(q) for e in entries):
+                    found[name] = q
         return found
 
     @property

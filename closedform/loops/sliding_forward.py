@@ -10,8 +10,7 @@ import sympy as sp
 
 from closedform.lemmas.legs import cross_in_plane
 from closedform.lemmas.missed import MOVED, SHARE
-from closedform.loops.conditioning import JACOBIAN, conditioning
-from closedform.loops.hand import in_space, square
+from closedform.loops.hand import in_space
 from closedform.loops.leg_by_leg import SIGN, Choice, record_lemma
 from closedform.loops.linkage import GROUND, Body
 from closedform.loops.modes import NO_MODE, Exported, export
@@ -119,8 +118,8 @@ def _forward(m: SlidingLinkage, choice: Choice, loop: Step) -> tuple[Solver, Bra
         assert lemma is not None
         outputs = [lemma[x] for x in m.hand]
     else:
-        here, meant = (w.at[m.hand_at] for w in (solved.here, solved.meant))
-        outputs = [solved.linear(x, *e) for x, e in zip(m.hand, zip(here, meant), strict=True)]
+        both = zip(solved.here.at[m.hand_at], solved.meant.at[m.hand_at], strict=True)
+        outputs = [solved.linear(x, *e) for x, e in zip(m.hand, both, strict=True)]
     modes = branches(*((sigma, choice) for sigma in solved.signs)) if solved.signs else SINGLE
     d.assembly_modes = modes.labels
     two = bool(solved.signs)
@@ -128,7 +127,8 @@ def _forward(m: SlidingLinkage, choice: Choice, loop: Step) -> tuple[Solver, Bra
         "Forward: group by group",
         "The groups are solved in the order of the table.  "
         + "Two circles, and a line and a circle, meet twice, and two directions have the given "
-        "distance, which gives two assembly modes for such a group.  " * two
+        "distance, which gives two assembly modes for such a group.  "
+        * two
         + "Two lines meet once.  The last body gives the task.",
         {},
         uses=[loop],
@@ -276,9 +276,7 @@ class _Rates:
         pushed = [Rate(v.matrix(f"s{i}_{k}", r.times), r.groups) for i, r in enumerate(rows, 1)]
         det = A.det()
         groups = frozenset[int]().union(*(r.groups for r in pushed))
-        together = sp.Matrix.vstack(
-            *(r.times * self.product(groups - r.groups) for r in pushed)
-        )
+        together = sp.Matrix.vstack(*(r.times * self.product(groups - r.groups) for r in pushed))
         solved = A.adjugate() * together
         if det.is_number:
             solved = solved / det
@@ -352,11 +350,6 @@ def _velocity(m: SlidingLinkage, at: Solver, modes: Branches, loop: Step) -> Non
             (),
         )
     )
-    if n == len(m.hand) == 2:
-        size = v.let("pushed", sp.Abs(J.det()), nonnegative=True)
-        functions.append(
-            ("condition_number", *conditioning(v, [J[i, :].T for i in range(2)], size, of=JACOBIAN))
-        )
     export(d, v, modes, functions, {})
 
 
@@ -403,11 +396,12 @@ def _still(
     own = list(block.unknowns)
     before = [x for x in rates.of if x not in own]
     top = [
-        [*(rates.product(r.groups) * rates.matrix[i, :]), *(-r.times)]
-        for i, r in enumerate(pushed)
+        [*(rates.product(r.groups) * rates.matrix[i, :]), *(-r.times)] for i, r in enumerate(pushed)
     ]
     below = []
-    rows = [(sp.Matrix([e]).jacobian(own).applyfunc(rates.here), rates.rate(e, before)) for e in values]
+    rows = [
+        (sp.Matrix([e]).jacobian(own).applyfunc(rates.here), rates.rate(e, before)) for e in values
+    ]
     if len(values) > len(m.hand):  # an angle
         x = m.hand[0]
         groups = rows[0][1].groups | rows[1][1].groups

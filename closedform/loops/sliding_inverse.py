@@ -35,7 +35,7 @@ def inverse(m: SlidingLinkage, loop: Step, poles: Sequence[Block]) -> None:
     if found.left:
         m.d.no_inverse(f"with the hand held, {found.undone}")
         return
-    if any(len(h.points) > 1 and h.slides or len(h.slides) > 1 for h in found.held):
+    if any((len(h.points) > 1 and h.slides) or len(h.slides) > 1 for h in found.held):
         m.d.no_inverse(f"with the hand held, {found.held[0].body} is held more than once")
         return
     there = {m.hand_at, *(p for at in bars.values() for p in at)}
@@ -146,6 +146,34 @@ class _Reverse:
     def _determined(self) -> None:
         """Whether the joints determine the posture: the groups of the forward map."""
         m, g, solver = self.m, self.program, self.solver
+        if not self.poles:
+            return
+        known = self._forward_unknowns()
+        volumes, scales = [], []
+        for k, block in enumerate(self.poles, 1):
+            A = g.matrix(f"A_{k}", block.matrix.applyfunc(lambda e: e.xreplace(known)))
+            volumes.append(g.let(f"Delta_{k}", sp.Abs(A.det()), nonnegative=True))
+            scales.append(self._scale(block).xreplace(known))
+        meets = [group for group in m.groups if isinstance(group, Meet)]
+        for pin, hold in [(group.pin, hold) for group in meets for hold in group.holds]:
+            if isinstance(hold, OnLine):
+                other = m.slides[hold.slide].other(hold.body)
+                scales += [self._away(other, pin)] * (other != GROUND)
+            else:
+                scales += self._stretches(hold.body, hold.near, pin)
+        missed = g.let("missed", sp.Add(*solver.missed))
+        g.determined(
+            sp.Mul(*volumes),
+            sp.Mul(*scales),
+            "a group can move while the joints stand still",
+            name=r"|\det A|",
+            missed=missed,
+            size=self.size,
+        )
+
+    def _forward_unknowns(self) -> dict[sp.Basic, sp.Expr]:
+        """The joints and the unknowns of the forward map, in the names of the program."""
+        m, solver = self.m, self.solver
         known: dict[sp.Basic, sp.Expr] = dict(self.values)
         for body, q in m.driven.items():
             if body in m.turning:
@@ -158,30 +186,7 @@ class _Reverse:
                 way = m.slides[group.slide].way
                 here = solver.here.frames[group.bodies[0]].vector(way)
                 known |= dict(zip(m.unknown(swing_name(group)), here, strict=True))
-        volumes, scales = [], []
-        for k, block in enumerate(self.poles, 1):
-            A = g.matrix(f"A_{k}", block.matrix.applyfunc(lambda e: e.xreplace(known)))
-            volumes.append(g.let(f"Delta_{k}", sp.Abs(A.det()), nonnegative=True))
-            scales.append(self._scale(block).xreplace(known))
-        for group in m.groups:
-            if isinstance(group, Meet):
-                for hold in group.holds:
-                    if isinstance(hold, OnLine):
-                        other = m.slides[hold.slide].other(hold.body)
-                        scales += [self._away(other, group.pin)] * (other != GROUND)
-                    else:
-                        scales += self._stretches(hold.body, hold.near, group.pin)
-        if not volumes:
-            return
-        missed = g.let("missed", sp.Add(*solver.missed))
-        g.determined(
-            sp.Mul(*volumes),
-            sp.Mul(*scales),
-            "a group can move while the joints stand still",
-            name=r"|\det A|",
-            missed=missed,
-            size=self.size,
-        )
+        return known
 
     def _away(self, body: str, pin: str) -> sp.Expr:
         """By how much a pin that slides on a body moves more than a point near its centre."""
@@ -213,8 +218,8 @@ class _Reverse:
             * on_curve
             + (
                 "Near a parallel singularity rounded joints do not determine the hand.  The status "
-                "is SINGULAR if the product of the determinants of all groups is less than 2^-10 of "
-                f"that of their scales.  {MISSED}"
+                "is SINGULAR if the product of the determinants of all groups is less than 2^-10 "
+                f"of that of their scales.  {MISSED}"
             )
             * near_pole,
             {},
@@ -247,9 +252,7 @@ class _Reverse:
             export_reach(d, inside, {"p": tuple(m.hand)}, what)
         for link in solver.links:
             record_lemma(d, "ik", link)
-        passive = tuple(
-            x for b in solver.blocks for x in b.unknowns if x not in {*d.actuated}
-        )
+        passive = tuple(x for b in solver.blocks for x in b.unknowns if x not in {*d.actuated})
         d.inverses.append(
             Inverse(
                 "ik",

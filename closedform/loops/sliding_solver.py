@@ -222,11 +222,14 @@ class Solver:
             self.know(circle.body, *frames)
 
     def _all_named(self, ray: Ray, tag: str) -> Ray:
-        """A line all of whose numbers are under names, for a lemma with a case in which they vary."""
+        """A line all of whose numbers are under names; a lemma has a case in which they vary."""
         p = self.program
         at, way = (
             sp.Matrix(
-                [e if e.is_Symbol else p.let(f"{n}{i}{tag}", e) for i, e in zip("xy", v, strict=True)]
+                [
+                    e if e.is_Symbol else p.let(f"{n}{i}{tag}", e)
+                    for i, e in zip("xy", v, strict=True)
+                ]
             )
             for n, v in (("a", ray.at), ("l", ray.way))
         )
@@ -277,8 +280,7 @@ class Solver:
         """The joint of a body that turns about the ground."""
         p, right = self.program, sp.Matrix([1, 0])
         a, b = (
-            named_in(p, f"v{i}_{x}", e)
-            for i, e in enumerate(self.here.frames[body].vector(right))
+            named_in(p, f"v{i}_{x}", e) for i, e in enumerate(self.here.frames[body].vector(right))
         )
         start = len(p.body)
         r = p.let(f"reach_{x}", sp.sqrt(a**2 + b**2), nonnegative=True)

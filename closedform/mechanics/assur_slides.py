@@ -54,7 +54,7 @@ class Swing:
 
 @dataclass(frozen=True)
 class Place:
-    """A body that is not turned to ``like``, because of slides, and has the known point ``near``."""
+    """A body with the known point ``near`` that slides keep from turning to the body ``like``."""
 
     body: str
     like: str

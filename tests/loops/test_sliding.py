@@ -32,9 +32,7 @@ class Poses:
         self.bodies: dict[str, dict[str, np.ndarray]] = {}
         for body, points in data["bodies"].items():
             if "length" in points:
-                ends = dict.fromkeys(
-                    j["at"] for j in self.joints.values() if body in j["between"]
-                )
+                ends = dict.fromkeys(j["at"] for j in self.joints.values() if body in j["between"])
                 points = dict(zip(ends, ([0, 0], [points["length"], 0]), strict=True))
             self.bodies[body] = {
                 p: np.array([float(sp.sympify(e).subs(sizes)) for e in at])
@@ -132,7 +130,7 @@ def check_against_newton(loop: ModuleType, text: str) -> int:
     count, hit = 0, np.zeros(len(loop.ASSEMBLY_MODES), bool)
     for q in inputs(poses, rng, 3):
         starts = rng.uniform(-1.5, 1.5, (60, 3 * len(poses.moving)))
-        p, status = loop.fk(q)
+        p = loop.fk(q).p
         for hand in poses.found(q, starts):
             gaps = poses.gaps(p, hand)
             assert np.nanmin(gaps) < 1e-6, (q, hand, p)
@@ -211,7 +209,7 @@ def test_the_jacobian_is_the_derivative(loop: ModuleType) -> None:
         ("shaper", 'c = {between = ["ground", "lever"], at = "C"}\n', "", "3 degrees of freedom"),
         ("scissor_lift", "roller = {U = [0, 0]}", "roller = {U = [0, 1], K = [1, 1]}",
          "s slides along the line through V of table, on which roller has no point"),
-        ("scissor_lift", 'kind = "prismatic", axis = [1, 0]}\n', 'kind = "prismatic"}\n', "with axis"),
+        ("scissor_lift", ', axis = [1, 0]}\n', "}\n", "with axis"),
     ],
 )  # fmt: skip
 def test_a_file_that_does_not_fit_says_why(

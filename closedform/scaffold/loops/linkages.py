@@ -74,9 +74,9 @@ def _check_slides(loop: Loop, inputs: int, more: bool) -> None:
         raise loop.error(
             f"this is a planar linkage of {moving} moving bodies, in which {listed(slides)} "
             f"slide{'s' * (len(slides) == 1)}; a linkage of more than {FEW[1]} is supported with "
-            f"revolute joints and slides.  The driven joint must be on the ground, or the slide of "
-            f"a cylinder, which is pinned at both ends, and a joint that is the hand must be on the "
-            f"ground"
+            f"revolute joints and slides.  The driven joint must be on the ground, or the slide "
+            f"of a cylinder, which is pinned at both ends, and a joint that is the hand must be on "
+            f"the ground"
         )
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import sympy as sp
 
@@ -141,9 +140,12 @@ def _offset(found: Found, joint: Joint, between: tuple[str, str]) -> sp.Matrix:
     The line of the slide passes ``at``.  A body without points has its pins there, and one with a
     single point has it on this line.
     """
-    loop, zero, axis = found.loop, sp.zeros(2, 1), joint.axis
-    assert axis is not None
+    loop, zero = found.loop, sp.zeros(2, 1)
     places = [found.points[body].get(joint.at) for body in between]
+    if not any(found.points[body] for body in between):  # a strut: its line passes both pins
+        for body in between:
+            found.points[body] |= dict.fromkeys(_pins(loop, body), zero)
+        return zero
     first, second = places
     if first is not None and second is not None:
         if joint in found.with_joint.values() and any(first - second):
@@ -152,33 +154,39 @@ def _offset(found: Found, joint: Joint, between: tuple[str, str]) -> sp.Matrix:
                 f"is where it is when {joint.name} is zero"
             )
         return first - second
-    for k, place in enumerate(places):
-        own, other = between[k], found.points[between[1 - k]]
-        if place is None or own in loop.rods:
-            continue
-        if not other:
-            pins = [j.at for j in loop.of(between[1 - k]) if j.kind == "revolute"]
-            other |= {p: place for p in pins or [joint.at]}
-            return zero
-        if joint in found.with_joint.values():
-            continue
+    if first is not None:
+        return _from_line(found, joint, between, first)
+    if second is not None:
+        return -_from_line(found, joint, between[::-1], second)
+    raise loop.error(
+        f"neither {between[0]} nor {between[1]} has the point {joint.at}, where {joint.name} slides"
+    )
+
+
+def _from_line(found: Found, joint: Joint, between: tuple[str, str], place: sp.Matrix) -> sp.Matrix:
+    """The offset of the second body, if the first alone has the point ``at`` of the slide."""
+    loop, (own, body), axis = found.loop, between, joint.axis
+    other = found.points[body]
+    assert axis is not None
+    if not other:
+        other |= dict.fromkeys(_pins(loop, body) or [joint.at], place)
+    elif joint not in found.with_joint.values():
         if len(other) == 1:
             (only,) = other.values()
-            return (place - only) * (1 if k == 0 else -1)
+            return place - only
         across = sp.Matrix([-axis[1], axis[0]])
         if all(sp.simplify(across.dot(at - place)) != 0 for at in other.values()):
-            body = between[1 - k]
             raise loop.error(
                 f"{joint.name} slides along the line through {joint.at} of {own}, on which {body} "
                 f"has no point; give {body} the point {joint.at}, which is there when "
                 f"{joint.name} is zero"
             )
-    if first is None and second is None:
-        raise loop.error(
-            f"neither {between[0]} nor {between[1]} has the point {joint.at}, where {joint.name} "
-            f"slides"
-        )
-    return zero
+    return sp.zeros(2, 1)
+
+
+def _pins(loop: Loop, body: str) -> list[str]:
+    """Where other bodies are pinned to a body."""
+    return [j.at for j in loop.of(body) if j.kind == "revolute"]
 
 
 def _separate(found: Found) -> None:
@@ -237,6 +245,7 @@ def _ordered(found: Found) -> SlidingOrder:
             f"{listed([j.name for j in driven])} drive{'s' * (len(driven) == 1)} this linkage, but "
             f"by the count of its bodies, pins and slides it has {free} degrees of freedom"
         )
+    _check_directions(found)
     order = sliding_order(found.points, found.pairs, [GROUND, *found.driven])
     for step in order.held:
         raise loop.error(
@@ -260,6 +269,19 @@ def _ordered(found: Found) -> SlidingOrder:
 def _own(found: Found, slide: Slide) -> bool:
     """Whether a slide is driven or is the task."""
     return slide.joint.driven or slide.joint.name == found.loop.hand
+
+
+def _check_directions(found: Found) -> None:
+    """Refuse a body that slides on another one as this one does on the ground."""
+    for own in (s for s in found.slides if GROUND in s.between):
+        (body,) = (b for b in own.between if b != GROUND)
+        for other in (s for s in found.slides if s is not own and body in s.between):
+            a, b = own.joint.axis, other.joint.axis
+            if a is not None and b is not None and sp.simplify(a[0] * b[1] - a[1] * b[0]) == 0:
+                raise found.loop.error(
+                    f"{own.joint.name} and {other.joint.name} slide in the same direction, so "
+                    f"{body} could move alone"
+                )
 
 
 def _line(found: Found, slide: Slide) -> str:

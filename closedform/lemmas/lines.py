@@ -49,7 +49,14 @@ t_1$.""",
 common.""",
 )
 
-FAR = 2**20
+theorem(
+    "point of a known body",
+    statement=r"""If a body is known, so is each coordinate $x$ of its points, and how far it slid:
+$x = c$, with $c$ computed from what is known.""",
+    proof=r"""The equation is solved already.""",
+)
+
+FAR = 2**10
 
 
 @dataclass(frozen=True)
@@ -224,4 +231,17 @@ def direction(
     return Link(tuple(x), lemma.equations, {}, lemma, body, degenerate=(case,)), missed
 
 
-__all__ = ["Ray", "direction", "line_and_circle", "two_lines"]
+def coordinate(x: sp.Symbol, value: sp.Expr) -> Link:
+    """A coordinate that is known."""
+    lemma = Lemma(
+        "point of a known body",
+        "x = c",
+        (x - value,),
+        {x: value},
+        1,
+        roles=(("x", x), ("c", value)),
+    )
+    return Link((x,), lemma.equations, {}, lemma)
+
+
+__all__ = ["Ray", "coordinate", "direction", "line_and_circle", "two_lines"]

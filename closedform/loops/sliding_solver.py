@@ -9,8 +9,7 @@ import sympy as sp
 
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.legs import Naming, cross_in_plane
-from closedform.lemmas.lines import Ray, direction, line_and_circle, two_lines
-from closedform.lemmas.registry import theorem
+from closedform.lemmas.lines import Ray, coordinate, direction, line_and_circle, two_lines
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import named_in
 from closedform.loops.linkage import GROUND
@@ -27,13 +26,6 @@ from closedform.mechanics.assur_slides import (
 from closedform.model.functions import Program, choose, real
 from closedform.model.inverse import Degenerate, Link
 from closedform.model.lemma import Lemma
-
-theorem(
-    "point of a known body",
-    statement=r"""If a body is known, so is each coordinate $x$ of its points, and the position of a
-slide on it: $x = c$, with $c$ computed from what is known.""",
-    proof=r"""The equation is solved already.""",
-)
 
 
 def named(p: Program, name: str, place: sp.Matrix) -> sp.Matrix:
@@ -246,7 +238,7 @@ class Solver:
         e = offset if offset == 0 else tag.coefficient("e", offset)
         link, missed = direction(tag, w, e, unknowns, sigma, self.free)
         self.missed.append(missed)
-        t = self._done(link, unknowns, f"t{a}")
+        t = self._done(link, unknowns, f"p{swing_name(group)}")
         # a direction between near points is less accurate, and so is what follows from it
         less = self.size**2 / (2**10 * sp.sqrt(square(w)) + self.size / 2**30)
         self.size = tag.let("size", sp.Max(self.size, less), nonnegative=True)
@@ -268,10 +260,7 @@ class Solver:
     def linear(self, x: sp.Symbol, value: sp.Expr, meant: sp.Expr) -> sp.Expr:
         """A coordinate that is known; returns its value."""
         name = named_in(self.program, f"at_{x}", value)
-        lemma = Lemma(
-            "point of a known body", "x = c", (x - name,), {x: name}, 1, roles=(("x", x),)
-        )
-        self.links.append(Link((x,), lemma.equations, {}, lemma))
+        self.links.append(coordinate(x, name))
         self.blocks.append(Block("", (x,), (x - meant,), (False,), sp.S.One))
         self.values[x] = name
         return name

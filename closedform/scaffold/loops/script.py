@@ -47,7 +47,7 @@ KINDS = {
     "coupled": "a single loop",
     "slotted": "a pin on a line",
     "linkage": "a linkage of many bars",
-    "sliding_linkage": "a linkage of many bars with slides",
+    "sliding_linkage": "a linkage with slides",
 }
 """What each function derives, in the words of the guide."""
 

@@ -22,19 +22,24 @@ class FormulaError(ValueError):
 
 @dataclass(frozen=True)
 class Limits:
-    """The limits of a formula: characters, nesting, and terms and degree when it is expanded."""
+    """The limits of a formula: characters, nesting, and terms and degree when it is expanded.
+
+    ``bits`` are those of a numerator or denominator: SymPy factors polynomials with larger ones by
+    primes of the same size, and takes minutes to find one.
+    """
 
     length: int = 200
     depth: int = 30
     terms: int = 64
     degree: int = 12
+    bits: int = 256
 
 
 TABLE = Limits()
-PRINTED = Limits(length=100_000, depth=100, terms=10**9, degree=10**9)
+DIGITS = 77
+"""The decimal digits of such a number."""
+PRINTED = Limits(length=100_000, depth=100, terms=10**9, degree=10**9, bits=1024)
 """The limits of a formula that this toolkit has printed itself."""
-BITS = 1024
-"""The largest numerator or denominator, in bits: the range of double precision."""
 EXPONENT = 9
 CANCELLED = sp.Rational(1, 10**20)
 """A sum of numbers below this fraction of its terms counts as zero: SymPy could need hours."""
@@ -54,7 +59,7 @@ TOKEN = re.compile(rf"(?P<space>[ \t]+)|(?P<number>{NUMBER.pattern})(?![\w.])"
                    r"|(?P<name>[A-Za-z_]\w*)|(?P<sign>\*\*|[-+*/(),])", re.ASCII)  # fmt: skip
 
 
-def number(text: str) -> Fraction:
+def number(text: str, bits: int = TABLE.bits) -> Fraction:
     """The exact value of a decimal or of a fraction such as ``9/20``, with a sign or without."""
     body = text.removeprefix("-") if text.startswith("-") else text.removeprefix("+")
     over, slash, under = body.partition("/")
@@ -64,8 +69,11 @@ def number(text: str) -> Fraction:
     if slash and not int(under):
         raise FormulaError(f"{shown(text)} divides by zero")
     value = Fraction(body)
-    if max(value.numerator, value.denominator).bit_length() > BITS:
-        raise FormulaError(f"{shown(text)} is too large or too small for double precision")
+    if max(value.numerator, value.denominator).bit_length() > bits:
+        raise FormulaError(
+            f"{shown(text)} is too large, too small or too long: write it with at most "
+            f"{DIGITS} digits before and after the point"
+        )
     return -value if text.startswith("-") else value
 
 
@@ -166,7 +174,7 @@ class _Reader:
         written = self.text[node.col_offset : node.end_col_offset]
         if type(node.value) not in (int, float):
             raise FormulaError(_unread(self.text))
-        value = number(written)
+        value = number(written, self.limits.bits)
         return _Part(sp.Rational(value.numerator, value.denominator))
 
     def _binary(self, left: _Part, operator: ast.operator, right: _Part) -> _Part:
@@ -215,8 +223,10 @@ class _Reader:
             raise FormulaError(f"{shown(self.text)} is not a real number or formula")
         self._check_size(part.terms, part.degree)
         for rational in value.atoms(sp.Rational):
-            if max(abs(rational.p), rational.q).bit_length() > BITS:
-                raise FormulaError(_unread(self.text, "its numbers exceed double precision"))
+            if max(abs(rational.p), rational.q).bit_length() > self.limits.bits:
+                raise FormulaError(
+                    _unread(self.text, f"its numbers have more than {DIGITS} digits")
+                )
         if value.is_Add and not value.free_symbols:
             largest = max(abs(term.evalf(15)) for term in value.args)
             if not abs(value.evalf(15, maxn=60)) > CANCELLED * largest:

@@ -26,7 +26,7 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.algebra.formulas import BITS, FormulaError, formula, number, shown
+from closedform.algebra.formulas import TABLE, FormulaError, formula, number, shown
 from closedform.lemmas.registry import chain_lemmas
 from closedform.model.functions import real
 from closedform.model.names import check_symbol
@@ -532,7 +532,7 @@ def _plain(value: Any) -> str:
     """A TOML value as text: a text or a number as it is, anything else by its kind."""
     if isinstance(value, str):
         return value
-    if isinstance(value, int) and value.bit_length() <= BITS:
+    if isinstance(value, int) and value.bit_length() <= TABLE.bits:
         return str(value)
     return shown(value)
 

@@ -513,7 +513,8 @@ at_limit = sp.Or(*(sp.Symbol(f"spent_{n}") for n in ("alpha", "beta", "along")))
 sines = [next(s for s, e in half.means.items() if e == sin(x)) for x in (alpha, beta)]
 missed = v[0] * sines[1] - seen[0], m.L1 * sines[0] + v[1] * sines[1] - seen[1]
 missed = p.let("missed", choose(at_limit, sum(map(sp.Abs, missed)), 0))
-allowed = (1 + sp.Min(*(t**2 for t in tangents))) * (m.d + sum(m) / 64)
+# and what is missed moves the tip farther if the wrist links are nearly stretched
+allowed = (1 + sp.Min(*(t**2 for t in tangents))) * (m.d + sum(m) / 64) * length / m.al
 p.determined(
     choose(at_limit, allowed, 1), missed * 2**50, "sines at their limits miss the gap of the tips"
 )

@@ -81,6 +81,8 @@ from closedform.loops.hinges import StandingPlane as StandingPlane
 from closedform.loops.hinges import TurningPlane as TurningPlane
 from closedform.loops.hinges import TwoHinges as TwoHinges
 from closedform.loops.linkage import Body as Body
+from closedform.loops.on_pins import Sleeve as Sleeve
+from closedform.loops.on_pins import on_pins as on_pins
 from closedform.loops.on_rod import on_rod as on_rod
 from closedform.loops.parallel import parallel as parallel
 from closedform.loops.platform import platform as platform

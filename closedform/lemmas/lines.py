@@ -162,6 +162,42 @@ def two_lines(
     return Link(tuple(unknowns), lemma.equations, {}, lemma, body, degenerate=cases)
 
 
+def slide_to_line(
+    names: Naming, q: sp.Symbol, normal: tuple[sp.Expr, sp.Expr], size: sp.Expr
+) -> Link:
+    """A slide that moves a point to a line: ``along * q = off``, both named or numbers.
+
+    Parameters
+    ----------
+    names
+        names quantities of the program that the names and bounds are added to
+    q
+        the slide
+    normal
+        the part of its direction along the normal of the line, and how far the line is
+    size
+        that of the mechanism; a slide of more than ``FAR`` times this counts as parallel
+    """
+    p, (across, off) = names.program, normal
+    start = len(p.body)
+    met = "a slider moves along the line of the hand"
+    flag = p.vanishes(f"parallel{names.tag}", sp.Abs(across), 1, met, (q,))
+    least, scale = FAR * size * sp.Abs(across) - sp.Abs(off), FAR * names.size * names.share
+    p.bound(f"near{names.tag}", least, scale, "the slider meets the line of the hand nearby")
+    value = names.let("slid", choose(flag, 0, off / across))
+    lemma = Lemma(
+        "oblique coordinates",
+        r"q = \frac{w_1 t_2 - w_2 t_1}{D}",
+        (across * q - off,),
+        {q: value},
+        1,
+        roles=((r"w_1 t_2 - w_2 t_1", off), ("D", across)),
+    )
+    case = Degenerate((flag,), {across: sp.S.Zero, off: sp.S.Zero}, q, met)
+    body = tuple(p.body[start:])
+    return Link((q,), lemma.equations, {}, lemma, body, degenerate=(case,))
+
+
 def direction(
     names: Naming,
     w: sp.Matrix,
@@ -244,4 +280,4 @@ def coordinate(x: sp.Symbol, value: sp.Expr) -> Link:
     return Link((x,), lemma.equations, {}, lemma)
 
 
-__all__ = ["Ray", "coordinate", "direction", "line_and_circle", "two_lines"]
+__all__ = ["Ray", "coordinate", "direction", "line_and_circle", "slide_to_line", "two_lines"]

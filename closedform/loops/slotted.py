@@ -155,14 +155,14 @@ class _Slotted:
         size = program.let("size", size_of(self.d, (self.crank, self.line), moved))
         return Naming(program, size, "", share)
 
-    def solve(self, of: Crank | Lever | Rail, names: Naming, sigma: sp.Symbol, side: int) -> _Known:
+    def solve(self, of: Crank | Lever | Rail, names: Naming, sigma: sp.Symbol, side: int) -> Known:
         """The joint of one body, if that of the other one is known.
 
         The equation is taken times ``side``, and its derivative has the sign of ``-sigma``.
         """
         if isinstance(of, Rail):
             found = of.solve(names, self.crank.end() - of.base, sigma)
-            return _Known(found, {of.joint: found.value})
+            return Known(found, {of.joint: found.value})
         if isinstance(of, Lever):
             w = self.crank.end() - of.base
             sides = (-w.dot(vector(of.along)), w.dot(vector(of.across)), of.rod)
@@ -171,7 +171,7 @@ class _Slotted:
             arms = (sp.sympify(of.length, strict=True) * vector(e) for e in (of.across, of.along))
             sides = (*map(self.normal.dot, arms), self.level - self.normal.dot(of.base))
             met = "a crank has no length"
-        return _turned(names, of.joint, [side * sp.expand(e) for e in sides], sigma, met)
+        return turned_to_line(names, of.joint, [side * sp.expand(e) for e in sides], sigma, met)
 
     def points(self) -> dict[str, sp.Matrix]:
         """The points that are drawn: pivots, pin, and a point of the line."""
@@ -188,16 +188,16 @@ class _Slotted:
 
 
 @dataclass(frozen=True)
-class _Known:
+class Known:
     """The joint of one body, and what its sine and cosine are in the names of a program."""
 
     found: Solution
     known: dict[sp.Basic, sp.Expr]
 
 
-def _turned(
+def turned_to_line(
     names: Naming, x: sp.Symbol, sides: Sequence[sp.Expr], sigma: sp.Symbol, met: str
-) -> _Known:
+) -> Known:
     """``a sin x + b cos x = c``, also where a and b vanish."""
     p = names.program
     a, b = (names.let(n, e) for n, e in zip("ab", sides, strict=False))
@@ -222,7 +222,7 @@ def _turned(
     link = Link((x,), lemma.equations, {}, lemma, tuple(p.body[start:]), degenerate=(case,))
     missed = names.let("missed", sp.Max(0, sp.Abs(c) - found.h))
     known = {sp.sin(x): sine / width, sp.cos(x): cosine / width}
-    return _Known(Solution(link, lemma[x], sp.zeros(2, 1), missed), known)
+    return Known(Solution(link, lemma[x], sp.zeros(2, 1), missed), known)
 
 
 @dataclass(frozen=True)
@@ -387,4 +387,4 @@ def _inverse(m: _Slotted, loop: Step) -> None:
     )
 
 
-__all__ = ["Lever", "slotted"]
+__all__ = ["Lever", "slotted", "turned_to_line"]

@@ -15,9 +15,8 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.amplitude import Amplitude
-from closedform.lemmas.legs import Crank, Naming, Slide, Solution, cross_in_plane, vector
-from closedform.lemmas.lines import coordinate, slide_to_line
-from closedform.lemmas.missed import MOVED
+from closedform.lemmas.legs import Crank, Slide, Solution, cross_in_plane, vector
+from closedform.lemmas.lines import FAR, coordinate, slide_to_line
 from closedform.lemmas.rails import named_number
 from closedform.loops.hand import check_order, in_space, square
 from closedform.loops.leg_by_leg import SIGN, Choice, LegByLeg, named_in, record_lemma, size_of
@@ -55,7 +54,7 @@ class Sleeve:
 
     @property
     def normal(self) -> sp.Matrix:
-        """The direction of the line, turned by a right angle to the left, in the frame of the hand."""
+        """The direction of the line, turned to the left, in the frame of the hand."""
         return sp.Matrix([-self.way[1], self.way[0]])
 
     @property
@@ -81,7 +80,9 @@ class _OnPins:
         if not all(w.is_number for w in self.weights):
             raise ShapeError(f"{name}: the directions of the lines of the hand must be numbers")
         if not any(self.weights):
-            raise ShapeError(f"{name}: the three lines of the hand are parallel, so it slides along")
+            raise ShapeError(
+                f"{name}: the three lines of the hand are parallel, so it slides along"
+            )
         self.d.task = ["x", "y", "yaw"]
 
     @cached_property
@@ -221,6 +222,9 @@ def _forward(m: _OnPins, choice: Choice, loop: Step) -> _Posture:
     legs = [sleeve.leg for sleeve in m.legs]
     sliders = [leg.joint for leg in legs if isinstance(leg, Slide)]
     size = f.let("size", size_of(d, legs, sliders))
+    for q in sliders:
+        least = FAR * size_of(d, legs)
+        f.bound(f"near_{q}", least - sp.Abs(q), least / 2, "the sliders are near the mechanism")
     turn, pair, root = _turn(m, f, size, sigma)
     first, second, last = m.order
     back = Pair(-pair.s, pair.c)
@@ -245,12 +249,8 @@ def _forward(m: _OnPins, choice: Choice, loop: Step) -> _Posture:
         roles=((r"\mathbf w", m.seen), (r"\mathbf s", ways[0]), (r"\mathbf t", ways[1])),
     )
     means = dict(zip(seen, m.seen, strict=True))
-    meet = Link(
-        tuple(m.seen), lemma.equations, {}, lemma, tuple(f.body[start:]), means=means
-    )
-    hand = sp.Matrix(
-        [f.let(f"p_{i}", e) for i, e in zip("xy", rotated(seen, pair), strict=True)]
-    )
+    meet = Link(tuple(m.seen), lemma.equations, {}, lemma, tuple(f.body[start:]), means=means)
+    hand = sp.Matrix([f.let(f"p_{i}", e) for i, e in zip("xy", rotated(seen, pair), strict=True)])
     links = [turn, meet, *(coordinate(x, e) for x, e in zip(m.hand, hand, strict=True))]
     a, b, c = m.coefficients
     d.step(
@@ -278,7 +278,10 @@ def _forward(m: _OnPins, choice: Choice, loop: Step) -> _Posture:
         branches=modes,
         result="Positions",
         notes=(
-            "UNREACHABLE: the lines of the hand are too far from its point for these pins.",
+            "UNREACHABLE: the lines of the hand are too far from its point for these pins"
+            + f", or a slider is farther away than {FAR} times the sum of all lengths"
+            * bool(sliders)
+            + ".",
             "SINGULAR: the hand turns freely, and yaw = 0 is returned.",
             "Ill-conditioned near the parallel singularities, where both modes meet.",
         ),
@@ -423,12 +426,15 @@ def _inverse(m: _OnPins, loop: Step) -> None:
     for k, sleeve in enumerate(m.legs, 1):
         names, leg = solved.naming(k), sleeve.leg
         n = sp.Matrix(
-            [names.let(f"n_{i}", e) for i, e in zip("xy", rotated(sleeve.normal, m.pair), strict=True)]
+            [
+                names.let(f"n_{i}", e)
+                for i, e in zip("xy", rotated(sleeve.normal, m.pair), strict=True)
+            ]
         )
         off = names.let("off", sleeve.aside + n.dot(m.hand - leg.base))
         if isinstance(leg, Slide):
             across = names.let("across", n.dot(leg.rate))
-            link = slide_to_line(names, leg.joint, (across, off), solved.size)
+            link = slide_to_line(names, leg.joint, (across, off), size_of(d, legs))
             assert link.lemma is not None
             known[leg.joint] = link.lemma[leg.joint]
             solved.found.append(Solution(link, link.lemma[leg.joint], n))

@@ -51,7 +51,7 @@ from closedform.scaffold.loops.copies import copy_numbered
 
 KINDS = ("revolute", "prismatic", "spherical", "universal")
 USED = {"d", "pi", "real", "coupled", "parallel", "platform", "tripod", "on_rod", "linkage"}
-USED |= {"slotted", "guided", "sliding_linkage"}
+USED |= {"slotted", "guided", "sliding_linkage", "on_pins"}
 USED |= {
     "Derivation",
     "Paper",
@@ -66,6 +66,7 @@ USED |= {
     "Parallelogram",
     "Plane",
     "Rail",
+    "Sleeve",
     "Slide",
     "Sliding",
     "StandingPlane",

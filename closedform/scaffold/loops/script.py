@@ -18,6 +18,7 @@ from closedform.scaffold.loops.guides import GuideLine, guide
 from closedform.scaffold.loops.hinges import hinged
 from closedform.scaffold.loops.legs import TURNING, UPRIGHT, Legs, LoopLeg
 from closedform.scaffold.loops.linkages import LinkageLines, linkage
+from closedform.scaffold.loops.on_pins import on_pins
 from closedform.scaffold.loops.on_rod import on_rod
 from closedform.scaffold.loops.sliding import sliding
 from closedform.scaffold.loops.slotted import slotted
@@ -44,6 +45,7 @@ KINDS = {
     "platform": "a hand that turns",
     "tripod": "a hand that lifts and tilts",
     "on_rod": "a hand on a rod",
+    "on_pins": "a hand on three pins",
     "coupled": "a single loop",
     "slotted": "a pin on a line",
     "linkage": "a linkage of many bars",
@@ -98,6 +100,9 @@ def _first_way(found: Legs) -> _Way:
     if carried := on_rod(found):
         found.check_all_used()
         return _Way(carried[0], list(AXES[:2]), carried[1])
+    if pinned := on_pins(found):
+        found.check_all_used()
+        return _Way(pinned, [])
     points = {j.at for j in loop.joints.values()}.union(*loop.bodies.values())
     if follower:
         raise loop.error(f"the hand is the joint {loop.hand}, which must not be driven")
@@ -274,6 +279,8 @@ class _Way:
             return "guided"
         if self.legs[0].call.startswith("Upright"):
             return "tripod"
+        if self.legs[0].call.startswith("Sleeve"):
+            return "on_pins"
         if len(self.task) == 1 and any(leg.passive for leg in self.legs):
             return "slotted"
         if self.at:

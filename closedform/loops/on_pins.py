@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, cast
 
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.amplitude import Amplitude
-from closedform.lemmas.legs import Crank, Slide, Solution, cross_in_plane, vector
+from closedform.lemmas.legs import Crank, Leg, Slide, Solution, cross_in_plane, vector
 from closedform.lemmas.lines import FAR, coordinate, slide_to_line
 from closedform.lemmas.rails import named_number
 from closedform.loops.hand import check_order, in_space, square
@@ -74,7 +74,7 @@ class _OnPins:
         name = self.d.name
         if len(self.legs) != LEGS:
             raise ShapeError(f"{name}: a hand that slides on pins needs {LEGS}")
-        check_order(self.d, [sleeve.leg for sleeve in self.legs])
+        check_order(self.d, [cast("Leg", sleeve.leg) for sleeve in self.legs])
         if any(sleeve.leg.rod != 0 for sleeve in self.legs):
             raise ShapeError(f"{name}: a pin on which the hand slides has no rod")
         if not all(w.is_number for w in self.weights):

@@ -272,6 +272,21 @@ def test_peaucellier_draws_a_line(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("name", "pivot"),
+    [
+        ("watt_two", "O = [0, 0], A = "),
+        ("watt_two", 'G = ["g + w", 0], F = '),
+        ("shaper", 'O = [0, "g"], P = '),
+    ],
+)
+def test_a_body_with_a_joint_need_not_name_its_pivot(name: str, pivot: str, tmp_path: Path) -> None:
+    """Its points are where they are when the joint is zero."""
+    assert pivot in text(name)
+    short = text(name).replace(pivot, pivot.split("], ")[1])
+    assert script_of(name, short, tmp_path) == script_of(name, text(name), tmp_path)
+
+
+@pytest.mark.parametrize(
     ("name", "old", "new", "message"),
     [
         ("watt", '"lid"], at = "D"', '"lid"], at = "G"', "coupler has no point G"),

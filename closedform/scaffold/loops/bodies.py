@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import sympy as sp
 
@@ -61,4 +61,19 @@ class Loop:
         return TableError(f"{self.file}: {text}")
 
 
-__all__ = ["AXES", "GROUND", "Joint", "Loop"]
+def with_pivots(loop: Loop) -> Loop:
+    """The loop with the pivot of each body that a joint with a value turns about the ground.
+
+    The points of such a body are where they are when the joint is zero, so it need not name this.
+    """
+    bodies = dict(loop.bodies)
+    for j in loop.joints.values():
+        if GROUND in j.between and j.kind == "revolute" and (j.driven or j.name == loop.hand):
+            body = j.other(GROUND)
+            own, at = bodies[body], bodies[GROUND].get(j.at)
+            if at is not None and own and j.at not in own and body not in loop.rods:
+                bodies[body] = {j.at: at, **own}
+    return replace(loop, bodies=bodies)
+
+
+__all__ = ["AXES", "GROUND", "Joint", "Loop", "with_pivots"]

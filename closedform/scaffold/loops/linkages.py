@@ -9,7 +9,7 @@ import sympy as sp
 
 from closedform.mechanics.assur import Dyad, Order, freedoms, order
 from closedform.model.names import listed
-from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
+from closedform.scaffold.loops.bodies import GROUND, Joint, Loop, with_pivots
 from closedform.scaffold.loops.cylinders import joined
 from closedform.scaffold.source import literal, source
 
@@ -31,7 +31,7 @@ class LinkageLines:
 
 def linkage(loop: Loop) -> LinkageLines | None:
     """The lines of a linkage; None if the file is of another kind."""
-    loop, cylinders = joined(loop)
+    loop, cylinders = joined(with_pivots(loop))
     driven = [j for j in loop.joints.values() if j.driven]
     follower = loop.joints.get(loop.hand)
     inputs, moving = len(driven) + len(cylinders), len(loop.bodies) - 1
@@ -87,7 +87,7 @@ def _points(loop: Loop) -> dict[str, dict[str, sp.Matrix]]:
         if name not in loop.rods:
             found[name] = {safe(p): at for p, at in points.items()}
             if missing := _without(loop, name):
-                raise loop.error(f"{name} has no point {missing[0].at}, where {missing[0].name} is")
+                raise loop.error(no_point(name, missing[0]))
             continue
         ends = list(dict.fromkeys(safe(j.at) for j in loop.of(name)))
         if len(ends) != 2:
@@ -98,6 +98,14 @@ def _points(loop: Loop) -> dict[str, dict[str, sp.Matrix]]:
             zip(ends, (sp.zeros(2, 1), sp.Matrix([loop.rods[name], 0])), strict=True)
         )
     return found
+
+
+def no_point(body: str, joint: Joint) -> str:
+    """What to write if a body has no point where a joint is."""
+    return (
+        f"{body} has no point {joint.at}, where {joint.name} is; give {body} this point, in the "
+        f"coordinates of its other points"
+    )
 
 
 def _without(loop: Loop, name: str) -> list[Joint]:
@@ -181,4 +189,4 @@ def safe(name: str) -> str:
     return name.replace("-", "_")
 
 
-__all__ = ["FEW", "LinkageLines", "line_of", "linkage", "safe"]
+__all__ = ["FEW", "LinkageLines", "line_of", "linkage", "no_point", "safe"]

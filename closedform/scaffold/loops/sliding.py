@@ -9,9 +9,9 @@ import sympy as sp
 from closedform.mechanics.assur import freedoms
 from closedform.mechanics.assur_slides import Meet, SlidingOrder, Swing, sliding_order
 from closedform.model.names import listed
-from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
+from closedform.scaffold.loops.bodies import GROUND, Joint, Loop, with_pivots
 from closedform.scaffold.loops.cylinders import joined
-from closedform.scaffold.loops.linkages import FEW, LinkageLines, line_of, safe
+from closedform.scaffold.loops.linkages import FEW, LinkageLines, line_of, no_point, safe
 from closedform.scaffold.source import literal, source
 
 Points = dict[str, dict[str, sp.Matrix]]
@@ -59,7 +59,7 @@ def sliding(loop: Loop, *, few: bool = False) -> LinkageLines | None:
 
     Kinds with ``few`` bodies come first, unless one asks for them.
     """
-    joined_loop, cylinders = joined(loop)
+    joined_loop, cylinders = joined(with_pivots(loop))
     found = Found(joined_loop, cylinders)
     if not _is_one(found, few=few):
         return None
@@ -131,7 +131,7 @@ def _read_slides(found: Found) -> None:
     for name in loop.bodies:
         pins = [j for j in loop.of(name) if j.kind == "revolute"]
         if missing := [j for j in pins if j.at not in found.points[name]]:
-            raise loop.error(f"{name} has no point {missing[0].at}, where {missing[0].name} is")
+            raise loop.error(no_point(name, missing[0]))
 
 
 def _offset(found: Found, joint: Joint, between: tuple[str, str]) -> sp.Matrix:

@@ -127,8 +127,12 @@ def two_lines(
     unknowns: sp.Matrix,
     size: sp.Expr,
     free: Sequence[sp.Symbol] = (),
+    *,
+    fixed: bool = False,
 ) -> Link:
     """The point that two lines share; ``free`` are the joints that are free if they are the same.
+
+    The angle between both is ``fixed`` if the names of their directions stand for numbers.
 
     Lines that meet at more than ``FAR`` times the ``size`` of the mechanism count as parallel.
     """
@@ -136,7 +140,7 @@ def two_lines(
     across, w = sp.simplify(cross_in_plane(a.way, b.way)), b.at - a.at
     off = names.let("off", cross_in_plane(w, b.way))
     cases: tuple[Degenerate, ...] = ()
-    if across.is_number:
+    if fixed:
         far = names.let("along", off / across)
     else:
         cross = names.let("cross", across)
@@ -227,29 +231,28 @@ def direction(
         the joints that are free if the vector is
     """
     p, start = names.program, len(names.program.body)
-    square = names.let("square", w.dot(w), nonnegative=True)
-    d = names.let("apart", sp.sqrt(square), nonnegative=True)
+    d = names.let("apart", sp.sqrt(w[0] ** 2 + w[1] ** 2), nonnegative=True)
     flag = p.vanishes(
         f"coincide{names.tag}", d, names.size, "both pivots of a slide coincide", tuple(free)
     )
-    if offset == 0:
-        root, missed, plain = d, sp.S.Zero, d
-    else:
-        root = names.half_chord("root", d, offset, "the line of a slide passes its pivots")
-        missed, plain = (
-            names.let("missed", sp.Max(0, sp.Abs(offset) - d)),
-            sp.sqrt(square - offset**2),
-        )
+    root = names.half_chord("root", d, offset, "the line of a slide passes its pivots")
+    share = names.let("share", choose(flag, 1, root / d), nonnegative=True)
+    missed = names.let("missed", sp.Max(0, sp.Abs(offset) - d)) if offset != 0 else sp.S.Zero
+    plain = sp.sqrt(d**2 - offset**2) / d if offset != 0 else sp.S.One
+    n = sp.Matrix(
+        [
+            names.let(f"n_{i}", choose(flag, z, e / d))
+            for i, z, e in zip("xy", (1, 0), w, strict=True)
+        ]
+    )
+    aside = sp.S.Zero if offset == 0 else choose(flag, 0, offset / d)
 
     def vector(k: sp.Expr) -> list[sp.Expr]:
-        """With k along ``w``."""
-        aside = sp.Matrix([w[1], -w[0]])
-        return [
-            choose(flag, e, f / square) for e, f in zip((1, 0), k * w + offset * aside, strict=True)
-        ]
+        """With this share along ``w``."""
+        return [k * n[0] + aside * n[1], k * n[1] - aside * n[0]]
 
     x = unknowns
-    found = [names.let(f"t_{i}", e) for i, e in zip("xy", vector(sigma * root), strict=True)]
+    found = [names.let(f"t_{i}", e) for i, e in zip("xy", vector(sigma * share), strict=True)]
     lemma = Lemma(
         "direction of a line",
         r"\mathbf t = \frac{1}{d^2}(k\,\mathbf w + e\,(w_2, -w_1)),\quad "

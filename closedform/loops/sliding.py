@@ -18,13 +18,13 @@ from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.legs import vector
 from closedform.loops.hand import square
 from closedform.loops.linkage import GROUND, Body
-from closedform.mechanics.assur import freedoms
 from closedform.mechanics.assur_slides import (
     Group,
     Meet,
     SlidingOrder,
     Swing,
     groups_for,
+    sliding_freedoms,
     sliding_order,
 )
 from closedform.mechanics.lengths import lengths_in_numbers
@@ -168,7 +168,7 @@ class SlidingLinkage:
 
     @property
     def freedoms(self) -> int:
-        return freedoms(self.points) - 2 * len(self.slides) + len(self.cylinders)
+        return sliding_freedoms(self.points, self.pairs) + len(self.cylinders)
 
     @cached_property
     def order(self) -> SlidingOrder:

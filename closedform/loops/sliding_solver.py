@@ -159,11 +159,13 @@ class Solver:
             for i, r in enumerate(lengths, 1)
         ]
         centres = [named(p, f"b{i}_{k}", self.here.at[c.near]) for i, c in enumerate(circles, 1)]
+        raw = [self.ray(h, group.pin, self.here) for h in lines]
         rays = [
-            Ray(named(p, f"a{i}_{k}", ray.at), named(p, f"l{i}_{k}", ray.way))
-            for i, ray in enumerate((self.ray(h, group.pin, self.here) for h in lines), 1)
+            Ray(named(p, f"a{i}_{k}", ray.at), self._way(ray.way, f"{i}_{k}"))
+            for i, ray in enumerate(raw, 1)
         ]
-        if len(rays) == 2 and not cross_in_plane(rays[0].way, rays[1].way).is_number:
+        fixed = len(raw) == 2 and cross_in_plane(raw[0].way, raw[1].way).is_number
+        if len(rays) == 2 and not fixed:
             rays = [rays[0], self._all_named(rays[1], f"2_{k}")]
         if len(circles) == 2:
             sigma = self._sign(f"{k}")
@@ -184,7 +186,7 @@ class Solver:
             link, missed = line_and_circle(tag, rays[0], (centres[0], radii[0]), unknowns, sigma)
             self.missed.append(missed)
         else:
-            link = two_lines(tag, (rays[0], rays[1]), unknowns, self.whole, self.free)
+            link = two_lines(tag, (rays[0], rays[1]), unknowns, self.whole, self.free, fixed=fixed)
         place = self._done(link, unknowns, f"p{group.pin}")
         drawn = [self.ray(h, group.pin, self.meant) for h in lines]
         squares = [
@@ -213,6 +215,16 @@ class Solver:
             ]
             self.know(circle.body, *frames)
 
+    def _way(self, way: sp.Matrix, tag: str) -> sp.Matrix:
+        """A direction with its coordinates under names, unless they are rational numbers."""
+        p = self.program
+        return sp.Matrix(
+            [
+                e if e.is_Symbol or e.is_Rational else p.let(f"l{i}{tag}", e)
+                for i, e in zip("xy", way, strict=True)
+            ]
+        )
+
     def _all_named(self, ray: Ray, tag: str) -> Ray:
         """A line all of whose numbers are under names; a lemma has a case in which they vary."""
         p = self.program
@@ -240,7 +252,7 @@ class Solver:
         self.missed.append(missed)
         t = self._done(link, unknowns, f"p{swing_name(group)}")
         # a direction between near points is less accurate, and so is what follows from it
-        less = self.size**2 / (2**10 * sp.sqrt(square(w)) + self.size / 2**30)
+        less = self.size * (self.size / (2**10 * sp.sqrt(square(w)) + self.size / 2**30))
         self.size = tag.let("size", sp.Max(self.size, less), nonnegative=True)
         between = self.meant.at[second] - self.meant.at[first]
         equations = (cross_in_plane(unknowns, between) - offset, square(unknowns) - 1)

@@ -12,6 +12,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 
+from closedform.mechanics.assur import freedoms
+
 PAIR = 2
 
 
@@ -191,6 +193,20 @@ def _next(now: _Known, left: Sequence[str]) -> Group | None:
     return None
 
 
+def sliding_freedoms(bodies: Mapping[str, Iterable[str]], slides: Sequence[tuple[str, str]]) -> int:
+    """The number of joints that have to be driven, by the count of bodies, pins and slides.
+
+    A loop of slides alone keeps the directions of its bodies once more than is needed.
+    """
+    parts: list[set[str]] = []
+    for pair in slides:
+        touched = [part for part in parts if part & {*pair}]
+        parts = [part for part in parts if part not in touched]
+        parts.append({*pair}.union(*touched))
+    loops = len(slides) - sum(len(part) - 1 for part in parts)
+    return freedoms(bodies) - 2 * len(slides) + loops
+
+
 def groups_for(
     groups: Sequence[Group],
     bodies: Mapping[str, Iterable[str]],
@@ -237,5 +253,6 @@ __all__ = [
     "SlidingOrder",
     "Swing",
     "groups_for",
+    "sliding_freedoms",
     "sliding_order",
 ]

@@ -6,8 +6,13 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
-from closedform.mechanics.assur import freedoms
-from closedform.mechanics.assur_slides import Meet, SlidingOrder, Swing, sliding_order
+from closedform.mechanics.assur_slides import (
+    Meet,
+    SlidingOrder,
+    Swing,
+    sliding_freedoms,
+    sliding_order,
+)
 from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import GROUND, Joint, Loop, with_pivots
 from closedform.scaffold.loops.cylinders import joined
@@ -238,7 +243,7 @@ def _hand(found: Found) -> str:
 def _ordered(found: Found) -> SlidingOrder:
     """The groups of the linkage, if all are solved alone."""
     loop = found.loop
-    free = freedoms(found.points) - 2 * len(found.slides) + len(found.cylinders)
+    free = sliding_freedoms(found.points, found.pairs) + len(found.cylinders)
     driven = [*found.driven.values(), *found.cylinders.values()]
     if free != len(driven):
         raise loop.error(

@@ -264,7 +264,7 @@ def direction(
         roles=((r"\mathbf w", w), ("e", offset)),
         plainly=dict(zip(x, vector(sigma * plain), strict=True)),
     )
-    locus = {e: sp.S.Zero for e in (*w, offset) if sp.sympify(e).is_Symbol}
+    locus = {e: sp.S.Zero for e in (*w, offset) if sp.sympify(e, strict=True).is_Symbol}
     case = Degenerate((flag,), locus, free[0] if free else None, "both pivots coincide")
     body = tuple(p.body[start:])
     return Link(tuple(x), lemma.equations, {}, lemma, body, degenerate=(case,)), missed

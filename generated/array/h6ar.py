@@ -12,7 +12,7 @@
 #   jacobian: 108 add, 67 compare and select, 40 divide, 168 multiply, 6 sincos, 4 sqrt
 #   determinant: 39 compare and select, 39 add, 9 divide, 71 multiply, 5 sincos, 4 sqrt
 #   singularities: 43 compare and select, 39 add, 8 divide, 60 multiply, 5 sincos, 4 sqrt
-#   ik: 1900 compare and select, 838 add, 29 atan2, 285 divide, 1199 multiply, 1 reduce to a turn,
+#   ik: 1900 compare and select, 838 add, 29 atan2, 286 divide, 1200 multiply, 1 reduce to a turn,
 #     3 sincos, 92 sqrt
 #   wrist_length: 24 compare and select, 5 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
@@ -3296,41 +3296,42 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t1447 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
     t1448 = t1447 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
     t1449 = t1448 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
-    t1450 = t1449 * (1.0 + ops.min(t_phi * t_phi, t_psi * t_psi))
+    t1450 = t1449 * wrist * (1.0 + ops.min(t_phi * t_phi, t_psi * t_psi))
+    t1451 = t1450 / al
     below_alpha_2 = ops.max(t219, t201)
     above_alpha_2 = ops.max(t221, t201)
-    t1451 = (below_alpha_2 - above_alpha_2) * (1.0 / (below_alpha_2 + above_alpha_2))
-    t1452 = ops.abs(p_1_beta + v_1_beta * t217) + ops.abs(t218 - L1 * t1451)
-    t1453 = 1125899906842624.0 * ops.select(t222, t1452, 0.0)
-    t1454 = ops.select(t222, t1450, 1.0) <= ops.determined * t1453
-    t1455 = ops.status(invalid, unreachable, t1446 | parallel | t1454)
-    t1456 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t357
+    t1452 = (below_alpha_2 - above_alpha_2) * (1.0 / (below_alpha_2 + above_alpha_2))
+    t1453 = ops.abs(p_1_beta + v_1_beta * t217) + ops.abs(t218 - L1 * t1452)
+    t1454 = 1125899906842624.0 * ops.select(t222, t1453, 0.0)
+    t1455 = ops.select(t222, t1451, 1.0) <= ops.determined * t1454
+    t1456 = ops.status(invalid, unreachable, t1446 | parallel | t1455)
+    t1457 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t357
     below_alpha_front_elbow_down_2 = ops.max(t359, t201)
     above_alpha_front_elbow_down_2 = ops.max(t361, t201)
-    t1457 = below_alpha_front_elbow_down_2 - above_alpha_front_elbow_down_2
+    t1458 = below_alpha_front_elbow_down_2 - above_alpha_front_elbow_down_2
     total_alpha_front_elbow_down_2 = below_alpha_front_elbow_down_2 + above_alpha_front_elbow_down_2
-    t1458 = t1457 * (1.0 / total_alpha_front_elbow_down_2)
-    missed_front_elbow_down = ops.select(t677, ops.abs(t1456) + ops.abs(t358 - L1 * t1458), 0.0)
-    t1459 = ops.determined * (1125899906842624.0 * missed_front_elbow_down)
-    t1460 = t1446 | parallel_front_elbow_down | (ops.select(t677, t1450, 1.0) <= t1459)
-    t1461 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t479
+    t1459 = t1458 * (1.0 / total_alpha_front_elbow_down_2)
+    missed_front_elbow_down = ops.select(t677, ops.abs(t1457) + ops.abs(t358 - L1 * t1459), 0.0)
+    t1460 = ops.determined * (1125899906842624.0 * missed_front_elbow_down)
+    t1461 = t1446 | parallel_front_elbow_down | (ops.select(t677, t1451, 1.0) <= t1460)
+    t1462 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t479
     below_alpha_rear_elbow_up_2 = ops.max(t481, t201)
     above_alpha_rear_elbow_up_2 = ops.max(t483, t201)
-    t1462 = below_alpha_rear_elbow_up_2 - above_alpha_rear_elbow_up_2
+    t1463 = below_alpha_rear_elbow_up_2 - above_alpha_rear_elbow_up_2
     total_alpha_rear_elbow_up_2 = below_alpha_rear_elbow_up_2 + above_alpha_rear_elbow_up_2
-    t1463 = L1 * (t1462 * (1.0 / total_alpha_rear_elbow_up_2))
-    missed_rear_elbow_up = ops.select(t649, ops.abs(t1461) + ops.abs(t480 - t1463), 0.0)
-    t1464 = ops.determined * (1125899906842624.0 * missed_rear_elbow_up)
-    t1465 = t1446 | parallel_rear_elbow_up | (ops.select(t649, t1450, 1.0) <= t1464)
-    t1466 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t598
+    t1464 = L1 * (t1463 * (1.0 / total_alpha_rear_elbow_up_2))
+    missed_rear_elbow_up = ops.select(t649, ops.abs(t1462) + ops.abs(t480 - t1464), 0.0)
+    t1465 = ops.determined * (1125899906842624.0 * missed_rear_elbow_up)
+    t1466 = t1446 | parallel_rear_elbow_up | (ops.select(t649, t1451, 1.0) <= t1465)
+    t1467 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t598
     below_alpha_rear_elbow_down_2 = ops.max(t600, t201)
     above_alpha_rear_elbow_down_2 = ops.max(t602, t201)
-    t1467 = below_alpha_rear_elbow_down_2 - above_alpha_rear_elbow_down_2
+    t1468 = below_alpha_rear_elbow_down_2 - above_alpha_rear_elbow_down_2
     total_alpha_rear_elbow_down_2 = below_alpha_rear_elbow_down_2 + above_alpha_rear_elbow_down_2
-    t1468 = t1467 * (1.0 / total_alpha_rear_elbow_down_2)
-    missed_rear_elbow_down = ops.select(t612, ops.abs(t1466) + ops.abs(t599 - L1 * t1468), 0.0)
-    t1469 = ops.determined * (1125899906842624.0 * missed_rear_elbow_down)
-    t1470 = t1446 | parallel_rear_elbow_down | (ops.select(t612, t1450, 1.0) <= t1469)
+    t1469 = t1468 * (1.0 / total_alpha_rear_elbow_down_2)
+    missed_rear_elbow_down = ops.select(t612, ops.abs(t1467) + ops.abs(t599 - L1 * t1469), 0.0)
+    t1470 = ops.determined * (1125899906842624.0 * missed_rear_elbow_down)
+    t1471 = t1446 | parallel_rear_elbow_down | (ops.select(t612, t1451, 1.0) <= t1470)
     return (
         t970,
         t1015,
@@ -3356,10 +3357,10 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         t1443,
         t1444,
         ops.select(failed_4, ops.nan, t1029),
-        t1455,
-        ops.status(invalid, unreachable_2, t1460),
-        ops.status(invalid, unreachable_3, t1465),
-        ops.status(invalid, unreachable_4, t1470),
+        t1456,
+        ops.status(invalid, unreachable_2, t1461),
+        ops.status(invalid, unreachable_3, t1466),
+        ops.status(invalid, unreachable_4, t1471),
     )
 
 

@@ -13,7 +13,7 @@
  *   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
  *   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
  *   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
- *   ik: 641 compare and select, 516 add, 29 atan2, 163 divide, 684 multiply, 1 reduce to a turn, 3
+ *   ik: 641 compare and select, 516 add, 29 atan2, 164 divide, 685 multiply, 1 reduce to a turn, 3
  *     sincos, 54 sqrt
  *   ik where nothing vanishes: 261 compare and select, 163 add, 16 atan2, 34 divide, 150 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
@@ -2794,7 +2794,7 @@ CF_INLINE void h6ar_ik_whole_kernel(const int single, const real_t one,
     const real_t t786 = t784 + t785 + d1 * CLOSEDFORM_C(0.015625) + gs * CLOSEDFORM_C(0.015625);
     const real_t t787 = t786 + loff * CLOSEDFORM_C(0.015625) + lp * CLOSEDFORM_C(0.015625);
     const real_t t788 = CLOSEDFORM_C(1.0) + cf_min(t_phi * t_phi, t_psi * t_psi);
-    const real_t t789 = t787 * t788;
+    const real_t t789 = t787 * wrist * t788 / cf_nonzero(single, al);
     const real_t t790 = cf_rarely(single, t214, t789, CLOSEDFORM_C(1.0));
     const real_t t791 = p_1_beta + cf_rounded(single, one, v_1_beta * t259);
     const real_t t792 = cf_abs(t260 - cf_rounded(single, one, L1 * t266));

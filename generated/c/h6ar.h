@@ -13,7 +13,7 @@
  *   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
  *   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
  *   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
- *   ik: 641 compare and select, 516 add, 29 atan2, 163 divide, 684 multiply, 1 reduce to a turn, 3
+ *   ik: 641 compare and select, 516 add, 29 atan2, 164 divide, 685 multiply, 1 reduce to a turn, 3
  *     sincos, 54 sqrt
  *   ik where nothing vanishes: 261 compare and select, 163 add, 16 atan2, 34 divide, 150 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt

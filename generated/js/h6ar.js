@@ -12,7 +12,7 @@
 //   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
 //   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
 //   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
-//   ik: 641 compare and select, 516 add, 29 atan2, 163 divide, 684 multiply, 1 reduce to a turn, 3
+//   ik: 641 compare and select, 516 add, 29 atan2, 164 divide, 685 multiply, 1 reduce to a turn, 3
 //     sincos, 54 sqrt
 //   ik where nothing vanishes: 261 compare and select, 163 add, 16 atan2, 34 divide, 150 multiply,
 //     1 reduce to a turn, 3 sincos, 16 sqrt
@@ -2481,25 +2481,26 @@ function _ik(v, o) {
     const t655 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625;
     const t656 = t655 + al * 0.015625 + d * 1.015625 + d1 * 0.015625;
     const t657 = t656 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625;
-    const t658 = t657 * (1.0 + Math.min(t_phi * t_phi, t_psi * t_psi));
-    const t659 = Math.abs(p_1_beta + v_1_beta * t206) + Math.abs(t207 - L1 * t215);
-    const t660 = _runtime.DETERMINED * (1125899906842624.0 * (t165 ? t659 : 0.0));
-    const t661 = t654 || parallel || (t165 ? t658 : 1.0) <= t660;
-    const t662 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t361;
-    const missed_front_elbow_down = t334 ? Math.abs(t662) + Math.abs(t362 - L1 * t374) : 0.0;
-    const t663 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down);
-    const t664 = t654 || parallel_front_elbow_down || (t334 ? t658 : 1.0) <= t663;
-    const t665 = invalid ? 3 : unreachable_2 ? 1 : t664 ? 2 : 0;
-    const t666 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t497;
-    const missed_rear_elbow_up = t470 ? Math.abs(t666) + Math.abs(t498 - L1 * t509) : 0.0;
-    const t667 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up);
-    const t668 = t654 || parallel_rear_elbow_up || (t470 ? t658 : 1.0) <= t667;
-    const t669 = invalid ? 3 : unreachable_3 ? 1 : t668 ? 2 : 0;
-    const t670 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t632;
-    const missed_rear_elbow_down = t605 ? Math.abs(t670) + Math.abs(t633 - L1 * t645) : 0.0;
-    const t671 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down);
-    const t672 = t654 || parallel_rear_elbow_down || (t605 ? t658 : 1.0) <= t671;
-    const t673 = invalid ? 3 : unreachable_4 ? 1 : t672 ? 2 : 0;
+    const t658 = t657 * wrist * (1.0 + Math.min(t_phi * t_phi, t_psi * t_psi));
+    const t659 = t658 / al;
+    const t660 = Math.abs(p_1_beta + v_1_beta * t206) + Math.abs(t207 - L1 * t215);
+    const t661 = _runtime.DETERMINED * (1125899906842624.0 * (t165 ? t660 : 0.0));
+    const t662 = t654 || parallel || (t165 ? t659 : 1.0) <= t661;
+    const t663 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t361;
+    const missed_front_elbow_down = t334 ? Math.abs(t663) + Math.abs(t362 - L1 * t374) : 0.0;
+    const t664 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down);
+    const t665 = t654 || parallel_front_elbow_down || (t334 ? t659 : 1.0) <= t664;
+    const t666 = invalid ? 3 : unreachable_2 ? 1 : t665 ? 2 : 0;
+    const t667 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t497;
+    const missed_rear_elbow_up = t470 ? Math.abs(t667) + Math.abs(t498 - L1 * t509) : 0.0;
+    const t668 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up);
+    const t669 = t654 || parallel_rear_elbow_up || (t470 ? t659 : 1.0) <= t668;
+    const t670 = invalid ? 3 : unreachable_3 ? 1 : t669 ? 2 : 0;
+    const t671 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t632;
+    const missed_rear_elbow_down = t605 ? Math.abs(t671) + Math.abs(t633 - L1 * t645) : 0.0;
+    const t672 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down);
+    const t673 = t654 || parallel_rear_elbow_down || (t605 ? t659 : 1.0) <= t672;
+    const t674 = invalid ? 3 : unreachable_4 ? 1 : t673 ? 2 : 0;
     o[0] = _runtime.wrap(t168 - t171) + t211;
     o[1] = _runtime.wrap(t213 - t217) + t211;
     o[2] = _runtime.wrap(t222 + t224) + t211;
@@ -2524,10 +2525,10 @@ function _ik(v, o) {
     o[21] = _runtime.wrap(t642 + t647) + t637;
     o[22] = _runtime.wrap(t650 - t652) + t637;
     o[23] = t225 + t637;
-    o[24] = invalid ? 3 : unreachable ? 1 : t661 ? 2 : 0;
-    o[25] = t665;
-    o[26] = t669;
-    o[27] = t673;
+    o[24] = invalid ? 3 : unreachable ? 1 : t662 ? 2 : 0;
+    o[25] = t666;
+    o[26] = t670;
+    o[27] = t674;
 }
 
 /** @type {_runtime.Compute} */

@@ -12,7 +12,7 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
-#   ik: 641 compare and select, 516 add, 29 atan2, 163 divide, 684 multiply, 1 reduce to a turn, 3
+#   ik: 641 compare and select, 516 add, 29 atan2, 164 divide, 685 multiply, 1 reduce to a turn, 3
 #     sincos, 54 sqrt
 #   ik where nothing vanishes: 261 compare and select, 163 add, 16 atan2, 34 divide, 150 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
@@ -2984,7 +2984,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t662 = t657 - np.arctan2(t642, t641 * t661)
     del t641, t661
     t663 = (wrist <= al * _runtime.DETERMINED) | nowhere
-    del nowhere, wrist
+    del nowhere
     t664 = t663 | folded | short
     del folded, short, t663
     t665 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
@@ -2994,8 +2994,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t666
     t668 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
     del t_phi, t_psi
-    t669 = t667 * t668
-    del t667, t668
+    t669 = t667 * wrist * t668 / al
+    del t667, t668, wrist
     t670 = np.abs(p_1_beta + v_1_beta * t211) + np.abs(t212 - L1 * t221)
     del p_1_beta, t211, t212, t221, v_1_beta
     t671 = 1125899906842624.0 * _runtime.select(t168, t670, 0.0)

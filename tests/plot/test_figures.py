@@ -41,6 +41,7 @@ from closedform.cli.commands import main
 from closedform.plot import labels
 from closedform.plot.catalogue import INVERSE
 from closedform.plot.contours import thinned
+from closedform.plot.diagram import ANGLE
 from closedform.plot.postures import regular_target
 from closedform.plot.robot import Robot
 from closedform.plot.symbols import equation, lengths, symbol
@@ -193,6 +194,14 @@ def test_a_passive_joint_is_drawn() -> None:
     ax = plot.mechanism(module("five_bar"), view("five_bar").general, labels=False, axes=False)
     circles = [len(line.get_xdata()) for line in ax.lines if line.get_marker() == "o"]
     assert sorted(circles) == [1, 1, 2]  # two driven joints, and both elbows
+
+
+@pytest.mark.parametrize(("name", "arcs"), [("five_bar", 4), ("rpr_planar", 2)])
+def test_passive_angles_have_arcs(name: str, arcs: int) -> None:
+    ax = plot.mechanism(module(name), view(name).general)
+    drawn = [line for line in ax.lines if line.get_color() == ANGLE and len(line.get_xdata()) > 4]
+    passive = [n for n in module(name).SKELETON.joints if n not in module(name).JOINTS]
+    assert len(drawn) == arcs and len(passive) == 2
 
 
 @pytest.mark.parametrize("name", ["planar_2r", "irb260"])

@@ -231,14 +231,24 @@ def direction(
         the joints that are free if the vector is
     """
     p, start = names.program, len(names.program.body)
-    d = names.let("apart", sp.sqrt(w[0] ** 2 + w[1] ** 2), nonnegative=True)
+    # squares of a slide may overflow
+    whole = names.let("whole", choose(sp.Eq(names.size, 0), 1, names.size), nonnegative=True)
+    share_x, share_y = (names.let(f"w_{i}", e / whole) for i, e in zip("xy", w, strict=True))
+    d = names.let("apart", whole * sp.sqrt(share_x**2 + share_y**2), nonnegative=True)
     flag = p.vanishes(
         f"coincide{names.tag}", d, names.size, "both pivots of a slide coincide", tuple(free)
     )
-    root = names.half_chord("root", d, offset, "the line of a slide passes its pivots")
-    share = names.let("share", choose(flag, 1, root / d), nonnegative=True)
-    missed = names.let("missed", sp.Max(0, sp.Abs(offset) - d)) if offset != 0 else sp.S.Zero
-    plain = sp.sqrt(d**2 - offset**2) / d if offset != 0 else sp.S.One
+    if offset == 0:
+        share, missed, plain = sp.S.One, sp.S.Zero, sp.S.One
+    else:
+        over, under = (
+            names.bound(n, e, "the line of a slide passes its pivots")
+            for n, e in (("over", d - offset), ("under", d + offset))
+        )
+        part = sp.sqrt(over / d) * sp.sqrt(under / d)
+        share = names.let("share", choose(flag, 1, part), nonnegative=True)
+        missed = names.let("missed", sp.Max(0, sp.Abs(offset) - d))
+        plain = sp.sqrt(d**2 - offset**2) / d
     n = sp.Matrix(
         [
             names.let(f"n_{i}", choose(flag, z, e / d))

@@ -245,8 +245,11 @@ def direction(
             names.bound(n, e, "the line of a slide passes its pivots")
             for n, e in (("over", d - offset), ("under", d + offset))
         )
-        part = sp.sqrt(over / d) * sp.sqrt(under / d)
-        share = names.let("share", choose(flag, 1, part), nonnegative=True)
+        low, high = (
+            names.let(n, choose(flag, 1, e / d), nonnegative=True)
+            for n, e in (("low", over), ("high", under))
+        )
+        share = names.let("share", sp.sqrt(low) * sp.sqrt(high), nonnegative=True)
         missed = names.let("missed", sp.Max(0, sp.Abs(offset) - d))
         plain = sp.sqrt(d**2 - offset**2) / d
     n = sp.Matrix(

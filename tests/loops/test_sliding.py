@@ -219,3 +219,34 @@ def test_a_file_that_does_not_fit_says_why(
     assert old in content
     with pytest.raises(TableError, match=message):
         script_of(name, content.replace(old, new), tmp_path)
+
+
+WEDGE = """
+hand = "h"
+[parameters]
+r = {value = "0.05"}
+l = {value = "0.2"}
+[bodies]
+ground = {O = [0, 0], G = ["0.3", 0]}
+crank = {A = ["r", 0]}
+rod = {length = "l"}
+wedge = {B = [0, 0]}
+ram = {}
+[joints]
+theta = {between = ["ground", "crank"], at = "O", driven = true}
+a = {between = ["crank", "rod"], at = "A"}
+b = {between = ["rod", "wedge"], at = "B"}
+s = {between = ["ground", "wedge"], at = "O", kind = "prismatic", axis = [1, 0]}
+i = {between = ["wedge", "ram"], at = "B", kind = "prismatic", axis = [4, 1]}
+h = {between = ["ground", "ram"], at = "G", kind = "prismatic", axis = [0, 1]}
+"""
+
+
+def test_a_loop_of_slides_keeps_directions_once(tmp_path: Path) -> None:
+    """A wedge lifts a ram; the three slides among them count one direction too many."""
+    loop = derived("wedge", script_of("wedge", WEDGE, tmp_path), tmp_path)
+    h = loop.fk([[0.5], [2.0]]).p[..., 0]
+    rod = np.sqrt(0.2**2 - (0.05 * np.sin([0.5, 2.0])) ** 2)
+    for side in (1, -1):
+        push = 0.05 * np.cos([0.5, 2.0]) + side * rod
+        assert np.abs(h - ((0.3 - push) / 4)[:, None]).min(axis=1).max() < 1e-15

@@ -126,7 +126,9 @@ def _read_points(found: Found) -> None:
 
 def _read_slides(found: Found) -> None:
     loop = found.loop
-    for joint in loop.joints.values():
+    own = list(found.with_joint.values())
+    # where a body is when its own joint is zero comes first
+    for joint in sorted(loop.joints.values(), key=lambda j: j not in own):
         if joint.kind == "prismatic":
             first, second = joint.between
             between = (second, first) if second == GROUND else (first, second)

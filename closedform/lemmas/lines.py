@@ -130,11 +130,22 @@ def two_lines(
     *,
     fixed: bool = False,
 ) -> Link:
-    """The point that two lines share; ``free`` are the joints that are free if they are the same.
+    """The point that two lines share.
 
-    The angle between both is ``fixed`` if the names of their directions stand for numbers.
-
-    Lines that meet at more than ``FAR`` times the ``size`` of the mechanism count as parallel.
+    Parameters
+    ----------
+    names
+        names quantities of the program that the names and bounds are added to
+    lines
+        both lines, in symbols or numbers
+    unknowns
+        the coordinates of the point that is sought
+    size
+        that of the mechanism; lines that meet at more than ``FAR`` times it count as parallel
+    free
+        the joints that are free if the lines are the same
+    fixed
+        whether the names of their directions stand for numbers, so that they are not parallel
     """
     (a, b), p, start = lines, names.program, len(names.program.body)
     across, w = sp.simplify(cross_in_plane(a.way, b.way)), b.at - a.at
@@ -208,6 +219,7 @@ def direction(
     offset: sp.Expr,
     unknowns: sp.Matrix,
     sigma: sp.Symbol,
+    *,
     free: Sequence[sp.Symbol] = (),
 ) -> tuple[Link, sp.Expr]:
     """The unit vectors whose line through the origin passes a point at a distance.

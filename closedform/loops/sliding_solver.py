@@ -248,7 +248,7 @@ class Solver:
         unknowns, sigma = m.unknown(swing_name(group)), self._sign(f"{k}")
         w = named(p, f"w_{k}", self.here.at[second] - self.here.at[first])
         e = offset if offset == 0 else tag.coefficient("e", offset)
-        link, missed = direction(tag, w, e, unknowns, sigma, self.free)
+        link, missed = direction(tag, w, e, unknowns, sigma, free=self.free)
         self.missed.append(missed)
         t = self._done(link, unknowns, f"p{swing_name(group)}")
         # a direction between near points is less accurate, and so is what follows from it

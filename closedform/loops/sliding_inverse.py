@@ -107,11 +107,11 @@ class _Reverse:
             p.match(off, self.size * lost / 2, "the hand is on its curve")
             solver.missed.append(sp.Abs(off))
 
-        for slide in group.slides:
+        if group.slides:
+            (slide,) = group.slides
             ray = solver.ray(OnLine(group.body, slide), near, here)
             compare(cross_in_plane(ray.way, here.at[near] - ray.at), f"off_{k}")
-            other = m.slides[slide].other(group.body)
-            solver.parallel(group.body, other, near)
+            solver.parallel(group.body, m.slides[slide].other(group.body), near)
             return
         for point in others:
             between = square(here.at[point] - here.at[near])

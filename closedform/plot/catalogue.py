@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from closedform.plot.maps import Limits, unsectioned, workspace
 from closedform.plot.maps import field as field_map
 from closedform.plot.postures import branches, mechanism, spoken
-from closedform.plot.robot import Robot
+from closedform.plot.robot import Array, Robot
 from closedform.plot.style import new_panels, styled
 from closedform.plot.symbols import symbol
 
@@ -153,8 +153,7 @@ def fits(robot: ModuleType, figure: str) -> bool:
 @styled
 def _both(robot: ModuleType, view: View) -> Any:
     r = Robot.of(robot)
-    at_zero = np.zeros(len(robot.JOINTS)) if r.has_forward_map else None
-    postures = (at_zero if view.home is None else view.home, view.general)
+    postures = (_at_zero(r) if view.home is None else view.home, view.general)
     if postures[0] is None:  # both are chosen, and the same
         return pictured(robot, view, postures[1])
     panels = new_panels(1, 2, spatial=not r.flat, size=(7.4, 3.7))
@@ -163,13 +162,22 @@ def _both(robot: ModuleType, view: View) -> Any:
     return panels[0]
 
 
+def _at_zero(r: Robot) -> Array | None:
+    """The joints at zero, if the mechanism can be assembled there."""
+    q = np.zeros(len(r.module.JOINTS))
+    return q if r.has_forward_map and r.modes_at(q) else None
+
+
 def pictured(robot: ModuleType, view: View, posture: ArrayLike | None, **style: Any) -> Any:
     """Draw one of the postures of a view; by default a posture that is far from singular."""
     r = Robot.of(robot)
     params = r.params._replace(**view.shown)
-    style |= {"mode": view.mode, "faint": view.faint, "hues": view.hues, "params": params}
+    style |= {"faint": view.faint, "hues": view.hues, "params": params}
     if r.has_forward_map:
-        return mechanism(robot, posture, **style)
+        r = Robot.of(robot, params)
+        q = r.posture() if posture is None else posture
+        mode = view.mode if view.mode in r.modes_at(q) else None
+        return mechanism(robot, posture, mode=mode, **style)
     return mechanism(robot, x=posture, **style)
 
 

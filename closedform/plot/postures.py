@@ -86,7 +86,7 @@ def mechanism(
     mode = r.first_mode(joints) if mode is None else mode
     points = r.points(joints)[mode]
     if not np.isfinite(points).all():
-        modes = [r.modes[k] for k, p in enumerate(r.points(joints)) if np.isfinite(p).all()]
+        modes = [r.modes[k] for k in r.modes_at(joints)]
         raise ValueError(
             f"{r.name} cannot be assembled at {joints.tolist()} in mode {mode}; "
             f"modes that exist there: {', '.join(modes) or 'none'}"
@@ -272,7 +272,9 @@ def regular_target(r: Robot, general: ArrayLike | None = None, mode: int = 0) ->
     first = r.posture() if general is None else np.asarray(general, dtype=float)
     q = np.vstack([first, r.draw(60, seed=1)])
     x = r.task(q)
-    x = x[:, mode] if r.modes else x
+    if r.modes:
+        there = np.asarray(np.isfinite(x.reshape(*x.shape[:2], -1)).all(-1).any(0))
+        x = x[:, mode if there[mode] else int(np.argmax(there))]
     finite = np.isfinite(x.reshape(len(x), -1)).all(1)
     found, status = r.branches(np.where(np.isfinite(x), x, 0.0))
     reached = np.where(finite, (status == OK).sum(-1), -1)

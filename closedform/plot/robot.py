@@ -95,6 +95,11 @@ class Robot:
     def modes(self) -> tuple[str, ...]:
         return tuple(self.module.ASSEMBLY_MODES)
 
+    def modes_at(self, q: ArrayLike) -> list[int]:
+        """The assembly modes that exist for some joints."""
+        found = np.isfinite(self.points(np.asarray(q, dtype=float))).all((-2, -1))
+        return [int(k) for k in np.flatnonzero(found)]
+
     def first_mode(self, q: ArrayLike) -> int:
         """The first assembly mode that exists and is not singular; the first one if none is."""
         if not self.modes or not self.has_forward_map:

@@ -192,6 +192,15 @@ def test_newton_finds_no_posture_that_the_closed_form_lacks(loop: ModuleType) ->
     assert check_against_newton(loop, text(name_of(loop))) > 20
 
 
+def test_it_is_drawn_in_modes_that_exist(loop: ModuleType) -> None:
+    """In the first mode, the table of a scissor lift is there, and the ram of a shaper is not."""
+    pytest.importorskip("matplotlib")
+    from closedform.plot.catalogue import View, standard
+
+    drawn = [figure.draw(loop) for figure in standard(View())[: 2 if hasattr(loop, "ik") else 1]]
+    assert all(len(ax.lines) > 4 for ax in drawn)
+
+
 def test_the_inverse_finds_every_posture(loop: ModuleType) -> None:
     if hasattr(loop, "ik"):
         check_inverse(loop, text(name_of(loop)))

@@ -16,7 +16,6 @@ from closedform.loops.linkage import GROUND
 from closedform.loops.sliding import Frame, Sliding, SlidingLinkage, swing_name
 from closedform.mechanics.assur_slides import (
     Group,
-    Hold,
     Meet,
     OnCircle,
     OnLine,
@@ -315,4 +314,4 @@ class Solver:
         return slide.way.dot(from_zero)
 
 
-__all__ = ["Block", "Hold", "Solver", "World", "named"]
+__all__ = ["Block", "Solver", "World", "named"]

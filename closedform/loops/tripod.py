@@ -41,6 +41,10 @@ VECTORS = {
     "r_i": "from the near end of rod i to the corner of the hand, in the plane of the leg",
 }
 """In the step on the velocity."""
+CANCEL = (
+    "There the cosines in u nearly cancel.  The first form of u keeps all digits, because sines "
+    "near zero are known to all digits."
+)
 TOGETHER = "The target and the joints have to belong together, as ik gives them."
 
 
@@ -82,8 +86,12 @@ def _place(m: Tripod) -> Step:
     made = {let.symbol: let.value for let in p.body if isinstance(let, Let)}
     shown = {*placed.rotation, *(e for arm in placed.arms for e in arm), *placed.turn}
     unshown = {s: e for s, e in made.items() if s not in shown | {placed.delta}}
+    sums = {s.name: e for s, e in made.items() if s.name in ("u", "f", "g")}
+    plain, apart = m.cosines()
     far = [at.position + arm for arm in at.arms]
     aside = [leg.normal.dot(e[:2, 0]) for leg, e in zip(m.legs, far, strict=True)]
+    if "u" in sums:
+        d.explain({"u": "sum of the cosines of the tilts"})
     d.write("psi", r"\psi", "twist of the hand about its own z axis")
     d.explain({"f": "coefficient of cos(psi) in the equation of the twist"})
     d.explain({"g": "coefficient of sin(psi) in the equation of the twist"})
@@ -106,11 +114,10 @@ def _place(m: Tripod) -> Step:
         "equations are linear in the x and y of p.  The other solution for the twist differs by "
         "half a turn and is left out: there the corners are on the other side of the centre of "
         "the hand.  If f and g both vanish, the twist is free.  If the three legs are equal, this "
-        "is where the hand is upside down.",
+        "is where the hand is upside down." + ("  " + CANCEL if "u" in sums else ""),
         {
             r"R\,R_z(\psi)^{-1}": m.tilted,
-            "f": f,
-            "g": g,
+            **sums,
             r"\delta": made[placed.delta],
             r"c = \cos\psi": made[placed.turn[0]],
             r"s = \sin\psi": made[placed.turn[1]],
@@ -120,7 +127,7 @@ def _place(m: Tripod) -> Step:
         },
         proves="The weighted normals add up to zero.  The corners of two legs are in their planes, "
         "and for that of the third the distance from its plane, times its weight, is "
-        "f*cos(psi) + g*sin(psi).",
+        "f*cos(psi) + g*sin(psi)." + ("  Both forms of u are equal." if "u" in sums else ""),
         equal=[
             (
                 sum((w * l.normal for w, l in zip(m.weights, m.legs, strict=True)), sp.zeros(2, 1)),
@@ -128,6 +135,7 @@ def _place(m: Tripod) -> Step:
             ),
             (sp.Matrix(aside[:2]), sp.zeros(2, 1)),
             (m.weights[2] * aside[2], side * (f * c + g * s)),
+            *([(plain, apart)] if "u" in sums else []),
         ],
     )
     d.function(
@@ -444,7 +452,7 @@ def _inverse(m: Tripod, loop: Step) -> None:
             f"fk is not derived: the forward problem is an equation of degree {DEGREE}.",
         ],
     )
-    plain = m.placed(Program())
+    plain = m.placed(Program(), plain=True)
     solved.certify([plain.program.explicit(e) for e in m.loop(plain)])
 
 

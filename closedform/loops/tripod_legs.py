@@ -141,6 +141,24 @@ class Tripod:
             total += weight * leg.normal.dot((self.tilted * e)[:2, 0])
         return sp.collect(sp.expand(total), [sp.cos(t) for t in self.target])
 
+    def cosines(self) -> tuple[sp.Expr, sp.Expr]:
+        """The sum of the cosines of the tilts, as written and as it keeps its digits near zero."""
+        (sx, cx), (sy, cy) = ((sp.sin(t), sp.cos(t)) for t in self.target[1:])
+        return cx + cy, (sy - sx) * (sy + sx) / (cx - cy)
+
+    def named_cosines(self, p: Program, *sums: sp.Expr) -> tuple[sp.Expr, ...]:
+        """Sums of both tilts with a name for the sum of their cosines, where that is a factor."""
+        plain, apart = self.cosines()
+        x, y = plain.args
+        found = tuple(e.coeff(x) if e.coeff(x) == e.coeff(y) else sp.S.Zero for e in sums)
+        if not any(found):
+            return sums
+        u = p.let("u", choose(x * y < -sp.Rational(1, 2), apart, plain))
+        return tuple(
+            sp.expand(e - factor * plain) + factor * u
+            for e, factor in zip(sums, found, strict=True)
+        )
+
     @cached_property
     def side(self) -> int:
         """The sign of the second sum if the hand is level and not twisted; 0 if it is unknown."""
@@ -151,15 +169,25 @@ class Tripod:
     def numbered(self) -> list[tuple[int, Upright]]:
         return [*enumerate(self.legs, 1)]
 
-    def placed(self, p: Program, *, guarded: bool = False) -> Placed:
-        """Name the hand at a target in a program; ``guarded`` where the twist is free.
+    def placed(self, p: Program, *, guarded: bool = False, plain: bool = False) -> Placed:
+        """Name the hand at a target in a program.
 
-        There the twist is taken as zero, instead of being undefined.  It is free only where delta
-        is exactly zero: nearby a rod may reach with the twist of the target, and not with zero.
+        Parameters
+        ----------
+        p
+            the program
+        guarded
+            whether the twist is zero where it is free, instead of being undefined.  It is free
+            only where delta is exactly zero: nearby a rod may reach with the twist of the target,
+            and not with zero
+        plain
+            whether to write the sums as a person does, though they may lose digits
         """
         side = sp.Integer(self.side)
-        f = p.let("f", side * self.balance(turned=False))
-        g = p.let("g", side * self.balance(turned=True))
+        sums: tuple[sp.Expr, ...] = tuple(side * self.balance(turned) for turned in (False, True))
+        if not plain:
+            sums = self.named_cosines(p, *sums)
+        f, g = (p.let(name, e) for name, e in zip("fg", sums, strict=True))
         delta = p.let("delta", sp.sqrt(f**2 + g**2), nonnegative=True)
         cosine, sine = g / delta, -f / delta
         if guarded:

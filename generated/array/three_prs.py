@@ -2,16 +2,16 @@
 # derivations/three_prs.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Three legs in vertical planes that lift and tilt a hand.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   hand_pose: 10 add, 8 divide, 27 multiply, 2 sincos, 1 sqrt
-#   jacobian_parallel: 75 add, 41 divide, 85 multiply, 2 sincos, 1 sqrt
-#   jacobian_serial: 12 add, 4 divide, 15 multiply, 2 sincos, 1 sqrt
-#   jacobian_inverse: 75 add, 47 divide, 85 multiply, 2 sincos, 1 sqrt
-#   jacobian: 89 add, 50 divide, 118 multiply, 2 sincos, 1 sqrt
-#   determinant: 80 add, 42 divide, 99 multiply, 2 sincos, 1 sqrt
-#   singularities: 80 add, 41 divide, 97 multiply, 2 sincos, 1 sqrt
-#   skeleton: 22 add, 12 divide, 28 multiply, 2 sincos, 1 sqrt
-#   ik: 94 compare and select, 242 add, 53 divide, 276 multiply, 2 sincos, 8 sqrt
-#   workspace_contains: 28 compare and select, 28 add, 14 divide, 23 multiply, 2 sincos, 1 sqrt
+#   hand_pose: 13 add, 9 divide, 3 compare and select, 27 multiply, 2 sincos, 1 sqrt
+#   jacobian_parallel: 78 add, 42 divide, 3 compare and select, 86 multiply, 2 sincos, 1 sqrt
+#   jacobian_serial: 15 add, 5 divide, 3 compare and select, 16 multiply, 2 sincos, 1 sqrt
+#   jacobian_inverse: 78 add, 48 divide, 3 compare and select, 86 multiply, 2 sincos, 1 sqrt
+#   jacobian: 92 add, 51 divide, 3 compare and select, 119 multiply, 2 sincos, 1 sqrt
+#   determinant: 83 add, 43 divide, 3 compare and select, 100 multiply, 2 sincos, 1 sqrt
+#   singularities: 83 add, 42 divide, 3 compare and select, 98 multiply, 2 sincos, 1 sqrt
+#   skeleton: 25 add, 13 divide, 3 compare and select, 29 multiply, 2 sincos, 1 sqrt
+#   ik: 99 compare and select, 246 add, 55 divide, 279 multiply, 2 sincos, 8 sqrt
+#   workspace_contains: 30 compare and select, 31 add, 15 divide, 24 multiply, 2 sincos, 1 sqrt
 """3-PRS mechanism.
 
 Three sliders move along columns.  A rod leads from each of them to a corner of the hand.  A
@@ -120,35 +120,39 @@ def _hand_pose(ops, z, tilt_x, tilt_y, a):
     c_tilt_y = ops.cos(tilt_y)
     s_tilt_x = ops.sin(tilt_x)
     c_tilt_x = ops.cos(tilt_x)
-    t1 = a * 1.299038105676658
-    g = c_tilt_x * t1 + c_tilt_y * t1
-    t2 = s_tilt_x * s_tilt_y
-    t3 = t1 * t2
-    delta = ops.sqrt(t3 * t3 + g * g)
+    R_33 = c_tilt_x * c_tilt_y
+    t1 = R_33 < -0.5
+    t2 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    t3 = t2 / ops.select(t1, c_tilt_x - c_tilt_y, 1.0)
+    t4 = a * 1.299038105676658
+    g = ops.select(t1, -t3, c_tilt_x + c_tilt_y) * t4
+    t5 = s_tilt_x * s_tilt_y
+    t6 = t5 * t4
+    delta = ops.sqrt(t6 * t6 + g * g)
     c = g / delta
-    s = t3 / delta
-    R_11 = c_tilt_y * c + t2 * s
-    R_12 = t2 * c - c_tilt_y * s
+    s = t6 / delta
+    R_11 = c_tilt_y * c + t5 * s
+    R_12 = t5 * c - c_tilt_y * s
     R_21 = c_tilt_x * s
     h1_y = a * R_21
-    t4 = h1_y * 0.5
-    t5 = a * 1.7320508075688772
-    t6 = 1.7320508075688772 * (a * R_11 * 0.5 - t5 * R_12 * 0.5)
+    t7 = h1_y * 0.5
+    t8 = a * 1.7320508075688772
+    t9 = 1.7320508075688772 * (a * R_11 * 0.5 - t8 * R_12 * 0.5)
     R_22 = c_tilt_x * c
-    t7 = t4 + (t6 * 0.5 + (t4 - t5 * R_22 * 0.5) * 0.5)
-    t8 = s_tilt_x * c_tilt_y
+    t10 = t7 + (t9 * 0.5 + (t7 - t8 * R_22 * 0.5) * 0.5)
+    t11 = s_tilt_x * c_tilt_y
     return (
         R_11,
         R_12,
         c_tilt_x * s_tilt_y,
-        1.1547005383792515 * t7,
+        1.1547005383792515 * t10,
         R_21,
         R_22,
         -s_tilt_x,
         -h1_y,
-        t8 * s - s_tilt_y * c,
-        t8 * c + s_tilt_y * s,
-        c_tilt_x * c_tilt_y,
+        t11 * s - s_tilt_y * c,
+        t11 * c + s_tilt_y * s,
+        R_33,
         z,
         0.0,
         0.0,
@@ -203,91 +207,95 @@ def _jacobian_parallel(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     c_tilt_y = ops.cos(tilt_y)
     s_tilt_x = ops.sin(tilt_x)
     c_tilt_x = ops.cos(tilt_x)
-    t1 = a * 1.299038105676658
-    t2 = c_tilt_y * t1
-    g = t2 + c_tilt_x * t1
-    t3 = s_tilt_y * t1
-    t4 = s_tilt_x * t3
-    delta = ops.sqrt(t4 * t4 + g * g)
+    t1 = c_tilt_x * c_tilt_y < -0.5
+    t2 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    t3 = t2 / ops.select(t1, c_tilt_x - c_tilt_y, 1.0)
+    t4 = a * 1.299038105676658
+    g = ops.select(t1, -t3, c_tilt_x + c_tilt_y) * t4
+    t5 = s_tilt_y * t4
+    t6 = s_tilt_x * t5
+    delta = ops.sqrt(t6 * t6 + g * g)
     c = g / delta
-    s = t4 / delta
-    t5 = s_tilt_x * s
-    t6 = s_tilt_y * c - c_tilt_y * t5
-    t7 = a * t6
-    r_12 = z - rho1 - t7
+    s = t6 / delta
+    t7 = s_tilt_x * s
+    t8 = s_tilt_y * c - c_tilt_y * t7
+    t9 = a * t8
+    r_12 = z - rho1 - t9
     R_21 = c_tilt_x * s
     h1_y = a * R_21
-    t8 = c_tilt_y * h1_y
+    t10 = c_tilt_y * h1_y
     R_22 = c_tilt_x * c
-    twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
-    t9 = s_tilt_x * c
-    R_32 = c_tilt_y * t9 + s_tilt_y * s
-    t10 = a * R_32
-    R_11 = c_tilt_y * c + s_tilt_y * t5
+    twist_tilt_x = (t5 * R_22 + t4 * t7) / delta
+    t11 = s_tilt_x * c
+    t12 = c_tilt_y * t11
+    R_32 = t12 + s_tilt_y * s
+    t13 = a * R_32
+    R_11 = c_tilt_y * c + s_tilt_y * t7
     h1_x = a * R_11
-    t11 = h1_y * 0.5
-    t12 = h1_x * 0.5
-    t13 = a * 1.7320508075688772
-    R_12 = s_tilt_y * t9 - c_tilt_y * s
-    t14 = t13 * R_12 * 0.5
-    t15 = t12 - t14
-    t16 = t13 * R_22
-    t17 = t16 * 0.5
-    t18 = t11 - t17
-    t19 = t11 + (1.7320508075688772 * t15 * 0.5 + t18 * 0.5)
-    px = 1.1547005383792515 * t19
-    t20 = b - h1_x - px
-    t21 = s_tilt_y * h1_y
-    t22 = a * R_12
-    t23 = a * 0.75
-    t24 = t13 * R_21
-    t25 = t13 * R_11
-    t26 = 1.7320508075688772 * (t25 * 0.5 + t22 * 0.5) * 0.5
-    t27 = t23 * R_22 + t24 * 0.25 + t26
-    t28 = t22 + 1.1547005383792515 * t27
-    t29 = t13 * t9
-    t30 = s_tilt_y * t16
-    t31 = 1.7320508075688772 * (t30 * 0.5 - t21 * 0.5) * 0.5
-    t32 = t29 * 0.25 - t23 * t5 - t31
-    t33 = t21 + twist_tilt_x * t28 + 1.1547005383792515 * t32
-    t34 = t13 * R_32 * 0.5
-    t35 = a * 1.5
-    twist_tilt_y = (t2 * t9 + t3 * s) / delta
-    A_13 = t20 * (t34 + t35 * t6 - t28 * twist_tilt_y) - r_12 * (h1_x - t10 * twist_tilt_y)
-    t36 = t7 * 0.5
-    r_22 = z - rho2 + (t34 + t36)
-    t37 = c_tilt_y * t16 * 0.5
-    t38 = t8 * 0.5
-    t39 = t13 * t6 * 0.5
-    t40 = t10 * 0.5
-    t41 = t39 - t40
-    t42 = t15 * 0.5 - 1.7320508075688772 * (h1_y + t18) * 0.5
-    t43 = b + px * 0.5
+    t14 = h1_y * 0.5
+    t15 = h1_x * 0.5
+    t16 = a * 1.7320508075688772
+    R_12 = s_tilt_y * t11 - c_tilt_y * s
+    t17 = t16 * R_12 * 0.5
+    t18 = t15 - t17
+    t19 = t16 * R_22
+    t20 = t19 * 0.5
+    t21 = t14 - t20
+    t22 = t14 + (1.7320508075688772 * t18 * 0.5 + t21 * 0.5)
+    px = 1.1547005383792515 * t22
+    t23 = b - h1_x - px
+    t24 = s_tilt_y * h1_y
+    t25 = a * R_12
+    t26 = a * 0.75
+    t27 = t16 * R_21
+    t28 = t16 * R_11
+    t29 = 1.7320508075688772 * (t28 * 0.5 + t25 * 0.5) * 0.5
+    t30 = t26 * R_22 + t27 * 0.25 + t29
+    t31 = t25 + 1.1547005383792515 * t30
+    t32 = t16 * t11
+    t33 = s_tilt_y * t19
+    t34 = 1.7320508075688772 * (t33 * 0.5 - t24 * 0.5) * 0.5
+    t35 = t32 * 0.25 - t26 * t7 - t34
+    t36 = t24 + twist_tilt_x * t31 + 1.1547005383792515 * t35
+    A_12 = r_12 * (t10 + twist_tilt_x * t13) - t23 * t36
+    t37 = t16 * R_32 * 0.5
+    t38 = a * 1.5
+    twist_tilt_y = (t4 * t12 + t5 * s) / delta
+    A_13 = t23 * (t37 + t38 * t8 - t31 * twist_tilt_y) - r_12 * (h1_x - t13 * twist_tilt_y)
+    t39 = t9 * 0.5
+    r_22 = z - rho2 + (t37 + t39)
+    t40 = c_tilt_y * t19 * 0.5
+    t41 = t10 * 0.5
+    t42 = t16 * t8 * 0.5
+    t43 = t13 * 0.5
     t44 = t42 - t43
-    t45 = t30 * 0.25
-    t46 = t29 * 0.5
-    t47 = t35 * t5
-    t48 = t21 * 0.25 - 1.7320508075688772 * t32 / 3.0
-    t49 = t45 + 1.7320508075688772 * (t46 - t47) * 0.5 - t48
-    t50 = t25 * 0.25
-    t51 = t35 * R_22
-    t52 = t24 * 0.5
-    t53 = t22 * 0.25 - 1.7320508075688772 * t27 / 3.0
-    t54 = t50 - 1.7320508075688772 * (t51 + t52) * 0.5 + t53
-    A_22 = r_22 * (t37 - t38 + twist_tilt_x * t41) - t44 * (t49 - twist_tilt_x * t54)
-    A_23 = twist_tilt_y * t44 * t54 + r_22 * (t15 + twist_tilt_y * t41)
-    r_32 = z - rho3 - (t34 - t36)
-    t55 = t12 + t14
-    t56 = 1.7320508075688772 * (h1_y + (t11 + t17)) * 0.5
-    t57 = t55 * 0.5 + t56 - t43
-    t58 = t45 - 1.7320508075688772 * (t46 + t47) * 0.5 + t48
-    t59 = t50 - 1.7320508075688772 * (t51 - t52) * 0.5 - t53
-    t60 = t39 + t40
-    A_32 = t57 * (t58 - twist_tilt_x * t59) - r_32 * (t37 + t38 + twist_tilt_x * t60)
-    A_33 = t57 * (t34 - twist_tilt_y * t59) + r_32 * (t55 - twist_tilt_y * t60)
+    t45 = t18 * 0.5 - 1.7320508075688772 * (h1_y + t21) * 0.5
+    t46 = b + px * 0.5
+    t47 = t45 - t46
+    t48 = t33 * 0.25
+    t49 = t32 * 0.5
+    t50 = t38 * t7
+    t51 = t24 * 0.25 - 1.7320508075688772 * t35 / 3.0
+    t52 = t48 + 1.7320508075688772 * (t49 - t50) * 0.5 - t51
+    t53 = t28 * 0.25
+    t54 = t38 * R_22
+    t55 = t27 * 0.5
+    t56 = t25 * 0.25 - 1.7320508075688772 * t30 / 3.0
+    t57 = t53 - 1.7320508075688772 * (t54 + t55) * 0.5 + t56
+    A_22 = r_22 * (t40 - t41 + twist_tilt_x * t44) - t47 * (t52 - twist_tilt_x * t57)
+    A_23 = twist_tilt_y * t47 * t57 + r_22 * (t18 + twist_tilt_y * t44)
+    r_32 = z - rho3 - (t37 - t39)
+    t58 = t15 + t17
+    t59 = 1.7320508075688772 * (h1_y + (t14 + t20)) * 0.5
+    t60 = t58 * 0.5 + t59 - t46
+    t61 = t48 - 1.7320508075688772 * (t49 + t50) * 0.5 + t51
+    t62 = t53 - 1.7320508075688772 * (t54 - t55) * 0.5 - t56
+    t63 = t42 + t43
+    A_32 = t60 * (t61 - twist_tilt_x * t62) - r_32 * (t40 + t41 + twist_tilt_x * t63)
+    A_33 = t60 * (t37 - twist_tilt_y * t62) + r_32 * (t58 - twist_tilt_y * t63)
     return (
         r_12,
-        r_12 * (t8 + twist_tilt_x * t10) - t20 * t33,
+        A_12,
         A_13,
         r_22,
         A_22,
@@ -346,21 +354,24 @@ def _jacobian_serial(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, a):
     c_tilt_y = ops.cos(tilt_y)
     s_tilt_x = ops.sin(tilt_x)
     c_tilt_x = ops.cos(tilt_x)
-    t1 = a * 1.299038105676658
-    g = c_tilt_x * t1 + c_tilt_y * t1
-    t2 = s_tilt_x * s_tilt_y * t1
-    delta = ops.sqrt(t2 * t2 + g * g)
+    t1 = c_tilt_x * c_tilt_y < -0.5
+    t2 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    t3 = t2 / ops.select(t1, c_tilt_x - c_tilt_y, 1.0)
+    t4 = a * 1.299038105676658
+    g = ops.select(t1, -t3, c_tilt_x + c_tilt_y) * t4
+    t5 = s_tilt_x * s_tilt_y * t4
+    delta = ops.sqrt(t5 * t5 + g * g)
     c = g / delta
-    t3 = s_tilt_x * c_tilt_y
-    s = t2 / delta
-    t4 = a * (s_tilt_y * c - t3 * s)
-    t5 = t4 * 0.5
-    t6 = a * 1.7320508075688772 * (t3 * c + s_tilt_y * s)
-    t7 = t6 * 0.5
+    t6 = s_tilt_x * c_tilt_y
+    s = t5 / delta
+    t7 = a * (s_tilt_y * c - t6 * s)
+    t8 = t7 * 0.5
+    t9 = a * 1.7320508075688772 * (t6 * c + s_tilt_y * s)
+    t10 = t9 * 0.5
     return (
-        z - rho1 - t4,
-        z - rho2 + (t5 + t7),
-        z - rho3 + (t5 - t7),
+        z - rho1 - t7,
+        z - rho2 + (t8 + t10),
+        z - rho3 + (t8 - t10),
     )
 
 
@@ -412,99 +423,102 @@ def _jacobian_inverse(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     c_tilt_y = ops.cos(tilt_y)
     s_tilt_x = ops.sin(tilt_x)
     c_tilt_x = ops.cos(tilt_x)
-    t1 = a * 1.299038105676658
-    t2 = c_tilt_y * t1
-    g = t2 + c_tilt_x * t1
-    t3 = s_tilt_y * t1
-    t4 = s_tilt_x * t3
-    delta = ops.sqrt(t4 * t4 + g * g)
+    t1 = c_tilt_x * c_tilt_y < -0.5
+    t2 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    t3 = t2 / ops.select(t1, c_tilt_x - c_tilt_y, 1.0)
+    t4 = a * 1.299038105676658
+    g = ops.select(t1, -t3, c_tilt_x + c_tilt_y) * t4
+    t5 = s_tilt_y * t4
+    t6 = s_tilt_x * t5
+    delta = ops.sqrt(t6 * t6 + g * g)
     c = g / delta
-    s = t4 / delta
-    t5 = s_tilt_x * s
-    R_11 = c_tilt_y * c + s_tilt_y * t5
+    s = t6 / delta
+    t7 = s_tilt_x * s
+    R_11 = c_tilt_y * c + s_tilt_y * t7
     h1_x = a * R_11
     R_21 = c_tilt_x * s
     h1_y = a * R_21
-    t6 = h1_y * 0.5
-    t7 = h1_x * 0.5
-    t8 = a * 1.7320508075688772
-    t9 = s_tilt_x * c
-    R_12 = s_tilt_y * t9 - c_tilt_y * s
-    t10 = t8 * R_12 * 0.5
-    t11 = t7 - t10
+    t8 = h1_y * 0.5
+    t9 = h1_x * 0.5
+    t10 = a * 1.7320508075688772
+    t11 = s_tilt_x * c
+    R_12 = s_tilt_y * t11 - c_tilt_y * s
+    t12 = t10 * R_12 * 0.5
+    t13 = t9 - t12
     R_22 = c_tilt_x * c
-    t12 = t8 * R_22
-    t13 = t12 * 0.5
-    t14 = t6 - t13
-    t15 = t6 + (1.7320508075688772 * t11 * 0.5 + t14 * 0.5)
-    px = 1.1547005383792515 * t15
-    t16 = b - h1_x - px
-    t17 = s_tilt_y * h1_y
-    twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
-    t18 = a * R_12
-    t19 = a * 0.75
-    t20 = t8 * R_21
-    t21 = t8 * R_11
-    t22 = 1.7320508075688772 * (t21 * 0.5 + t18 * 0.5) * 0.5
-    t23 = t19 * R_22 + t20 * 0.25 + t22
-    t24 = t18 + 1.1547005383792515 * t23
-    t25 = t8 * t9
-    t26 = s_tilt_y * t12
-    t27 = 1.7320508075688772 * (t26 * 0.5 - t17 * 0.5) * 0.5
-    t28 = t25 * 0.25 - t19 * t5 - t27
-    t29 = t17 + twist_tilt_x * t24 + 1.1547005383792515 * t28
-    t30 = s_tilt_y * c - c_tilt_y * t5
-    t31 = a * t30
-    r_12 = z - rho1 - t31
-    t32 = c_tilt_y * h1_y
-    R_32 = c_tilt_y * t9 + s_tilt_y * s
-    t33 = a * R_32
-    t34 = t16 * t29 - r_12 * (t32 + twist_tilt_x * t33)
-    t35 = t8 * R_32 * 0.5
-    t36 = a * 1.5
-    twist_tilt_y = (t2 * t9 + t3 * s) / delta
-    A_13 = t16 * (t35 + t36 * t30 - t24 * twist_tilt_y) - r_12 * (h1_x - t33 * twist_tilt_y)
-    t37 = t31 * 0.5
-    r_22 = z - rho2 + (t35 + t37)
-    t38 = c_tilt_y * t12 * 0.5
-    t39 = t32 * 0.5
-    t40 = t8 * t30 * 0.5
-    t41 = t33 * 0.5
-    t42 = t40 - t41
-    t43 = t11 * 0.5 - 1.7320508075688772 * (h1_y + t14) * 0.5
-    t44 = b + px * 0.5
+    t14 = t10 * R_22
+    t15 = t14 * 0.5
+    t16 = t8 - t15
+    t17 = t8 + (1.7320508075688772 * t13 * 0.5 + t16 * 0.5)
+    px = 1.1547005383792515 * t17
+    t18 = b - h1_x - px
+    t19 = s_tilt_y * h1_y
+    twist_tilt_x = (t5 * R_22 + t4 * t7) / delta
+    t20 = a * R_12
+    t21 = a * 0.75
+    t22 = t10 * R_21
+    t23 = t10 * R_11
+    t24 = 1.7320508075688772 * (t23 * 0.5 + t20 * 0.5) * 0.5
+    t25 = t21 * R_22 + t22 * 0.25 + t24
+    t26 = t20 + 1.1547005383792515 * t25
+    t27 = t10 * t11
+    t28 = s_tilt_y * t14
+    t29 = 1.7320508075688772 * (t28 * 0.5 - t19 * 0.5) * 0.5
+    t30 = t27 * 0.25 - t21 * t7 - t29
+    t31 = t19 + twist_tilt_x * t26 + 1.1547005383792515 * t30
+    t32 = s_tilt_y * c - c_tilt_y * t7
+    t33 = a * t32
+    r_12 = z - rho1 - t33
+    t34 = c_tilt_y * h1_y
+    t35 = c_tilt_y * t11
+    R_32 = t35 + s_tilt_y * s
+    t36 = a * R_32
+    t37 = t18 * t31 - r_12 * (t34 + twist_tilt_x * t36)
+    t38 = t10 * R_32 * 0.5
+    t39 = a * 1.5
+    twist_tilt_y = (t4 * t35 + t5 * s) / delta
+    A_13 = t18 * (t38 + t39 * t32 - t26 * twist_tilt_y) - r_12 * (h1_x - t36 * twist_tilt_y)
+    t40 = t33 * 0.5
+    r_22 = z - rho2 + (t38 + t40)
+    t41 = c_tilt_y * t14 * 0.5
+    t42 = t34 * 0.5
+    t43 = t10 * t32 * 0.5
+    t44 = t36 * 0.5
     t45 = t43 - t44
-    t46 = t26 * 0.25
-    t47 = t25 * 0.5
-    t48 = t36 * t5
-    t49 = t17 * 0.25 - 1.7320508075688772 * t28 / 3.0
-    t50 = t46 + 1.7320508075688772 * (t47 - t48) * 0.5 - t49
-    t51 = t21 * 0.25
-    t52 = t36 * R_22
-    t53 = t20 * 0.5
-    t54 = t18 * 0.25 - 1.7320508075688772 * t23 / 3.0
-    t55 = t51 - 1.7320508075688772 * (t52 + t53) * 0.5 + t54
-    A_22 = r_22 * (t38 - t39 + twist_tilt_x * t42) - t45 * (t50 - twist_tilt_x * t55)
-    t56 = twist_tilt_y * t45 * t55 + r_22 * (t11 + twist_tilt_y * t42)
-    r_32 = z - rho3 - (t35 - t37)
-    t57 = t40 + t41
-    t58 = t7 + t10
-    t59 = 1.7320508075688772 * (h1_y + (t6 + t13)) * 0.5
-    t60 = t58 * 0.5 + t59 - t44
-    t61 = t46 - 1.7320508075688772 * (t47 + t48) * 0.5 + t49
-    t62 = t51 - 1.7320508075688772 * (t52 - t53) * 0.5 - t54
-    t63 = r_32 * (t38 + t39 + twist_tilt_x * t57) - t60 * (t61 - twist_tilt_x * t62)
-    t64 = t60 * (t35 - twist_tilt_y * t62) + r_32 * (t58 - twist_tilt_y * t57)
+    t46 = t13 * 0.5 - 1.7320508075688772 * (h1_y + t16) * 0.5
+    t47 = b + px * 0.5
+    t48 = t46 - t47
+    t49 = t28 * 0.25
+    t50 = t27 * 0.5
+    t51 = t39 * t7
+    t52 = t19 * 0.25 - 1.7320508075688772 * t30 / 3.0
+    t53 = t49 + 1.7320508075688772 * (t50 - t51) * 0.5 - t52
+    t54 = t23 * 0.25
+    t55 = t39 * R_22
+    t56 = t22 * 0.5
+    t57 = t20 * 0.25 - 1.7320508075688772 * t25 / 3.0
+    t58 = t54 - 1.7320508075688772 * (t55 + t56) * 0.5 + t57
+    A_22 = r_22 * (t41 - t42 + twist_tilt_x * t45) - t48 * (t53 - twist_tilt_x * t58)
+    t59 = twist_tilt_y * t48 * t58 + r_22 * (t13 + twist_tilt_y * t45)
+    r_32 = z - rho3 - (t38 - t40)
+    t60 = t43 + t44
+    t61 = t9 + t12
+    t62 = 1.7320508075688772 * (h1_y + (t8 + t15)) * 0.5
+    t63 = t61 * 0.5 + t62 - t47
+    t64 = t49 - 1.7320508075688772 * (t50 + t51) * 0.5 + t52
+    t65 = t54 - 1.7320508075688772 * (t55 - t56) * 0.5 - t57
+    t66 = r_32 * (t41 + t42 + twist_tilt_x * t60) - t63 * (t64 - twist_tilt_x * t65)
+    t67 = t63 * (t38 - twist_tilt_y * t65) + r_32 * (t61 - twist_tilt_y * t60)
     return (
         1.0,
-        -(t34 / r_12),
+        -(t37 / r_12),
         A_13 / r_12,
         1.0,
         A_22 / r_22,
-        t56 / r_22,
+        t59 / r_22,
         1.0,
-        -(t63 / r_32),
-        t64 / r_32,
+        -(t66 / r_32),
+        t67 / r_32,
     )
 
 
@@ -557,107 +571,110 @@ def _jacobian(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     c_tilt_y = ops.cos(tilt_y)
     s_tilt_x = ops.sin(tilt_x)
     c_tilt_x = ops.cos(tilt_x)
-    t1 = a * 1.299038105676658
-    t2 = c_tilt_y * t1
-    g = t2 + c_tilt_x * t1
-    t3 = s_tilt_y * t1
-    t4 = s_tilt_x * t3
-    delta = ops.sqrt(t4 * t4 + g * g)
+    t1 = c_tilt_x * c_tilt_y < -0.5
+    t2 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    t3 = t2 / ops.select(t1, c_tilt_x - c_tilt_y, 1.0)
+    t4 = a * 1.299038105676658
+    g = ops.select(t1, -t3, c_tilt_x + c_tilt_y) * t4
+    t5 = s_tilt_y * t4
+    t6 = s_tilt_x * t5
+    delta = ops.sqrt(t6 * t6 + g * g)
     c = g / delta
-    s = t4 / delta
-    t5 = s_tilt_x * s
-    t6 = s_tilt_y * c - c_tilt_y * t5
-    t7 = a * t6
-    r_12 = z - rho1 - t7
-    t8 = t7 * 0.5
-    t9 = a * 1.7320508075688772
-    t10 = s_tilt_x * c
-    R_32 = c_tilt_y * t10 + s_tilt_y * s
-    t11 = t9 * R_32 * 0.5
-    r_22 = z - rho2 + (t8 + t11)
+    s = t6 / delta
+    t7 = s_tilt_x * s
+    t8 = s_tilt_y * c - c_tilt_y * t7
+    t9 = a * t8
+    r_12 = z - rho1 - t9
+    t10 = t9 * 0.5
+    t11 = a * 1.7320508075688772
+    t12 = s_tilt_x * c
+    t13 = c_tilt_y * t12
+    R_32 = t13 + s_tilt_y * s
+    t14 = t11 * R_32 * 0.5
+    r_22 = z - rho2 + (t10 + t14)
     R_22 = c_tilt_x * c
-    t12 = t9 * R_22
-    t13 = c_tilt_y * t12 * 0.5
+    t15 = t11 * R_22
+    t16 = c_tilt_y * t15 * 0.5
     R_21 = c_tilt_x * s
     h1_y = a * R_21
-    t14 = c_tilt_y * h1_y
-    t15 = t14 * 0.5
-    twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
-    t16 = t9 * t6 * 0.5
-    t17 = a * R_32
+    t17 = c_tilt_y * h1_y
     t18 = t17 * 0.5
-    t19 = t16 - t18
-    R_11 = c_tilt_y * c + s_tilt_y * t5
+    twist_tilt_x = (t5 * R_22 + t4 * t7) / delta
+    t19 = t11 * t8 * 0.5
+    t20 = a * R_32
+    t21 = t20 * 0.5
+    t22 = t19 - t21
+    R_11 = c_tilt_y * c + s_tilt_y * t7
     h1_x = a * R_11
-    t20 = h1_x * 0.5
-    R_12 = s_tilt_y * t10 - c_tilt_y * s
-    t21 = t9 * R_12 * 0.5
-    t22 = t20 - t21
-    t23 = h1_y * 0.5
-    t24 = t12 * 0.5
+    t23 = h1_x * 0.5
+    R_12 = s_tilt_y * t12 - c_tilt_y * s
+    t24 = t11 * R_12 * 0.5
     t25 = t23 - t24
-    t26 = t22 * 0.5 - 1.7320508075688772 * (h1_y + t25) * 0.5
-    t27 = t23 + (1.7320508075688772 * t22 * 0.5 + t25 * 0.5)
-    px = 1.1547005383792515 * t27
-    t28 = b + px * 0.5
-    t29 = t26 - t28
-    t30 = s_tilt_y * t12
-    t31 = t30 * 0.25
-    t32 = t9 * t10
-    t33 = t32 * 0.5
-    t34 = a * 1.5
-    t35 = t34 * t5
-    t36 = s_tilt_y * h1_y
-    t37 = a * 0.75
-    t38 = 1.7320508075688772 * (t30 * 0.5 - t36 * 0.5) * 0.5
-    t39 = t32 * 0.25 - t37 * t5 - t38
-    t40 = t36 * 0.25 - 1.7320508075688772 * t39 / 3.0
-    t41 = t31 + 1.7320508075688772 * (t33 - t35) * 0.5 - t40
-    t42 = t9 * R_11
-    t43 = t42 * 0.25
-    t44 = t34 * R_22
-    t45 = t9 * R_21
-    t46 = t45 * 0.5
-    t47 = a * R_12
-    t48 = 1.7320508075688772 * (t42 * 0.5 + t47 * 0.5) * 0.5
-    t49 = t37 * R_22 + t45 * 0.25 + t48
-    t50 = t47 * 0.25 - 1.7320508075688772 * t49 / 3.0
-    t51 = t43 - 1.7320508075688772 * (t44 + t46) * 0.5 + t50
-    A_22 = r_22 * (t13 - t15 + twist_tilt_x * t19) - t29 * (t41 - twist_tilt_x * t51)
-    t52 = t20 + t21
-    t53 = 1.7320508075688772 * (h1_y + (t23 + t24)) * 0.5
-    t54 = t52 * 0.5 + t53 - t28
-    twist_tilt_y = (t2 * t10 + t3 * s) / delta
-    t55 = t43 - 1.7320508075688772 * (t44 - t46) * 0.5 - t50
-    r_32 = z - rho3 + (t8 - t11)
-    t56 = t16 + t18
-    t57 = t54 * (t11 - twist_tilt_y * t55) + r_32 * (t52 - twist_tilt_y * t56)
-    t58 = twist_tilt_y * t29 * t51 + r_22 * (t22 + t19 * twist_tilt_y)
-    t59 = t31 - 1.7320508075688772 * (t33 + t35) * 0.5 + t40
-    t60 = r_32 * (t13 + t15 + twist_tilt_x * t56) - t54 * (t59 - twist_tilt_x * t55)
-    t61 = b - h1_x - px
-    t62 = t47 + 1.1547005383792515 * t49
-    t63 = t36 + twist_tilt_x * t62 + 1.1547005383792515 * t39
-    t64 = t61 * t63 - r_12 * (t14 + twist_tilt_x * t17)
-    t65 = r_32 * t64
-    t66 = r_22 * t64
-    A_13 = t61 * (t11 + t34 * t6 - twist_tilt_y * t62) - r_12 * (h1_x - t17 * twist_tilt_y)
-    t67 = r_32 * A_13
-    t68 = r_22 * A_13
-    t69 = t65 * t58 - t66 * t57 + t67 * A_22 + t68 * t60
-    t70 = r_12 * A_22
-    t71 = r_12 * t58
-    t72 = t69 - t57 * t70 - t60 * t71
+    t26 = h1_y * 0.5
+    t27 = t15 * 0.5
+    t28 = t26 - t27
+    t29 = t25 * 0.5 - 1.7320508075688772 * (h1_y + t28) * 0.5
+    t30 = t26 + (1.7320508075688772 * t25 * 0.5 + t28 * 0.5)
+    px = 1.1547005383792515 * t30
+    t31 = b + px * 0.5
+    t32 = t29 - t31
+    t33 = s_tilt_y * t15
+    t34 = t33 * 0.25
+    t35 = t11 * t12
+    t36 = t35 * 0.5
+    t37 = a * 1.5
+    t38 = t37 * t7
+    t39 = s_tilt_y * h1_y
+    t40 = a * 0.75
+    t41 = 1.7320508075688772 * (t33 * 0.5 - t39 * 0.5) * 0.5
+    t42 = t35 * 0.25 - t40 * t7 - t41
+    t43 = t39 * 0.25 - 1.7320508075688772 * t42 / 3.0
+    t44 = t34 + 1.7320508075688772 * (t36 - t38) * 0.5 - t43
+    t45 = t11 * R_11
+    t46 = t45 * 0.25
+    t47 = t37 * R_22
+    t48 = t11 * R_21
+    t49 = t48 * 0.5
+    t50 = a * R_12
+    t51 = 1.7320508075688772 * (t45 * 0.5 + t50 * 0.5) * 0.5
+    t52 = t40 * R_22 + t48 * 0.25 + t51
+    t53 = t50 * 0.25 - 1.7320508075688772 * t52 / 3.0
+    t54 = t46 - 1.7320508075688772 * (t47 + t49) * 0.5 + t53
+    A_22 = r_22 * (t16 - t18 + twist_tilt_x * t22) - t32 * (t44 - twist_tilt_x * t54)
+    t55 = t23 + t24
+    t56 = 1.7320508075688772 * (h1_y + (t26 + t27)) * 0.5
+    t57 = t55 * 0.5 + t56 - t31
+    twist_tilt_y = (t4 * t13 + t5 * s) / delta
+    t58 = t46 - 1.7320508075688772 * (t47 - t49) * 0.5 - t53
+    r_32 = z - rho3 + (t10 - t14)
+    t59 = t19 + t21
+    t60 = t57 * (t14 - twist_tilt_y * t58) + r_32 * (t55 - twist_tilt_y * t59)
+    t61 = twist_tilt_y * t32 * t54 + r_22 * (t25 + t22 * twist_tilt_y)
+    t62 = t34 - 1.7320508075688772 * (t36 + t38) * 0.5 + t43
+    t63 = r_32 * (t16 + t18 + twist_tilt_x * t59) - t57 * (t62 - twist_tilt_x * t58)
+    t64 = b - h1_x - px
+    t65 = t50 + 1.1547005383792515 * t52
+    t66 = t39 + twist_tilt_x * t65 + 1.1547005383792515 * t42
+    t67 = t64 * t66 - r_12 * (t17 + twist_tilt_x * t20)
+    t68 = r_32 * t67
+    t69 = r_22 * t67
+    A_13 = t64 * (t14 + t37 * t8 - twist_tilt_y * t65) - r_12 * (h1_x - t20 * twist_tilt_y)
+    t70 = r_32 * A_13
+    t71 = r_22 * A_13
+    t72 = t68 * t61 - t69 * t60 + t70 * A_22 + t71 * t63
+    t73 = r_12 * A_22
+    t74 = r_12 * t61
+    t75 = t72 - t60 * t73 - t63 * t74
     return (
-        -(r_12 * (A_22 * t57 + t58 * t60) / t72),
-        -(r_22 * (t64 * t57 - A_13 * t60) / t72),
-        r_32 * (t64 * t58 + A_13 * A_22) / t72,
-        -(r_12 * (r_32 * t58 - r_22 * t57) / t72),
-        r_22 * (t67 - r_12 * t57) / t72,
-        -(r_32 * (t68 - t71) / t72),
-        r_12 * (r_32 * A_22 + r_22 * t60) / t72,
-        r_22 * (t65 - r_12 * t60) / t72,
-        -(r_32 * (t66 + t70) / t72),
+        -(r_12 * (A_22 * t60 + t61 * t63) / t75),
+        -(r_22 * (t67 * t60 - A_13 * t63) / t75),
+        r_32 * (t67 * t61 + A_13 * A_22) / t75,
+        -(r_12 * (r_32 * t61 - r_22 * t60) / t75),
+        r_22 * (t70 - r_12 * t60) / t75,
+        -(r_32 * (t71 - t74) / t75),
+        r_12 * (r_32 * A_22 + r_22 * t63) / t75,
+        r_22 * (t68 - r_12 * t63) / t75,
+        -(r_32 * (t69 + t73) / t75),
     )
 
 
@@ -710,93 +727,96 @@ def _determinant(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     c_tilt_y = ops.cos(tilt_y)
     s_tilt_x = ops.sin(tilt_x)
     c_tilt_x = ops.cos(tilt_x)
-    t1 = a * 1.299038105676658
-    t2 = c_tilt_y * t1
-    g = t2 + c_tilt_x * t1
-    t3 = s_tilt_y * t1
-    t4 = s_tilt_x * t3
-    delta = ops.sqrt(t4 * t4 + g * g)
+    t1 = c_tilt_x * c_tilt_y < -0.5
+    t2 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    t3 = t2 / ops.select(t1, c_tilt_x - c_tilt_y, 1.0)
+    t4 = a * 1.299038105676658
+    g = ops.select(t1, -t3, c_tilt_x + c_tilt_y) * t4
+    t5 = s_tilt_y * t4
+    t6 = s_tilt_x * t5
+    delta = ops.sqrt(t6 * t6 + g * g)
     c = g / delta
-    s = t4 / delta
-    t5 = s_tilt_x * s
-    t6 = s_tilt_y * c - c_tilt_y * t5
-    t7 = a * t6
-    r_12 = z - rho1 - t7
-    t8 = t7 * 0.5
-    t9 = a * 1.7320508075688772
-    t10 = s_tilt_x * c
-    R_32 = c_tilt_y * t10 + s_tilt_y * s
-    t11 = t9 * R_32 * 0.5
-    r_22 = z - rho2 + (t8 + t11)
-    r_32 = z - rho3 + (t8 - t11)
-    R_11 = c_tilt_y * c + s_tilt_y * t5
+    s = t6 / delta
+    t7 = s_tilt_x * s
+    t8 = s_tilt_y * c - c_tilt_y * t7
+    t9 = a * t8
+    r_12 = z - rho1 - t9
+    t10 = t9 * 0.5
+    t11 = a * 1.7320508075688772
+    t12 = s_tilt_x * c
+    t13 = c_tilt_y * t12
+    R_32 = t13 + s_tilt_y * s
+    t14 = t11 * R_32 * 0.5
+    r_22 = z - rho2 + (t10 + t14)
+    r_32 = z - rho3 + (t10 - t14)
+    R_11 = c_tilt_y * c + s_tilt_y * t7
     h1_x = a * R_11
     R_21 = c_tilt_x * s
     h1_y = a * R_21
-    t12 = h1_y * 0.5
-    t13 = h1_x * 0.5
-    R_12 = s_tilt_y * t10 - c_tilt_y * s
-    t14 = t9 * R_12 * 0.5
-    t15 = t13 - t14
+    t15 = h1_y * 0.5
+    t16 = h1_x * 0.5
+    R_12 = s_tilt_y * t12 - c_tilt_y * s
+    t17 = t11 * R_12 * 0.5
+    t18 = t16 - t17
     R_22 = c_tilt_x * c
-    t16 = t9 * R_22
-    t17 = t16 * 0.5
-    t18 = t12 - t17
-    t19 = t12 + (1.7320508075688772 * t15 * 0.5 + t18 * 0.5)
-    px = 1.1547005383792515 * t19
-    t20 = b - h1_x - px
-    t21 = s_tilt_y * h1_y
-    twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
-    t22 = a * R_12
-    t23 = a * 0.75
-    t24 = t9 * R_21
-    t25 = t9 * R_11
-    t26 = 1.7320508075688772 * (t25 * 0.5 + t22 * 0.5) * 0.5
-    t27 = t23 * R_22 + t24 * 0.25 + t26
-    t28 = t22 + 1.1547005383792515 * t27
-    t29 = t9 * t10
-    t30 = s_tilt_y * t16
-    t31 = 1.7320508075688772 * (t30 * 0.5 - t21 * 0.5) * 0.5
-    t32 = t29 * 0.25 - t23 * t5 - t31
-    t33 = t21 + twist_tilt_x * t28 + 1.1547005383792515 * t32
-    t34 = c_tilt_y * h1_y
-    t35 = a * R_32
-    t36 = t20 * t33 - r_12 * (t34 + twist_tilt_x * t35)
-    twist_tilt_y = (t2 * t10 + t3 * s) / delta
-    t37 = t15 * 0.5 - 1.7320508075688772 * (h1_y + t18) * 0.5
-    t38 = b + px * 0.5
-    t39 = t37 - t38
-    t40 = t25 * 0.25
-    t41 = a * 1.5
-    t42 = t41 * R_22
-    t43 = t24 * 0.5
-    t44 = t22 * 0.25 - 1.7320508075688772 * t27 / 3.0
-    t45 = t40 - 1.7320508075688772 * (t42 + t43) * 0.5 + t44
-    t46 = t9 * t6 * 0.5
-    t47 = t35 * 0.5
-    t48 = t46 - t47
-    t49 = twist_tilt_y * t39 * t45 + r_22 * (t15 + twist_tilt_y * t48)
-    t50 = t13 + t14
-    t51 = 1.7320508075688772 * (h1_y + (t12 + t17)) * 0.5
-    t52 = t50 * 0.5 + t51 - t38
-    t53 = t40 - 1.7320508075688772 * (t42 - t43) * 0.5 - t44
-    t54 = t46 + t47
-    t55 = t52 * (t11 - twist_tilt_y * t53) + r_32 * (t50 - twist_tilt_y * t54)
-    A_13 = t20 * (t11 + t41 * t6 - t28 * twist_tilt_y) - r_12 * (h1_x - t35 * twist_tilt_y)
-    t56 = c_tilt_y * t16 * 0.5
-    t57 = t34 * 0.5
-    t58 = t30 * 0.25
-    t59 = t29 * 0.5
-    t60 = t41 * t5
-    t61 = t21 * 0.25 - 1.7320508075688772 * t32 / 3.0
-    t62 = t58 + 1.7320508075688772 * (t59 - t60) * 0.5 - t61
-    A_22 = r_22 * (t56 - t57 + twist_tilt_x * t48) - t39 * (t62 - twist_tilt_x * t45)
-    t63 = r_32 * t36 * t49 - r_22 * t36 * t55 + r_32 * A_13 * A_22
-    t64 = t58 - 1.7320508075688772 * (t59 + t60) * 0.5 + t61
-    t65 = r_32 * (t56 + t57 + twist_tilt_x * t54) - t52 * (t64 - twist_tilt_x * t53)
-    t66 = t63 + r_22 * A_13 * t65 - r_12 * t55 * A_22 - r_12 * t49 * t65
+    t19 = t11 * R_22
+    t20 = t19 * 0.5
+    t21 = t15 - t20
+    t22 = t15 + (1.7320508075688772 * t18 * 0.5 + t21 * 0.5)
+    px = 1.1547005383792515 * t22
+    t23 = b - h1_x - px
+    t24 = s_tilt_y * h1_y
+    twist_tilt_x = (t5 * R_22 + t4 * t7) / delta
+    t25 = a * R_12
+    t26 = a * 0.75
+    t27 = t11 * R_21
+    t28 = t11 * R_11
+    t29 = 1.7320508075688772 * (t28 * 0.5 + t25 * 0.5) * 0.5
+    t30 = t26 * R_22 + t27 * 0.25 + t29
+    t31 = t25 + 1.1547005383792515 * t30
+    t32 = t11 * t12
+    t33 = s_tilt_y * t19
+    t34 = 1.7320508075688772 * (t33 * 0.5 - t24 * 0.5) * 0.5
+    t35 = t32 * 0.25 - t26 * t7 - t34
+    t36 = t24 + twist_tilt_x * t31 + 1.1547005383792515 * t35
+    t37 = c_tilt_y * h1_y
+    t38 = a * R_32
+    t39 = t23 * t36 - r_12 * (t37 + twist_tilt_x * t38)
+    twist_tilt_y = (t4 * t13 + t5 * s) / delta
+    t40 = t18 * 0.5 - 1.7320508075688772 * (h1_y + t21) * 0.5
+    t41 = b + px * 0.5
+    t42 = t40 - t41
+    t43 = t28 * 0.25
+    t44 = a * 1.5
+    t45 = t44 * R_22
+    t46 = t27 * 0.5
+    t47 = t25 * 0.25 - 1.7320508075688772 * t30 / 3.0
+    t48 = t43 - 1.7320508075688772 * (t45 + t46) * 0.5 + t47
+    t49 = t11 * t8 * 0.5
+    t50 = t38 * 0.5
+    t51 = t49 - t50
+    t52 = twist_tilt_y * t42 * t48 + r_22 * (t18 + twist_tilt_y * t51)
+    t53 = t16 + t17
+    t54 = 1.7320508075688772 * (h1_y + (t15 + t20)) * 0.5
+    t55 = t53 * 0.5 + t54 - t41
+    t56 = t43 - 1.7320508075688772 * (t45 - t46) * 0.5 - t47
+    t57 = t49 + t50
+    t58 = t55 * (t14 - twist_tilt_y * t56) + r_32 * (t53 - twist_tilt_y * t57)
+    A_13 = t23 * (t14 + t44 * t8 - t31 * twist_tilt_y) - r_12 * (h1_x - t38 * twist_tilt_y)
+    t59 = c_tilt_y * t19 * 0.5
+    t60 = t37 * 0.5
+    t61 = t33 * 0.25
+    t62 = t32 * 0.5
+    t63 = t44 * t7
+    t64 = t24 * 0.25 - 1.7320508075688772 * t35 / 3.0
+    t65 = t61 + 1.7320508075688772 * (t62 - t63) * 0.5 - t64
+    A_22 = r_22 * (t59 - t60 + twist_tilt_x * t51) - t42 * (t65 - twist_tilt_x * t48)
+    t66 = r_32 * t39 * t52 - r_22 * t39 * t58 + r_32 * A_13 * A_22
+    t67 = t61 - 1.7320508075688772 * (t62 + t63) * 0.5 + t64
+    t68 = r_32 * (t59 + t60 + twist_tilt_x * t57) - t55 * (t67 - twist_tilt_x * t56)
+    t69 = t66 + r_22 * A_13 * t68 - r_12 * t58 * A_22 - r_12 * t52 * t68
     return (
-        -(r_12 * r_22 * r_32 / t66),
+        -(r_12 * r_22 * r_32 / t69),
     )
 
 
@@ -848,91 +868,94 @@ def _singularities(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     c_tilt_y = ops.cos(tilt_y)
     s_tilt_x = ops.sin(tilt_x)
     c_tilt_x = ops.cos(tilt_x)
-    t1 = a * 1.299038105676658
-    t2 = c_tilt_y * t1
-    g = t2 + c_tilt_x * t1
-    t3 = s_tilt_y * t1
-    t4 = s_tilt_x * t3
-    delta = ops.sqrt(t4 * t4 + g * g)
+    t1 = c_tilt_x * c_tilt_y < -0.5
+    t2 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    t3 = t2 / ops.select(t1, c_tilt_x - c_tilt_y, 1.0)
+    t4 = a * 1.299038105676658
+    g = ops.select(t1, -t3, c_tilt_x + c_tilt_y) * t4
+    t5 = s_tilt_y * t4
+    t6 = s_tilt_x * t5
+    delta = ops.sqrt(t6 * t6 + g * g)
     c = g / delta
-    s = t4 / delta
-    t5 = s_tilt_x * s
-    t6 = s_tilt_y * c - c_tilt_y * t5
-    t7 = a * t6
-    r_12 = z - rho1 - t7
-    t8 = t7 * 0.5
-    t9 = a * 1.7320508075688772
-    t10 = s_tilt_x * c
-    R_32 = c_tilt_y * t10 + s_tilt_y * s
-    t11 = t9 * R_32 * 0.5
-    r_22 = z - rho2 + (t8 + t11)
-    r_32 = z - rho3 + (t8 - t11)
-    twist_tilt_y = (t2 * t10 + t3 * s) / delta
-    R_11 = c_tilt_y * c + s_tilt_y * t5
+    s = t6 / delta
+    t7 = s_tilt_x * s
+    t8 = s_tilt_y * c - c_tilt_y * t7
+    t9 = a * t8
+    r_12 = z - rho1 - t9
+    t10 = t9 * 0.5
+    t11 = a * 1.7320508075688772
+    t12 = s_tilt_x * c
+    t13 = c_tilt_y * t12
+    R_32 = t13 + s_tilt_y * s
+    t14 = t11 * R_32 * 0.5
+    r_22 = z - rho2 + (t10 + t14)
+    r_32 = z - rho3 + (t10 - t14)
+    twist_tilt_y = (t4 * t13 + t5 * s) / delta
+    R_11 = c_tilt_y * c + s_tilt_y * t7
     h1_x = a * R_11
-    t12 = h1_x * 0.5
-    R_12 = s_tilt_y * t10 - c_tilt_y * s
-    t13 = t9 * R_12 * 0.5
-    t14 = t12 - t13
+    t15 = h1_x * 0.5
+    R_12 = s_tilt_y * t12 - c_tilt_y * s
+    t16 = t11 * R_12 * 0.5
+    t17 = t15 - t16
     R_21 = c_tilt_x * s
     h1_y = a * R_21
-    t15 = h1_y * 0.5
+    t18 = h1_y * 0.5
     R_22 = c_tilt_x * c
-    t16 = t9 * R_22
-    t17 = t16 * 0.5
-    t18 = t15 - t17
-    t19 = t14 * 0.5 - 1.7320508075688772 * (h1_y + t18) * 0.5
-    t20 = t15 + (1.7320508075688772 * t14 * 0.5 + t18 * 0.5)
-    px = 1.1547005383792515 * t20
-    t21 = b + px * 0.5
-    t22 = t19 - t21
-    t23 = t9 * R_11
-    t24 = t23 * 0.25
-    t25 = a * 1.5
-    t26 = t25 * R_22
-    t27 = t9 * R_21
-    t28 = t27 * 0.5
-    t29 = a * R_12
-    t30 = a * 0.75
-    t31 = 1.7320508075688772 * (t23 * 0.5 + t29 * 0.5) * 0.5
-    t32 = t30 * R_22 + t27 * 0.25 + t31
-    t33 = t29 * 0.25 - 1.7320508075688772 * t32 / 3.0
-    t34 = t24 - 1.7320508075688772 * (t26 + t28) * 0.5 + t33
-    t35 = t9 * t6 * 0.5
-    t36 = a * R_32
-    t37 = t36 * 0.5
-    t38 = t35 - t37
-    t39 = twist_tilt_y * t22 * t34 + r_22 * (t14 + twist_tilt_y * t38)
-    t40 = c_tilt_y * t16 * 0.5
-    t41 = c_tilt_y * h1_y
-    t42 = t41 * 0.5
-    twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
-    t43 = t35 + t37
-    t44 = t12 + t13
-    t45 = 1.7320508075688772 * (h1_y + (t15 + t17)) * 0.5
-    t46 = t44 * 0.5 + t45 - t21
-    t47 = s_tilt_y * t16
-    t48 = t47 * 0.25
-    t49 = t9 * t10
-    t50 = t49 * 0.5
-    t51 = t25 * t5
-    t52 = s_tilt_y * h1_y
-    t53 = 1.7320508075688772 * (t47 * 0.5 - t52 * 0.5) * 0.5
-    t54 = t49 * 0.25 - t30 * t5 - t53
-    t55 = t52 * 0.25 - 1.7320508075688772 * t54 / 3.0
-    t56 = t48 - 1.7320508075688772 * (t50 + t51) * 0.5 + t55
-    t57 = t24 - 1.7320508075688772 * (t26 - t28) * 0.5 - t33
-    t58 = r_32 * (t40 + t42 + twist_tilt_x * t43) - t46 * (t56 - twist_tilt_x * t57)
-    t59 = b - h1_x - px
-    t60 = t29 + 1.1547005383792515 * t32
-    t61 = t52 + twist_tilt_x * t60 + 1.1547005383792515 * t54
-    t62 = t59 * t61 - r_12 * (t41 + twist_tilt_x * t36)
-    t63 = t46 * (t11 - twist_tilt_y * t57) + r_32 * (t44 - twist_tilt_y * t43)
-    A_13 = t59 * (t11 + t25 * t6 - t60 * twist_tilt_y) - r_12 * (h1_x - t36 * twist_tilt_y)
-    t64 = t48 + 1.7320508075688772 * (t50 - t51) * 0.5 - t55
-    A_22 = r_22 * (t40 - t42 + twist_tilt_x * t38) - t22 * (t64 - twist_tilt_x * t34)
-    t65 = r_32 * t62 * t39 - r_22 * t62 * t63 + r_32 * A_13 * A_22
-    Delta = r_12 * t39 * t58 - (t65 + r_22 * A_13 * t58 - r_12 * t63 * A_22)
+    t19 = t11 * R_22
+    t20 = t19 * 0.5
+    t21 = t18 - t20
+    t22 = t17 * 0.5 - 1.7320508075688772 * (h1_y + t21) * 0.5
+    t23 = t18 + (1.7320508075688772 * t17 * 0.5 + t21 * 0.5)
+    px = 1.1547005383792515 * t23
+    t24 = b + px * 0.5
+    t25 = t22 - t24
+    t26 = t11 * R_11
+    t27 = t26 * 0.25
+    t28 = a * 1.5
+    t29 = t28 * R_22
+    t30 = t11 * R_21
+    t31 = t30 * 0.5
+    t32 = a * R_12
+    t33 = a * 0.75
+    t34 = 1.7320508075688772 * (t26 * 0.5 + t32 * 0.5) * 0.5
+    t35 = t33 * R_22 + t30 * 0.25 + t34
+    t36 = t32 * 0.25 - 1.7320508075688772 * t35 / 3.0
+    t37 = t27 - 1.7320508075688772 * (t29 + t31) * 0.5 + t36
+    t38 = t11 * t8 * 0.5
+    t39 = a * R_32
+    t40 = t39 * 0.5
+    t41 = t38 - t40
+    t42 = twist_tilt_y * t25 * t37 + r_22 * (t17 + twist_tilt_y * t41)
+    t43 = c_tilt_y * t19 * 0.5
+    t44 = c_tilt_y * h1_y
+    t45 = t44 * 0.5
+    twist_tilt_x = (t5 * R_22 + t4 * t7) / delta
+    t46 = t38 + t40
+    t47 = t15 + t16
+    t48 = 1.7320508075688772 * (h1_y + (t18 + t20)) * 0.5
+    t49 = t47 * 0.5 + t48 - t24
+    t50 = s_tilt_y * t19
+    t51 = t50 * 0.25
+    t52 = t11 * t12
+    t53 = t52 * 0.5
+    t54 = t28 * t7
+    t55 = s_tilt_y * h1_y
+    t56 = 1.7320508075688772 * (t50 * 0.5 - t55 * 0.5) * 0.5
+    t57 = t52 * 0.25 - t33 * t7 - t56
+    t58 = t55 * 0.25 - 1.7320508075688772 * t57 / 3.0
+    t59 = t51 - 1.7320508075688772 * (t53 + t54) * 0.5 + t58
+    t60 = t27 - 1.7320508075688772 * (t29 - t31) * 0.5 - t36
+    t61 = r_32 * (t43 + t45 + twist_tilt_x * t46) - t49 * (t59 - twist_tilt_x * t60)
+    t62 = b - h1_x - px
+    t63 = t32 + 1.1547005383792515 * t35
+    t64 = t55 + twist_tilt_x * t63 + 1.1547005383792515 * t57
+    t65 = t62 * t64 - r_12 * (t44 + twist_tilt_x * t39)
+    t66 = t49 * (t14 - twist_tilt_y * t60) + r_32 * (t47 - twist_tilt_y * t46)
+    A_13 = t62 * (t14 + t28 * t8 - t63 * twist_tilt_y) - r_12 * (h1_x - t39 * twist_tilt_y)
+    t67 = t51 + 1.7320508075688772 * (t53 - t54) * 0.5 - t58
+    A_22 = r_22 * (t43 - t45 + twist_tilt_x * t41) - t25 * (t67 - twist_tilt_x * t37)
+    t68 = r_32 * t65 * t42 - r_22 * t65 * t66 + r_32 * A_13 * A_22
+    Delta = r_12 * t42 * t61 - (t68 + r_22 * A_13 * t61 - r_12 * t66 * A_22)
     return (
         r_12,
         r_22,
@@ -990,30 +1013,33 @@ def _skeleton(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     c_tilt_x = ops.cos(tilt_x)
     s_tilt_y = ops.sin(tilt_y)
     c_tilt_y = ops.cos(tilt_y)
-    t1 = a * 1.299038105676658
-    t2 = s_tilt_x * s_tilt_y
+    t1 = s_tilt_x * s_tilt_y
+    t2 = a * 1.299038105676658
     t3 = t1 * t2
-    g = c_tilt_x * t1 + c_tilt_y * t1
+    t4 = c_tilt_x * c_tilt_y < -0.5
+    t5 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    t6 = t5 / ops.select(t4, c_tilt_x - c_tilt_y, 1.0)
+    g = ops.select(t4, -t6, c_tilt_x + c_tilt_y) * t2
     delta = ops.sqrt(t3 * t3 + g * g)
     s = t3 / delta
     h1_y = a * (c_tilt_x * s)
-    t4 = h1_y * 0.5
+    t7 = h1_y * 0.5
     c = g / delta
-    h1_x = a * (c_tilt_y * c + t2 * s)
-    t5 = h1_x * 0.5
-    t6 = a * 1.7320508075688772
-    t7 = t6 * (t2 * c - c_tilt_y * s) * 0.5
-    t8 = t5 - t7
-    t9 = t6 * (c_tilt_x * c) * 0.5
-    t10 = t4 - t9
-    t11 = t4 + (1.7320508075688772 * t8 * 0.5 + t10 * 0.5)
-    px = 1.1547005383792515 * t11
-    t12 = s_tilt_x * c_tilt_y
-    t13 = a * (s_tilt_y * c - t12 * s)
-    t14 = -(b * 0.5)
-    t15 = b * 1.7320508075688772 * 0.5
-    t16 = t13 * 0.5
-    t17 = t6 * (t12 * c + s_tilt_y * s) * 0.5
+    h1_x = a * (c_tilt_y * c + t1 * s)
+    t8 = h1_x * 0.5
+    t9 = a * 1.7320508075688772
+    t10 = t9 * (t1 * c - c_tilt_y * s) * 0.5
+    t11 = t8 - t10
+    t12 = t9 * (c_tilt_x * c) * 0.5
+    t13 = t7 - t12
+    t14 = t7 + (1.7320508075688772 * t11 * 0.5 + t13 * 0.5)
+    px = 1.1547005383792515 * t14
+    t15 = s_tilt_x * c_tilt_y
+    t16 = a * (s_tilt_y * c - t15 * s)
+    t17 = -(b * 0.5)
+    t18 = b * 1.7320508075688772 * 0.5
+    t19 = t16 * 0.5
+    t20 = t9 * (t15 * c + s_tilt_y * s) * 0.5
     return (
         px,
         -h1_y,
@@ -1026,25 +1052,25 @@ def _skeleton(ops, z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
         rho1,
         h1_x + px,
         0.0,
-        z - t13,
-        t14,
-        t15,
+        z - t16,
+        t17,
+        t18,
         0.0,
-        t14,
-        t15,
+        t17,
+        t18,
         rho2,
-        px - t8,
-        -(h1_y + t10),
-        z + (t16 + t17),
-        t14,
-        -t15,
+        px - t11,
+        -(h1_y + t13),
+        z + (t19 + t20),
+        t17,
+        -t18,
         0.0,
-        t14,
-        -t15,
+        t17,
+        -t18,
         rho3,
-        px - (t5 + t7),
-        -(h1_y + (t4 + t9)),
-        z + (t16 - t17),
+        px - (t8 + t10),
+        -(h1_y + (t7 + t12)),
+        z + (t19 - t20),
     )
 
 
@@ -1105,292 +1131,298 @@ def _ik(ops, z, tilt_x, tilt_y, b, a, l):
     t4 = a * 1.299038105676658
     t5 = s_tilt_y * t4
     t6 = s_tilt_x * t5
-    t7 = c_tilt_y * t4
-    g = t7 + c_tilt_x * t4
-    t8 = t6 * t6 + g * g
-    delta = ops.sqrt(t8)
+    t7 = t6 * t6
+    t8 = c_tilt_x * c_tilt_y < -0.5
+    t9 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    t10 = c_tilt_x - c_tilt_y
+    t11 = c_tilt_x + c_tilt_y
+    g = ops.select(t8, -(t9 / t10), t11) * t4
+    delta = ops.sqrt(t7 + g * g)
     untwisted = delta <= 0.0
-    t9 = 1.0 / delta
-    c = ops.select(untwisted, 1.0, g * t9)
-    s = ops.select(untwisted, 0.0, t6 * t9)
-    t10 = s_tilt_x * s
-    R_11 = c_tilt_y * c + s_tilt_y * t10
+    t12 = 1.0 / delta
+    c = ops.select(untwisted, 1.0, g * t12)
+    s = ops.select(untwisted, 0.0, t6 * t12)
+    t13 = s_tilt_x * s
+    R_11 = c_tilt_y * c + s_tilt_y * t13
     h1_x = a * R_11
     R_21 = c_tilt_x * s
     h1_y = a * R_21
-    t11 = h1_y * 0.5
-    t12 = h1_x * 0.5
-    t13 = a * 1.7320508075688772
-    t14 = s_tilt_x * c
-    R_12 = s_tilt_y * t14 - c_tilt_y * s
-    t15 = t13 * R_12 * 0.5
-    t16 = t12 - t15
+    t14 = h1_y * 0.5
+    t15 = h1_x * 0.5
+    t16 = a * 1.7320508075688772
+    t17 = s_tilt_x * c
+    R_12 = s_tilt_y * t17 - c_tilt_y * s
+    t18 = t16 * R_12 * 0.5
+    t19 = t15 - t18
     R_22 = c_tilt_x * c
-    t17 = t13 * R_22
-    t18 = t17 * 0.5
-    t19 = t11 - t18
-    t20 = t11 + (1.7320508075688772 * t16 * 0.5 + t19 * 0.5)
-    px = 1.1547005383792515 * t20
-    t21 = b - h1_x - px
-    t22 = l + t21
-    t23 = l - t21
-    t24 = t16 * 0.5 - 1.7320508075688772 * (h1_y + t19) * 0.5
-    t25 = b + px * 0.5
-    aside_2 = t24 - t25
-    t26 = l - aside_2
-    t27 = l + aside_2
-    t28 = (t3 <= t22) & (t3 <= t23) & (t3 <= t26) & (t3 <= t27)
-    t29 = t12 + t15
-    t30 = 1.7320508075688772 * (h1_y + (t11 + t18)) * 0.5
-    aside_3 = t29 * 0.5 + t30 - t25
-    t31 = l - aside_3
-    t32 = l + aside_3
-    unreachable = ops.opposite(t28 & (t3 <= t31) & (t3 <= t32))
+    t20 = t16 * R_22
+    t21 = t20 * 0.5
+    t22 = t14 - t21
+    t23 = t14 + (1.7320508075688772 * t19 * 0.5 + t22 * 0.5)
+    px = 1.1547005383792515 * t23
+    t24 = b - h1_x - px
+    t25 = l + t24
+    t26 = l - t24
+    t27 = t19 * 0.5 - 1.7320508075688772 * (h1_y + t22) * 0.5
+    t28 = b + px * 0.5
+    aside_2 = t27 - t28
+    t29 = l - aside_2
+    t30 = l + aside_2
+    t31 = (t3 <= t25) & (t3 <= t26) & (t3 <= t29) & (t3 <= t30)
+    t32 = t15 + t18
+    t33 = 1.7320508075688772 * (h1_y + (t14 + t21)) * 0.5
+    aside_3 = t32 * 0.5 + t33 - t28
+    t34 = l - aside_3
+    t35 = l + aside_3
+    unreachable = ops.opposite(t31 & (t3 <= t34) & (t3 <= t35))
     failed = invalid | unreachable
-    t33 = ops.opposite(failed)
-    t34 = t33 & ops.opposite(untwisted)
-    t35 = ops.select(t34, ops.sqrt(ops.select(t34, t8, 1.0)), 1.0)
-    t36 = 1.0 / t35
-    c_2 = ops.select(untwisted, 1.0, g * t36)
-    s_2 = ops.select(untwisted, 0.0, t6 * t36)
-    t37 = s_tilt_x * s_2
-    t38 = a * (s_tilt_y * c_2 - c_tilt_y * t37)
-    m_1 = z - t38
-    h1_x_2 = a * (c_tilt_y * c_2 + s_tilt_y * t37)
+    t36 = ops.opposite(failed)
+    t37 = t36 & ops.opposite(untwisted)
+    u = ops.select(t8, -(t9 / ops.select(t37 & t8, t10, 1.0)), t11)
+    g_2 = u * t4
+    delta_2 = ops.sqrt(ops.select(t37, t7 + g_2 * g_2, 1.0))
+    t38 = 1.0 / ops.select(t37, delta_2, 1.0)
+    c_2 = ops.select(untwisted, 1.0, g_2 * t38)
+    s_2 = ops.select(untwisted, 0.0, t6 * t38)
+    t39 = s_tilt_x * s_2
+    t40 = a * (s_tilt_y * c_2 - c_tilt_y * t39)
+    m_1 = z - t40
+    h1_x_2 = a * (c_tilt_y * c_2 + s_tilt_y * t39)
     h1_y_2 = a * (c_tilt_x * s_2)
-    t39 = h1_y_2 * 0.5
-    t40 = h1_x_2 * 0.5
-    t41 = s_tilt_x * c_2
-    t42 = t13 * (s_tilt_y * t41 - c_tilt_y * s_2) * 0.5
-    t43 = t40 - t42
-    t44 = t13 * (c_tilt_x * c_2) * 0.5
-    t45 = t39 - t44
-    t46 = t39 + (1.7320508075688772 * t43 * 0.5 + t45 * 0.5)
-    px_2 = 1.1547005383792515 * t46
-    t47 = b - h1_x_2 - px_2
-    t48 = ops.max(l + t47, 0.0) * ops.max(l - t47, 0.0)
-    root_1 = ops.sqrt(ops.select(t33, t48, 1.0))
-    t49 = ops.select(failed, ops.nan, m_1 - root_1)
-    t50 = t38 * 0.5
-    t51 = t13 * (c_tilt_y * t41 + s_tilt_y * s_2) * 0.5
-    m_2 = z + (t50 + t51)
-    t52 = t43 * 0.5 - 1.7320508075688772 * (h1_y_2 + t45) * 0.5
-    t53 = b + px_2 * 0.5
-    aside_2_2 = t52 - t53
-    t54 = ops.max(l - aside_2_2, 0.0) * ops.max(l + aside_2_2, 0.0)
-    root_2 = ops.sqrt(ops.select(t33, t54, 1.0))
-    t55 = ops.select(failed, ops.nan, m_2 - root_2)
-    m_3 = z + (t50 - t51)
-    t56 = 1.7320508075688772 * (h1_y_2 + (t39 + t44)) * 0.5
-    aside_3_2 = (t40 + t42) * 0.5 + t56 - t53
-    t57 = ops.max(l - aside_3_2, 0.0) * ops.max(l + aside_3_2, 0.0)
-    root_3 = ops.sqrt(ops.select(t33, t57, 1.0))
-    t58 = ops.select(failed, ops.nan, m_3 - root_3)
-    t59 = ops.select(failed, ops.nan, m_3 + root_3)
-    t60 = ops.select(failed, ops.nan, m_2 + root_2)
-    t61 = ops.select(failed, ops.nan, m_1 + root_1)
-    t62 = size * ops.vanishing
+    t41 = h1_y_2 * 0.5
+    t42 = h1_x_2 * 0.5
+    t43 = s_tilt_x * c_2
+    t44 = t16 * (s_tilt_y * t43 - c_tilt_y * s_2) * 0.5
+    t45 = t42 - t44
+    t46 = t16 * (c_tilt_x * c_2) * 0.5
+    t47 = t41 - t46
+    t48 = t41 + (1.7320508075688772 * t45 * 0.5 + t47 * 0.5)
+    px_2 = 1.1547005383792515 * t48
+    t49 = b - h1_x_2 - px_2
+    t50 = ops.max(l + t49, 0.0) * ops.max(l - t49, 0.0)
+    root_1 = ops.sqrt(ops.select(t36, t50, 1.0))
+    t51 = ops.select(failed, ops.nan, m_1 - root_1)
+    t52 = t40 * 0.5
+    t53 = t16 * (c_tilt_y * t43 + s_tilt_y * s_2) * 0.5
+    m_2 = z + (t52 + t53)
+    t54 = t45 * 0.5 - 1.7320508075688772 * (h1_y_2 + t47) * 0.5
+    t55 = b + px_2 * 0.5
+    aside_2_2 = t54 - t55
+    t56 = ops.max(l - aside_2_2, 0.0) * ops.max(l + aside_2_2, 0.0)
+    root_2 = ops.sqrt(ops.select(t36, t56, 1.0))
+    t57 = ops.select(failed, ops.nan, m_2 - root_2)
+    m_3 = z + (t52 - t53)
+    t58 = 1.7320508075688772 * (h1_y_2 + (t41 + t46)) * 0.5
+    aside_3_2 = (t42 + t44) * 0.5 + t58 - t55
+    t59 = ops.max(l - aside_3_2, 0.0) * ops.max(l + aside_3_2, 0.0)
+    root_3 = ops.sqrt(ops.select(t36, t59, 1.0))
+    t60 = ops.select(failed, ops.nan, m_3 - root_3)
+    t61 = ops.select(failed, ops.nan, m_3 + root_3)
+    t62 = ops.select(failed, ops.nan, m_2 + root_2)
+    t63 = ops.select(failed, ops.nan, m_1 + root_1)
+    t64 = size * ops.vanishing
     least = a * a * (l * l * l)
-    t63 = least * delta
-    t64 = t13 + a * 2.0
-    t65 = s_tilt_y * c - c_tilt_y * t10
-    t66 = a * t65
-    R_32 = c_tilt_y * t14 + s_tilt_y * s
-    t67 = t13 * R_32 * 0.5
-    t68 = ops.select(untwisted, 1.0, t9)
-    twist_tilt_y = t68 * (t7 * t14 + t5 * s)
-    t69 = t13 * R_11
-    t70 = t69 * 0.25
-    t71 = a * 1.5
-    t72 = t71 * R_22
-    t73 = t13 * R_21
-    t74 = t73 * 0.5
-    t75 = a * R_12
-    t76 = a * 0.75
-    t77 = 1.7320508075688772 * (t69 * 0.5 + t75 * 0.5) * 0.5
-    t78 = t76 * R_22 + t73 * 0.25 + t77
-    t79 = t75 * 0.25 - 1.7320508075688772 * t78 / 3.0
-    t80 = t70 - 1.7320508075688772 * (t72 - t74) * 0.5 - t79
-    t81 = aside_3 * (t67 - twist_tilt_y * t80)
-    t82 = t13 * t65 * 0.5
-    t83 = a * R_32
-    t84 = t83 * 0.5
-    t85 = t82 + t84
-    t86 = t29 - twist_tilt_y * t85
-    t87 = t66 * 0.5
-    h3_z = t87 - t67
+    t65 = least * delta
+    t66 = t16 + a * 2.0
+    t67 = s_tilt_y * c - c_tilt_y * t13
+    t68 = a * t67
+    t69 = c_tilt_y * t17
+    R_32 = t69 + s_tilt_y * s
+    t70 = t16 * R_32 * 0.5
+    t71 = ops.select(untwisted, 1.0, t12)
+    twist_tilt_y = t71 * (t4 * t69 + t5 * s)
+    t72 = t16 * R_11
+    t73 = t72 * 0.25
+    t74 = a * 1.5
+    t75 = t74 * R_22
+    t76 = t16 * R_21
+    t77 = t76 * 0.5
+    t78 = a * R_12
+    t79 = a * 0.75
+    t80 = 1.7320508075688772 * (t72 * 0.5 + t78 * 0.5) * 0.5
+    t81 = t79 * R_22 + t76 * 0.25 + t80
+    t82 = t78 * 0.25 - 1.7320508075688772 * t81 / 3.0
+    t83 = t73 - 1.7320508075688772 * (t75 - t77) * 0.5 - t82
+    t84 = aside_3 * (t70 - twist_tilt_y * t83)
+    t85 = t16 * t67 * 0.5
+    t86 = a * R_32
+    t87 = t86 * 0.5
+    t88 = t85 + t87
+    t89 = t32 - twist_tilt_y * t88
+    t90 = t68 * 0.5
+    h3_z = t90 - t70
     m_3_2 = z + h3_z
-    root_3_2 = ops.sqrt(ops.max(t31, 0.0) * ops.max(t32, 0.0))
+    root_3_2 = ops.sqrt(ops.max(t34, 0.0) * ops.max(t35, 0.0))
     slide_3 = m_3_2 - root_3_2
-    t88 = m_3_2 - slide_3
-    t89 = t81 + t86 * t88
-    t90 = s_tilt_y * t17
-    t91 = t90 * 0.25
-    t92 = t13 * t14
-    t93 = t92 * 0.5
-    t94 = t71 * t10
-    t95 = s_tilt_y * h1_y
-    t96 = 1.7320508075688772 * (t90 * 0.5 - t95 * 0.5) * 0.5
-    t97 = t92 * 0.25 - t76 * t10 - t96
-    t98 = t95 * 0.25 - 1.7320508075688772 * t97 / 3.0
-    t99 = t91 + 1.7320508075688772 * (t93 - t94) * 0.5 - t98
-    twist_tilt_x = t68 * (t5 * R_22 + t4 * t10)
-    t100 = t70 - 1.7320508075688772 * (t72 + t74) * 0.5 + t79
-    t101 = aside_2 * (t99 - twist_tilt_x * t100)
-    t102 = c_tilt_y * t17 * 0.5
-    t103 = c_tilt_y * h1_y
-    t104 = t103 * 0.5
-    t105 = t82 - t84
-    t106 = t102 - t104 + twist_tilt_x * t105
-    h2_z = t87 + t67
+    t91 = m_3_2 - slide_3
+    t92 = t84 + t89 * t91
+    t93 = s_tilt_y * t20
+    t94 = t93 * 0.25
+    t95 = t16 * t17
+    t96 = t95 * 0.5
+    t97 = t74 * t13
+    t98 = s_tilt_y * h1_y
+    t99 = 1.7320508075688772 * (t93 * 0.5 - t98 * 0.5) * 0.5
+    t100 = t95 * 0.25 - t79 * t13 - t99
+    t101 = t98 * 0.25 - 1.7320508075688772 * t100 / 3.0
+    t102 = t94 + 1.7320508075688772 * (t96 - t97) * 0.5 - t101
+    twist_tilt_x = t71 * (t5 * R_22 + t4 * t13)
+    t103 = t73 - 1.7320508075688772 * (t75 + t77) * 0.5 + t82
+    t104 = aside_2 * (t102 - twist_tilt_x * t103)
+    t105 = c_tilt_y * t20 * 0.5
+    t106 = c_tilt_y * h1_y
+    t107 = t106 * 0.5
+    t108 = t85 - t87
+    t109 = t105 - t107 + twist_tilt_x * t108
+    h2_z = t90 + t70
     m_2_2 = z + h2_z
-    root_2_2 = ops.sqrt(ops.max(t26, 0.0) * ops.max(t27, 0.0))
+    root_2_2 = ops.sqrt(ops.max(t29, 0.0) * ops.max(t30, 0.0))
     slide_2 = m_2_2 - root_2_2
-    t107 = m_2_2 - slide_2
-    t108 = t101 - t106 * t107
-    t109 = t89 * t108
-    t110 = twist_tilt_y * aside_2 * t100
-    t111 = t16 + twist_tilt_y * t105
-    t112 = t110 + t107 * t111
-    t113 = t91 - 1.7320508075688772 * (t93 + t94) * 0.5 + t98
-    t114 = aside_3 * (t113 - twist_tilt_x * t80)
-    t115 = t102 + t104 + twist_tilt_x * t85
-    t116 = t114 - t115 * t88
-    t117 = t112 * t116
-    t118 = t66 * t109 - z * t109 + (t66 * t117 - z * t117)
-    t119 = t75 + 1.1547005383792515 * t78
-    t120 = t95 + twist_tilt_x * t119 + 1.1547005383792515 * t97
-    t121 = t21 * t120
-    t122 = t103 + twist_tilt_x * t83
-    m_1_2 = z - t66
-    root_1_2 = ops.sqrt(ops.max(t22, 0.0) * ops.max(t23, 0.0))
+    t110 = m_2_2 - slide_2
+    t111 = t104 - t109 * t110
+    t112 = t92 * t111
+    t113 = twist_tilt_y * aside_2 * t103
+    t114 = t19 + twist_tilt_y * t108
+    t115 = t113 + t110 * t114
+    t116 = t94 - 1.7320508075688772 * (t96 + t97) * 0.5 + t101
+    t117 = aside_3 * (t116 - twist_tilt_x * t83)
+    t118 = t105 + t107 + twist_tilt_x * t88
+    t119 = t117 - t118 * t91
+    t120 = t115 * t119
+    t121 = t68 * t112 - z * t112 + (t68 * t120 - z * t120)
+    t122 = t78 + 1.1547005383792515 * t81
+    t123 = t98 + twist_tilt_x * t122 + 1.1547005383792515 * t100
+    t124 = t24 * t123
+    t125 = t106 + twist_tilt_x * t86
+    m_1_2 = z - t68
+    root_1_2 = ops.sqrt(ops.max(t25, 0.0) * ops.max(t26, 0.0))
     slide_1 = m_1_2 - root_1_2
-    t123 = m_1_2 - slide_1
-    t124 = t121 - t122 * t123
-    t125 = t89 * t124
-    t126 = z * t124
-    t127 = t21 * (t67 + t71 * t65 - t119 * twist_tilt_y)
-    t128 = h1_x - t83 * twist_tilt_y
-    t129 = t127 - t128 * t123
-    t130 = t116 * t129
-    t131 = z * t129
-    t132 = h2_z * t125 + t89 * t126 + (h2_z * t130 + t116 * t131)
-    t133 = t112 * t124
-    t134 = t108 * t129
-    t135 = h3_z * t133 + t112 * t126 - (h3_z * t134 + t108 * t131)
-    t136 = t118 + t132 - t135 + slide_3 * t133 - slide_2 * t125
-    t137 = t136 - slide_3 * t134 - slide_2 * t130 + slide_1 * t109
-    t138 = ops.min(t63, t64 * ops.abs(-(t137 + slide_1 * t117)))
-    t139 = ops.max(0.0, ops.abs(t21) - l) + ops.max(0.0, ops.abs(-aside_2) - l)
-    t140 = t62 + (t139 + ops.max(0.0, ops.abs(-aside_3) - l))
-    t141 = ops.determined * (least * t64) * t140
-    t142 = ops.status(invalid, unreachable, t62 * t138 <= t141)
+    t126 = m_1_2 - slide_1
+    t127 = t124 - t125 * t126
+    t128 = t92 * t127
+    t129 = z * t127
+    t130 = t24 * (t70 + t74 * t67 - t122 * twist_tilt_y)
+    t131 = h1_x - t86 * twist_tilt_y
+    t132 = t130 - t131 * t126
+    t133 = t119 * t132
+    t134 = z * t132
+    t135 = h2_z * t128 + t92 * t129 + (h2_z * t133 + t119 * t134)
+    t136 = t115 * t127
+    t137 = t111 * t132
+    t138 = h3_z * t136 + t115 * t129 - (h3_z * t137 + t111 * t134)
+    t139 = t121 + t135 - t138 + slide_3 * t136 - slide_2 * t128
+    t140 = t139 - slide_3 * t137 - slide_2 * t133 + slide_1 * t112
+    t141 = ops.min(t65, t66 * ops.abs(-(t140 + slide_1 * t120)))
+    t142 = ops.max(0.0, ops.abs(t24) - l) + ops.max(0.0, ops.abs(-aside_2) - l)
+    t143 = t64 + (t142 + ops.max(0.0, ops.abs(-aside_3) - l))
+    t144 = ops.determined * (least * t66) * t143
+    t145 = ops.status(invalid, unreachable, t64 * t141 <= t144)
     slide_3_plus_plus_minus = m_3_2 + root_3_2
-    t143 = m_3_2 - slide_3_plus_plus_minus
-    t144 = t81 + t86 * t143
-    t145 = t108 * t144
-    t146 = t114 - t115 * t143
-    t147 = t112 * t146
-    t148 = t66 * t145 - z * t145 + (t66 * t147 - z * t147)
-    t149 = t124 * t144
-    t150 = t129 * t146
-    t151 = h2_z * t149 + t126 * t144 + (h2_z * t150 + t131 * t146)
-    t152 = t135 - t148 - t151 - slide_3_plus_plus_minus * t133
-    t153 = t152 + slide_2 * t149 + slide_3_plus_plus_minus * t134
-    t154 = t153 + slide_2 * t150 - slide_1 * t145 - slide_1 * t147
-    t155 = t62 * ops.min(t63, t64 * ops.abs(t154)) <= t141
+    t146 = m_3_2 - slide_3_plus_plus_minus
+    t147 = t84 + t89 * t146
+    t148 = t111 * t147
+    t149 = t117 - t118 * t146
+    t150 = t115 * t149
+    t151 = t68 * t148 - z * t148 + (t68 * t150 - z * t150)
+    t152 = t127 * t147
+    t153 = t132 * t149
+    t154 = h2_z * t152 + t129 * t147 + (h2_z * t153 + t134 * t149)
+    t155 = t138 - t151 - t154 - slide_3_plus_plus_minus * t136
+    t156 = t155 + slide_2 * t152 + slide_3_plus_plus_minus * t137
+    t157 = t156 + slide_2 * t153 - slide_1 * t148 - slide_1 * t150
+    t158 = t64 * ops.min(t65, t66 * ops.abs(t157)) <= t144
     slide_2_plus_minus_plus = m_2_2 + root_2_2
-    t156 = m_2_2 - slide_2_plus_minus_plus
-    t157 = t101 - t106 * t156
-    t158 = t89 * t157
-    t159 = t110 + t111 * t156
-    t160 = t116 * t159
-    t161 = t66 * t158 - z * t158 + (t66 * t160 - z * t160)
-    t162 = t124 * t159
-    t163 = t129 * t157
-    t164 = h3_z * t162 + t126 * t159 - (h3_z * t163 + t131 * t157)
-    t165 = t132 + t161 - t164 + slide_3 * t162 - slide_2_plus_minus_plus * t125
-    t166 = t165 - slide_3 * t163 - slide_2_plus_minus_plus * t130
-    t167 = ops.abs(t166 + slide_1 * t158 + slide_1 * t160)
-    t168 = ops.status(invalid, unreachable, t62 * ops.min(t63, t64 * t167) <= t141)
-    t169 = t144 * t157
-    t170 = t146 * t159
-    t171 = t66 * t169 - z * t169 + (t66 * t170 - z * t170)
-    t172 = t151 - t164 + t171 + slide_3_plus_plus_minus * t162
-    t173 = t172 - slide_2_plus_minus_plus * t149 - slide_3_plus_plus_minus * t163
-    t174 = t173 - slide_2_plus_minus_plus * t150 + slide_1 * t169
-    t175 = ops.min(t63, t64 * ops.abs(t174 + slide_1 * t170))
-    t176 = ops.status(invalid, unreachable, t62 * t175 <= t141)
+    t159 = m_2_2 - slide_2_plus_minus_plus
+    t160 = t104 - t109 * t159
+    t161 = t92 * t160
+    t162 = t113 + t114 * t159
+    t163 = t119 * t162
+    t164 = t68 * t161 - z * t161 + (t68 * t163 - z * t163)
+    t165 = t127 * t162
+    t166 = t132 * t160
+    t167 = h3_z * t165 + t129 * t162 - (h3_z * t166 + t134 * t160)
+    t168 = t135 + t164 - t167 + slide_3 * t165 - slide_2_plus_minus_plus * t128
+    t169 = t168 - slide_3 * t166 - slide_2_plus_minus_plus * t133
+    t170 = ops.abs(t169 + slide_1 * t161 + slide_1 * t163)
+    t171 = ops.status(invalid, unreachable, t64 * ops.min(t65, t66 * t170) <= t144)
+    t172 = t147 * t160
+    t173 = t149 * t162
+    t174 = t68 * t172 - z * t172 + (t68 * t173 - z * t173)
+    t175 = t154 - t167 + t174 + slide_3_plus_plus_minus * t165
+    t176 = t175 - slide_2_plus_minus_plus * t152 - slide_3_plus_plus_minus * t166
+    t177 = t176 - slide_2_plus_minus_plus * t153 + slide_1 * t172
+    t178 = ops.min(t65, t66 * ops.abs(t177 + slide_1 * t173))
+    t179 = ops.status(invalid, unreachable, t64 * t178 <= t144)
     slide_1_minus_plus_plus = m_1_2 + root_1_2
-    t177 = m_1_2 - slide_1_minus_plus_plus
-    t178 = t121 - t122 * t177
-    t179 = t89 * t178
-    t180 = z * t178
-    A_13_minus_plus_plus = t127 - t128 * t177
-    t181 = t116 * A_13_minus_plus_plus
-    t182 = z * A_13_minus_plus_plus
-    t183 = h2_z * t179 + t89 * t180 + (h2_z * t181 + t116 * t182)
-    t184 = t112 * t178
-    t185 = t108 * A_13_minus_plus_plus
-    t186 = h3_z * t184 + t112 * t180 - (h3_z * t185 + t108 * t182)
-    t187 = t118 + t183 - t186 + slide_3 * t184 - slide_2 * t179
-    t188 = t187 - slide_3 * t185 - slide_2 * t181 + slide_1_minus_plus_plus * t109
-    t189 = ops.abs(t188 + slide_1_minus_plus_plus * t117)
-    t190 = ops.status(invalid, unreachable, t62 * ops.min(t63, t64 * t189) <= t141)
-    t191 = t144 * t178
-    t192 = t146 * A_13_minus_plus_plus
-    t193 = h2_z * t191 + t144 * t180 + (h2_z * t192 + t146 * t182)
-    t194 = t148 - t186 + t193 + slide_3_plus_plus_minus * t184
-    t195 = t194 - slide_2 * t191 - slide_3_plus_plus_minus * t185
-    t196 = t195 - slide_2 * t192 + slide_1_minus_plus_plus * t145
-    t197 = ops.abs(t196 + slide_1_minus_plus_plus * t147)
-    t198 = ops.status(invalid, unreachable, t62 * ops.min(t63, t64 * t197) <= t141)
-    t199 = t159 * t178
-    t200 = t157 * A_13_minus_plus_plus
-    t201 = h3_z * t199 + t159 * t180 - (h3_z * t200 + t157 * t182)
-    t202 = t161 + t183 - t201 + slide_3 * t199 - slide_2_plus_minus_plus * t179
-    t203 = t202 - slide_3 * t200 - slide_2_plus_minus_plus * t181
-    Delta_minus_minus_plus = t203 + slide_1_minus_plus_plus * t158 + slide_1_minus_plus_plus * t160
-    t204 = ops.min(t63, t64 * ops.abs(Delta_minus_minus_plus))
-    t205 = ops.status(invalid, unreachable, t62 * t204 <= t141)
-    t206 = t171 + t193 - t201 + slide_3_plus_plus_minus * t199
-    t207 = t206 - slide_2_plus_minus_plus * t191 - slide_3_plus_plus_minus * t200
-    t208 = t207 - slide_2_plus_minus_plus * t192 + slide_1_minus_plus_plus * t169
-    t209 = ops.abs(t208 + slide_1_minus_plus_plus * t170)
-    t210 = ops.status(invalid, unreachable, t62 * ops.min(t63, t64 * t209) <= t141)
+    t180 = m_1_2 - slide_1_minus_plus_plus
+    t181 = t124 - t125 * t180
+    t182 = t92 * t181
+    t183 = z * t181
+    A_13_minus_plus_plus = t130 - t131 * t180
+    t184 = t119 * A_13_minus_plus_plus
+    t185 = z * A_13_minus_plus_plus
+    t186 = h2_z * t182 + t92 * t183 + (h2_z * t184 + t119 * t185)
+    t187 = t115 * t181
+    t188 = t111 * A_13_minus_plus_plus
+    t189 = h3_z * t187 + t115 * t183 - (h3_z * t188 + t111 * t185)
+    t190 = t121 + t186 - t189 + slide_3 * t187 - slide_2 * t182
+    t191 = t190 - slide_3 * t188 - slide_2 * t184 + slide_1_minus_plus_plus * t112
+    t192 = ops.abs(t191 + slide_1_minus_plus_plus * t120)
+    t193 = ops.status(invalid, unreachable, t64 * ops.min(t65, t66 * t192) <= t144)
+    t194 = t147 * t181
+    t195 = t149 * A_13_minus_plus_plus
+    t196 = h2_z * t194 + t147 * t183 + (h2_z * t195 + t149 * t185)
+    t197 = t151 - t189 + t196 + slide_3_plus_plus_minus * t187
+    t198 = t197 - slide_2 * t194 - slide_3_plus_plus_minus * t188
+    t199 = t198 - slide_2 * t195 + slide_1_minus_plus_plus * t148
+    t200 = ops.abs(t199 + slide_1_minus_plus_plus * t150)
+    t201 = ops.status(invalid, unreachable, t64 * ops.min(t65, t66 * t200) <= t144)
+    t202 = t162 * t181
+    t203 = t160 * A_13_minus_plus_plus
+    t204 = h3_z * t202 + t162 * t183 - (h3_z * t203 + t160 * t185)
+    t205 = t164 + t186 - t204 + slide_3 * t202 - slide_2_plus_minus_plus * t182
+    t206 = t205 - slide_3 * t203 - slide_2_plus_minus_plus * t184
+    Delta_minus_minus_plus = t206 + slide_1_minus_plus_plus * t161 + slide_1_minus_plus_plus * t163
+    t207 = ops.min(t65, t66 * ops.abs(Delta_minus_minus_plus))
+    t208 = ops.status(invalid, unreachable, t64 * t207 <= t144)
+    t209 = t174 + t196 - t204 + slide_3_plus_plus_minus * t202
+    t210 = t209 - slide_2_plus_minus_plus * t194 - slide_3_plus_plus_minus * t203
+    t211 = t210 - slide_2_plus_minus_plus * t195 + slide_1_minus_plus_plus * t172
+    t212 = ops.abs(t211 + slide_1_minus_plus_plus * t173)
+    t213 = ops.status(invalid, unreachable, t64 * ops.min(t65, t66 * t212) <= t144)
     return (
-        t49,
-        t55,
-        t58,
-        t49,
-        t55,
-        t59,
-        t49,
+        t51,
+        t57,
         t60,
-        t58,
-        t49,
+        t51,
+        t57,
+        t61,
+        t51,
+        t62,
         t60,
-        t59,
+        t51,
+        t62,
         t61,
-        t55,
-        t58,
-        t61,
-        t55,
-        t59,
-        t61,
+        t63,
+        t57,
         t60,
-        t58,
+        t63,
+        t57,
         t61,
+        t63,
+        t62,
         t60,
-        t59,
-        t142,
-        ops.status(invalid, unreachable, t155),
-        t168,
-        t176,
-        t190,
-        t198,
-        t205,
-        t210,
+        t63,
+        t62,
+        t61,
+        t145,
+        ops.status(invalid, unreachable, t158),
+        t171,
+        t179,
+        t193,
+        t201,
+        t208,
+        t213,
     )
 
 
@@ -1457,34 +1489,36 @@ def _workspace_contains(ops, z, tilt_x, tilt_y, b, a, l):
     t1 = ops.finite(b, a, l) & (0.0 <= b) & (0.0 <= a)
     t2 = t1 & (0.0 <= l) & ops.finite(z, tilt_x, tilt_y)
     t3 = ops.feasibility * ((b + a + l + ops.abs(z)) * 0.5)
-    t4 = a * 1.299038105676658
-    t5 = s_tilt_x * s_tilt_y
+    t4 = s_tilt_x * s_tilt_y
+    t5 = a * 1.299038105676658
     t6 = t4 * t5
-    g = c_tilt_x * t4 + c_tilt_y * t4
+    t7 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    u = ops.select(c_tilt_x * c_tilt_y < -0.5, -(t7 / (c_tilt_x - c_tilt_y)), c_tilt_x + c_tilt_y)
+    g = u * t5
     delta = ops.sqrt(t6 * t6 + g * g)
     untwisted = delta <= 0.0
     c = ops.select(untwisted, 1.0, g / delta)
     s = ops.select(untwisted, 0.0, t6 / delta)
-    h1_x = a * (c_tilt_y * c + t5 * s)
+    h1_x = a * (c_tilt_y * c + t4 * s)
     h1_y = a * (c_tilt_x * s)
-    t7 = h1_y * 0.5
-    t8 = h1_x * 0.5
-    t9 = a * 1.7320508075688772
-    t10 = t9 * (t5 * c - c_tilt_y * s) * 0.5
-    t11 = t8 - t10
-    t12 = t9 * (c_tilt_x * c) * 0.5
-    t13 = t7 - t12
-    t14 = t7 + (1.7320508075688772 * t11 * 0.5 + t13 * 0.5)
-    px = 1.1547005383792515 * t14
-    t15 = b - h1_x - px
-    t16 = t11 * 0.5 - 1.7320508075688772 * (h1_y + t13) * 0.5
-    t17 = b + px * 0.5
-    aside_2 = t16 - t17
-    t18 = (-t3 <= l + t15) & (-t3 <= l - t15) & (-t3 <= l - aside_2)
-    t19 = 1.7320508075688772 * (h1_y + (t7 + t12)) * 0.5
-    aside_3 = (t8 + t10) * 0.5 + t19 - t17
-    t20 = t18 & (-t3 <= l + aside_2) & (-t3 <= l - aside_3)
-    failed = ops.opposite(t2) | ops.opposite(t20 & (-t3 <= l + aside_3))
+    t8 = h1_y * 0.5
+    t9 = h1_x * 0.5
+    t10 = a * 1.7320508075688772
+    t11 = t10 * (t4 * c - c_tilt_y * s) * 0.5
+    t12 = t9 - t11
+    t13 = t10 * (c_tilt_x * c) * 0.5
+    t14 = t8 - t13
+    t15 = t8 + (1.7320508075688772 * t12 * 0.5 + t14 * 0.5)
+    px = 1.1547005383792515 * t15
+    t16 = b - h1_x - px
+    t17 = t12 * 0.5 - 1.7320508075688772 * (h1_y + t14) * 0.5
+    t18 = b + px * 0.5
+    aside_2 = t17 - t18
+    t19 = (-t3 <= l + t16) & (-t3 <= l - t16) & (-t3 <= l - aside_2)
+    t20 = 1.7320508075688772 * (h1_y + (t8 + t13)) * 0.5
+    aside_3 = (t9 + t11) * 0.5 + t20 - t18
+    t21 = t19 & (-t3 <= l + aside_2) & (-t3 <= l - aside_3)
+    failed = ops.opposite(t2) | ops.opposite(t21 & (-t3 <= l + aside_3))
     return (
         ops.opposite(failed),
     )

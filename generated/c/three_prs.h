@@ -3,16 +3,16 @@
  * derivations/three_prs.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Three legs in vertical planes that lift and tilt a hand.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   hand_pose: 10 add, 8 divide, 27 multiply, 2 sincos, 1 sqrt
- *   jacobian_parallel: 75 add, 41 divide, 85 multiply, 2 sincos, 1 sqrt
- *   jacobian_serial: 12 add, 4 divide, 15 multiply, 2 sincos, 1 sqrt
- *   jacobian_inverse: 75 add, 47 divide, 85 multiply, 2 sincos, 1 sqrt
- *   jacobian: 89 add, 50 divide, 118 multiply, 2 sincos, 1 sqrt
- *   determinant: 80 add, 42 divide, 99 multiply, 2 sincos, 1 sqrt
- *   singularities: 80 add, 41 divide, 97 multiply, 2 sincos, 1 sqrt
- *   skeleton: 22 add, 12 divide, 28 multiply, 2 sincos, 1 sqrt
- *   ik: 73 compare and select, 212 add, 39 divide, 249 multiply, 2 sincos, 4 sqrt
- *   workspace_contains: 28 compare and select, 28 add, 14 divide, 23 multiply, 2 sincos, 1 sqrt
+ *   hand_pose: 13 add, 9 divide, 2 compare and select, 27 multiply, 2 sincos, 1 sqrt
+ *   jacobian_parallel: 78 add, 42 divide, 2 compare and select, 86 multiply, 2 sincos, 1 sqrt
+ *   jacobian_serial: 15 add, 5 divide, 2 compare and select, 16 multiply, 2 sincos, 1 sqrt
+ *   jacobian_inverse: 78 add, 48 divide, 2 compare and select, 86 multiply, 2 sincos, 1 sqrt
+ *   jacobian: 92 add, 51 divide, 2 compare and select, 119 multiply, 2 sincos, 1 sqrt
+ *   determinant: 83 add, 43 divide, 2 compare and select, 100 multiply, 2 sincos, 1 sqrt
+ *   singularities: 83 add, 42 divide, 2 compare and select, 98 multiply, 2 sincos, 1 sqrt
+ *   skeleton: 25 add, 13 divide, 2 compare and select, 29 multiply, 2 sincos, 1 sqrt
+ *   ik: 75 compare and select, 215 add, 40 divide, 250 multiply, 2 sincos, 4 sqrt
+ *   workspace_contains: 30 compare and select, 31 add, 15 divide, 24 multiply, 2 sincos, 1 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not

@@ -2,16 +2,16 @@
 # derivations/three_prs.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Three legs in vertical planes that lift and tilt a hand.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   hand_pose: 10 add, 8 divide, 27 multiply, 2 sincos, 1 sqrt
-#   jacobian_parallel: 75 add, 41 divide, 85 multiply, 2 sincos, 1 sqrt
-#   jacobian_serial: 12 add, 4 divide, 15 multiply, 2 sincos, 1 sqrt
-#   jacobian_inverse: 75 add, 47 divide, 85 multiply, 2 sincos, 1 sqrt
-#   jacobian: 89 add, 50 divide, 118 multiply, 2 sincos, 1 sqrt
-#   determinant: 80 add, 42 divide, 99 multiply, 2 sincos, 1 sqrt
-#   singularities: 80 add, 41 divide, 97 multiply, 2 sincos, 1 sqrt
-#   skeleton: 22 add, 12 divide, 28 multiply, 2 sincos, 1 sqrt
-#   ik: 73 compare and select, 212 add, 39 divide, 249 multiply, 2 sincos, 4 sqrt
-#   workspace_contains: 28 compare and select, 28 add, 14 divide, 23 multiply, 2 sincos, 1 sqrt
+#   hand_pose: 13 add, 9 divide, 2 compare and select, 27 multiply, 2 sincos, 1 sqrt
+#   jacobian_parallel: 78 add, 42 divide, 2 compare and select, 86 multiply, 2 sincos, 1 sqrt
+#   jacobian_serial: 15 add, 5 divide, 2 compare and select, 16 multiply, 2 sincos, 1 sqrt
+#   jacobian_inverse: 78 add, 48 divide, 2 compare and select, 86 multiply, 2 sincos, 1 sqrt
+#   jacobian: 92 add, 51 divide, 2 compare and select, 119 multiply, 2 sincos, 1 sqrt
+#   determinant: 83 add, 43 divide, 2 compare and select, 100 multiply, 2 sincos, 1 sqrt
+#   singularities: 83 add, 42 divide, 2 compare and select, 98 multiply, 2 sincos, 1 sqrt
+#   skeleton: 25 add, 13 divide, 2 compare and select, 29 multiply, 2 sincos, 1 sqrt
+#   ik: 75 compare and select, 215 add, 40 divide, 250 multiply, 2 sincos, 4 sqrt
+#   workspace_contains: 30 compare and select, 31 add, 15 divide, 24 multiply, 2 sincos, 1 sqrt
 """3-PRS mechanism.
 
 Three sliders move along columns.  A rod leads from each of them to a corner of the hand.  A
@@ -116,40 +116,46 @@ _DEFAULT = Parameters()
 def _hand_pose(z, tilt_x, tilt_y, a):
     s_tilt_y, c_tilt_y = _runtime.sincos(tilt_y)
     s_tilt_x, c_tilt_x = _runtime.sincos(tilt_x)
-    t1 = a * 1.299038105676658
-    g = c_tilt_x * t1 + c_tilt_y * t1
-    t2 = s_tilt_x * s_tilt_y
-    t3 = t1 * t2
+    R_33 = c_tilt_x * c_tilt_y
+    t1 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    u = _runtime.select(R_33 < -0.5, -(t1 / (c_tilt_x - c_tilt_y)), c_tilt_x + c_tilt_y)
     del t1
-    delta = np.sqrt(t3 * t3 + g * g)
+    t2 = a * 1.299038105676658
+    g = u * t2
+    del u
+    t3 = s_tilt_x * s_tilt_y
+    t4 = t3 * t2
+    del t2
+    delta = np.sqrt(t4 * t4 + g * g)
     c = g / delta
     del g
-    s = t3 / delta
-    del delta, t3
-    R_11 = c_tilt_y * c + t2 * s
-    R_12 = t2 * c - c_tilt_y * s
-    del t2
+    s = t4 / delta
+    del delta, t4
+    R_11 = c_tilt_y * c + t3 * s
+    R_12 = t3 * c - c_tilt_y * s
+    del t3
     R_21 = c_tilt_x * s
     h1_y = a * R_21
-    t4 = h1_y * 0.5
-    t5 = a * 1.7320508075688772
-    t6 = 1.7320508075688772 * (a * R_11 * 0.5 - t5 * R_12 * 0.5)
+    t5 = h1_y * 0.5
+    t6 = a * 1.7320508075688772
+    t7 = 1.7320508075688772 * (a * R_11 * 0.5 - t6 * R_12 * 0.5)
     R_22 = c_tilt_x * c
-    t7 = t4 + (t6 * 0.5 + (t4 - t5 * R_22 * 0.5) * 0.5)
-    del t4, t5, t6
-    t8 = s_tilt_x * c_tilt_y
+    t8 = t5 + (t7 * 0.5 + (t5 - t6 * R_22 * 0.5) * 0.5)
+    del t5, t6, t7
+    t9 = s_tilt_x * c_tilt_y
+    del c_tilt_y
     return (
         R_11,
         R_12,
         c_tilt_x * s_tilt_y,
-        1.1547005383792515 * t7,
+        1.1547005383792515 * t8,
         R_21,
         R_22,
         -s_tilt_x,
         -h1_y,
-        t8 * s - s_tilt_y * c,
-        t8 * c + s_tilt_y * s,
-        c_tilt_x * c_tilt_y,
+        t9 * s - s_tilt_y * c,
+        t9 * c + s_tilt_y * s,
+        R_33,
         z,
         0.0,
         0.0,
@@ -204,10 +210,13 @@ def hand_pose(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = Non
 def _jacobian_parallel(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     s_tilt_y, c_tilt_y = _runtime.sincos(tilt_y)
     s_tilt_x, c_tilt_x = _runtime.sincos(tilt_x)
-    t1 = a * 1.299038105676658
-    t2 = c_tilt_y * t1
-    g = t2 + c_tilt_x * t1
-    t3 = s_tilt_y * t1
+    t1 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    u = _runtime.select(c_tilt_x * c_tilt_y < -0.5, -(t1 / (c_tilt_x - c_tilt_y)), c_tilt_x + c_tilt_y)
+    del t1
+    t2 = a * 1.299038105676658
+    g = u * t2
+    del u
+    t3 = s_tilt_y * t2
     t4 = s_tilt_x * t3
     delta = np.sqrt(t4 * t4 + g * g)
     c = g / delta
@@ -223,113 +232,114 @@ def _jacobian_parallel(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t8 = c_tilt_y * h1_y
     R_22 = c_tilt_x * c
     del c_tilt_x
-    twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
-    del t1
+    twist_tilt_x = (t3 * R_22 + t2 * t5) / delta
     t9 = s_tilt_x * c
     del s_tilt_x
-    R_32 = c_tilt_y * t9 + s_tilt_y * s
-    t10 = a * R_32
+    t10 = c_tilt_y * t9
+    R_32 = t10 + s_tilt_y * s
+    t11 = a * R_32
     R_11 = c_tilt_y * c + s_tilt_y * t5
     del c
     h1_x = a * R_11
-    t11 = h1_y * 0.5
-    t12 = h1_x * 0.5
-    t13 = a * 1.7320508075688772
+    t12 = h1_y * 0.5
+    t13 = h1_x * 0.5
+    t14 = a * 1.7320508075688772
     R_12 = s_tilt_y * t9 - c_tilt_y * s
-    t14 = t13 * R_12 * 0.5
-    t15 = t12 - t14
-    t16 = t13 * R_22
-    t17 = t16 * 0.5
-    t18 = t11 - t17
-    t19 = t11 + (1.7320508075688772 * t15 * 0.5 + t18 * 0.5)
-    px = 1.1547005383792515 * t19
-    del t19
-    t20 = b - h1_x - px
-    t21 = s_tilt_y * h1_y
-    t22 = a * R_12
+    t15 = t14 * R_12 * 0.5
+    t16 = t13 - t15
+    t17 = t14 * R_22
+    t18 = t17 * 0.5
+    t19 = t12 - t18
+    t20 = t12 + (1.7320508075688772 * t16 * 0.5 + t19 * 0.5)
+    px = 1.1547005383792515 * t20
+    del t20
+    t21 = b - h1_x - px
+    t22 = s_tilt_y * h1_y
+    t23 = a * R_12
     del R_12
-    t23 = a * 0.75
-    t24 = t13 * R_21
+    t24 = a * 0.75
+    t25 = t14 * R_21
     del R_21
-    t25 = t13 * R_11
+    t26 = t14 * R_11
     del R_11
-    t26 = 1.7320508075688772 * (t25 * 0.5 + t22 * 0.5) * 0.5
-    t27 = t23 * R_22 + t24 * 0.25 + t26
-    del t26
-    t28 = t22 + 1.1547005383792515 * t27
-    t29 = t13 * t9
-    t30 = s_tilt_y * t16
+    t27 = 1.7320508075688772 * (t26 * 0.5 + t23 * 0.5) * 0.5
+    t28 = t24 * R_22 + t25 * 0.25 + t27
+    del t27
+    t29 = t23 + 1.1547005383792515 * t28
+    t30 = t14 * t9
+    del t9
+    t31 = s_tilt_y * t17
     del s_tilt_y
-    t31 = 1.7320508075688772 * (t30 * 0.5 - t21 * 0.5) * 0.5
-    t32 = t29 * 0.25 - t23 * t5 - t31
-    del t23, t31
-    t33 = t21 + twist_tilt_x * t28 + 1.1547005383792515 * t32
-    t34 = t13 * R_32 * 0.5
+    t32 = 1.7320508075688772 * (t31 * 0.5 - t22 * 0.5) * 0.5
+    t33 = t30 * 0.25 - t24 * t5 - t32
+    del t24, t32
+    t34 = t22 + twist_tilt_x * t29 + 1.1547005383792515 * t33
+    t35 = t14 * R_32 * 0.5
     del R_32
-    t35 = a * 1.5
-    twist_tilt_y = (t2 * t9 + t3 * s) / delta
-    del delta, s, t2, t3, t9
-    A_13 = t20 * (t34 + t35 * t6 - t28 * twist_tilt_y) - r_12 * (h1_x - t10 * twist_tilt_y)
-    del h1_x, t28
-    t36 = t7 * 0.5
+    t36 = a * 1.5
+    twist_tilt_y = (t2 * t10 + t3 * s) / delta
+    del delta, s, t10, t2, t3
+    A_13 = t21 * (t35 + t36 * t6 - t29 * twist_tilt_y) - r_12 * (h1_x - t11 * twist_tilt_y)
+    del h1_x, t29
+    t37 = t7 * 0.5
     del t7
-    r_22 = z - rho2 + (t34 + t36)
-    t37 = c_tilt_y * t16 * 0.5
-    del c_tilt_y, t16
-    t38 = t8 * 0.5
-    t39 = t13 * t6 * 0.5
-    del t13, t6
-    t40 = t10 * 0.5
-    t41 = t39 - t40
-    t42 = t15 * 0.5 - 1.7320508075688772 * (h1_y + t18) * 0.5
-    del t18
-    t43 = b + px * 0.5
+    r_22 = z - rho2 + (t35 + t37)
+    t38 = c_tilt_y * t17 * 0.5
+    del c_tilt_y, t17
+    t39 = t8 * 0.5
+    t40 = t14 * t6 * 0.5
+    del t14, t6
+    t41 = t11 * 0.5
+    t42 = t40 - t41
+    t43 = t16 * 0.5 - 1.7320508075688772 * (h1_y + t19) * 0.5
+    del t19
+    t44 = b + px * 0.5
     del px
-    t44 = t42 - t43
-    del t42
-    t45 = t30 * 0.25
+    t45 = t43 - t44
+    del t43
+    t46 = t31 * 0.25
+    del t31
+    t47 = t30 * 0.5
     del t30
-    t46 = t29 * 0.5
-    del t29
-    t47 = t35 * t5
+    t48 = t36 * t5
     del t5
-    t48 = t21 * 0.25 - 1.7320508075688772 * t32 / 3.0
-    del t21, t32
-    t49 = t45 + 1.7320508075688772 * (t46 - t47) * 0.5 - t48
-    t50 = t25 * 0.25
+    t49 = t22 * 0.25 - 1.7320508075688772 * t33 / 3.0
+    del t22, t33
+    t50 = t46 + 1.7320508075688772 * (t47 - t48) * 0.5 - t49
+    t51 = t26 * 0.25
+    del t26
+    t52 = t36 * R_22
+    del R_22, t36
+    t53 = t25 * 0.5
     del t25
-    t51 = t35 * R_22
-    del R_22, t35
-    t52 = t24 * 0.5
-    del t24
-    t53 = t22 * 0.25 - 1.7320508075688772 * t27 / 3.0
-    del t22, t27
-    t54 = t50 - 1.7320508075688772 * (t51 + t52) * 0.5 + t53
-    A_22 = r_22 * (t37 - t38 + twist_tilt_x * t41) - t44 * (t49 - twist_tilt_x * t54)
-    del t49
-    A_23 = twist_tilt_y * t44 * t54 + r_22 * (t15 + twist_tilt_y * t41)
-    del t15, t41, t44, t54
-    r_32 = z - rho3 - (t34 - t36)
-    del t36
-    t55 = t12 + t14
-    del t12, t14
-    t56 = 1.7320508075688772 * (h1_y + (t11 + t17)) * 0.5
-    del h1_y, t11, t17
-    t57 = t55 * 0.5 + t56 - t43
-    del t43, t56
-    t58 = t45 - 1.7320508075688772 * (t46 + t47) * 0.5 + t48
-    del t45, t46, t47, t48
-    t59 = t50 - 1.7320508075688772 * (t51 - t52) * 0.5 - t53
-    del t50, t51, t52, t53
-    t60 = t39 + t40
-    del t39, t40
-    A_32 = t57 * (t58 - twist_tilt_x * t59) - r_32 * (t37 + t38 + twist_tilt_x * t60)
-    del t37, t38, t58
-    A_33 = t57 * (t34 - twist_tilt_y * t59) + r_32 * (t55 - twist_tilt_y * t60)
-    del t34, t55, t57, t59, t60, twist_tilt_y
+    t54 = t23 * 0.25 - 1.7320508075688772 * t28 / 3.0
+    del t23, t28
+    t55 = t51 - 1.7320508075688772 * (t52 + t53) * 0.5 + t54
+    A_22 = r_22 * (t38 - t39 + twist_tilt_x * t42) - t45 * (t50 - twist_tilt_x * t55)
+    del t50
+    A_23 = twist_tilt_y * t45 * t55 + r_22 * (t16 + twist_tilt_y * t42)
+    del t16, t42, t45, t55
+    r_32 = z - rho3 - (t35 - t37)
+    del t37
+    t56 = t13 + t15
+    del t13, t15
+    t57 = 1.7320508075688772 * (h1_y + (t12 + t18)) * 0.5
+    del h1_y, t12, t18
+    t58 = t56 * 0.5 + t57 - t44
+    del t44, t57
+    t59 = t46 - 1.7320508075688772 * (t47 + t48) * 0.5 + t49
+    del t46, t47, t48, t49
+    t60 = t51 - 1.7320508075688772 * (t52 - t53) * 0.5 - t54
+    del t51, t52, t53, t54
+    t61 = t40 + t41
+    del t40, t41
+    A_32 = t58 * (t59 - twist_tilt_x * t60) - r_32 * (t38 + t39 + twist_tilt_x * t61)
+    del t38, t39, t59
+    A_33 = t58 * (t35 - twist_tilt_y * t60) + r_32 * (t56 - twist_tilt_y * t61)
+    del t35, t56, t58, t60, t61, twist_tilt_y
     return (
         r_12,
-        r_12 * (t8 + twist_tilt_x * t10) - t20 * t33,
+        r_12 * (t8 + twist_tilt_x * t11) - t21 * t34,
         A_13,
         r_22,
         A_22,
@@ -388,28 +398,31 @@ def jacobian_parallel(x: "ArrayLike", q: "ArrayLike", params: "Parameters" = _DE
 def _jacobian_serial(z, tilt_x, tilt_y, rho1, rho2, rho3, a):
     s_tilt_y, c_tilt_y = _runtime.sincos(tilt_y)
     s_tilt_x, c_tilt_x = _runtime.sincos(tilt_x)
-    t1 = a * 1.299038105676658
-    g = c_tilt_x * t1 + c_tilt_y * t1
-    del c_tilt_x
-    t2 = s_tilt_x * s_tilt_y * t1
-    del t1
-    delta = np.sqrt(t2 * t2 + g * g)
+    t1 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    u = _runtime.select(c_tilt_x * c_tilt_y < -0.5, -(t1 / (c_tilt_x - c_tilt_y)), c_tilt_x + c_tilt_y)
+    del c_tilt_x, t1
+    t2 = a * 1.299038105676658
+    g = u * t2
+    del u
+    t3 = s_tilt_x * s_tilt_y * t2
+    del t2
+    delta = np.sqrt(t3 * t3 + g * g)
     c = g / delta
     del g
-    t3 = s_tilt_x * c_tilt_y
+    t4 = s_tilt_x * c_tilt_y
     del c_tilt_y, s_tilt_x
-    s = t2 / delta
-    del delta, t2
-    t4 = a * (s_tilt_y * c - t3 * s)
-    t5 = t4 * 0.5
-    t6 = a * 1.7320508075688772 * (t3 * c + s_tilt_y * s)
-    del c, s, s_tilt_y, t3
-    t7 = t6 * 0.5
-    del t6
+    s = t3 / delta
+    del delta, t3
+    t5 = a * (s_tilt_y * c - t4 * s)
+    t6 = t5 * 0.5
+    t7 = a * 1.7320508075688772 * (t4 * c + s_tilt_y * s)
+    del c, s, s_tilt_y, t4
+    t8 = t7 * 0.5
+    del t7
     return (
-        z - rho1 - t4,
-        z - rho2 + (t5 + t7),
-        z - rho3 + (t5 - t7),
+        z - rho1 - t5,
+        z - rho2 + (t6 + t8),
+        z - rho3 + (t6 - t8),
     )
 
 
@@ -461,10 +474,13 @@ def jacobian_serial(x: "ArrayLike", q: "ArrayLike", params: "Parameters" = _DEFA
 def _jacobian_inverse(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     s_tilt_y, c_tilt_y = _runtime.sincos(tilt_y)
     s_tilt_x, c_tilt_x = _runtime.sincos(tilt_x)
-    t1 = a * 1.299038105676658
-    t2 = c_tilt_y * t1
-    g = t2 + c_tilt_x * t1
-    t3 = s_tilt_y * t1
+    t1 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    u = _runtime.select(c_tilt_x * c_tilt_y < -0.5, -(t1 / (c_tilt_x - c_tilt_y)), c_tilt_x + c_tilt_y)
+    del t1
+    t2 = a * 1.299038105676658
+    g = u * t2
+    del u
+    t3 = s_tilt_y * t2
     t4 = s_tilt_x * t3
     delta = np.sqrt(t4 * t4 + g * g)
     c = g / delta
@@ -494,8 +510,7 @@ def _jacobian_inverse(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     del t15
     t16 = b - h1_x - px
     t17 = s_tilt_y * h1_y
-    twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
-    del t1
+    twist_tilt_x = (t3 * R_22 + t2 * t5) / delta
     t18 = a * R_12
     del R_12
     t19 = a * 0.75
@@ -518,86 +533,88 @@ def _jacobian_inverse(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t31 = a * t30
     r_12 = z - rho1 - t31
     t32 = c_tilt_y * h1_y
-    R_32 = c_tilt_y * t9 + s_tilt_y * s
+    t33 = c_tilt_y * t9
+    del t9
+    R_32 = t33 + s_tilt_y * s
     del s_tilt_y
-    t33 = a * R_32
-    t34 = t16 * t29 - r_12 * (t32 + twist_tilt_x * t33)
+    t34 = a * R_32
+    t35 = t16 * t29 - r_12 * (t32 + twist_tilt_x * t34)
     del t29
-    t35 = t8 * R_32 * 0.5
+    t36 = t8 * R_32 * 0.5
     del R_32
-    t36 = a * 1.5
-    twist_tilt_y = (t2 * t9 + t3 * s) / delta
-    del delta, s, t2, t3, t9
-    A_13 = t16 * (t35 + t36 * t30 - t24 * twist_tilt_y) - r_12 * (h1_x - t33 * twist_tilt_y)
+    t37 = a * 1.5
+    twist_tilt_y = (t2 * t33 + t3 * s) / delta
+    del delta, s, t2, t3, t33
+    A_13 = t16 * (t36 + t37 * t30 - t24 * twist_tilt_y) - r_12 * (h1_x - t34 * twist_tilt_y)
     del h1_x, t16, t24
-    t37 = t31 * 0.5
+    t38 = t31 * 0.5
     del t31
-    r_22 = z - rho2 + (t35 + t37)
-    t38 = c_tilt_y * t12 * 0.5
+    r_22 = z - rho2 + (t36 + t38)
+    t39 = c_tilt_y * t12 * 0.5
     del c_tilt_y, t12
-    t39 = t32 * 0.5
+    t40 = t32 * 0.5
     del t32
-    t40 = t8 * t30 * 0.5
+    t41 = t8 * t30 * 0.5
     del t30, t8
-    t41 = t33 * 0.5
-    del t33
-    t42 = t40 - t41
-    t43 = t11 * 0.5 - 1.7320508075688772 * (h1_y + t14) * 0.5
+    t42 = t34 * 0.5
+    del t34
+    t43 = t41 - t42
+    t44 = t11 * 0.5 - 1.7320508075688772 * (h1_y + t14) * 0.5
     del t14
-    t44 = b + px * 0.5
+    t45 = b + px * 0.5
     del px
-    t45 = t43 - t44
-    del t43
-    t46 = t26 * 0.25
+    t46 = t44 - t45
+    del t44
+    t47 = t26 * 0.25
     del t26
-    t47 = t25 * 0.5
+    t48 = t25 * 0.5
     del t25
-    t48 = t36 * t5
+    t49 = t37 * t5
     del t5
-    t49 = t17 * 0.25 - 1.7320508075688772 * t28 / 3.0
+    t50 = t17 * 0.25 - 1.7320508075688772 * t28 / 3.0
     del t17, t28
-    t50 = t46 + 1.7320508075688772 * (t47 - t48) * 0.5 - t49
-    t51 = t21 * 0.25
+    t51 = t47 + 1.7320508075688772 * (t48 - t49) * 0.5 - t50
+    t52 = t21 * 0.25
     del t21
-    t52 = t36 * R_22
-    del R_22, t36
-    t53 = t20 * 0.5
+    t53 = t37 * R_22
+    del R_22, t37
+    t54 = t20 * 0.5
     del t20
-    t54 = t18 * 0.25 - 1.7320508075688772 * t23 / 3.0
+    t55 = t18 * 0.25 - 1.7320508075688772 * t23 / 3.0
     del t18, t23
-    t55 = t51 - 1.7320508075688772 * (t52 + t53) * 0.5 + t54
-    A_22 = r_22 * (t38 - t39 + twist_tilt_x * t42) - t45 * (t50 - twist_tilt_x * t55)
-    del t50
-    t56 = twist_tilt_y * t45 * t55 + r_22 * (t11 + twist_tilt_y * t42)
-    del t11, t42, t45, t55
-    r_32 = z - rho3 - (t35 - t37)
-    del t37
-    t57 = t40 + t41
-    del t40, t41
-    t58 = t7 + t10
+    t56 = t52 - 1.7320508075688772 * (t53 + t54) * 0.5 + t55
+    A_22 = r_22 * (t39 - t40 + twist_tilt_x * t43) - t46 * (t51 - twist_tilt_x * t56)
+    del t51
+    t57 = twist_tilt_y * t46 * t56 + r_22 * (t11 + twist_tilt_y * t43)
+    del t11, t43, t46, t56
+    r_32 = z - rho3 - (t36 - t38)
+    del t38
+    t58 = t41 + t42
+    del t41, t42
+    t59 = t7 + t10
     del t10, t7
-    t59 = 1.7320508075688772 * (h1_y + (t6 + t13)) * 0.5
+    t60 = 1.7320508075688772 * (h1_y + (t6 + t13)) * 0.5
     del h1_y, t13, t6
-    t60 = t58 * 0.5 + t59 - t44
-    del t44, t59
-    t61 = t46 - 1.7320508075688772 * (t47 + t48) * 0.5 + t49
-    del t46, t47, t48, t49
-    t62 = t51 - 1.7320508075688772 * (t52 - t53) * 0.5 - t54
-    del t51, t52, t53, t54
-    t63 = r_32 * (t38 + t39 + twist_tilt_x * t57) - t60 * (t61 - twist_tilt_x * t62)
-    del t38, t39, t61, twist_tilt_x
-    t64 = t60 * (t35 - twist_tilt_y * t62) + r_32 * (t58 - twist_tilt_y * t57)
-    del t35, t57, t58, t60, t62, twist_tilt_y
+    t61 = t59 * 0.5 + t60 - t45
+    del t45, t60
+    t62 = t47 - 1.7320508075688772 * (t48 + t49) * 0.5 + t50
+    del t47, t48, t49, t50
+    t63 = t52 - 1.7320508075688772 * (t53 - t54) * 0.5 - t55
+    del t52, t53, t54, t55
+    t64 = r_32 * (t39 + t40 + twist_tilt_x * t58) - t61 * (t62 - twist_tilt_x * t63)
+    del t39, t40, t62, twist_tilt_x
+    t65 = t61 * (t36 - twist_tilt_y * t63) + r_32 * (t59 - twist_tilt_y * t58)
+    del t36, t58, t59, t61, t63, twist_tilt_y
     return (
         1.0,
-        -(t34 / r_12),
+        -(t35 / r_12),
         A_13 / r_12,
         1.0,
         A_22 / r_22,
-        t56 / r_22,
+        t57 / r_22,
         1.0,
-        -(t63 / r_32),
-        t64 / r_32,
+        -(t64 / r_32),
+        t65 / r_32,
     )
 
 
@@ -650,10 +667,13 @@ def jacobian_inverse(x: "ArrayLike", q: "ArrayLike", params: "Parameters" = _DEF
 def _jacobian(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     s_tilt_y, c_tilt_y = _runtime.sincos(tilt_y)
     s_tilt_x, c_tilt_x = _runtime.sincos(tilt_x)
-    t1 = a * 1.299038105676658
-    t2 = c_tilt_y * t1
-    g = t2 + c_tilt_x * t1
-    t3 = s_tilt_y * t1
+    t1 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    u = _runtime.select(c_tilt_x * c_tilt_y < -0.5, -(t1 / (c_tilt_x - c_tilt_y)), c_tilt_x + c_tilt_y)
+    del t1
+    t2 = a * 1.299038105676658
+    g = u * t2
+    del u
+    t3 = s_tilt_y * t2
     t4 = s_tilt_x * t3
     delta = np.sqrt(t4 * t4 + g * g)
     c = g / delta
@@ -669,127 +689,128 @@ def _jacobian(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t9 = a * 1.7320508075688772
     t10 = s_tilt_x * c
     del s_tilt_x
-    R_32 = c_tilt_y * t10 + s_tilt_y * s
-    t11 = t9 * R_32 * 0.5
-    r_22 = z - rho2 + (t8 + t11)
+    t11 = c_tilt_y * t10
+    R_32 = t11 + s_tilt_y * s
+    t12 = t9 * R_32 * 0.5
+    r_22 = z - rho2 + (t8 + t12)
     R_22 = c_tilt_x * c
-    t12 = t9 * R_22
-    t13 = c_tilt_y * t12 * 0.5
+    t13 = t9 * R_22
+    t14 = c_tilt_y * t13 * 0.5
     R_21 = c_tilt_x * s
     del c_tilt_x
     h1_y = a * R_21
-    t14 = c_tilt_y * h1_y
-    t15 = t14 * 0.5
-    twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
-    del t1
-    t16 = t9 * t6 * 0.5
-    t17 = a * R_32
+    t15 = c_tilt_y * h1_y
+    t16 = t15 * 0.5
+    twist_tilt_x = (t3 * R_22 + t2 * t5) / delta
+    t17 = t9 * t6 * 0.5
+    t18 = a * R_32
     del R_32
-    t18 = t17 * 0.5
-    t19 = t16 - t18
+    t19 = t18 * 0.5
+    t20 = t17 - t19
     R_11 = c_tilt_y * c + s_tilt_y * t5
     del c
     h1_x = a * R_11
-    t20 = h1_x * 0.5
+    t21 = h1_x * 0.5
     R_12 = s_tilt_y * t10 - c_tilt_y * s
     del c_tilt_y
-    t21 = t9 * R_12 * 0.5
-    t22 = t20 - t21
-    t23 = h1_y * 0.5
-    t24 = t12 * 0.5
-    t25 = t23 - t24
-    t26 = t22 * 0.5 - 1.7320508075688772 * (h1_y + t25) * 0.5
-    t27 = t23 + (1.7320508075688772 * t22 * 0.5 + t25 * 0.5)
-    del t25
-    px = 1.1547005383792515 * t27
-    del t27
-    t28 = b + px * 0.5
-    t29 = t26 - t28
+    t22 = t9 * R_12 * 0.5
+    t23 = t21 - t22
+    t24 = h1_y * 0.5
+    t25 = t13 * 0.5
+    t26 = t24 - t25
+    t27 = t23 * 0.5 - 1.7320508075688772 * (h1_y + t26) * 0.5
+    t28 = t24 + (1.7320508075688772 * t23 * 0.5 + t26 * 0.5)
     del t26
-    t30 = s_tilt_y * t12
-    del t12
-    t31 = t30 * 0.25
-    t32 = t9 * t10
-    t33 = t32 * 0.5
-    t34 = a * 1.5
-    t35 = t34 * t5
-    t36 = s_tilt_y * h1_y
+    px = 1.1547005383792515 * t28
+    del t28
+    t29 = b + px * 0.5
+    t30 = t27 - t29
+    del t27
+    t31 = s_tilt_y * t13
+    del t13
+    t32 = t31 * 0.25
+    t33 = t9 * t10
+    del t10
+    t34 = t33 * 0.5
+    t35 = a * 1.5
+    t36 = t35 * t5
+    t37 = s_tilt_y * h1_y
     del s_tilt_y
-    t37 = a * 0.75
-    t38 = 1.7320508075688772 * (t30 * 0.5 - t36 * 0.5) * 0.5
-    del t30
-    t39 = t32 * 0.25 - t37 * t5 - t38
-    del t32, t38, t5
-    t40 = t36 * 0.25 - 1.7320508075688772 * t39 / 3.0
-    t41 = t31 + 1.7320508075688772 * (t33 - t35) * 0.5 - t40
-    t42 = t9 * R_11
+    t38 = a * 0.75
+    t39 = 1.7320508075688772 * (t31 * 0.5 - t37 * 0.5) * 0.5
+    del t31
+    t40 = t33 * 0.25 - t38 * t5 - t39
+    del t33, t39, t5
+    t41 = t37 * 0.25 - 1.7320508075688772 * t40 / 3.0
+    t42 = t32 + 1.7320508075688772 * (t34 - t36) * 0.5 - t41
+    t43 = t9 * R_11
     del R_11
-    t43 = t42 * 0.25
-    t44 = t34 * R_22
-    t45 = t9 * R_21
+    t44 = t43 * 0.25
+    t45 = t35 * R_22
+    t46 = t9 * R_21
     del R_21, t9
-    t46 = t45 * 0.5
-    t47 = a * R_12
+    t47 = t46 * 0.5
+    t48 = a * R_12
     del R_12
-    t48 = 1.7320508075688772 * (t42 * 0.5 + t47 * 0.5) * 0.5
+    t49 = 1.7320508075688772 * (t43 * 0.5 + t48 * 0.5) * 0.5
+    del t43
+    t50 = t38 * R_22 + t46 * 0.25 + t49
+    del R_22, t38, t46, t49
+    t51 = t48 * 0.25 - 1.7320508075688772 * t50 / 3.0
+    t52 = t44 - 1.7320508075688772 * (t45 + t47) * 0.5 + t51
+    A_22 = r_22 * (t14 - t16 + twist_tilt_x * t20) - t30 * (t42 - twist_tilt_x * t52)
     del t42
-    t49 = t37 * R_22 + t45 * 0.25 + t48
-    del R_22, t37, t45, t48
-    t50 = t47 * 0.25 - 1.7320508075688772 * t49 / 3.0
-    t51 = t43 - 1.7320508075688772 * (t44 + t46) * 0.5 + t50
-    A_22 = r_22 * (t13 - t15 + twist_tilt_x * t19) - t29 * (t41 - twist_tilt_x * t51)
-    del t41
-    t52 = t20 + t21
-    del t20, t21
-    t53 = 1.7320508075688772 * (h1_y + (t23 + t24)) * 0.5
-    del h1_y, t23, t24
-    t54 = t52 * 0.5 + t53 - t28
-    del t28, t53
-    twist_tilt_y = (t2 * t10 + t3 * s) / delta
-    del delta, s, t10, t2, t3
-    t55 = t43 - 1.7320508075688772 * (t44 - t46) * 0.5 - t50
-    del t43, t44, t46, t50
-    r_32 = z - rho3 + (t8 - t11)
+    t53 = t21 + t22
+    del t21, t22
+    t54 = 1.7320508075688772 * (h1_y + (t24 + t25)) * 0.5
+    del h1_y, t24, t25
+    t55 = t53 * 0.5 + t54 - t29
+    del t29, t54
+    twist_tilt_y = (t2 * t11 + t3 * s) / delta
+    del delta, s, t11, t2, t3
+    t56 = t44 - 1.7320508075688772 * (t45 - t47) * 0.5 - t51
+    del t44, t45, t47, t51
+    r_32 = z - rho3 + (t8 - t12)
     del t8
-    t56 = t16 + t18
-    del t16, t18
-    t57 = t54 * (t11 - twist_tilt_y * t55) + r_32 * (t52 - twist_tilt_y * t56)
-    del t52
-    t58 = twist_tilt_y * t29 * t51 + r_22 * (t22 + t19 * twist_tilt_y)
-    del t19, t22, t29, t51
-    t59 = t31 - 1.7320508075688772 * (t33 + t35) * 0.5 + t40
-    del t31, t33, t35, t40
-    t60 = r_32 * (t13 + t15 + twist_tilt_x * t56) - t54 * (t59 - twist_tilt_x * t55)
-    del t13, t15, t54, t55, t56, t59
-    t61 = b - h1_x - px
+    t57 = t17 + t19
+    del t17, t19
+    t58 = t55 * (t12 - twist_tilt_y * t56) + r_32 * (t53 - twist_tilt_y * t57)
+    del t53
+    t59 = twist_tilt_y * t30 * t52 + r_22 * (t23 + t20 * twist_tilt_y)
+    del t20, t23, t30, t52
+    t60 = t32 - 1.7320508075688772 * (t34 + t36) * 0.5 + t41
+    del t32, t34, t36, t41
+    t61 = r_32 * (t14 + t16 + twist_tilt_x * t57) - t55 * (t60 - twist_tilt_x * t56)
+    del t14, t16, t55, t56, t57, t60
+    t62 = b - h1_x - px
     del px
-    t62 = t47 + 1.1547005383792515 * t49
-    del t47, t49
-    t63 = t36 + twist_tilt_x * t62 + 1.1547005383792515 * t39
-    del t36, t39
-    t64 = t61 * t63 - r_12 * (t14 + twist_tilt_x * t17)
-    del t14, t63, twist_tilt_x
-    t65 = r_32 * t64
-    t66 = r_22 * t64
-    A_13 = t61 * (t11 + t34 * t6 - twist_tilt_y * t62) - r_12 * (h1_x - t17 * twist_tilt_y)
-    del h1_x, t11, t17, t34, t6, t61, t62, twist_tilt_y
-    t67 = r_32 * A_13
-    t68 = r_22 * A_13
-    t69 = t65 * t58 - t66 * t57 + t67 * A_22 + t68 * t60
-    t70 = r_12 * A_22
-    t71 = r_12 * t58
-    t72 = t69 - t57 * t70 - t60 * t71
-    del t69
+    t63 = t48 + 1.1547005383792515 * t50
+    del t48, t50
+    t64 = t37 + twist_tilt_x * t63 + 1.1547005383792515 * t40
+    del t37, t40
+    t65 = t62 * t64 - r_12 * (t15 + twist_tilt_x * t18)
+    del t15, t64, twist_tilt_x
+    t66 = r_32 * t65
+    t67 = r_22 * t65
+    A_13 = t62 * (t12 + t35 * t6 - twist_tilt_y * t63) - r_12 * (h1_x - t18 * twist_tilt_y)
+    del h1_x, t12, t18, t35, t6, t62, t63, twist_tilt_y
+    t68 = r_32 * A_13
+    t69 = r_22 * A_13
+    t70 = t66 * t59 - t67 * t58 + t68 * A_22 + t69 * t61
+    t71 = r_12 * A_22
+    t72 = r_12 * t59
+    t73 = t70 - t58 * t71 - t61 * t72
+    del t70
     return (
-        -(r_12 * (A_22 * t57 + t58 * t60) / t72),
-        -(r_22 * (t64 * t57 - A_13 * t60) / t72),
-        r_32 * (t64 * t58 + A_13 * A_22) / t72,
-        -(r_12 * (r_32 * t58 - r_22 * t57) / t72),
-        r_22 * (t67 - r_12 * t57) / t72,
-        -(r_32 * (t68 - t71) / t72),
-        r_12 * (r_32 * A_22 + r_22 * t60) / t72,
-        r_22 * (t65 - r_12 * t60) / t72,
-        -(r_32 * (t66 + t70) / t72),
+        -(r_12 * (A_22 * t58 + t59 * t61) / t73),
+        -(r_22 * (t65 * t58 - A_13 * t61) / t73),
+        r_32 * (t65 * t59 + A_13 * A_22) / t73,
+        -(r_12 * (r_32 * t59 - r_22 * t58) / t73),
+        r_22 * (t68 - r_12 * t58) / t73,
+        -(r_32 * (t69 - t72) / t73),
+        r_12 * (r_32 * A_22 + r_22 * t61) / t73,
+        r_22 * (t66 - r_12 * t61) / t73,
+        -(r_32 * (t67 + t71) / t73),
     )
 
 
@@ -842,10 +863,13 @@ def jacobian(x: "ArrayLike", q: "ArrayLike", params: "Parameters" = _DEFAULT, *,
 def _determinant(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     s_tilt_y, c_tilt_y = _runtime.sincos(tilt_y)
     s_tilt_x, c_tilt_x = _runtime.sincos(tilt_x)
-    t1 = a * 1.299038105676658
-    t2 = c_tilt_y * t1
-    g = t2 + c_tilt_x * t1
-    t3 = s_tilt_y * t1
+    t1 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    u = _runtime.select(c_tilt_x * c_tilt_y < -0.5, -(t1 / (c_tilt_x - c_tilt_y)), c_tilt_x + c_tilt_y)
+    del t1
+    t2 = a * 1.299038105676658
+    g = u * t2
+    del u
+    t3 = s_tilt_y * t2
     t4 = s_tilt_x * t3
     delta = np.sqrt(t4 * t4 + g * g)
     c = g / delta
@@ -861,118 +885,119 @@ def _determinant(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t9 = a * 1.7320508075688772
     t10 = s_tilt_x * c
     del s_tilt_x
-    R_32 = c_tilt_y * t10 + s_tilt_y * s
-    t11 = t9 * R_32 * 0.5
-    r_22 = z - rho2 + (t8 + t11)
-    r_32 = z - rho3 + (t8 - t11)
+    t11 = c_tilt_y * t10
+    R_32 = t11 + s_tilt_y * s
+    t12 = t9 * R_32 * 0.5
+    r_22 = z - rho2 + (t8 + t12)
+    r_32 = z - rho3 + (t8 - t12)
     del t8
     R_11 = c_tilt_y * c + s_tilt_y * t5
     h1_x = a * R_11
     R_21 = c_tilt_x * s
     h1_y = a * R_21
-    t12 = h1_y * 0.5
-    t13 = h1_x * 0.5
+    t13 = h1_y * 0.5
+    t14 = h1_x * 0.5
     R_12 = s_tilt_y * t10 - c_tilt_y * s
-    t14 = t9 * R_12 * 0.5
-    t15 = t13 - t14
+    t15 = t9 * R_12 * 0.5
+    t16 = t14 - t15
     R_22 = c_tilt_x * c
     del c, c_tilt_x
-    t16 = t9 * R_22
-    t17 = t16 * 0.5
-    t18 = t12 - t17
-    t19 = t12 + (1.7320508075688772 * t15 * 0.5 + t18 * 0.5)
-    px = 1.1547005383792515 * t19
-    del t19
-    t20 = b - h1_x - px
-    t21 = s_tilt_y * h1_y
-    twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
-    del t1
-    t22 = a * R_12
+    t17 = t9 * R_22
+    t18 = t17 * 0.5
+    t19 = t13 - t18
+    t20 = t13 + (1.7320508075688772 * t16 * 0.5 + t19 * 0.5)
+    px = 1.1547005383792515 * t20
+    del t20
+    t21 = b - h1_x - px
+    t22 = s_tilt_y * h1_y
+    twist_tilt_x = (t3 * R_22 + t2 * t5) / delta
+    t23 = a * R_12
     del R_12
-    t23 = a * 0.75
-    t24 = t9 * R_21
+    t24 = a * 0.75
+    t25 = t9 * R_21
     del R_21
-    t25 = t9 * R_11
+    t26 = t9 * R_11
     del R_11
-    t26 = 1.7320508075688772 * (t25 * 0.5 + t22 * 0.5) * 0.5
-    t27 = t23 * R_22 + t24 * 0.25 + t26
-    del t26
-    t28 = t22 + 1.1547005383792515 * t27
-    t29 = t9 * t10
-    t30 = s_tilt_y * t16
+    t27 = 1.7320508075688772 * (t26 * 0.5 + t23 * 0.5) * 0.5
+    t28 = t24 * R_22 + t25 * 0.25 + t27
+    del t27
+    t29 = t23 + 1.1547005383792515 * t28
+    t30 = t9 * t10
+    del t10
+    t31 = s_tilt_y * t17
     del s_tilt_y
-    t31 = 1.7320508075688772 * (t30 * 0.5 - t21 * 0.5) * 0.5
-    t32 = t29 * 0.25 - t23 * t5 - t31
-    del t23, t31
-    t33 = t21 + twist_tilt_x * t28 + 1.1547005383792515 * t32
-    t34 = c_tilt_y * h1_y
-    t35 = a * R_32
+    t32 = 1.7320508075688772 * (t31 * 0.5 - t22 * 0.5) * 0.5
+    t33 = t30 * 0.25 - t24 * t5 - t32
+    del t24, t32
+    t34 = t22 + twist_tilt_x * t29 + 1.1547005383792515 * t33
+    t35 = c_tilt_y * h1_y
+    t36 = a * R_32
     del R_32
-    t36 = t20 * t33 - r_12 * (t34 + twist_tilt_x * t35)
-    del t33
-    twist_tilt_y = (t2 * t10 + t3 * s) / delta
-    del delta, s, t10, t2, t3
-    t37 = t15 * 0.5 - 1.7320508075688772 * (h1_y + t18) * 0.5
-    del t18
-    t38 = b + px * 0.5
-    del px
-    t39 = t37 - t38
-    del t37
-    t40 = t25 * 0.25
-    del t25
-    t41 = a * 1.5
-    t42 = t41 * R_22
-    del R_22
-    t43 = t24 * 0.5
-    del t24
-    t44 = t22 * 0.25 - 1.7320508075688772 * t27 / 3.0
-    del t22, t27
-    t45 = t40 - 1.7320508075688772 * (t42 + t43) * 0.5 + t44
-    t46 = t9 * t6 * 0.5
-    del t9
-    t47 = t35 * 0.5
-    t48 = t46 - t47
-    t49 = twist_tilt_y * t39 * t45 + r_22 * (t15 + twist_tilt_y * t48)
-    del t15
-    t50 = t13 + t14
-    del t13, t14
-    t51 = 1.7320508075688772 * (h1_y + (t12 + t17)) * 0.5
-    del h1_y, t12, t17
-    t52 = t50 * 0.5 + t51 - t38
-    del t38, t51
-    t53 = t40 - 1.7320508075688772 * (t42 - t43) * 0.5 - t44
-    del t40, t42, t43, t44
-    t54 = t46 + t47
-    del t46, t47
-    t55 = t52 * (t11 - twist_tilt_y * t53) + r_32 * (t50 - twist_tilt_y * t54)
-    del t50
-    A_13 = t20 * (t11 + t41 * t6 - t28 * twist_tilt_y) - r_12 * (h1_x - t35 * twist_tilt_y)
-    del h1_x, t11, t20, t28, t35, t6, twist_tilt_y
-    t56 = c_tilt_y * t16 * 0.5
-    del c_tilt_y, t16
-    t57 = t34 * 0.5
+    t37 = t21 * t34 - r_12 * (t35 + twist_tilt_x * t36)
     del t34
-    t58 = t30 * 0.25
+    twist_tilt_y = (t2 * t11 + t3 * s) / delta
+    del delta, s, t11, t2, t3
+    t38 = t16 * 0.5 - 1.7320508075688772 * (h1_y + t19) * 0.5
+    del t19
+    t39 = b + px * 0.5
+    del px
+    t40 = t38 - t39
+    del t38
+    t41 = t26 * 0.25
+    del t26
+    t42 = a * 1.5
+    t43 = t42 * R_22
+    del R_22
+    t44 = t25 * 0.5
+    del t25
+    t45 = t23 * 0.25 - 1.7320508075688772 * t28 / 3.0
+    del t23, t28
+    t46 = t41 - 1.7320508075688772 * (t43 + t44) * 0.5 + t45
+    t47 = t9 * t6 * 0.5
+    del t9
+    t48 = t36 * 0.5
+    t49 = t47 - t48
+    t50 = twist_tilt_y * t40 * t46 + r_22 * (t16 + twist_tilt_y * t49)
+    del t16
+    t51 = t14 + t15
+    del t14, t15
+    t52 = 1.7320508075688772 * (h1_y + (t13 + t18)) * 0.5
+    del h1_y, t13, t18
+    t53 = t51 * 0.5 + t52 - t39
+    del t39, t52
+    t54 = t41 - 1.7320508075688772 * (t43 - t44) * 0.5 - t45
+    del t41, t43, t44, t45
+    t55 = t47 + t48
+    del t47, t48
+    t56 = t53 * (t12 - twist_tilt_y * t54) + r_32 * (t51 - twist_tilt_y * t55)
+    del t51
+    A_13 = t21 * (t12 + t42 * t6 - t29 * twist_tilt_y) - r_12 * (h1_x - t36 * twist_tilt_y)
+    del h1_x, t12, t21, t29, t36, t6, twist_tilt_y
+    t57 = c_tilt_y * t17 * 0.5
+    del c_tilt_y, t17
+    t58 = t35 * 0.5
+    del t35
+    t59 = t31 * 0.25
+    del t31
+    t60 = t30 * 0.5
     del t30
-    t59 = t29 * 0.5
-    del t29
-    t60 = t41 * t5
-    del t41, t5
-    t61 = t21 * 0.25 - 1.7320508075688772 * t32 / 3.0
-    del t21, t32
-    t62 = t58 + 1.7320508075688772 * (t59 - t60) * 0.5 - t61
-    A_22 = r_22 * (t56 - t57 + twist_tilt_x * t48) - t39 * (t62 - twist_tilt_x * t45)
-    del t39, t45, t48, t62
-    t63 = r_32 * t36 * t49 - r_22 * t36 * t55 + r_32 * A_13 * A_22
-    del t36
-    t64 = t58 - 1.7320508075688772 * (t59 + t60) * 0.5 + t61
-    del t58, t59, t60, t61
-    t65 = r_32 * (t56 + t57 + twist_tilt_x * t54) - t52 * (t64 - twist_tilt_x * t53)
-    del t52, t53, t54, t56, t57, t64, twist_tilt_x
-    t66 = t63 + r_22 * A_13 * t65 - r_12 * t55 * A_22 - r_12 * t49 * t65
-    del A_13, A_22, t49, t55, t63, t65
+    t61 = t42 * t5
+    del t42, t5
+    t62 = t22 * 0.25 - 1.7320508075688772 * t33 / 3.0
+    del t22, t33
+    t63 = t59 + 1.7320508075688772 * (t60 - t61) * 0.5 - t62
+    A_22 = r_22 * (t57 - t58 + twist_tilt_x * t49) - t40 * (t63 - twist_tilt_x * t46)
+    del t40, t46, t49, t63
+    t64 = r_32 * t37 * t50 - r_22 * t37 * t56 + r_32 * A_13 * A_22
+    del t37
+    t65 = t59 - 1.7320508075688772 * (t60 + t61) * 0.5 + t62
+    del t59, t60, t61, t62
+    t66 = r_32 * (t57 + t58 + twist_tilt_x * t55) - t53 * (t65 - twist_tilt_x * t54)
+    del t53, t54, t55, t57, t58, t65, twist_tilt_x
+    t67 = t64 + r_22 * A_13 * t66 - r_12 * t56 * A_22 - r_12 * t50 * t66
+    del A_13, A_22, t50, t56, t64, t66
     return (
-        -(r_12 * r_22 * r_32 / t66),
+        -(r_12 * r_22 * r_32 / t67),
     )
 
 
@@ -1024,10 +1049,13 @@ def determinant(x: "ArrayLike", q: "ArrayLike", params: "Parameters" = _DEFAULT,
 def _singularities(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     s_tilt_y, c_tilt_y = _runtime.sincos(tilt_y)
     s_tilt_x, c_tilt_x = _runtime.sincos(tilt_x)
-    t1 = a * 1.299038105676658
-    t2 = c_tilt_y * t1
-    g = t2 + c_tilt_x * t1
-    t3 = s_tilt_y * t1
+    t1 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    u = _runtime.select(c_tilt_x * c_tilt_y < -0.5, -(t1 / (c_tilt_x - c_tilt_y)), c_tilt_x + c_tilt_y)
+    del t1
+    t2 = a * 1.299038105676658
+    g = u * t2
+    del u
+    t3 = s_tilt_y * t2
     t4 = s_tilt_x * t3
     delta = np.sqrt(t4 * t4 + g * g)
     c = g / delta
@@ -1043,113 +1071,114 @@ def _singularities(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     t9 = a * 1.7320508075688772
     t10 = s_tilt_x * c
     del s_tilt_x
-    R_32 = c_tilt_y * t10 + s_tilt_y * s
-    t11 = t9 * R_32 * 0.5
-    r_22 = z - rho2 + (t8 + t11)
-    r_32 = z - rho3 + (t8 - t11)
+    t11 = c_tilt_y * t10
+    R_32 = t11 + s_tilt_y * s
+    t12 = t9 * R_32 * 0.5
+    r_22 = z - rho2 + (t8 + t12)
+    r_32 = z - rho3 + (t8 - t12)
     del t8
-    twist_tilt_y = (t2 * t10 + t3 * s) / delta
-    del t2
+    twist_tilt_y = (t2 * t11 + t3 * s) / delta
+    del t11
     R_11 = c_tilt_y * c + s_tilt_y * t5
     h1_x = a * R_11
-    t12 = h1_x * 0.5
+    t13 = h1_x * 0.5
     R_12 = s_tilt_y * t10 - c_tilt_y * s
-    t13 = t9 * R_12 * 0.5
-    t14 = t12 - t13
+    t14 = t9 * R_12 * 0.5
+    t15 = t13 - t14
     R_21 = c_tilt_x * s
     del s
     h1_y = a * R_21
-    t15 = h1_y * 0.5
+    t16 = h1_y * 0.5
     R_22 = c_tilt_x * c
     del c, c_tilt_x
-    t16 = t9 * R_22
-    t17 = t16 * 0.5
-    t18 = t15 - t17
-    t19 = t14 * 0.5 - 1.7320508075688772 * (h1_y + t18) * 0.5
-    t20 = t15 + (1.7320508075688772 * t14 * 0.5 + t18 * 0.5)
-    del t18
-    px = 1.1547005383792515 * t20
-    del t20
-    t21 = b + px * 0.5
-    t22 = t19 - t21
+    t17 = t9 * R_22
+    t18 = t17 * 0.5
+    t19 = t16 - t18
+    t20 = t15 * 0.5 - 1.7320508075688772 * (h1_y + t19) * 0.5
+    t21 = t16 + (1.7320508075688772 * t15 * 0.5 + t19 * 0.5)
     del t19
-    t23 = t9 * R_11
+    px = 1.1547005383792515 * t21
+    del t21
+    t22 = b + px * 0.5
+    t23 = t20 - t22
+    del t20
+    t24 = t9 * R_11
     del R_11
-    t24 = t23 * 0.25
-    t25 = a * 1.5
-    t26 = t25 * R_22
-    t27 = t9 * R_21
+    t25 = t24 * 0.25
+    t26 = a * 1.5
+    t27 = t26 * R_22
+    t28 = t9 * R_21
     del R_21
-    t28 = t27 * 0.5
-    t29 = a * R_12
+    t29 = t28 * 0.5
+    t30 = a * R_12
     del R_12
-    t30 = a * 0.75
-    t31 = 1.7320508075688772 * (t23 * 0.5 + t29 * 0.5) * 0.5
-    del t23
-    t32 = t30 * R_22 + t27 * 0.25 + t31
-    del t27, t31
-    t33 = t29 * 0.25 - 1.7320508075688772 * t32 / 3.0
-    t34 = t24 - 1.7320508075688772 * (t26 + t28) * 0.5 + t33
-    t35 = t9 * t6 * 0.5
-    t36 = a * R_32
+    t31 = a * 0.75
+    t32 = 1.7320508075688772 * (t24 * 0.5 + t30 * 0.5) * 0.5
+    del t24
+    t33 = t31 * R_22 + t28 * 0.25 + t32
+    del t28, t32
+    t34 = t30 * 0.25 - 1.7320508075688772 * t33 / 3.0
+    t35 = t25 - 1.7320508075688772 * (t27 + t29) * 0.5 + t34
+    t36 = t9 * t6 * 0.5
+    t37 = a * R_32
     del R_32
-    t37 = t36 * 0.5
-    t38 = t35 - t37
-    t39 = twist_tilt_y * t22 * t34 + r_22 * (t14 + twist_tilt_y * t38)
-    del t14
-    t40 = c_tilt_y * t16 * 0.5
-    t41 = c_tilt_y * h1_y
+    t38 = t37 * 0.5
+    t39 = t36 - t38
+    t40 = twist_tilt_y * t23 * t35 + r_22 * (t15 + twist_tilt_y * t39)
+    del t15
+    t41 = c_tilt_y * t17 * 0.5
+    t42 = c_tilt_y * h1_y
     del c_tilt_y
-    t42 = t41 * 0.5
-    twist_tilt_x = (t3 * R_22 + t1 * t5) / delta
-    del R_22, t1, t3
-    t43 = t35 + t37
-    del t35, t37
-    t44 = t12 + t13
-    del t12, t13
-    t45 = 1.7320508075688772 * (h1_y + (t15 + t17)) * 0.5
-    del t15, t17
-    t46 = t44 * 0.5 + t45 - t21
-    del t21, t45
-    t47 = s_tilt_y * t16
-    del t16
-    t48 = t47 * 0.25
-    t49 = t9 * t10
+    t43 = t42 * 0.5
+    twist_tilt_x = (t3 * R_22 + t2 * t5) / delta
+    del R_22, t2, t3
+    t44 = t36 + t38
+    del t36, t38
+    t45 = t13 + t14
+    del t13, t14
+    t46 = 1.7320508075688772 * (h1_y + (t16 + t18)) * 0.5
+    del t16, t18
+    t47 = t45 * 0.5 + t46 - t22
+    del t22, t46
+    t48 = s_tilt_y * t17
+    del t17
+    t49 = t48 * 0.25
+    t50 = t9 * t10
     del t10, t9
-    t50 = t49 * 0.5
-    t51 = t25 * t5
-    t52 = s_tilt_y * h1_y
+    t51 = t50 * 0.5
+    t52 = t26 * t5
+    t53 = s_tilt_y * h1_y
     del h1_y, s_tilt_y
-    t53 = 1.7320508075688772 * (t47 * 0.5 - t52 * 0.5) * 0.5
-    del t47
-    t54 = t49 * 0.25 - t30 * t5 - t53
-    del t30, t49, t5, t53
-    t55 = t52 * 0.25 - 1.7320508075688772 * t54 / 3.0
-    t56 = t48 - 1.7320508075688772 * (t50 + t51) * 0.5 + t55
-    t57 = t24 - 1.7320508075688772 * (t26 - t28) * 0.5 - t33
-    del t24, t26, t28, t33
-    t58 = r_32 * (t40 + t42 + twist_tilt_x * t43) - t46 * (t56 - twist_tilt_x * t57)
-    del t56
-    t59 = b - h1_x - px
+    t54 = 1.7320508075688772 * (t48 * 0.5 - t53 * 0.5) * 0.5
+    del t48
+    t55 = t50 * 0.25 - t31 * t5 - t54
+    del t31, t5, t50, t54
+    t56 = t53 * 0.25 - 1.7320508075688772 * t55 / 3.0
+    t57 = t49 - 1.7320508075688772 * (t51 + t52) * 0.5 + t56
+    t58 = t25 - 1.7320508075688772 * (t27 - t29) * 0.5 - t34
+    del t25, t27, t29, t34
+    t59 = r_32 * (t41 + t43 + twist_tilt_x * t44) - t47 * (t57 - twist_tilt_x * t58)
+    del t57
+    t60 = b - h1_x - px
     del px
-    t60 = t29 + 1.1547005383792515 * t32
-    del t29, t32
-    t61 = t52 + twist_tilt_x * t60 + 1.1547005383792515 * t54
-    del t52, t54
-    t62 = t59 * t61 - r_12 * (t41 + twist_tilt_x * t36)
-    del t41, t61
-    t63 = t46 * (t11 - twist_tilt_y * t57) + r_32 * (t44 - twist_tilt_y * t43)
-    del t43, t44, t46, t57
-    A_13 = t59 * (t11 + t25 * t6 - t60 * twist_tilt_y) - r_12 * (h1_x - t36 * twist_tilt_y)
-    del h1_x, t11, t25, t36, t59, t6, t60, twist_tilt_y
-    t64 = t48 + 1.7320508075688772 * (t50 - t51) * 0.5 - t55
-    del t48, t50, t51, t55
-    A_22 = r_22 * (t40 - t42 + twist_tilt_x * t38) - t22 * (t64 - twist_tilt_x * t34)
-    del t22, t34, t38, t40, t42, t64, twist_tilt_x
-    t65 = r_32 * t62 * t39 - r_22 * t62 * t63 + r_32 * A_13 * A_22
-    del t62
-    Delta = r_12 * t39 * t58 - (t65 + r_22 * A_13 * t58 - r_12 * t63 * A_22)
-    del A_13, A_22, t39, t58, t63, t65
+    t61 = t30 + 1.1547005383792515 * t33
+    del t30, t33
+    t62 = t53 + twist_tilt_x * t61 + 1.1547005383792515 * t55
+    del t53, t55
+    t63 = t60 * t62 - r_12 * (t42 + twist_tilt_x * t37)
+    del t42, t62
+    t64 = t47 * (t12 - twist_tilt_y * t58) + r_32 * (t45 - twist_tilt_y * t44)
+    del t44, t45, t47, t58
+    A_13 = t60 * (t12 + t26 * t6 - t61 * twist_tilt_y) - r_12 * (h1_x - t37 * twist_tilt_y)
+    del h1_x, t12, t26, t37, t6, t60, t61, twist_tilt_y
+    t65 = t49 + 1.7320508075688772 * (t51 - t52) * 0.5 - t56
+    del t49, t51, t52, t56
+    A_22 = r_22 * (t41 - t43 + twist_tilt_x * t39) - t23 * (t65 - twist_tilt_x * t35)
+    del t23, t35, t39, t41, t43, t65, twist_tilt_x
+    t66 = r_32 * t63 * t40 - r_22 * t63 * t64 + r_32 * A_13 * A_22
+    del t63
+    Delta = r_12 * t40 * t59 - (t66 + r_22 * A_13 * t59 - r_12 * t64 * A_22)
+    del A_13, A_22, t40, t59, t64, t66
     return (
         r_12,
         r_22,
@@ -1207,38 +1236,41 @@ def singularities(x: "ArrayLike", q: "ArrayLike", params: "Parameters" = _DEFAUL
 def _skeleton(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
     s_tilt_x, c_tilt_x = _runtime.sincos(tilt_x)
     s_tilt_y, c_tilt_y = _runtime.sincos(tilt_y)
-    t1 = a * 1.299038105676658
-    t2 = s_tilt_x * s_tilt_y
+    t1 = s_tilt_x * s_tilt_y
+    t2 = a * 1.299038105676658
     t3 = t1 * t2
-    g = c_tilt_x * t1 + c_tilt_y * t1
-    del t1
+    t4 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    u = _runtime.select(c_tilt_x * c_tilt_y < -0.5, -(t4 / (c_tilt_x - c_tilt_y)), c_tilt_x + c_tilt_y)
+    del t4
+    g = u * t2
+    del t2, u
     delta = np.sqrt(t3 * t3 + g * g)
     s = t3 / delta
     del t3
     h1_y = a * (c_tilt_x * s)
-    t4 = h1_y * 0.5
+    t5 = h1_y * 0.5
     c = g / delta
     del delta, g
-    h1_x = a * (c_tilt_y * c + t2 * s)
-    t5 = h1_x * 0.5
-    t6 = a * 1.7320508075688772
-    t7 = t6 * (t2 * c - c_tilt_y * s) * 0.5
-    del t2
-    t8 = t5 - t7
-    t9 = t6 * (c_tilt_x * c) * 0.5
+    h1_x = a * (c_tilt_y * c + t1 * s)
+    t6 = h1_x * 0.5
+    t7 = a * 1.7320508075688772
+    t8 = t7 * (t1 * c - c_tilt_y * s) * 0.5
+    del t1
+    t9 = t6 - t8
+    t10 = t7 * (c_tilt_x * c) * 0.5
     del c_tilt_x
-    t10 = t4 - t9
-    t11 = t4 + (1.7320508075688772 * t8 * 0.5 + t10 * 0.5)
-    px = 1.1547005383792515 * t11
-    del t11
-    t12 = s_tilt_x * c_tilt_y
+    t11 = t5 - t10
+    t12 = t5 + (1.7320508075688772 * t9 * 0.5 + t11 * 0.5)
+    px = 1.1547005383792515 * t12
+    del t12
+    t13 = s_tilt_x * c_tilt_y
     del c_tilt_y, s_tilt_x
-    t13 = a * (s_tilt_y * c - t12 * s)
-    t14 = -(b * 0.5)
-    t15 = b * 1.7320508075688772 * 0.5
-    t16 = t13 * 0.5
-    t17 = t6 * (t12 * c + s_tilt_y * s) * 0.5
-    del c, s, s_tilt_y, t12, t6
+    t14 = a * (s_tilt_y * c - t13 * s)
+    t15 = -(b * 0.5)
+    t16 = b * 1.7320508075688772 * 0.5
+    t17 = t14 * 0.5
+    t18 = t7 * (t13 * c + s_tilt_y * s) * 0.5
+    del c, s, s_tilt_y, t13, t7
     return (
         px,
         -h1_y,
@@ -1251,25 +1283,25 @@ def _skeleton(z, tilt_x, tilt_y, rho1, rho2, rho3, b, a):
         rho1,
         h1_x + px,
         0.0,
-        z - t13,
-        t14,
+        z - t14,
         t15,
+        t16,
         0.0,
-        t14,
         t15,
+        t16,
         rho2,
-        px - t8,
-        -(h1_y + t10),
-        z + (t16 + t17),
-        t14,
-        -t15,
+        px - t9,
+        -(h1_y + t11),
+        z + (t17 + t18),
+        t15,
+        -t16,
         0.0,
-        t14,
-        -t15,
+        t15,
+        -t16,
         rho3,
-        px - (t5 + t7),
-        -(h1_y + (t4 + t9)),
-        z + (t16 - t17),
+        px - (t6 + t8),
+        -(h1_y + (t5 + t10)),
+        z + (t17 - t18),
     )
 
 
@@ -1325,8 +1357,11 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t1 = a * 1.299038105676658
     t2 = s_tilt_y * t1
     t3 = s_tilt_x * t2
-    t4 = c_tilt_y * t1
-    g = t4 + c_tilt_x * t1
+    t4 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    u = _runtime.select(c_tilt_x * c_tilt_y < -0.5, -(t4 / (c_tilt_x - c_tilt_y)), c_tilt_x + c_tilt_y)
+    del t4
+    g = u * t1
+    del u
     delta = np.sqrt(t3 * t3 + g * g)
     untwisted = delta <= 0.0
     t5 = 1.0 / delta
@@ -1394,306 +1429,307 @@ def _ik(z, tilt_x, tilt_y, b, a, l):
     t35 = _runtime.poison(invalid | unreachable)
     t36 = slide_1 + t35
     t37 = t8 * 0.5
-    R_32 = c_tilt_y * t12 + s_tilt_y * s
-    t38 = t11 * R_32 * 0.5
-    h2_z = t37 + t38
+    t38 = c_tilt_y * t12
+    R_32 = t38 + s_tilt_y * s
+    t39 = t11 * R_32 * 0.5
+    h2_z = t37 + t39
     m_2 = z + h2_z
     root_2 = np.sqrt(np.maximum(t28, 0.0) * np.maximum(t29, 0.0))
     del t28, t29
     slide_2 = m_2 - root_2
-    t39 = slide_2 + t35
-    h3_z = t37 - t38
+    t40 = slide_2 + t35
+    h3_z = t37 - t39
     del t37
     m_3 = z + h3_z
     root_3 = np.sqrt(np.maximum(t33, 0.0) * np.maximum(t34, 0.0))
     del t33, t34
     slide_3 = m_3 - root_3
-    t40 = slide_3 + t35
+    t41 = slide_3 + t35
     slide_3_plus_plus_minus = m_3 + root_3
     del root_3
-    t41 = slide_3_plus_plus_minus + t35
+    t42 = slide_3_plus_plus_minus + t35
     slide_2_plus_minus_plus = m_2 + root_2
     del root_2
-    t42 = slide_2_plus_minus_plus + t35
+    t43 = slide_2_plus_minus_plus + t35
     slide_1_minus_plus_plus = m_1 + root_1
     del root_1
-    t43 = slide_1_minus_plus_plus + t35
+    t44 = slide_1_minus_plus_plus + t35
     del t35
-    t44 = size * _runtime.VANISHING
+    t45 = size * _runtime.VANISHING
     del size
     least = a * a * (l * l * l)
-    t45 = least * delta
+    t46 = least * delta
     del delta
-    t46 = t11 + a * 2.0
-    t47 = _runtime.select(untwisted, 1.0, t5)
+    t47 = t11 + a * 2.0
+    t48 = _runtime.select(untwisted, 1.0, t5)
     del t5, untwisted
-    twist_tilt_y = t47 * (t4 * t12 + t2 * s)
-    del s, t4
-    t48 = t11 * R_11
+    twist_tilt_y = t48 * (t1 * t38 + t2 * s)
+    del s, t38
+    t49 = t11 * R_11
     del R_11
-    t49 = t48 * 0.25
-    t50 = a * 1.5
-    t51 = t50 * R_22
-    t52 = t11 * R_21
+    t50 = t49 * 0.25
+    t51 = a * 1.5
+    t52 = t51 * R_22
+    t53 = t11 * R_21
     del R_21
-    t53 = t52 * 0.5
-    t54 = a * R_12
+    t54 = t53 * 0.5
+    t55 = a * R_12
     del R_12
-    t55 = a * 0.75
-    t56 = 1.7320508075688772 * (t48 * 0.5 + t54 * 0.5) * 0.5
-    del t48
-    t57 = t55 * R_22 + t52 * 0.25 + t56
-    del t52, t56
-    t58 = t54 * 0.25 - 1.7320508075688772 * t57 / 3.0
-    t59 = t49 - 1.7320508075688772 * (t51 - t53) * 0.5 - t58
-    t60 = aside_3 * (t38 - twist_tilt_y * t59)
-    t61 = t11 * t7 * 0.5
-    t62 = a * R_32
+    t56 = a * 0.75
+    t57 = 1.7320508075688772 * (t49 * 0.5 + t55 * 0.5) * 0.5
+    del t49
+    t58 = t56 * R_22 + t53 * 0.25 + t57
+    del t53, t57
+    t59 = t55 * 0.25 - 1.7320508075688772 * t58 / 3.0
+    t60 = t50 - 1.7320508075688772 * (t52 - t54) * 0.5 - t59
+    t61 = aside_3 * (t39 - twist_tilt_y * t60)
+    t62 = t11 * t7 * 0.5
+    t63 = a * R_32
     del R_32
-    t63 = t62 * 0.5
-    t64 = t61 + t63
-    t65 = t31 - twist_tilt_y * t64
+    t64 = t63 * 0.5
+    t65 = t62 + t64
+    t66 = t31 - twist_tilt_y * t65
     del t31
-    t66 = m_3 - slide_3
-    t67 = t60 + t65 * t66
-    t68 = s_tilt_y * t15
-    t69 = t68 * 0.25
-    t70 = t11 * t12
+    t67 = m_3 - slide_3
+    t68 = t61 + t66 * t67
+    t69 = s_tilt_y * t15
+    t70 = t69 * 0.25
+    t71 = t11 * t12
     del t11, t12
-    t71 = t70 * 0.5
-    t72 = t50 * t6
-    t73 = s_tilt_y * h1_y
+    t72 = t71 * 0.5
+    t73 = t51 * t6
+    t74 = s_tilt_y * h1_y
     del s_tilt_y
-    t74 = 1.7320508075688772 * (t68 * 0.5 - t73 * 0.5) * 0.5
-    del t68
-    t75 = t70 * 0.25 - t55 * t6 - t74
-    del t55, t70, t74
-    t76 = t73 * 0.25 - 1.7320508075688772 * t75 / 3.0
-    t77 = t69 + 1.7320508075688772 * (t71 - t72) * 0.5 - t76
-    twist_tilt_x = t47 * (t2 * R_22 + t1 * t6)
-    del R_22, t1, t2, t47, t6
-    t78 = t49 - 1.7320508075688772 * (t51 + t53) * 0.5 + t58
-    del t49, t51, t53, t58
-    t79 = aside_2 * (t77 - twist_tilt_x * t78)
-    del t77
-    t80 = c_tilt_y * t15 * 0.5
-    del t15
-    t81 = c_tilt_y * h1_y
-    del c_tilt_y, h1_y
-    t82 = t81 * 0.5
-    t83 = t61 - t63
-    del t61, t63
-    t84 = t80 - t82 + twist_tilt_x * t83
-    t85 = m_2 - slide_2
-    t86 = t79 - t84 * t85
-    t87 = t67 * t86
-    t88 = twist_tilt_y * aside_2 * t78
+    t75 = 1.7320508075688772 * (t69 * 0.5 - t74 * 0.5) * 0.5
+    del t69
+    t76 = t71 * 0.25 - t56 * t6 - t75
+    del t56, t71, t75
+    t77 = t74 * 0.25 - 1.7320508075688772 * t76 / 3.0
+    t78 = t70 + 1.7320508075688772 * (t72 - t73) * 0.5 - t77
+    twist_tilt_x = t48 * (t2 * R_22 + t1 * t6)
+    del R_22, t1, t2, t48, t6
+    t79 = t50 - 1.7320508075688772 * (t52 + t54) * 0.5 + t59
+    del t50, t52, t54, t59
+    t80 = aside_2 * (t78 - twist_tilt_x * t79)
     del t78
-    t89 = t14 + twist_tilt_y * t83
-    del t14, t83
-    t90 = t88 + t85 * t89
-    del t85
-    t91 = t69 - 1.7320508075688772 * (t71 + t72) * 0.5 + t76
-    del t69, t71, t72, t76
-    t92 = aside_3 * (t91 - twist_tilt_x * t59)
-    del t59, t91
-    t93 = t80 + t82 + twist_tilt_x * t64
-    del t64, t80, t82
-    t94 = t92 - t93 * t66
-    del t66
-    t95 = t90 * t94
-    t96 = t8 * t87 - z * t87 + (t8 * t95 - z * t95)
-    t97 = t54 + 1.1547005383792515 * t57
-    del t54, t57
-    t98 = t73 + twist_tilt_x * t97 + 1.1547005383792515 * t75
-    del t73, t75
-    t99 = t19 * t98
-    del t98
-    t100 = t81 + twist_tilt_x * t62
-    del t81, twist_tilt_x
-    t101 = m_1 - slide_1
-    t102 = t99 - t100 * t101
-    t103 = t67 * t102
-    t104 = z * t102
-    t105 = t19 * (t38 + t50 * t7 - t97 * twist_tilt_y)
-    del t38, t50, t7, t97
-    t106 = h1_x - t62 * twist_tilt_y
-    del h1_x, t62, twist_tilt_y
-    t107 = t105 - t106 * t101
-    del t101
-    t108 = t94 * t107
-    t109 = z * t107
-    t110 = h2_z * t103 + t67 * t104 + (h2_z * t108 + t94 * t109)
-    t111 = t90 * t102
-    t112 = t86 * t107
-    t113 = h3_z * t111 + t90 * t104 - (h3_z * t112 + t86 * t109)
-    t114 = t96 + t110 - t113 + slide_3 * t111 - slide_2 * t103
-    t115 = t114 - slide_3 * t112 - slide_2 * t108 + slide_1 * t87
-    del t114
-    t116 = np.minimum(t45, t46 * np.abs(-(t115 + slide_1 * t95)))
-    del t115
-    t117 = np.maximum(0.0, np.abs(t19) - l) + np.maximum(0.0, np.abs(-aside_2) - l)
-    del aside_2, t19
-    t118 = t44 + (t117 + np.maximum(0.0, np.abs(-aside_3) - l))
-    del aside_3, t117
-    t119 = _runtime.DETERMINED * (least * t46) * t118
-    del least, t118
-    t120 = _runtime.status(invalid, unreachable, t44 * t116 <= t119)
-    del t116
-    t121 = m_3 - slide_3_plus_plus_minus
-    del m_3
-    t122 = t60 + t65 * t121
-    del t60, t65
-    t123 = t86 * t122
-    t124 = t92 - t93 * t121
-    del t121, t92, t93
-    t125 = t90 * t124
-    t126 = t8 * t123 - z * t123 + (t8 * t125 - z * t125)
-    t127 = t102 * t122
-    t128 = t107 * t124
-    t129 = h2_z * t127 + t104 * t122 + (h2_z * t128 + t109 * t124)
-    t130 = t113 - t126 - t129 - slide_3_plus_plus_minus * t111
-    del t111, t113
-    t131 = t130 + slide_2 * t127 + slide_3_plus_plus_minus * t112
-    del t112, t130
-    t132 = t131 + slide_2 * t128 - slide_1 * t123 - slide_1 * t125
-    del t131
-    t133 = t44 * np.minimum(t45, t46 * np.abs(t132)) <= t119
-    del t132
-    t134 = m_2 - slide_2_plus_minus_plus
-    del m_2
-    t135 = t79 - t84 * t134
-    del t79, t84
-    t136 = t67 * t135
-    t137 = t88 + t89 * t134
-    del t134, t88, t89
-    t138 = t94 * t137
-    t139 = t8 * t136 - z * t136 + (t8 * t138 - z * t138)
-    t140 = t102 * t137
+    t81 = c_tilt_y * t15 * 0.5
+    del t15
+    t82 = c_tilt_y * h1_y
+    del c_tilt_y, h1_y
+    t83 = t82 * 0.5
+    t84 = t62 - t64
+    del t62, t64
+    t85 = t81 - t83 + twist_tilt_x * t84
+    t86 = m_2 - slide_2
+    t87 = t80 - t85 * t86
+    t88 = t68 * t87
+    t89 = twist_tilt_y * aside_2 * t79
+    del t79
+    t90 = t14 + twist_tilt_y * t84
+    del t14, t84
+    t91 = t89 + t86 * t90
+    del t86
+    t92 = t70 - 1.7320508075688772 * (t72 + t73) * 0.5 + t77
+    del t70, t72, t73, t77
+    t93 = aside_3 * (t92 - twist_tilt_x * t60)
+    del t60, t92
+    t94 = t81 + t83 + twist_tilt_x * t65
+    del t65, t81, t83
+    t95 = t93 - t94 * t67
+    del t67
+    t96 = t91 * t95
+    t97 = t8 * t88 - z * t88 + (t8 * t96 - z * t96)
+    t98 = t55 + 1.1547005383792515 * t58
+    del t55, t58
+    t99 = t74 + twist_tilt_x * t98 + 1.1547005383792515 * t76
+    del t74, t76
+    t100 = t19 * t99
+    del t99
+    t101 = t82 + twist_tilt_x * t63
+    del t82, twist_tilt_x
+    t102 = m_1 - slide_1
+    t103 = t100 - t101 * t102
+    t104 = t68 * t103
+    t105 = z * t103
+    t106 = t19 * (t39 + t51 * t7 - t98 * twist_tilt_y)
+    del t39, t51, t7, t98
+    t107 = h1_x - t63 * twist_tilt_y
+    del h1_x, t63, twist_tilt_y
+    t108 = t106 - t107 * t102
     del t102
-    t141 = t107 * t135
-    del t107
-    t142 = h3_z * t140 + t104 * t137 - (h3_z * t141 + t109 * t135)
-    del t104, t109
-    t143 = t110 + t139 - t142 + slide_3 * t140 - slide_2_plus_minus_plus * t103
-    del t103, t110
-    t144 = t143 - slide_3 * t141 - slide_2_plus_minus_plus * t108
-    del t108, t143
-    t145 = np.abs(t144 + slide_1 * t136 + slide_1 * t138)
-    del t144
-    t146 = _runtime.status(invalid, unreachable, t44 * np.minimum(t45, t46 * t145) <= t119)
+    t109 = t95 * t108
+    t110 = z * t108
+    t111 = h2_z * t104 + t68 * t105 + (h2_z * t109 + t95 * t110)
+    t112 = t91 * t103
+    t113 = t87 * t108
+    t114 = h3_z * t112 + t91 * t105 - (h3_z * t113 + t87 * t110)
+    t115 = t97 + t111 - t114 + slide_3 * t112 - slide_2 * t104
+    t116 = t115 - slide_3 * t113 - slide_2 * t109 + slide_1 * t88
+    del t115
+    t117 = np.minimum(t46, t47 * np.abs(-(t116 + slide_1 * t96)))
+    del t116
+    t118 = np.maximum(0.0, np.abs(t19) - l) + np.maximum(0.0, np.abs(-aside_2) - l)
+    del aside_2, t19
+    t119 = t45 + (t118 + np.maximum(0.0, np.abs(-aside_3) - l))
+    del aside_3, t118
+    t120 = _runtime.DETERMINED * (least * t47) * t119
+    del least, t119
+    t121 = _runtime.status(invalid, unreachable, t45 * t117 <= t120)
+    del t117
+    t122 = m_3 - slide_3_plus_plus_minus
+    del m_3
+    t123 = t61 + t66 * t122
+    del t61, t66
+    t124 = t87 * t123
+    t125 = t93 - t94 * t122
+    del t122, t93, t94
+    t126 = t91 * t125
+    t127 = t8 * t124 - z * t124 + (t8 * t126 - z * t126)
+    t128 = t103 * t123
+    t129 = t108 * t125
+    t130 = h2_z * t128 + t105 * t123 + (h2_z * t129 + t110 * t125)
+    t131 = t114 - t127 - t130 - slide_3_plus_plus_minus * t112
+    del t112, t114
+    t132 = t131 + slide_2 * t128 + slide_3_plus_plus_minus * t113
+    del t113, t131
+    t133 = t132 + slide_2 * t129 - slide_1 * t124 - slide_1 * t126
+    del t132
+    t134 = t45 * np.minimum(t46, t47 * np.abs(t133)) <= t120
+    del t133
+    t135 = m_2 - slide_2_plus_minus_plus
+    del m_2
+    t136 = t80 - t85 * t135
+    del t80, t85
+    t137 = t68 * t136
+    t138 = t89 + t90 * t135
+    del t135, t89, t90
+    t139 = t95 * t138
+    t140 = t8 * t137 - z * t137 + (t8 * t139 - z * t139)
+    t141 = t103 * t138
+    del t103
+    t142 = t108 * t136
+    del t108
+    t143 = h3_z * t141 + t105 * t138 - (h3_z * t142 + t110 * t136)
+    del t105, t110
+    t144 = t111 + t140 - t143 + slide_3 * t141 - slide_2_plus_minus_plus * t104
+    del t104, t111
+    t145 = t144 - slide_3 * t142 - slide_2_plus_minus_plus * t109
+    del t109, t144
+    t146 = np.abs(t145 + slide_1 * t137 + slide_1 * t139)
     del t145
-    t147 = t122 * t135
-    t148 = t124 * t137
-    t149 = t8 * t147 - z * t147 + (t8 * t148 - z * t148)
+    t147 = _runtime.status(invalid, unreachable, t45 * np.minimum(t46, t47 * t146) <= t120)
+    del t146
+    t148 = t123 * t136
+    t149 = t125 * t138
+    t150 = t8 * t148 - z * t148 + (t8 * t149 - z * t149)
     del t8
-    t150 = t129 - t142 + t149 + slide_3_plus_plus_minus * t140
-    del t129, t140, t142
-    t151 = t150 - slide_2_plus_minus_plus * t127 - slide_3_plus_plus_minus * t141
-    del t127, t141, t150
-    t152 = t151 - slide_2_plus_minus_plus * t128 + slide_1 * t147
-    del t128, t151
-    t153 = np.minimum(t45, t46 * np.abs(t152 + slide_1 * t148))
-    del slide_1, t152
-    t154 = _runtime.status(invalid, unreachable, t44 * t153 <= t119)
-    del t153
-    t155 = m_1 - slide_1_minus_plus_plus
+    t151 = t130 - t143 + t150 + slide_3_plus_plus_minus * t141
+    del t130, t141, t143
+    t152 = t151 - slide_2_plus_minus_plus * t128 - slide_3_plus_plus_minus * t142
+    del t128, t142, t151
+    t153 = t152 - slide_2_plus_minus_plus * t129 + slide_1 * t148
+    del t129, t152
+    t154 = np.minimum(t46, t47 * np.abs(t153 + slide_1 * t149))
+    del slide_1, t153
+    t155 = _runtime.status(invalid, unreachable, t45 * t154 <= t120)
+    del t154
+    t156 = m_1 - slide_1_minus_plus_plus
     del m_1
-    t156 = t99 - t100 * t155
-    del t100, t99
-    t157 = t67 * t156
-    t158 = z * t156
-    A_13_minus_plus_plus = t105 - t106 * t155
-    del t105, t106, t155
-    t159 = t94 * A_13_minus_plus_plus
-    t160 = z * A_13_minus_plus_plus
-    t161 = h2_z * t157 + t67 * t158 + (h2_z * t159 + t94 * t160)
-    del t67, t94
-    t162 = t90 * t156
-    t163 = t86 * A_13_minus_plus_plus
-    t164 = h3_z * t162 + t90 * t158 - (h3_z * t163 + t86 * t160)
-    del t86, t90
-    t165 = t96 + t161 - t164 + slide_3 * t162 - slide_2 * t157
-    del t96
-    t166 = t165 - slide_3 * t163 - slide_2 * t159 + slide_1_minus_plus_plus * t87
-    del t165, t87
-    t167 = t46 * np.abs(t166 + slide_1_minus_plus_plus * t95)
-    del t166, t95
-    t168 = _runtime.status(invalid, unreachable, t44 * np.minimum(t45, t167) <= t119)
-    del t167
-    t169 = t122 * t156
-    t170 = t124 * A_13_minus_plus_plus
-    t171 = h2_z * t169 + t122 * t158 + (h2_z * t170 + t124 * t160)
-    del h2_z, t122, t124
-    t172 = t126 - t164 + t171 + slide_3_plus_plus_minus * t162
-    del t126, t162, t164
-    t173 = t172 - slide_2 * t169 - slide_3_plus_plus_minus * t163
-    del t163, t172
-    t174 = t173 - slide_2 * t170 + slide_1_minus_plus_plus * t123
-    del slide_2, t123, t173
-    t175 = np.abs(t174 + slide_1_minus_plus_plus * t125)
-    del t125, t174
-    t176 = _runtime.status(invalid, unreachable, t44 * np.minimum(t45, t46 * t175) <= t119)
-    del t175
-    t177 = t137 * t156
-    del t156
-    t178 = t135 * A_13_minus_plus_plus
+    t157 = t100 - t101 * t156
+    del t100, t101
+    t158 = t68 * t157
+    t159 = z * t157
+    A_13_minus_plus_plus = t106 - t107 * t156
+    del t106, t107, t156
+    t160 = t95 * A_13_minus_plus_plus
+    t161 = z * A_13_minus_plus_plus
+    t162 = h2_z * t158 + t68 * t159 + (h2_z * t160 + t95 * t161)
+    del t68, t95
+    t163 = t91 * t157
+    t164 = t87 * A_13_minus_plus_plus
+    t165 = h3_z * t163 + t91 * t159 - (h3_z * t164 + t87 * t161)
+    del t87, t91
+    t166 = t97 + t162 - t165 + slide_3 * t163 - slide_2 * t158
+    del t97
+    t167 = t166 - slide_3 * t164 - slide_2 * t160 + slide_1_minus_plus_plus * t88
+    del t166, t88
+    t168 = t47 * np.abs(t167 + slide_1_minus_plus_plus * t96)
+    del t167, t96
+    t169 = _runtime.status(invalid, unreachable, t45 * np.minimum(t46, t168) <= t120)
+    del t168
+    t170 = t123 * t157
+    t171 = t125 * A_13_minus_plus_plus
+    t172 = h2_z * t170 + t123 * t159 + (h2_z * t171 + t125 * t161)
+    del h2_z, t123, t125
+    t173 = t127 - t165 + t172 + slide_3_plus_plus_minus * t163
+    del t127, t163, t165
+    t174 = t173 - slide_2 * t170 - slide_3_plus_plus_minus * t164
+    del t164, t173
+    t175 = t174 - slide_2 * t171 + slide_1_minus_plus_plus * t124
+    del slide_2, t124, t174
+    t176 = np.abs(t175 + slide_1_minus_plus_plus * t126)
+    del t126, t175
+    t177 = _runtime.status(invalid, unreachable, t45 * np.minimum(t46, t47 * t176) <= t120)
+    del t176
+    t178 = t138 * t157
+    del t157
+    t179 = t136 * A_13_minus_plus_plus
     del A_13_minus_plus_plus
-    t179 = h3_z * t177 + t137 * t158 - (h3_z * t178 + t135 * t160)
-    del h3_z, t135, t137, t158, t160
-    t180 = t139 + t161 - t179 + slide_3 * t177 - slide_2_plus_minus_plus * t157
-    del t139, t157, t161
-    t181 = t180 - slide_3 * t178 - slide_2_plus_minus_plus * t159
-    del slide_3, t159, t180
-    Delta_minus_minus_plus = t181 + slide_1_minus_plus_plus * t136 + slide_1_minus_plus_plus * t138
-    del t136, t138, t181
-    t182 = np.minimum(t45, t46 * np.abs(Delta_minus_minus_plus))
+    t180 = h3_z * t178 + t138 * t159 - (h3_z * t179 + t136 * t161)
+    del h3_z, t136, t138, t159, t161
+    t181 = t140 + t162 - t180 + slide_3 * t178 - slide_2_plus_minus_plus * t158
+    del t140, t158, t162
+    t182 = t181 - slide_3 * t179 - slide_2_plus_minus_plus * t160
+    del slide_3, t160, t181
+    Delta_minus_minus_plus = t182 + slide_1_minus_plus_plus * t137 + slide_1_minus_plus_plus * t139
+    del t137, t139, t182
+    t183 = np.minimum(t46, t47 * np.abs(Delta_minus_minus_plus))
     del Delta_minus_minus_plus
-    t183 = _runtime.status(invalid, unreachable, t44 * t182 <= t119)
-    del t182
-    t184 = t149 + t171 - t179 + slide_3_plus_plus_minus * t177
-    del t149, t171, t177, t179
-    t185 = t184 - slide_2_plus_minus_plus * t169 - slide_3_plus_plus_minus * t178
-    del slide_3_plus_plus_minus, t169, t178, t184
-    t186 = t185 - slide_2_plus_minus_plus * t170 + slide_1_minus_plus_plus * t147
-    del slide_2_plus_minus_plus, t147, t170, t185
-    t187 = np.abs(t186 + slide_1_minus_plus_plus * t148)
-    del slide_1_minus_plus_plus, t148, t186
-    t188 = _runtime.status(invalid, unreachable, t44 * np.minimum(t45, t46 * t187) <= t119)
-    del t119, t187, t44, t45, t46
+    t184 = _runtime.status(invalid, unreachable, t45 * t183 <= t120)
+    del t183
+    t185 = t150 + t172 - t180 + slide_3_plus_plus_minus * t178
+    del t150, t172, t178, t180
+    t186 = t185 - slide_2_plus_minus_plus * t170 - slide_3_plus_plus_minus * t179
+    del slide_3_plus_plus_minus, t170, t179, t185
+    t187 = t186 - slide_2_plus_minus_plus * t171 + slide_1_minus_plus_plus * t148
+    del slide_2_plus_minus_plus, t148, t171, t186
+    t188 = np.abs(t187 + slide_1_minus_plus_plus * t149)
+    del slide_1_minus_plus_plus, t149, t187
+    t189 = _runtime.status(invalid, unreachable, t45 * np.minimum(t46, t47 * t188) <= t120)
+    del t120, t188, t45, t46, t47
     return (
         t36,
-        t39,
         t40,
-        t36,
-        t39,
         t41,
         t36,
-        t42,
         t40,
+        t42,
         t36,
-        t42,
-        t41,
         t43,
-        t39,
+        t41,
+        t36,
+        t43,
+        t42,
+        t44,
         t40,
-        t43,
-        t39,
         t41,
-        t43,
-        t42,
+        t44,
         t40,
+        t42,
+        t44,
+        t43,
+        t41,
+        t44,
         t43,
         t42,
-        t41,
-        t120,
-        _runtime.status(invalid, unreachable, t133),
-        t146,
-        t154,
-        t168,
-        t176,
-        t183,
-        t188,
+        t121,
+        _runtime.status(invalid, unreachable, t134),
+        t147,
+        t155,
+        t169,
+        t177,
+        t184,
+        t189,
     )
 
 
@@ -1762,50 +1798,53 @@ def _workspace_contains(z, tilt_x, tilt_y, b, a, l):
     t3 = t1 & (0.0 <= b) & (0.0 <= a) & (0.0 <= l) & t2
     del t1, t2
     t4 = _runtime.FEASIBILITY * ((b + a + l + np.abs(z)) * 0.5)
-    t5 = a * 1.299038105676658
-    t6 = s_tilt_x * s_tilt_y
-    del s_tilt_x, s_tilt_y
+    t5 = s_tilt_x * s_tilt_y
+    t6 = a * 1.299038105676658
     t7 = t5 * t6
-    g = c_tilt_x * t5 + c_tilt_y * t5
-    del t5
+    t8 = (s_tilt_x - s_tilt_y) * (s_tilt_x + s_tilt_y)
+    del s_tilt_x, s_tilt_y
+    u = _runtime.select(c_tilt_x * c_tilt_y < -0.5, -(t8 / (c_tilt_x - c_tilt_y)), c_tilt_x + c_tilt_y)
+    del t8
+    g = u * t6
+    del t6, u
     delta = np.sqrt(t7 * t7 + g * g)
     untwisted = delta <= 0.0
     c = _runtime.select(untwisted, 1.0, g / delta)
     del g
     s = _runtime.select(untwisted, 0.0, t7 / delta)
     del delta, t7, untwisted
-    h1_x = a * (c_tilt_y * c + t6 * s)
+    h1_x = a * (c_tilt_y * c + t5 * s)
     h1_y = a * (c_tilt_x * s)
-    t8 = h1_y * 0.5
-    t9 = h1_x * 0.5
-    t10 = a * 1.7320508075688772
-    t11 = t10 * (t6 * c - c_tilt_y * s) * 0.5
-    del c_tilt_y, s, t6
-    t12 = t9 - t11
-    t13 = t10 * (c_tilt_x * c) * 0.5
-    del c, c_tilt_x, t10
-    t14 = t8 - t13
-    t15 = t8 + (1.7320508075688772 * t12 * 0.5 + t14 * 0.5)
-    px = 1.1547005383792515 * t15
-    del t15
-    t16 = b - h1_x - px
-    del h1_x
-    t17 = t12 * 0.5 - 1.7320508075688772 * (h1_y + t14) * 0.5
-    del t12, t14
-    t18 = b + px * 0.5
-    del px
-    aside_2 = t17 - t18
-    del t17
-    t19 = (-t4 <= l + t16) & (-t4 <= l - t16) & (-t4 <= l - aside_2)
+    t9 = h1_y * 0.5
+    t10 = h1_x * 0.5
+    t11 = a * 1.7320508075688772
+    t12 = t11 * (t5 * c - c_tilt_y * s) * 0.5
+    del c_tilt_y, s, t5
+    t13 = t10 - t12
+    t14 = t11 * (c_tilt_x * c) * 0.5
+    del c, c_tilt_x, t11
+    t15 = t9 - t14
+    t16 = t9 + (1.7320508075688772 * t13 * 0.5 + t15 * 0.5)
+    px = 1.1547005383792515 * t16
     del t16
-    t20 = 1.7320508075688772 * (h1_y + (t8 + t13)) * 0.5
-    del h1_y, t13, t8
-    aside_3 = (t9 + t11) * 0.5 + t20 - t18
-    del t11, t18, t20, t9
-    t21 = t19 & (-t4 <= l + aside_2) & (-t4 <= l - aside_3)
-    del aside_2, t19
-    failed = np.logical_not(t3) | np.logical_not(t21 & (-t4 <= l + aside_3))
-    del aside_3, t21, t3, t4
+    t17 = b - h1_x - px
+    del h1_x
+    t18 = t13 * 0.5 - 1.7320508075688772 * (h1_y + t15) * 0.5
+    del t13, t15
+    t19 = b + px * 0.5
+    del px
+    aside_2 = t18 - t19
+    del t18
+    t20 = (-t4 <= l + t17) & (-t4 <= l - t17) & (-t4 <= l - aside_2)
+    del t17
+    t21 = 1.7320508075688772 * (h1_y + (t9 + t14)) * 0.5
+    del h1_y, t14, t9
+    aside_3 = (t10 + t12) * 0.5 + t21 - t19
+    del t10, t12, t19, t21
+    t22 = t20 & (-t4 <= l + aside_2) & (-t4 <= l - aside_3)
+    del aside_2, t20
+    failed = np.logical_not(t3) | np.logical_not(t22 & (-t4 <= l + aside_3))
+    del aside_3, t22, t3, t4
     return (
         np.logical_not(failed),
     )

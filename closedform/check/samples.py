@@ -206,9 +206,8 @@ class Degrees:
 class Magnitudes:
     """The natural scales of values: all signs positive, sines and cosines at their largest.
 
-    Divisors keep their value.  With ``amplified``, a quotient is multiplied by the natural scale of
-    its divisor over the divisor, and a root grows where its argument cancels.  Each subexpression
-    is visited once, because the full tree would be far too large.
+    Divisors keep their value.  Each subexpression is visited once, because the full tree would be
+    far too large.
 
     The expressions may contain ``names``, with a value each, which hold what cancels in a formula
     that is written out.
@@ -219,10 +218,8 @@ class Magnitudes:
         symbols: Sequence[sp.Symbol],
         exprs: Sequence[sp.Expr],
         *,
-        amplified: bool = False,
         names: Mapping[sp.Symbol, sp.Expr] | None = None,
     ):
-        self._amplified = amplified
         self._names = names or {}
         self._written_out: dict[sp.Basic, sp.Expr] = {}
         for name, value in self._names.items():
@@ -244,7 +241,7 @@ class Magnitudes:
                 done.append(step(done, given))
             scales = [np.broadcast_to(done[k], len(rows)).astype(float) for k in self._results]
         shaped = np.stack(scales, axis=-1) if scales else np.empty((len(rows), 0))
-        return np.where(np.isnan(shaped), np.inf if self._amplified else 0.0, shaped)
+        return np.where(np.isnan(shaped), 0.0, shaped)
 
     def _place(self, e: sp.Basic) -> int:
         if e not in self._known:
@@ -274,25 +271,11 @@ class Magnitudes:
             return lambda done, given: total(done[k] for k in parts)
         if isinstance(e, sp.Pow) and e.exp.is_Number and e.exp > 0:
             base, power = self._place(e.base), float(e.exp)
-            if self._amplified and power < 1:
-                value = self._evaluated(e.base)
-                return lambda done, given: _scale_of_root(done[base], given[value], power)
             return lambda done, given: np.power(done[base], power)
         place = self._evaluated(e)
-        if self._amplified and isinstance(e, sp.Pow) and e.exp.is_Number:
-            inner, power = self._place(e.base), float(e.exp)
-            return lambda done, given: (
-                given[place] * np.maximum(1.0, done[inner] / given[place] ** (1 / power))
-            )
         return lambda done, given: given[place]
 
     def _evaluated(self, e: sp.Expr) -> int:
         """The place of an expression that is evaluated."""
         self._divisors.append(substitute(e, self._written_out))
         return len(self._places) + len(self._divisors) - 1
-
-
-def _scale_of_root(scale: Array, value: Array, power: float) -> Array:
-    """What a rounding of a root's argument makes of the root: much where the argument cancels."""
-    least = np.maximum(value, np.finfo(float).eps * scale)
-    return np.maximum(np.power(scale, power), power * scale * np.power(least, power - 1))

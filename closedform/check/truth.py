@@ -17,7 +17,7 @@ from flint import arb
 from numpy.typing import NDArray
 
 from closedform.algebra.balls import Undetermined, to_float
-from closedform.check.rows import RowEvaluator, crosses
+from closedform.check.rows import WIDE, RowEvaluator, crosses
 from closedform.check.samples import Degrees, Magnitudes, Sample, with_parameters
 from closedform.lower import lower
 from closedform.mechanics.lengths import numbers_of_tool
@@ -86,24 +86,27 @@ class Values:
         self._bounds = [_margins(function, symbols, s) for s in signs]
         self._flags = [_margins(function, symbols, s, Vanishes) for s in signs]
 
-    @cached_property
-    def amplified(self) -> Callable[[Array, type], Array]:
-        """The natural scales, enlarged where divisors nearly cancel."""
-        if self.in_modes:
-            return self._of_names(amplified=True)
-        return Magnitudes(self._symbols, self.exprs, amplified=True)
+    def amplified(self, rows: Array) -> Array:
+        """How far roundings may move each value, in the relative error of one rounding.
+
+        This is the radius of a ball that grows with each operation of the function.
+        """
+        outputs = [e for a in self._function.outputs for e in a.entries]
+        cases = [
+            _in_case(self._function, self._symbols, signs, outputs)
+            for _, signs in self._function.cases()
+        ]
+        radius = np.concatenate([case.balls(rows)[1] for case in cases], axis=1)
+        return np.asarray(radius / np.finfo(WIDE).eps, float)
 
     @cached_property
     def named(self) -> Callable[[Array, type], Array]:
         """The natural scales with all lengths, also those that cancel in the explicit form."""
-        return self._of_names(amplified=False)
-
-    def _of_names(self, *, amplified: bool) -> Callable[[Array, type], Array]:
         function = self._function
         flags = dict.fromkeys(_flags_of(function), sp.false)
         outputs = [substitute(e, flags) for a in function.outputs for e in a.entries]
         cases = [
-            Magnitudes(self._symbols, outputs, amplified=amplified, names=_names(function, signs))
+            Magnitudes(self._symbols, outputs, names=_names(function, signs))
             for _, signs in function.cases()
         ]
         return lambda rows, dtype: np.concatenate([case(rows, dtype) for case in cases], axis=1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -97,7 +98,6 @@ class _Errors:
         self.turned = values.angles & (computed > CUT) & (self.middle < -CUT)
         self.unsettled: set[int] = set()
         self._largest: dict[int, float] = {}
-        self._amplified: dict[int, NDArray[Any]] = {}
 
     def bounds(self) -> NDArray[np.float64]:
         """Upper bounds of all errors; infinite where nothing is known."""
@@ -132,7 +132,7 @@ class _Errors:
             scale += self._of_lengths(row, k)
             error = _ulps(self.computed[row, k], exact, scale, self.backend)
         if error > WELL_CONDITIONED and (self.values.beside_pose or self._near_pole(row)):
-            grown = float(self._amplified_scales(row)[k])
+            grown = float(self._amplified[row, k])
             if self.backend.eps * grown >= self.scales[row, k]:  # a divisor is a rounding
                 return None
             error = _ulps(self.computed[row, k], exact, scale + grown, self.backend)
@@ -160,11 +160,9 @@ class _Errors:
         named = self.values.named(self.rows[row : row + 1], self.backend.dtype)[0, k]
         return float(min(named, max(self.lengths, default=named)))
 
-    def _amplified_scales(self, row: int) -> NDArray[Any]:
-        if row not in self._amplified:
-            one = self.rows[row : row + 1]
-            self._amplified[row] = self.values.amplified(one, self.backend.dtype)[0]
-        return self._amplified[row]
+    @cached_property
+    def _amplified(self) -> NDArray[np.float64]:
+        return self.values.amplified(self.rows)
 
 
 def _turned(angle: arb) -> arb:

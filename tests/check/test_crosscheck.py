@@ -136,11 +136,9 @@ def test_an_answer_that_joints_do_not_determine_is_found(robot: str) -> None:
 def test_a_wrong_value_is_found(robot: str) -> None:
     first = next(f.name for f in derivation(robot).functions if f.name in ("fk", "hand_pose"))
     assert broken(robot, first, slightly_off)
-    large = robot in ("hybrid_five_bar", "three_prs")  # long products have a large natural scale
-    off = 1e-9 if large else 1e-13
     square = any(f.name == "determinant" for f in derivation(robot).functions)
     name = "determinant" if square else "jacobian"
-    assert broken(robot, name, lambda x: x + off * (1 + np.abs(x)))
+    assert broken(robot, name, lambda x: x + 1e-13 * (1 + np.abs(x)))
 
 
 def test_a_wrong_truth_value_is_found() -> None:

@@ -244,6 +244,10 @@ def _check_round_trips(
     row, branch = np.nonzero(status == OK)
     answers, given = solutions[row, branch].astype(float), posed.values[row]
     missed = truth.missed(truth.wide_images(answers, parameters), answers, given, parameters)
+    if not truth.stated:
+        finding.compared += len(answers)
+        worst = missed.max(initial=0.0) / backend.eps
+        finding.see(float(worst), lambda: postures.name)
     for k in np.argsort(-missed)[:SUSPECTS]:
         if missed[k] > allowed / 2:
             exact = truth.exact_miss(answers[k], given[k], parameters)

@@ -40,7 +40,7 @@ def _page(
     derivation: Derivation,
     findings: Sequence[Finding],
     failures: Sequence[str],
-    remarks: Sequence[str],
+    remarks: list[str],
 ) -> str:
     names = list(dict.fromkeys(f.backend for f in findings))
     rows: dict[tuple[str, str], dict[str, Finding]] = {}
@@ -51,7 +51,8 @@ def _page(
         "",
         "The worst error of each printed function against its symbolic source, evaluated in Arb",
         "balls, over ordinary, huge, tiny and singular inputs: in units in the last place of the",
-        "natural scale; of an inverse what it leaves of its equations, in units of rounding.",
+        "natural scale; of an inverse what it leaves of its equations, or by how much its answers",
+        "miss the target, in units of rounding.",
         "",
         f"| function | unit | {' | '.join(names)} | compared |",
         f"|---|---|{'---:|' * (len(names) + 1)}",
@@ -60,6 +61,8 @@ def _page(
         shown = (f"{cells[n].worst:.2f}" if n in cells else "" for n in names)
         compared = sum(f.compared for f in cells.values())
         lines.append(f"| {name} | {unit} | {' | '.join(shown)} | {compared} |")
+        if not compared:
+            remarks = [*remarks, f"No value of {name} could be compared."]
     lines += ["", *remarks] if remarks else []
     wrong = [f"- {failure}" for failure in failures] or ["Nothing exceeds its tolerance."]
     return "\n".join([*lines, "", *wrong]) + "\n"

@@ -79,8 +79,9 @@ class Values:
         self.in_modes = function.branches is not None
         """Whether it has a value in each assembly mode; divisors nearly cancel where modes meet."""
         self.lengths = numbers_of_tool(derivation)
-        degrees = Degrees(self.exprs if self.beside_pose else ())
-        self._degrees = np.array(degrees.degrees or [0.0] * len(self.exprs))
+        degrees = Degrees(self.exprs)
+        self.degrees = np.array(degrees.degrees)
+        """Upper bounds for the degrees of the entries in lengths."""
         self._sized = [k for k, s in enumerate(symbols) if s in degrees.symbols]
         self.operations = sum(lower(function, derivation).operations().values())
         self._bounds = [_margins(function, symbols, s) for s in signs]
@@ -112,10 +113,10 @@ class Values:
         return lambda rows, dtype: np.concatenate([case(rows, dtype) for case in cases], axis=1)
 
     def powers(self, rows: Array) -> Array:
-        """For each entry, the largest length to the power of its degree; 0 for degrees up to 1."""
+        """For each entry, the largest length to the power of its degree; 1 for negative degrees."""
         longest = abs(rows[:, self._sized]).max(axis=1, initial=0.0)[:, None]
         with np.errstate(over="ignore"):
-            return np.where(self._degrees > 1, longest ** np.maximum(self._degrees, 1.0), 0.0)
+            return np.asarray(longest ** np.maximum(self.degrees, 0.0))
 
     def existence(self, rows: Array, slack: float) -> Array:
         """For each entry: 1 where it exists, -1 where not, 0 within ``slack`` of the boundary."""

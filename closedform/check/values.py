@@ -92,7 +92,10 @@ class _Errors:
         self.values, self.backend, self.rows, self.computed = values, backend, rows, computed
         self.lengths = [*parameters, *map(abs, values.lengths)]
         self.scales = values.scales(rows, backend.dtype)
-        self.powers = values.powers(rows)
+        powers = values.powers(rows)
+        self.powers = np.where(values.beside_pose & (values.degrees > 1), powers, 0.0)
+        # lengths are divided by the largest one, so what is smaller than this is lost
+        self.least = np.finfo(backend.dtype).tiny * np.maximum(powers, 1.0)
         self.middle, self.radius = values.exact.balls(rows)
         # an angle just above -pi may be rounded to -pi, which is returned as pi
         self.turned = values.angles & (computed > CUT) & (self.middle < -CUT)
@@ -106,7 +109,7 @@ class _Errors:
             sizes = np.where(np.isfinite(self.radius), np.maximum(abs(exact) - self.radius, 0), 0)
             most = NESTED * sizes.max(axis=1, initial=max(self.lengths, default=0.0))
             most = np.maximum(most[:, None], NESTED * self.powers)
-            size = np.maximum(np.minimum(self.scales, most), sizes)
+            size = np.maximum.reduce([np.minimum(self.scales, most), sizes, self.least])
             errors = abs(self.computed - exact) + self.radius
             bounds = errors / _last_places(size, self.backend)
             bounds[~np.isfinite(bounds)] = np.inf
@@ -131,11 +134,12 @@ class _Errors:
         if error > WELL_CONDITIONED and self.values.in_modes:
             scale += self._of_lengths(row, k)
             error = _ulps(self.computed[row, k], exact, scale, self.backend)
-        if error > WELL_CONDITIONED and (self.values.beside_pose or self._near_pole(row)):
+        if error > WELL_CONDITIONED and (self.values.beside_pose or self.values.in_modes):
             grown = float(self._amplified[row, k])
-            if self.backend.eps * grown >= self.scales[row, k]:  # a divisor is a rounding
+            if self.backend.eps * grown >= self._scale(row, k, exacts):  # no digit is known
                 return None
-            error = _ulps(self.computed[row, k], exact, scale + grown, self.backend)
+            if self.values.beside_pose or self._near_pole(row):
+                error = _ulps(self.computed[row, k], exact, scale + grown, self.backend)
         return error
 
     def _scale(self, row: int, k: int, exacts: Sequence[arb]) -> float:
@@ -144,8 +148,8 @@ class _Errors:
             sizes = [abs(to_float(e)) for e in exacts if e.is_finite()]
             self._largest[row] = max([*sizes, *self.lengths], default=1.0)
         most = NESTED * max(self._largest[row], self.powers[row, k])
-        scale = self.scales[row, k]
-        return float(min(scale, most)) if math.isfinite(scale) else math.inf
+        scale = max(min(self.scales[row, k], most), self.least[row, k])
+        return float(scale) if math.isfinite(self.scales[row, k]) else math.inf
 
     def _near_pole(self, row: int) -> bool:
         """Whether assembly modes are so close that divisors nearly cancel, or hardly exist."""

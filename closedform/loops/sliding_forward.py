@@ -10,6 +10,7 @@ import sympy as sp
 
 from closedform.lemmas.legs import cross_in_plane
 from closedform.lemmas.missed import MOVED, SHARE
+from closedform.loops.conditioning import JACOBIAN, conditioning
 from closedform.loops.hand import in_space
 from closedform.loops.leg_by_leg import SIGN, Choice, record_lemma
 from closedform.loops.linkage import GROUND, Body
@@ -350,6 +351,11 @@ def _velocity(m: SlidingLinkage, at: Solver, modes: Branches, loop: Step) -> Non
             (),
         )
     )
+    if n == len(m.hand) == 2:
+        groups = hand[0].groups | hand[1].groups
+        across = [(r.times * rates.product(groups - r.groups)).T for r in hand]
+        size = v.let("pushed", sp.Abs(sp.Matrix.hstack(*across).det()), nonnegative=True)
+        functions.append(("condition_number", *conditioning(v, across, size, of=JACOBIAN)))
     export(d, v, modes, functions, {})
 
 

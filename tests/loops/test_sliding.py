@@ -17,7 +17,7 @@ from places import TESTS
 from closedform.scaffold.inputs.tables import TableError
 
 FOLDER = TESTS / "held_out_loops"
-MODES = {"shaper": 4, "scissor_lift": 4}
+MODES = {"shaper": 4, "scissor_lift": 4, "swivelling_rod": 2}
 OK, UNREACHABLE, SINGULAR = 0, 1, 2
 LINES = 40
 
@@ -208,6 +208,14 @@ def test_the_inverse_finds_every_posture(loop: ModuleType) -> None:
 
 def test_the_jacobian_is_the_derivative(loop: ModuleType) -> None:
     check_jacobian(loop, text(name_of(loop)))
+
+
+def test_the_condition_number_is_that_of_the_jacobian(loop: ModuleType) -> None:
+    if hasattr(loop, "condition_number"):
+        q = inputs(Poses(text(name_of(loop))), np.random.default_rng(5), 300)
+        there = loop.fk(q).status == OK
+        kappa, J = loop.condition_number(q)[there], loop.jacobian(q)[there]
+        assert np.abs(kappa / np.linalg.cond(J) - 1).max() < 1e-9 * kappa.max()
 
 
 @pytest.mark.parametrize(

@@ -56,6 +56,11 @@ def subexpressions(problem: Sequence[Expr]) -> list[Expr]:
     return list(found)
 
 
+def linear_root(e: Expr, x: Expr) -> Expr:
+    """The x at which a linear expression vanishes; ``sp.solve`` loads half a second of modules."""
+    return sp.expand(-e.xreplace({x: sp.S.Zero}) / e.diff(x))
+
+
 def angle_terms(angle: Expr) -> dict[Expr, Rational]:
     """An angle as a rational combination of atoms."""
     terms = angle.as_coefficients_dict()

@@ -19,6 +19,7 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.algebra.expressions import linear_root
 from closedform.algebra.shapes import ShapeError
 from closedform.algebra.solutions import rotation_parametrisation
 from closedform.lemmas.applied import Applied
@@ -429,8 +430,7 @@ class Chain:
                 left = [j for j in self.joints if value.has(j) and j not in self.values]
                 if symbol in self.values and len(left) == 1:
                     (joint,) = left
-                    (solved,) = sp.solve(value - symbol, joint)
-                    self.values[joint] = self._angle_of(solved)
+                    self.values[joint] = self._angle_of(linear_root(value - symbol, joint))
                     progress = True
 
     def _angle_of(self, total: sp.Expr) -> sp.Expr:

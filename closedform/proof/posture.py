@@ -7,6 +7,7 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.algebra.expressions import linear_root
 from closedform.model.functions import (
     Bound,
     Function,
@@ -34,7 +35,7 @@ class Posture:
             held = [j for j in inverse.unknowns if value.has(j) and j not in taken]
             if held:
                 taken.add(held[-1])
-                (self.sums[held[-1]],) = sp.solve(value - symbol, held[-1])
+                self.sums[held[-1]] = linear_root(value - symbol, held[-1])
         self.names: dict[Expr, Expr] = {}
         self.extra_coordinates = glue.extra_coordinates
         self.meaning = glue.meaning

@@ -5,9 +5,19 @@ import random
 import pytest
 import sympy as sp
 
-from closedform.emit.backends.latex.angles import added, in_angles, turned
+from closedform.emit.backends.latex.angles import _InAngles, added, in_angles, turned
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Bound, Function, Let, Vanishes, real, substitute
+from closedform.model.functions import (
+    Bound,
+    Function,
+    Let,
+    Statement,
+    Vanishes,
+    array,
+    choose,
+    real,
+    substitute,
+)
 from closedform.pipeline import scripts
 
 ARMS = ("franka_arm", "irb2400", "opw_arm", "puma560", "srs_arm", "stanford_arm", "ur_arm")
@@ -107,3 +117,34 @@ def test_an_angle_that_a_flag_changes_has_no_value_of_another_name(name: str) ->
     chosen = {str(u): values[u] for angles in read.chosen.values() for u in angles}
     assert [*chosen] == (["phi"] if name == "ur_arm" else [])
     assert not any(value.has(sp.Piecewise) for value in chosen.values())
+
+
+def test_a_large_maximum_is_not_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    """SymPy would compare its arguments again, which took a minute for a skew wrist."""
+    angles = in_progress(x)
+    many = sum(b * sp.sqrt(a**k + b) * real(f"z{k}") for k in range(2, 20))
+    bound = sp.Max(many, x, evaluate=False)
+    monkeypatch.setattr(sp.Max, "_find_localzeros", None)
+    length = sp.sqrt(x**2 + 1)
+    shorter = angles._shorter(length * (bound + 1) * y, length * x * y**2)
+    assert shorter == (y * bound + y, x * y**2)
+
+
+def test_flags_are_looked_into_before_an_angle_is_derived() -> None:
+    """Where a flag holds, the pair is that of a number, or still depends on other names."""
+    flag, s, c = sp.Symbol("free"), real("s1"), real("c1")
+    for beside, varies in ((sp.S.Zero, False), (y, True)):
+        angles = in_progress(
+            sp.atan2(s, c),
+            Vanishes(flag, a**2, sp.S.One, "a is zero"),
+            Let(s, choose(flag, beside, x)),
+            Let(c, choose(flag, b**2 + 1, a)),
+        )
+        assert angles._varies(sp.atan2(s, c), flag) == varies
+
+
+def in_progress(output: sp.Expr, *body: Statement) -> _InAngles:
+    inputs = tuple(array(e.name, e) for e in (a, b, x, y))
+    return _InAngles(
+        Function("ik", "", inputs, (array("q", output),), body), (), (), iter(LETTERS), {}
+    )

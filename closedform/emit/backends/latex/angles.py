@@ -19,6 +19,7 @@ import sympy as sp
 from closedform.emit.backends.latex.plain import followed, is_rounding
 from closedform.emit.backends.latex.rotations import product
 from closedform.model.functions import (
+    SIMPLE,
     Bound,
     Function,
     Let,
@@ -26,6 +27,7 @@ from closedform.model.functions import (
     Statement,
     Vanishes,
     choose,
+    parts,
     real,
     substitute,
 )
@@ -233,8 +235,8 @@ class _InAngles:
         """State an angle, with its values where a flag holds."""
         value = self._angle(solution)
         for flag in reversed([f for f in self.special if self._has(solution, f)]):
-            there = self._angle(solution, flag)
-            if there.is_number:
+            there = None if self._varies(solution, flag) else self._angle(solution, flag)
+            if there is not None and there.is_number:
                 value = choose(flag, there, value)
         self.made.append(Let(unknown, value))
         self.known.add(unknown)
@@ -281,6 +283,22 @@ class _InAngles:
                     pending.append(self.raw[name])
         return False
 
+    def _varies(self, value: sp.Expr, flag: sp.Symbol) -> bool:
+        """Whether an angle is no number where a flag holds, by the names that it changes alone."""
+        flags = self.usual | {flag: sp.true}
+        while True:
+            value = substitute(value, flags)
+            changed = {n for n in value.free_symbols & self.raw.keys() if self._has(n, flag)}
+            if not changed:
+                break
+            value = substitute(value, {n: self.raw[n] for n in changed})
+        terms = (f for t in sp.Add.make_args(value) for f in sp.Mul.make_args(t))
+        return any(
+            0 not in f.args and sp.Mul(f.args[0], *(1 / e for e in f.args[1:])).free_symbols
+            for f in terms
+            if isinstance(f, sp.atan2 | sp.atan)
+        )
+
     def _angle(self, value: sp.Expr, flag: sp.Symbol | None = None) -> sp.Expr:
         """An angle in the names that remain."""
         value = self._plain(value, flag)
@@ -318,6 +336,12 @@ class _InAngles:
 
     def _shorter(self, y: sp.Expr, x: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
         """Both without what is a positive factor of each."""
+        kept = {e: _name_of(e) for value in (y, x) for e in _large_bounds(value)}
+        back = {name: e for e, name in kept.items()}
+        y, x = self._without_factors(y.xreplace(kept), x.xreplace(kept))
+        return y.xreplace(back), x.xreplace(back)
+
+    def _without_factors(self, y: sp.Expr, x: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
         y, x = map(sp.together, (y, x))
         (y, below), (x, under) = sp.fraction(y), sp.fraction(x)
         if 0 in (y, x):  # such as the angle of a direction along an axis
@@ -408,6 +432,18 @@ class _InAngles:
             replace(a, entries=tuple(next(symbols) for _ in a.entries))
             for a in self.function.outputs
         )
+
+
+def _large_bounds(value: sp.Expr) -> list[sp.Expr]:
+    """The outermost maxima, minima and absolute values that take SymPy long to make anew."""
+    if isinstance(value, sp.Max | sp.Min | sp.Abs) and len(parts([value])) > SIMPLE:
+        return [value]
+    return [e for a in value.args for e in _large_bounds(a)]
+
+
+def _name_of(value: sp.Expr) -> sp.Dummy:
+    """A name for a value, with what is known of its sign."""
+    return sp.Dummy(real=True, nonnegative=value.is_nonnegative)
 
 
 def added(value: sp.Expr, totals: Mapping[sp.Expr, sp.Symbol]) -> sp.Expr:

@@ -61,6 +61,34 @@ def linear_root(e: Expr, x: Expr) -> Expr:
     return sp.expand(-e.xreplace({x: sp.S.Zero}) / e.diff(x))
 
 
+class Derivatives:
+    """Derivatives by one symbol; each part of the expressions is differentiated once.
+
+    SymPy differentiates every factor of every product, also those without the symbol.
+    """
+
+    def __init__(self, x: Expr):
+        self.x = x
+        self.known: dict[Expr, Expr] = {x: sp.S.One}
+
+    def of(self, e: Expr) -> Expr:
+        if e not in self.known:
+            self.known[e] = self._derived(e) if e.has_free(self.x) else sp.S.Zero
+        return self.known[e]
+
+    def _derived(self, e: Expr) -> Expr:
+        if e.is_Add:
+            return sp.Add(*map(self.of, e.args))
+        if e.is_Mul:
+            rates = [(k, rate) for k, rate in enumerate(map(self.of, e.args)) if rate != 0]
+            return sp.Add(*(sp.Mul(rate, *e.args[:k], *e.args[k + 1 :]) for k, rate in rates))
+        if isinstance(e, sp.sin):
+            return sp.cos(e.args[0]) * self.of(e.args[0])
+        if isinstance(e, sp.cos):
+            return -sp.sin(e.args[0]) * self.of(e.args[0])
+        return e.diff(self.x)
+
+
 def angle_terms(angle: Expr) -> dict[Expr, Rational]:
     """An angle as a rational combination of atoms."""
     terms = angle.as_coefficients_dict()

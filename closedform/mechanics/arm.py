@@ -14,6 +14,7 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.algebra.expressions import Derivatives
 from closedform.mechanics import linkwise
 from closedform.mechanics.by_axes import AXES, by_axes
 from closedform.mechanics.entries import RowError, check_unit, constant, exact, rigid
@@ -195,19 +196,19 @@ class Serial:
 
         def equal() -> list[tuple[Any, Any]]:
             pose, J, J_s, J_b = self.pose, self.geometric, self.space, self.body
+            moved = [pose.applyfunc(Derivatives(joint).of) for joint in q]
             found = [
                 *(() if spelled else from_geometric(pose, J, J_s, J_b)),
                 *(long.equal(pose, J) if long else ()),
-                (J[:3, :], self.position.jacobian(q)),
+                (J[:3, :], sp.Matrix.hstack(*(rate[:3, 3] for rate in moved))),
                 (J[3:, :], J_s[3:, :]),
                 (geometric.explicit, J),
                 (space.explicit, J_s),
                 (body.explicit, J_b),
             ]
-            for i, joint in enumerate(q):
-                moved = pose.diff(joint)
-                found.append((moved, twist_matrix(J_s[:, i]) * pose))
-                found.append((moved, pose * twist_matrix(J_b[:, i])))
+            for i, rate in enumerate(moved):
+                found.append((rate, twist_matrix(J_s[:, i]) * pose))
+                found.append((rate, pose * twist_matrix(J_b[:, i])))
             return found
 
         d.step(

@@ -179,8 +179,7 @@ def _draw(loop: _Loop, rod: _Rod) -> None:
         )
         if crank:
             links[f"crank{k}"] = (base, near)
-        if leg.joint in d.actuated:
-            joints[leg.joint] = (base,) if crank else (base, near)
+        joints[leg.joint] = (base,) if crank else (base, near)
     skeleton(
         d,
         posture | {"B2": in_space(end)},

@@ -54,7 +54,8 @@ def skeleton(
     links
         polylines through points of one rigid body
     joints
-        the points at which each joint is: one for a revolute joint, two for a slide
+        the points at which each joint is: one for a revolute joint, two for a slide; a joint that
+        the task names has its kind from their number
     hand, hand_at
         the point that is the hand, and where the forward map says it is
     ground
@@ -78,7 +79,8 @@ def skeleton(
         by how much the squared distance of two points of ``at_posture`` exceeds that of the length:
         an equation of the loop, which the forward map solves
     """
-    kinds = {j.symbol: j.kind for j in d.joints}
+    kinds = {joint: "revolute" if len(at) == 1 else "prismatic" for joint, at in joints.items()}
+    kinds |= {j.symbol: j.kind for j in d.joints}
     drawn = Skeleton(
         points=tuple(points),
         links={name: tuple(link) for name, link in links.items()},

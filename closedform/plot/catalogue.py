@@ -129,7 +129,7 @@ def _shown(view: View) -> str:
     if not view.shown:
         return ""
     values = ", ".join(f"{symbol(name)} = {value:g}" for name, value in view.shown.items())
-    return f" Here {values}, so that it can be seen; in the example it is 0."
+    return f" Here {values}, more than in the example, so that it can be seen."
 
 
 def fits(robot: ModuleType, figure: str) -> bool:

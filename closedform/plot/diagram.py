@@ -231,7 +231,10 @@ class Diagram:
         A drawing in space is enlarged by ``zoom``, over the edge of the axes if it is tall, or
         until it is as large as the share ``filling`` of the axes.
         """
-        everything = np.vstack([self._here(d) for d in drawn])
+        seen = [self._here(d) for d in drawn]
+        if not self.spatial:  # in the plane also what is drawn beside it, such as arcs
+            seen += [line.get_xydata() for line in self.ax.lines]
+        everything = np.vstack(seen)
         low, high = np.nanmin(everything, axis=0), np.nanmax(everything, axis=0)
         low, high = low - margin * self.size, high + margin * self.size
         self.ax.set_axis_off()

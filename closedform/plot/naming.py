@@ -13,7 +13,7 @@ from closedform.plot.diagram import Diagram
 from closedform.plot.robot import Array, Robot
 from closedform.plot.sphere import way_through
 from closedform.plot.style import GROUND
-from closedform.plot.symbols import distances, lengths, symbol
+from closedform.plot.symbols import directions, distances, lengths, symbol
 
 FRAME = 0.13
 """The length of the axes of the base, as a share of the drawing."""
@@ -25,6 +25,8 @@ FLAT = 0.05
 """Angles that are smaller than this have no arc."""
 ARC, RADII = 0.09, (0.1, 0.18)
 """How long an arc should be, and between which radii that is tried."""
+NEXT = 0.04
+"""By how much an arc about the origin is larger than the one before."""
 STATIONS = (0.1, 0.07, 0.14, 0.18, 0.22, 0.26, -0.1, -0.14)
 """How far from a joint an arrow about its axis may be."""
 LETTER = re.compile(r"[A-Z]\d?")
@@ -85,6 +87,21 @@ def _name_lengths(drawn: Drawn, room: Room, faint: Collection[str]) -> None:
             span = room.clearest(spans)
             diagram.line(np.array(span), color=GROUND, linewidth=0.9, linestyle=DASHED)
             diagram.dimension(*span, symbol(field))
+    for k, (field, ways) in enumerate(directions(r, drawn.q, drawn.mode).items()):
+        if field not in named:
+            _direction(drawn, room, field, ways[0], RADII[0] + k * NEXT)
+
+
+def _direction(
+    drawn: Drawn, room: Room, field: str, way: tuple[Array, Array, Array], radius: float
+) -> None:
+    """The angle of a fixed point about the origin, which a line joins to the point."""
+    start, axis, point = way
+    diagram, zero = drawn.diagram, np.zeros(3)
+    turn = float(getattr(drawn.r.params, field)) % (2 * np.pi)
+    diagram.line([zero, point], color=GROUND, linewidth=0.9, linestyle=DASHED)
+    diagram.angle(zero, start, axis, turn, symbol(field), radius=radius, reference=radius + 0.02)
+    room.take(zero)
 
 
 def _named_beside(drawn: Drawn, name: str, room: Room) -> bool:
@@ -130,13 +147,9 @@ def _arc(drawn: Drawn, name: str, room: Room) -> bool:
 
 def _passive_arc(drawn: Drawn, name: str, room: Room) -> bool:
     """Draw the arc of a passive angle, if a link has this angle from an axis of the base."""
-    r, (at, way) = drawn.r, drawn.along[name]
-    joints = [n for n, j in drawn.skeleton.joints.items() if j.kind == "revolute"]
-    passive = [n for n in joints if n not in r.module.JOINTS]
-    if not r.has("passive_angles"):
-        return False
-    turn = float(r.call("passive_angles", drawn.q)[drawn.mode][passive.index(name)])
-    if not FLAT < abs(turn) < np.pi:
+    at, way = drawn.along[name]
+    turn = _passive_angle(drawn, name)
+    if turn is None or not FLAT < abs(turn) < np.pi:
         return False
     skeleton = drawn.skeleton
     foot = skeleton.joints[name].points[0]
@@ -155,6 +168,18 @@ def _passive_arc(drawn: Drawn, name: str, room: Room) -> bool:
                 room.take(at + radius * drawn.diagram.size * ray / np.linalg.norm(back))
                 return True
     return False
+
+
+def _passive_angle(drawn: Drawn, name: str) -> float | None:
+    """The angle of a joint that is not driven, if the module gives it."""
+    r = drawn.r
+    if name in r.module.TASK and r.modes:
+        return float(r.task(drawn.q)[drawn.mode][r.module.TASK.index(name)])
+    if not r.has("passive_angles"):
+        return None
+    joints = [n for n, j in drawn.skeleton.joints.items() if j.kind == "revolute"]
+    passive = [n for n in joints if n not in r.module.JOINTS]
+    return float(r.call("passive_angles", drawn.q)[drawn.mode][passive.index(name)])
 
 
 def _lettered(drawn: Drawn) -> list[str]:

@@ -339,10 +339,10 @@ def draw(
             style |= named
             named = {}
         diagram.link(way_through(r, place, link), **style)
-    for joint in skeleton.joints.values():
+    for name, joint in skeleton.joints.items():
         ends = np.array([place[p] for p in joint.points])
         if joint.kind == "prismatic":
-            _slide(diagram, ends, shade, width, named)
+            (_rail if name in r.module.TASK else _slide)(diagram, ends, shade, width, named)
             named = {}
     pivots = _pivots(r, diagram)
     if free := [place[point] for point in _passive(skeleton, pivots)]:
@@ -380,6 +380,17 @@ def _slide(diagram: Diagram, ends: Array, shade: str, width: float, named: dict[
     sleeve = [a + 0.1 * (b - a), a + 0.5 * (b - a)]
     diagram.link(sleeve, shade, linewidth=2.6 * width, solid_capstyle="butt")
     diagram.link(sleeve, "white", linewidth=1.6 * width, solid_capstyle="butt")
+
+
+def _rail(diagram: Diagram, ends: Array, shade: str, width: float, named: dict[str, Any]) -> None:
+    """A slider on a fixed line, which leads a little past it."""
+    a, b = ends
+    gap = b - a
+    way = gap / max(float(np.linalg.norm(gap)), 1e-300) * diagram.size
+    diagram.link([a, b + 0.12 * way], GROUND, linewidth=0.6 * width, zorder=1)
+    sleeve = [b - 0.04 * way, b + 0.04 * way]
+    diagram.link(sleeve, shade, linewidth=4 * width, solid_capstyle="butt", **named)
+    diagram.link(sleeve, "white", linewidth=2.8 * width, solid_capstyle="butt")
 
 
 def _show_axes(diagram: Diagram, along: Mapping[str, tuple[Array, Array]]) -> list[Array]:

@@ -101,6 +101,31 @@ def distances(r: Robot, q: Array, mode: int) -> dict[str, list[tuple[Array, Arra
     return found
 
 
+def directions(r: Robot, q: Array, mode: int) -> dict[str, list[tuple[Array, Array, Array]]]:
+    """For each angle among the parameters, the fixed points that are in its direction.
+
+    Such a point comes after the axis of the base where the angle starts and the one about which it
+    turns: the angle is that of the point, seen from the origin.
+    """
+    skeleton = r.module.SKELETON
+    names = skeleton.points
+    here = dict(zip(names, r.points(q)[mode], strict=True))
+    found: dict[str, list[tuple[Array, Array, Array]]] = {}
+    for k in (2, 0, 1):
+        start, side, axis = np.roll(np.eye(3), -k - 1, axis=0)
+
+        def sizes(
+            points: Array, start: Array = start, side: Array = side
+        ) -> dict[str, tuple[float, float]]:
+            place = dict(zip(names, points, strict=True))
+            turns = {p: np.arctan2(place[p] @ side, place[p] @ start) for p in skeleton.ground}
+            return {p: (np.nan, float(turn % (2 * np.pi))) for p, turn in turns.items()}
+
+        for field, ends in _parameters(r, q, mode, sizes).items():
+            found.setdefault(field, [(start, axis, here[p]) for p in ends])
+    return found
+
+
 def _foot(point: Array, ways: Array) -> Array:
     """Where one comes to from a point along some directions, nearest to the origin."""
     return np.asarray(point - (ways @ point) @ ways)

@@ -56,7 +56,11 @@ VIEWS = {
     "franka_arm": View(unit="m", general=degrees(-20, -30, 20, -120, 10, 110, 45)),
     "five_bar": View(home=degrees(110, 70), general=degrees(140, 65)),
     "delta": View(
-        unit="m", home=degrees(30, 30, 30), general=degrees(20, 35, 50), plane=("x", "z")
+        unit="m",
+        home=degrees(30, 30, 30),
+        general=degrees(20, 35, 50),
+        shown={"f": 0.15},
+        plane=("x", "z"),
     ),
     "linear_delta": View(
         unit="m", home=(0.4, 0.4, 0.4), general=(0.4, 0.45, 0.36), plane=("x", "y")
@@ -75,7 +79,7 @@ VIEWS = {
     "agile_wrist": View(
         unit="m",
         home=degrees(0, 0, 0),
-        general=degrees(-30, 40, -35),
+        general=degrees(-30, -60, 60),
         measured=("theta1", "theta2"),
         faint=("ground", "hand1", "hand2", "hand3"),
         hues={f"{link}{k}": k + 1 for k in (1, 2, 3) for link in ("crank", "rod")},

@@ -30,6 +30,8 @@ from closedform.model.tolerances import HIGHEST_DEGREE
 
 SAVING_OF_COMMON_CASE = 0.15
 """The fraction of the operations that a common case must save to get a separate program."""
+SAVING_IN_MAPS = 0.13
+"""The same in forward maps and inverses, which are called most."""
 LENGTH_OF_BRANCH = 0.6
 """The largest fraction of the operations of all branches for which one branch gets a program."""
 
@@ -153,15 +155,16 @@ def _whole(
     """The program, which says where a length overflows if it cannot be scaled."""
     for unscaled in (False, True):
         programs = _lower(function, derivation, entries, cases, unscaled=unscaled)
-        whole = _with_degrees(_with_common(*programs), function, derivation)
+        saving = SAVING_IN_MAPS if function.has_status else SAVING_OF_COMMON_CASE
+        whole = _with_degrees(_with_common(*programs, saving), function, derivation)
         if whole.degrees is not None or not function.has_status:
             break
     return whole
 
 
-def _with_common(whole: Lowered, common: Lowered) -> Lowered:
-    """The whole program with its common case, if that is much shorter."""
-    if common.length > (1 - SAVING_OF_COMMON_CASE) * whole.length:
+def _with_common(whole: Lowered, common: Lowered, saving: float) -> Lowered:
+    """The whole program with its common case, if that saves this fraction of it."""
+    if common.length > (1 - saving) * whole.length:
         return whole
     return replace(whole, common=replace(common, parameters=whole.parameters))
 

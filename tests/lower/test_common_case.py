@@ -89,6 +89,8 @@ def postures(robot: str, n: int) -> tuple[np.ndarray, np.ndarray]:
     special = special + rng.choice([0, 0, 1e-17, 1e-12, 1e-6], usual.shape)
     if robot == "orthoglide":  # sliders about as far as its legs are long; two may meet at zero
         usual, special = 0.5 + usual / 12, rng.choice([0, 0, 0.3, 0.5], usual.shape)
+    if robot == "delta":  # cranks that all rods reach
+        usual = 0.45 + usual / 4
     if robot == "linear_delta":  # sliders that most rods reach; out of reach counts as rare
         usual = usual / 30
     if robot == "spherical_five_bar":  # both cranks, equally long, end at one place

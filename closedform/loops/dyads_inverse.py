@@ -14,20 +14,13 @@ import sympy as sp
 
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.legs import Naming, Solution, Stretch
+from closedform.loops.from_hand import export_inverse, turned
 from closedform.loops.hand import square
-from closedform.loops.leg_by_leg import (
-    MISSED,
-    SIGN,
-    named_in,
-    record_lemma,
-    where_free,
-)
+from closedform.loops.leg_by_leg import MISSED, named_in, where_free
 from closedform.loops.linkage import GROUND, Linkage
-from closedform.loops.reached import bounds_of_any, export_reach
 from closedform.mechanics.assur import Dyad, Held, Order, order
-from closedform.model.functions import SINGLE, Program, branches, choose, real
-from closedform.model.inverse import Degenerate, Inverse, Link
-from closedform.model.lemma import Lemma
+from closedform.model.functions import Program, choose, real
+from closedform.model.inverse import Link
 from closedform.model.step import Step
 
 
@@ -230,31 +223,12 @@ class _Reverse:
         end = far if near == m.pivot(body) else near
         crank = m.crank(body, end)
         q, w = crank.joint, self.at[end] - crank.base
-        a, b = (
-            named_in(p, f"w{i}_{q}", w.dot(sp.Matrix(e)))
-            for i, e in enumerate((crank.along, crank.across))
-        )
-        start = len(p.body)
-        r = p.let(f"reach_{q}", sp.sqrt(a**2 + b**2), nonnegative=True)
-        none = p.vanishes(f"none_{q}", r, self.size, f"{body} has no length", (q,))
-        s, c = (choose(none, e, f) for e, f in ((0, b), (1, a)))
-        rho = real(f"rho_{q}")
-        lemma = Lemma(
-            "polar coordinates",
-            r"\rho\,u(\theta) = (x, y) \;\Rightarrow\; \rho = \sqrt{x^2 + y^2},\ "
-            r"\theta = \operatorname{atan2}(y, x)",
-            (rho * sp.cos(q) - a, rho * sp.sin(q) - b),
-            {q: sp.atan2(s, c), rho: r},
-            1,
-            excluded=1,
-            roles=((r"\rho", rho), (r"\theta", q), ("x", a), ("y", b)),
-        )
-        case = Degenerate((none,), {a: 0, b: 0}, q, f"{body} has no length")
-        self.links.append(
-            Link((q, rho), lemma.equations, {}, lemma, tuple(p.body[start:]), degenerate=(case,))
-        )
+        along, across = (w.dot(sp.Matrix(e)) for e in (crank.along, crank.across))
+        found = turned(p, q, (along, across), size=self.size, free=(q,), body=body, name="w")
+        rho = found.length
+        self.links.append(found.link)
         self.passive.append(rho)
-        self.values[q] = lemma[q]
+        self.values[q] = found.angle
         meant = self.meant[end] - crank.base
         for e, unit in ((sp.cos(q), crank.along), (sp.sin(q), crank.across)):
             self.equations.append(rho * e - meant.dot(sp.Matrix(unit)))
@@ -303,18 +277,13 @@ class _Reverse:
             solves={"ik": ()},
         )
         passive = [s for s in self.order.dyads if not {*s.bodies} & {*m.driven}]
-        chosen = [(sigma, SIGN) for sigma in self.signs]
-        working = branches(*chosen) if chosen else SINGLE
-        d.branches = working.labels
-        target = {"x": tuple(m.hand)}
-        d.function(
-            "ik",
-            "The driven joints of all working modes.",
-            target,
-            {"q": [self.values[q] for q in d.actuated]},
-            program=g,
-            branches=working,
-            result="Solutions",
+        export_inverse(
+            d,
+            g,
+            [self.values[q] for q in d.actuated],
+            hand=tuple(m.hand),
+            name=m.follower or "the hand",
+            signs=self.signs,
             notes=(
                 "UNREACHABLE: the bodies do not meet"
                 + ", or the target is not on the curve of the hand." * on_curve
@@ -327,23 +296,11 @@ class _Reverse:
                 * bool(passive),
                 "SINGULAR also near a parallel singularity, where both bars of a dyad are in line.",
             ),
-        )
-        if not on_curve:
-            what = m.follower or "the hand"
-            export_reach(d, bounds_of_any(g, self.signs), {"p": tuple(m.hand)}, what)
-        for link in self.links:
-            record_lemma(d, "ik", link)
-        d.inverses.append(
-            Inverse(
-                "ik",
-                d.actuated,
-                (sp.S.Zero,) * len(self.equations),
-                tuple(self.equations),
-                images="fk",
-                links=tuple(self.links),
-                passive=tuple(self.passive),
-                angles=tuple(m.hand) if m.follower else (),
-            )
+            links=self.links,
+            equations=self.equations,
+            passive=self.passive,
+            angles=tuple(m.hand) if m.follower else (),
+            on_curve=on_curve,
         )
 
     def _told(self) -> str:

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from closedform.lemmas.legs import Naming, Stretch, cross_in_plane
+from closedform.loops.from_hand import export_inverse
 from closedform.loops.hand import square
-from closedform.loops.leg_by_leg import MISSED, SIGN, record_lemma
+from closedform.loops.leg_by_leg import MISSED
 from closedform.loops.linkage import GROUND
-from closedform.loops.reached import bounds_of_any, export_reach
 from closedform.loops.sliding import Frame, SlidingLinkage, swing_name
 from closedform.loops.sliding_solver import Block, Solver
 from closedform.mechanics.assur_slides import (
@@ -22,8 +22,7 @@ from closedform.mechanics.assur_slides import (
     Swing,
     sliding_order,
 )
-from closedform.model.functions import SINGLE, branches, choose, real
-from closedform.model.inverse import Inverse
+from closedform.model.functions import choose, real
 from closedform.model.step import Step
 
 
@@ -226,17 +225,13 @@ class _Reverse:
             uses=[self.loop],
             solves={"ik": ()},
         )
-        chosen = [(sigma, SIGN) for sigma in solver.signs]
-        working = branches(*chosen) if chosen else SINGLE
-        d.branches = working.labels
-        d.function(
-            "ik",
-            "The driven joints of all working modes.",
-            {"x": tuple(m.hand)},
-            {"q": [self.values[q] for q in d.actuated]},
-            program=g,
-            branches=working,
-            result="Solutions",
+        export_inverse(
+            d,
+            g,
+            [self.values[q] for q in d.actuated],
+            hand=tuple(m.hand),
+            name=m.follower or "the hand",
+            signs=solver.signs,
             notes=(
                 "UNREACHABLE: the bodies do not meet"
                 + ", or the target is not on the curve of the hand" * on_curve
@@ -245,25 +240,11 @@ class _Reverse:
                 "used.",
                 *["SINGULAR also near a parallel singularity."] * near_pole,
             ),
-        )
-        if not on_curve:
-            what = m.follower or "the hand"
-            inside = bounds_of_any(g, solver.signs)
-            export_reach(d, inside, {"p": tuple(m.hand)}, what)
-        for link in solver.links:
-            record_lemma(d, "ik", link)
-        passive = tuple(x for b in solver.blocks for x in b.unknowns if x not in {*d.actuated})
-        d.inverses.append(
-            Inverse(
-                "ik",
-                d.actuated,
-                (sp.S.Zero,) * len(self.equations),
-                tuple(self.equations),
-                images="fk",
-                links=tuple(solver.links),
-                passive=passive,
-                angles=tuple(m.hand) if m.follower in m.turning else (),
-            )
+            links=solver.links,
+            equations=self.equations,
+            passive=[x for b in solver.blocks for x in b.unknowns if x not in {*d.actuated}],
+            angles=tuple(m.hand) if m.follower in m.turning else (),
+            on_curve=on_curve,
         )
 
 

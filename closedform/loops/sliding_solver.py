@@ -10,6 +10,7 @@ import sympy as sp
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.legs import Naming, cross_in_plane
 from closedform.lemmas.lines import Ray, coordinate, direction, line_and_circle, two_lines
+from closedform.loops.from_hand import turned
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import named_in
 from closedform.loops.linkage import GROUND
@@ -22,9 +23,8 @@ from closedform.mechanics.assur_slides import (
     Place,
     Swing,
 )
-from closedform.model.functions import Program, choose, real
-from closedform.model.inverse import Degenerate, Link
-from closedform.model.lemma import Lemma
+from closedform.model.functions import Program, real
+from closedform.model.inverse import Link
 
 
 def named(p: Program, name: str, place: sp.Matrix) -> sp.Matrix:
@@ -278,33 +278,18 @@ class Solver:
 
     def angle(self, body: str, x: sp.Symbol, free: Sequence[sp.Symbol]) -> sp.Expr:
         """The joint of a body that turns about the ground."""
-        p, right = self.program, sp.Matrix([1, 0])
-        a, b = (
-            named_in(p, f"v{i}_{x}", e) for i, e in enumerate(self.here.frames[body].vector(right))
+        right = sp.Matrix([1, 0])
+        end = self.here.frames[body].vector(right)
+        found = turned(
+            self.program, x, (end[0], end[1]), size=sp.S.One, free=free, body=body, name="v"
         )
-        start = len(p.body)
-        r = p.let(f"reach_{x}", sp.sqrt(a**2 + b**2), nonnegative=True)
-        none = p.vanishes(f"none_{x}", r, 1, f"{body} has no length", tuple(free))
-        s, c = (choose(none, e, f) for e, f in ((0, b), (1, a)))
-        rho = real(f"rho_{x}")
-        lemma = Lemma(
-            "polar coordinates",
-            r"\rho\,u(\theta) = (x, y) \;\Rightarrow\; \rho = \sqrt{x^2 + y^2},\ "
-            r"\theta = \operatorname{atan2}(y, x)",
-            (rho * sp.cos(x) - a, rho * sp.sin(x) - b),
-            {x: sp.atan2(s, c), rho: r},
-            1,
-            excluded=1,
-            roles=((r"\rho", rho), (r"\theta", x), ("x", a), ("y", b)),
-        )
-        case = Degenerate((none,), {a: 0, b: 0}, x, f"{body} has no length")
-        body_of = tuple(p.body[start:])
-        self.links.append(Link((x, rho), lemma.equations, {}, lemma, body_of, degenerate=(case,)))
+        (a, b), rho = found.end, found.length
+        self.links.append(found.link)
         meant = self.meant.frames[body].vector(right)
         equations = (rho * sp.cos(x) - meant[0], rho * sp.sin(x) - meant[1])
         self.blocks.append(Block("", (x, rho), equations, (False, False), sp.S.One))
-        self.values |= {sp.cos(x): a, sp.sin(x): b, rho: sp.S.One, x: lemma[x]}
-        return lemma[x]
+        self.values |= {sp.cos(x): a, sp.sin(x): b, rho: sp.S.One, x: found.angle}
+        return found.angle
 
     def slid(self, body: str, world: World) -> sp.Expr:
         """How far a body with a joint slid on the ground."""

@@ -99,8 +99,8 @@ class Poses:
         with np.errstate(all="ignore"):
             for _ in range(25):
                 here = self.missed(x, q)
-                ends = [self.missed(x + s, q) - self.missed(x - s, q) for s in steps]
-                rates = np.stack(ends, axis=-1) / (2 * h)
+                apart = self.missed(x[:, None] + steps, q) - self.missed(x[:, None] - steps, q)
+                rates = np.swapaxes(apart, -1, -2) / (2 * h)
                 step = np.linalg.solve(rates + 1e-9 * np.eye(len(steps)), here[..., None])[..., 0]
                 x = x - step / np.maximum(1, np.abs(step).max(axis=-1, keepdims=True))
         x = x[np.abs(self.missed(x, q)).max(axis=-1) < 1e-12]

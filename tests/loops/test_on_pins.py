@@ -10,6 +10,7 @@ from places import TESTS
 
 from closedform import prove
 from closedform.algebra.shapes import ShapeError
+from closedform.scaffold.inputs.tables import TableError
 
 CRANKS = (TESTS / "held_out_loops" / "three_rrp.toml").read_text("utf-8")
 SLIDERS = CRANKS.replace(
@@ -91,3 +92,32 @@ def test_parallel_lines_are_refused(tmp_path: Path) -> None:
         lines[0] = lines[0].replace(way + ",\n", "(0, 1)),\n")
     with pytest.raises(ShapeError, match="parallel"):
         read_script(head + "s1, (b, 0), " + lines[0])
+
+
+def test_balls_that_slide_on_a_hand_in_space_are_named(tmp_path: Path) -> None:
+    text = """
+hand = "P"
+copies = 3
+[bodies]
+ground = {A1 = ["b", 0, 0]}
+slider1 = {B1 = ["b", 0, 0]}
+block1 = {}
+platform = {P = [0, 0, 0], C1 = ["c", 0, 0]}
+[joints.q1]
+between = ["ground", "slider1"]
+at = "A1"
+kind = "prismatic"
+axis = [0, 0, 1]
+driven = true
+[joints.s1]
+between = ["slider1", "block1"]
+at = "B1"
+kind = "spherical"
+[joints.p1]
+between = ["block1", "platform"]
+at = "C1"
+kind = "prismatic"
+axis = [1, 0, 0]
+"""
+    with pytest.raises(TableError, match=r"a ball slides along a line of platform.*four in all"):
+        script_of("psp", text, tmp_path)

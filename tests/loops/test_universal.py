@@ -228,6 +228,13 @@ def test_a_parallelogram_needs_no_axes(tmp_path: Path) -> None:
         script_of("puu", text, tmp_path)
 
 
+def test_a_leg_with_a_hinge_at_one_end_does_not_hold_the_hand(tmp_path: Path) -> None:
+    old = 'at = "B1", kind = "universal"'
+    assert old in PUU
+    with pytest.raises(TableError, match=r"b1 and c1 are a hinge and a universal .* no motion"):
+        script_of("pru", PUU.replace(old, 'at = "B1"'), tmp_path)
+
+
 def test_cranks_carry_universal_joints(tmp_path: Path) -> None:
     """A 3-RUU mechanism: the axes of the joints on a crank are along its own."""
     text = PUU.replace(

@@ -43,6 +43,8 @@ class Loop:
     joints: dict[str, Joint] = field(default_factory=dict)
     parameters: dict[str, dict[str, str]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    said: list[str] = field(default_factory=list)
+    """What the description of the mechanism says of parts that the script leaves out."""
 
     def of(self, body: str) -> list[Joint]:
         return [j for j in self.joints.values() if body in j.between]

@@ -51,6 +51,8 @@ class Legs:
         """What a rod joins a leg to."""
         self.halves, self.bars = halves(loop)
         """The halves of the hand, if it has two, and the number of bars that join them."""
+        self.half_held: list[tuple[Joint, Joint]] = []
+        """The hinge and the universal joint at the ends of a leg, which may turn the hand."""
         self.offset: sp.Matrix | None = None
         """From the pin of a half to the end of a leg, while the leg is written."""
         self.upright: Callable[[sp.Matrix], sp.Matrix] | None = None
@@ -106,6 +108,7 @@ class Legs:
             return None
         hinge = next((j for j in (near, far) if j.kind == "revolute" and j.axis is not None), None)
         if len(ends) == 1 and hinge:
+            self.half_held.append((hinge, ends[0][0]))
             return None
         if len(ends) == 1 or self.loop.dimensions == 2:
             raise self.loop.error(
@@ -212,12 +215,32 @@ class Legs:
             raise loop.error(
                 f"{joint.name} moves {body}, which must be joined to one rod, a body with a "
                 f"length, or to one body by a passive slide; it is joined to {carried}"
+                + self.ball_on_hand(onward)
             )
         if joint.kind == "prismatic":
             return self.slider(joint, *rods[0])
         if joint.kind == "revolute":
             return self.crank(joint, *rods[0])
         raise loop.error(f"{joint.name} is driven, so it must be revolute or prismatic")
+
+    def ball_on_hand(self, onward: Sequence[Joint]) -> str:
+        """What is said of a ball that slides on the hand, as in a 3-PSP mechanism."""
+        loop = self.loop
+        if len(onward) != 1 or onward[0].kind != "spherical":
+            return ""
+        joint = onward[0]
+        for block in joint.between:
+            onto = [j for j in loop.of(block) if j is not joint]
+            if [j.kind for j in onto] == ["prismatic"] and not onto[0].driven:
+                hand = onto[0].other(block)
+                return (
+                    f".  With {joint.name} and {onto[0].name} a ball slides along a line of "
+                    f"{hand}, as in a 3-PSP mechanism.  If three balls hold {hand} on lines in one "
+                    f"plane, they determine this plane, and in it {hand} has two postures on "
+                    f"either side, four in all; this is not supported in space.  In a plane it is "
+                    f"a hand on three pins.  In space write the equations in Python"
+                )
+        return ""
 
     def slider(self, joint: Joint, near: Joint, rod: str) -> LoopLeg:
         """A driven slider with a rod, which is ``near`` where the slider carries it."""

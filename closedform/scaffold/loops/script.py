@@ -18,6 +18,7 @@ from closedform.scaffold.loops.guides import GuideLine, guide
 from closedform.scaffold.loops.hinges import hinged
 from closedform.scaffold.loops.legs import TURNING, UPRIGHT, Legs, LoopLeg
 from closedform.scaffold.loops.linkages import LinkageLines, linkage
+from closedform.scaffold.loops.on_line import on_line
 from closedform.scaffold.loops.on_pins import on_pins
 from closedform.scaffold.loops.on_rod import on_rod
 from closedform.scaffold.loops.sliding import sliding
@@ -56,6 +57,7 @@ KINDS = {
 
 def loop_script(name: str, loop: Loop, origin: str) -> tuple[str, str]:
     """The derivation of a loop, as Python, and the kind of the mechanism in words."""
+    loop = on_line(loop)
     origin, way, table = file_name(origin), _way(loop), Table()
     for joint in (leg.joint for leg in way.legs) if way.legs else loop.joints.values():
         if joint.driven:
@@ -122,6 +124,13 @@ def _on_legs(found: Legs) -> _Way:
     if found.turning and not held and (on_hinges := hinged(found, driven)):
         return _Way(on_hinges[0], [], guide=on_hinges[1])
     _check_ends(found)
+    if found.half_held and not found.turning:
+        hinge, other = found.half_held[0]
+        raise loop.error(
+            f"{hinge.name} and {other.name} are a hinge and a universal joint at the ends of one "
+            f"leg; three such legs leave the hand no motion.  If it should not turn, write "
+            f'kind = "universal" and the same axis at both ends of each leg'
+        )
     if passive:
         return _Way(driven, [], guide=passive)
     legs = [*struts, *driven]
@@ -368,7 +377,7 @@ def _head(name: str, loop: Loop, way: _Way, origin: str) -> list[str]:
         f'    "{name}",',
         f'    "{title}",',
         f'    Paper("{name}", "{title}", ("the maker of the mechanism",)),',
-        *wrapped_literal(way.words),
+        *wrapped_literal("  ".join([way.words, *loop.said])),
         *([f"    task=[{', '.join(literal(x) for x in task)}],"] if task else []),
         ")",
     ]

@@ -202,7 +202,9 @@ for name, meaning in (
     d.write(name, meaning=meaning)
 d.write("r_P", "r_P", "distance of P from AB")
 d.write("rP", "r_P", same="r_P")
-d.write("rP2", "r_P^2", same="r_P")
+d.write("rP2", "r_P^{2}", same="r_P")
+for letter in ("a", "b"):
+    d.write(f"{letter}2", f"{letter}^{{2}}", same=letter)
 d.explain(
     {
         r"\rho": "distance of P from AB, with a sign",

@@ -73,8 +73,8 @@ def inverse_kinematics(d: Derivation, loop: Loop) -> None:
 
     w = Program()
     r2 = w.let("rP2", x**2 + z**2, nonnegative=True)
-    square_c = w.let("square_c", r2 + y**2, nonnegative=True)
-    square_d = w.let("square_d", r2 + (y - L0) ** 2, nonnegative=True)
+    square_c = w.let("a2", r2 + y**2, nonnegative=True)
+    square_d = w.let("b2", r2 + (y - L0) ** 2, nonnegative=True)
     squares = list(w.body)
     (triangle_c, arm_c), (triangle_d, arm_d) = (
         Triangle.from_square(w, (L1, L2), square, sign, suffix=suffix).stretched_without_link(

@@ -240,7 +240,14 @@ d.function(
     source="eq. (13)",
     notes=("The yaw theta1 + theta5 is reduced to (-pi, pi].",),
 )
-d.function("pose", "Pose of the hand in the base frame.", {"q": q}, {"T": pose}, source="eq. (13)")
+d.function(
+    "pose",
+    "Pose of the hand in the base frame.",
+    {"q": q},
+    {"T": pose},
+    source="eq. (13)",
+    equation="g_{st}",
+)
 
 # What to draw
 

@@ -62,7 +62,7 @@ d.explain(
 by_angles = d.step(
     "Orientation by ZYZ Euler angles",
     "Rotations about the axes of the moving frame multiply from left to right.",
-    {"R": R},
+    {r"R = R_z(\theta_4)\,R_y(\theta_5)\,R_z(\theta_6)": R},
     published=("(12)",),
     proves="R is a rotation: R R^T is the identity and the determinant is 1.",
     equal=[(R * R.T, sp.eye(3)), (R.det(), sp.Integer(1))],
@@ -79,7 +79,7 @@ d.step(
     "Table II of the paper has twists of -90 and +90 degrees; the offset d6 is the only length.  "
     "The rotation is that of the Euler angles, which the paper calls phi, theta and varphi: they "
     "are theta4, theta5 and theta6.",
-    {"A_4": A4, "A_5": A5, "A_6": A6, "T": pose},
+    {"A_4": A4, "A_5": A5, "A_6": A6, "T = A_4 A_5 A_6": pose},
     published=("(14)", "(15)", "Table II"),
     proves="The rotation of T is R, and T is R followed by the offset d6 along z.",
     equal=[(pose[:3, :3], R), (pose, homogeneous(R) * homogeneous(sp.eye(3), (0, 0, d6)))],

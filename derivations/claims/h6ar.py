@@ -57,7 +57,7 @@ def driven(r: Robot, angles: tuple[str, ...], joints: tuple[sp.Symbol, ...]) -> 
     return Enumeration(
         ", ".join(j.name for j in r.q if j in joints),
         lambda: ", ".join(j.name for j in r.q if any(not equal(of[a].diff(j), 0) for a in angles)),
-        f"the joints on which {' and '.join(angles)} depend",
+        f"the joints on which {' and '.join(angles)} depend{'s' * (len(angles) == 1)}",
     )
 
 

@@ -423,8 +423,10 @@ def solutions(d: Derivation, arm: Arm, claim: partial[None]) -> None:
         at_example = arm.position.subs(lengths_of_example(arm))
         return Every(
             {
-                "the angles": Listing([r.left for r in angles], lambda: list(exact), "angles"),
-                "the exact ones": Reaches(at_example, exact, target),
+                "both angles are printed": Listing(
+                    [r.left for r in angles], lambda: list(exact), "angles"
+                ),
+                "the exact angles": Reaches(at_example, exact, target),
             }
             | {f"${r.texts[0]}$": in_degrees(r, exact[r.left]) for r in angles}
         )

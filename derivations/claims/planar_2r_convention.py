@@ -462,7 +462,7 @@ def example(d: Derivation, arm: Arm, known: Notation) -> None:
                     [e.subs(lengths).subs(placed).subs(found) for e in equations],
                     [sp.S.Zero] * len(equations),
                 ),
-                "the only solution is the posture itself": Solves(posture, equations),
+                "the equations have this solution": Solves(posture, equations),
             }
         )
 

@@ -11,6 +11,23 @@ REDDY_BABU = Paper(
     "Kinematic Attitudes of a Planar Robot and a Spherical Wrist",
     ("S. Baswanth Kumar Reddy", "K. Rajesh Babu"),
     year="n.d. (the latest work that it cites is of 2015)",
+    sections=(
+        "Abstract",
+        "Introduction",
+        "Kinematic Analysis By Geometric Approach, A. Forward Kinematics",
+        "Kinematic Analysis By Geometric Approach, B. Inverse Kinematics",
+        "Kinematic Analysis By Denavit – Hartenberg Convention",
+        "Kinematic Analysis By Denavit – Hartenberg Convention, A. Forward Kinematics",
+        "Kinematic Analysis By Denavit – Hartenberg Convention, B. Inverse Kinematics",
+        "Orientation Aspects of A Spherical Wrist",
+        "Orientation Aspects of A Spherical Wrist, A. Euler Angles",
+        "Orientation Aspects of A Spherical Wrist, B. D-H Convention",
+        "Results and Discussion, A. Result for 2-DOF planar robot by Geometric approach",
+        "Results and Discussion, B. Result for 2-DOF planar robot by D-H Convention method",
+        "Results and Discussion, C. Results for Orientation of a Spherical Wrist",
+        "Results and Discussion",
+        "Conclusions",
+    ),
     source="The text was read from a scan by optical character recognition, without the figures.  "
     "Errors of the scan may affect single characters: the cosine in the numerator of tan "
     "α, the sum in $c_{12}$, the last row of T in eq. (9), s_5 in row 1, column 2 of eqs. (14) "

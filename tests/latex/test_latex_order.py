@@ -1,6 +1,7 @@
 """Formulas in the order in which a person writes them, on all pages and piece by piece."""
 
 import re
+from importlib import import_module
 from itertools import permutations
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import sympy as sp
 from places import ROOT
 
 from closedform.emit.backends.latex.article import Page
+from closedform.emit.backends.latex.equations import Numbers, parts_first
 from closedform.emit.backends.latex.formulas import Printer
 from closedform.emit.backends.latex.inequalities import equality, inequalities
 from closedform.emit.backends.latex.inverse import without_turns
@@ -64,12 +66,38 @@ def test_bounds_of_one_quantity_are_a_chain(tex: Path) -> None:
 
 
 @each
-def test_parts_of_a_formula_follow_by_their_numbers(tex: Path) -> None:
+def test_parts_of_a_formula_stand_before_it(tex: Path) -> None:
+    """They followed it, so that a name was used before it was defined."""
     derived = tex.read_text("utf-8").partition(r"\section{Inverse")[0]
     for display in re.findall(r"\\begin\{align\}(.*?)\\end\{align\}", derived, re.S):
-        runs = re.split(r"^(?!u_)\S.*$", display, flags=re.M)
-        numbers = [[int(n) for n in re.findall(r"^u_\{(\d+)\} &=", run, re.M)] for run in runs]
-        assert all(found == sorted(found) for found in numbers), display
+        for part in re.finditer(r"^(u_\{\d+\}) &=", display, re.M):
+            assert part[1] not in display[: part.start()], display
+
+
+def test_what_an_equation_contains_is_defined_before_it() -> None:
+    """Except entries of a matrix, and an equation that is solved for the name it defines."""
+    rows = [("v", "[v_{1} v_{2}]"), ("v_{1}", "a u_{1}^{2}"), ("", "+ v_{12}"), ("u_{1}", "b")]
+    rows.append(("v_{2}", "u_{1}"))
+    assert parts_first(rows) == [rows[0], rows[3], rows[1], rows[2], rows[4]]
+    product = [("T = A B", "x"), ("A", "C"), ("B", "y"), ("C", "z")]
+    assert parts_first(product) == [product[k] for k in (3, 1, 2, 0)]
+    solved = [("L", r"\sin \theta"), (r"\theta", r"\arcsin L")]
+    assert parts_first(solved) == solved
+
+
+def test_an_equation_is_known_in_another_spelling() -> None:
+    """Squares of one length were printed twice, because one had braces."""
+    numbers = Numbers("arm")
+    numbers.number([[("r^{2}", "x^2 + y_1")]])
+    assert numbers.is_shown([("r^2", "x^{2} + y_{1}")]) == numbers.with_right("x^{2} + y_1") != ""
+
+
+@each
+def test_what_is_proved_of_a_loop_is_told_of_its_equations(tex: Path) -> None:
+    """The forward map of a loop was said to satisfy the forward map."""
+    found = re.findall(r"Sound: every branch, substituted into the (\w+)", tex.read_text("utf-8"))
+    d = import_module(f"closedform.derivations.{tex.stem}").d
+    assert {*found} <= {"equations" if d.loop else "forward"}
 
 
 @each

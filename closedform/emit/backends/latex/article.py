@@ -25,6 +25,7 @@ from closedform.emit.backends.latex.equations import (
     canonical,
     defined_in,
     names_in,
+    parts_first,
     reference,
     runs,
 )
@@ -193,6 +194,7 @@ class Page(Sheet):
                 left += ":"  # what the condition is called
             shown += self.equations(left, self.quantities(value))
             self.quantities.define(left, value)
+        shown = parts_first(shown)
         fresh = [run for run in runs(shown) if not self.numbers.is_shown(run)]
         again = [label for run in runs(shown) if (label := self.numbers.is_shown(run))]
         uses = self.used(step, [left for left, _ in shown])
@@ -271,7 +273,7 @@ class Page(Sheet):
             return {**BARE, "evaluates": ""}
         shown = self.numbers.of(function.equation)
         outputs = [] if shown else self.outputs(function)
-        where = [self.numbers.right.get(right, "") for _, right in outputs]
+        where = [self.numbers.with_right(right) for _, right in outputs]
         if shown or (outputs and all(where) and not function.body):
             labels = [shown] if shown else list(dict.fromkeys(where))
             modes = " in each assembly mode" if function.branches else ""

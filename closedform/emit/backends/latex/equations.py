@@ -77,6 +77,43 @@ def runs(lines: Iterable[Line]) -> list[list[Line]]:
     return found
 
 
+def parts_first(lines: Iterable[Line]) -> list[Line]:
+    """The same equations, each after those that define what it contains.
+
+    The entries of a matrix follow it, and so does what is defined by the equation itself.
+    """
+    found = runs(lines)
+    names = [run[0][0].partition("=")[0].strip() for run in found]
+    texts = [" ".join([r[0][0].partition("=")[2], *(right for _, right in r)]) for r in found]
+    parts = {name: k for k, name in enumerate(names) if name and names.count(name) == 1}
+    done: dict[int, None] = {}
+
+    def add(k: int, above: frozenset[int]) -> None:
+        if k in done or k in above:
+            return
+        for part, place in parts.items():
+            is_part = _uses(part, texts[k]) and not (names[k] and _uses(names[k], texts[place]))
+            if is_part and not _is_entry(part, names[k]):
+                add(place, above | {k})
+        done[k] = None
+
+    for k in range(len(found)):
+        add(k, frozenset())
+    return [line for k in done for line in found[k]]
+
+
+def _uses(name: str, text: str) -> bool:
+    """Whether a name of a quantity stands in a formula, and not as a part of a longer name."""
+    before = r"(?<!_)(?<!_\{)" + ("" if name.startswith("\\") else r"(?<![A-Za-z0-9\\])")
+    return re.search(rf"{before}{re.escape(name)}(?![A-Za-z_{{'])", text) is not None
+
+
+def _is_entry(name: str, matrix: str) -> bool:
+    """Whether a name is that of an entry: ``v_{1}`` of ``v``, ``J_{b,12}`` of ``J_{b}``."""
+    entry, whole = (re.sub("[{}]", "", n) for n in (name, matrix))
+    return re.fullmatch(re.escape(whole) + r"[_,][1-9]\d*", entry) is not None
+
+
 @dataclass
 class Numbers:
     """The labels of the equations of one mechanism, and where each name is defined."""
@@ -89,7 +126,7 @@ class Numbers:
     lefts: dict[str, list[str]] = field(default_factory=dict)
     """The labels of the equations with a left-hand side, in canonical form."""
     right: dict[str, str] = field(default_factory=dict)
-    """The label of the first equation with a right-hand side."""
+    """The label of the first equation with a right-hand side, in its canonical form."""
 
     def number(
         self, equations: Iterable[Sequence[Line]], *, defining: bool = True
@@ -101,13 +138,17 @@ class Numbers:
         """The label of this very equation if it stands in the document, or nothing."""
         return self.values.get(self._content(run), "")
 
+    def with_right(self, right: str) -> str:
+        """The label of the first equation with a right-hand side, or nothing."""
+        return self.right.get(canonical(right), "")
+
     def of(self, left: str) -> str:
         """The label of the equation that defines a name, or has this left-hand side, or nothing."""
         name = canonical(left)
         return (self.defined.get(name) or self.lefts.get(name, [""])[0]) if name else ""
 
     def _content(self, run: Sequence[Line]) -> tuple[str, str]:
-        return canonical(run[0][0]), " ".join(right for _, right in run)
+        return canonical(run[0][0]), canonical(" ".join(right for _, right in run))
 
     def _labelled(self, run: Sequence[Line], defining: bool) -> Iterator[Numbered]:
         self.count += 1

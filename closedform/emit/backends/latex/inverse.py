@@ -15,7 +15,7 @@ from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.listing import lines_kept, whole
 from closedform.emit.backends.latex.prose import escape, symbols_declared, upright
 from closedform.emit.backends.latex.sheet import Sheet, block, blocks
-from closedform.emit.backends.latex.sources import explained_as_a_whole
+from closedform.emit.backends.latex.sources import explained_as_a_whole, of_the_loop
 from closedform.emit.backends.latex.stages import Stages
 from closedform.emit.backends.latex.wide import Equation
 from closedform.model.functions import (
@@ -178,7 +178,9 @@ class Told:
             "generic": "by a Groebner basis over the field of parameters and targets",
             "specialised": "by Groebner bases, with the same result at several rational points",
         }
+        loop = page.derivation.loop is not None
         return {
+            "solved": f"the equations of the loop{of_the_loop(page)}" if loop else "",
             "where": f", where {', '.join(assumed)}" if assumed else "",
             "count": f"{result.solutions} solution{'s' * (result.solutions != 1)}",
             "how": how.get(result.method, escape(result.method)),

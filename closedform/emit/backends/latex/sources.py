@@ -103,7 +103,7 @@ class Stated:
         if label := self.numbers.is_shown(equation):
             return label
         label = self.numbers.defined.get(canonical(left), "")
-        if label and self.numbers.right.get(right) == label:
+        if label and self.numbers.with_right(right) == label:
             return label
         name = skeleton(canonical(left))
         known = self.entries.get(sp.expand(value), [])

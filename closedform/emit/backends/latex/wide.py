@@ -1,10 +1,10 @@
 """Long expressions, taken apart until every line fits.
 
-An equation that is too wide for a line is set with names for its parts, and the parts follow: the
-coefficients of a polynomial, a sum that stands in a product, what stands under a root, in a
-fraction or beside cases.  What is left, a long sum, is broken before its terms.  All choices depend
-on the widths of :func:`~closedform.emit.backends.latex.formulas.measure` alone, so that they are
-the same on every machine.
+An equation that is too wide for a line is set with names for its parts, and an article sets them
+first: the coefficients of a polynomial, a sum that stands in a product, what stands under a root,
+in a fraction or beside cases.  What is left, a long sum, is broken before its terms.  All choices
+depend on the widths of :func:`~closedform.emit.backends.latex.formulas.measure` alone, so that they
+are the same on every machine.
 """
 
 from __future__ import annotations

@@ -353,11 +353,9 @@ class Field:
         return self.fraction(self.context.constant(fmpq(value)))
 
     def reduced(self, p: Polynomial) -> Polynomial:
-        degrees = () if p.is_constant() else p.degrees()
-        for i in reversed(self.relations if degrees else ()):
-            if degrees[-1 - i] > 1:
+        for i in reversed(self.relations if max(p.degrees(), default=0) > 1 else ()):
+            if p.degrees()[-1 - i] > 1:
                 p = divmod(p, self.relations[i])[1]
-                degrees = p.degrees()
         return p
 
     def leading(self, p: Polynomial) -> tuple[Monomial, Polynomial]:

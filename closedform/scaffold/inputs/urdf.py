@@ -68,12 +68,15 @@ def _joint(element: ElementTree.Element, file: str) -> Joint:
     if not name:
         raise TableError(f"{file}: a joint has no name")
     if kind not in (*MOVING, "fixed", "floating", "planar"):
-        raise TableError(f"{where}: its type is {shown(kind)}, which URDF does not know")
+        raise TableError(
+            f"{where}: its type is {shown(kind)}, which URDF does not know; a joint is revolute, "
+            f"continuous, prismatic or fixed"
+        )
     links = []
     for end in ("parent", "child"):
         found = element.find(end)
         if found is None or not found.get("link"):
-            raise TableError(f"{where}: it has no {end} link")
+            raise TableError(f'{where}: it has no {end} link; write <{end} link="..."/>')
         links.append(found.get("link", ""))
     origin, axis = element.find("origin"), element.find("axis")
     xyz, rpy, direction = (
@@ -90,7 +93,9 @@ def _joint(element: ElementTree.Element, file: str) -> Joint:
     direction = sp.Matrix([meant_number(e, f"{where}: xyz", notes) for e in direction])
     rpy = [meant_angle(e, where, notes) for e in rpy]
     if kind in MOVING and direction.is_zero_matrix:
-        raise TableError(f"{where}: its axis is zero")
+        raise TableError(
+            f'{where}: its axis is zero; write its direction, such as <axis xyz="0 0 1"/>'
+        )
     if kind in MOVING:
         direction = meant_axis(direction, where, notes)
     mimic = element.find("mimic")

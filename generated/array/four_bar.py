@@ -51,6 +51,7 @@ SKELETON = Skeleton(
     },
     joints={
         "theta": SkeletonJoint("revolute", ('A1',)),
+        "psi": SkeletonJoint("revolute", ('A2',)),
     },
     hand="B2",
     ground=('A1', 'A2'),

@@ -1077,18 +1077,18 @@ def _ik(ops, x, y, z, L0, L1, L2):
     t4 = -(ops.feasibility * (t2 * (L1 * 2.0 + t3)))
     t5 = t2 * t2
     rP2 = x * x + z * z
-    square_c = rP2 + y * y
-    t6 = t5 - square_c
+    a2 = rP2 + y * y
+    t6 = t5 - a2
     t7 = L1 * 1.1368683772161603e-13 + L2 * 1.1368683772161603e-13
     t8 = L1 - L2
     t9 = ops.abs(t8)
     t10 = -(ops.feasibility * (t2 * (t7 + 2.0 * t9)))
     t11 = t8 * t8
-    t12 = square_c - t11
+    t12 = a2 - t11
     t13 = y - L0
-    square_d = rP2 + t13 * t13
-    t14 = t5 - square_d
-    t15 = square_d - t11
+    b2 = rP2 + t13 * t13
+    t14 = t5 - b2
+    t15 = b2 - t11
     t16 = (t4 <= t6) & (t10 <= t12) & (t4 <= t14) & (t10 <= t15)
     unreachable = ops.opposite(t16)
     failed = invalid | unreachable
@@ -1146,8 +1146,8 @@ def _ik(ops, x, y, z, L0, L1, L2):
     t54 = ops.select(failed, ops.nan, ops.wrap_cut(-t32))
     t55 = on_axis | at_A | at_B | (L1 <= t2 * ops.vanishing)
     t56 = t2 * t8
-    inner_c = square_c - t56
-    inner_d = square_d - t56
+    inner_c = a2 - t56
+    inner_d = b2 - t56
     t57 = inner_c * inner_d
     t58 = ops.sqrt(t26)
     t59 = ops.sqrt(t35)
@@ -1158,17 +1158,16 @@ def _ik(ops, x, y, z, L0, L1, L2):
     t64 = inner_d * t58
     t65 = inner_c * t59
     t66 = t63 * (t64 - t65)
-    t67 = ops.determined * (square_c * square_d * 4.0 * (L2 * L2))
-    t68 = ops.sqrt(square_c)
-    t69 = ops.sqrt(square_d)
-    t70 = ops.max(ops.max(0.0, t9 - t68), t68 - t2) + ops.max(ops.max(0.0, t9 - t69), t69 - t2)
-    t71 = t67 * (t17 + t70)
-    t72 = ops.status(invalid, unreachable, t55 | (ops.abs(t62 - t66) * t17 <= t71))
-    t73 = t63 * (t64 + t65)
-    t74 = (t57 - t60) * t61
-    t75 = ops.status(invalid, unreachable, t55 | (ops.abs(t73 - t74) * t17 <= t71))
-    t76 = ops.status(invalid, unreachable, t55 | (ops.abs(-(t73 + t74)) * t17 <= t71))
-    t77 = ops.status(invalid, unreachable, t55 | (ops.abs(t66 + t62) * t17 <= t71))
+    t67 = ops.sqrt(a2)
+    t68 = ops.sqrt(b2)
+    t69 = ops.max(ops.max(0.0, t9 - t67), t67 - t2) + ops.max(ops.max(0.0, t9 - t68), t68 - t2)
+    t70 = ops.determined * (a2 * b2 * 4.0 * (L2 * L2)) * (t17 + t69)
+    t71 = ops.status(invalid, unreachable, t55 | (ops.abs(t62 - t66) * t17 <= t70))
+    t72 = t63 * (t64 + t65)
+    t73 = (t57 - t60) * t61
+    t74 = ops.status(invalid, unreachable, t55 | (ops.abs(t72 - t73) * t17 <= t70))
+    t75 = ops.status(invalid, unreachable, t55 | (ops.abs(-(t72 + t73)) * t17 <= t70))
+    t76 = ops.status(invalid, unreachable, t55 | (ops.abs(t66 + t62) * t17 <= t70))
     return (
         t21,
         t33,
@@ -1194,14 +1193,14 @@ def _ik(ops, x, y, z, L0, L1, L2):
         t50,
         t54,
         t53,
-        t72,
+        t71,
+        t74,
         t75,
         t76,
-        t77,
-        t77,
         t76,
         t75,
-        t72,
+        t74,
+        t71,
     )
 
 
@@ -1276,17 +1275,17 @@ def _workspace_contains(ops, x, y, z, L0, L1, L2):
     t3 = ops.feasibility * (t2 * (L1 * 2.0 + L2 * 2.0))
     t4 = t2 * t2
     rP2 = x * x + z * z
-    square_c = rP2 + y * y
+    a2 = rP2 + y * y
     t5 = L1 * 1.1368683772161603e-13 + L2 * 1.1368683772161603e-13
     t6 = L1 - L2
     t7 = ops.feasibility * (t2 * (t5 + 2.0 * ops.abs(t6)))
     t8 = t6 * t6
-    t9 = (-t3 <= t4 - square_c) & (-t7 <= square_c - t8)
-    t10 = y - L0
-    square_d = rP2 + t10 * t10
-    t11 = t9 & (-t3 <= t4 - square_d) & (-t7 <= square_d - t8)
+    t9 = y - L0
+    b2 = rP2 + t9 * t9
+    t10 = (-t3 <= t4 - a2) & (-t7 <= a2 - t8) & (-t3 <= t4 - b2)
+    failed = invalid | ops.opposite(t10 & (-t7 <= b2 - t8))
     return (
-        ops.opposite(invalid | ops.opposite(t11)),
+        ops.opposite(failed),
     )
 
 

@@ -4,6 +4,8 @@
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 45 compare and select, 64 add, 8 divide, 87 multiply, 6 sincos, 1 sqrt
+ *   fk where nothing vanishes: 28 compare and select, 62 add, 7 divide, 78 multiply, 6 sincos, 1
+ *     sqrt
  *   skeleton: 44 compare and select, 179 add, 14 divide, 87 multiply, 6 sincos, 1 sqrt
  *   jacobian_parallel: 44 compare and select, 85 add, 8 divide, 87 multiply, 6 sincos, 1 sqrt
  *   jacobian_serial: 44 compare and select, 85 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
@@ -17,7 +19,8 @@
  */
 #include "delta.h"
 
-CF_INLINE void delta_fk_kernel(const int single, const real_t one,
+/* Every case. */
+CF_INLINE void delta_fk_whole_kernel(const int single, const real_t one,
     const delta_params *params, const real_t q[3],
     const real_t *sines, const real_t *cosines,
     real_t p[6], real_t status[2])
@@ -141,6 +144,200 @@ CF_INLINE void delta_fk_kernel(const int single, const real_t one,
 }
 
 CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void delta_fk_whole(const delta_params *params, const real_t q[3],
+    real_t p[6], uint8_t status[2])
+{
+    const real_t one = cf_one();
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, params->alpha3, q[2], q[2], q[2] };
+    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
+    real_t status_real[2];
+    delta_fk_whole_kernel(1, one, params, q, sines, cosines, p, status_real);
+    for (size_t i = 0; i < 2; ++i)
+        status[i] = (uint8_t)status_real[i];
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void delta_fk_common_kernel(const int single, const real_t one,
+    const delta_params *params, const real_t q[3],
+    const real_t *sines, const real_t *cosines,
+    real_t p[6], real_t status[2], real_t rare[1])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t L = params->L;
+    const real_t l = params->l;
+    const real_t alpha1 = params->alpha1;
+    const real_t alpha2 = params->alpha2;
+    const real_t alpha3 = params->alpha3;
+    const real_t theta1 = q[0];
+    const real_t theta2 = q[1];
+    const real_t theta3 = q[2];
+    const real_t s_alpha1 = sines[0];
+    const real_t c_alpha1 = cosines[0];
+    const real_t s1 = sines[1];
+    const real_t c1 = cosines[1];
+    const real_t s_alpha2 = sines[2];
+    const real_t c_alpha2 = cosines[2];
+    const real_t s2 = sines[3];
+    const real_t c2 = cosines[3];
+    const real_t s_alpha3 = sines[4];
+    const real_t c_alpha3 = cosines[4];
+    const real_t s3 = sines[5];
+    const real_t c3 = cosines[5];
+    const real_t t1 = cf_rounded(single, one, e * c_alpha1) - cf_rounded(single, one, f * c_alpha1);
+    const real_t t2 = L * c1;
+    const real_t t3 = t1 - cf_rounded(single, one, c_alpha1 * t2);
+    const real_t t4 = cf_rounded(single, one, e * c_alpha2) - cf_rounded(single, one, f * c_alpha2);
+    const real_t t5 = L * c2;
+    const real_t t6 = t3 - (t4 - cf_rounded(single, one, c_alpha2 * t5));
+    const real_t t7 = cf_rounded(single, one, L * s1);
+    const real_t u_z = t7 - cf_rounded(single, one, L * s2);
+    const real_t t8 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t6 * t6);
+    const real_t t9 = cf_rounded(single, one, e * s_alpha1) - cf_rounded(single, one, f * s_alpha1);
+    const real_t t10 = t9 - cf_rounded(single, one, s_alpha1 * t2);
+    const real_t t11 = cf_rounded(single, one, e * s_alpha2) - cf_rounded(single, one, f * s_alpha2);
+    const real_t t12 = t10 - (t11 - cf_rounded(single, one, s_alpha2 * t5));
+    const real_t u_u = t8 + cf_rounded(single, one, t12 * t12);
+    const real_t size = f + e + L + l;
+    const real_t t13 = size * size;
+    const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t13;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t14, u_u);
+    const real_t t15 = cf_rounded(single, one, e * s_alpha3) - cf_rounded(single, one, f * s_alpha3);
+    const real_t t16 = L * c3;
+    const real_t t17 = t15 - cf_rounded(single, one, s_alpha3 * t16);
+    const real_t t18 = t10 - t17;
+    const real_t t19 = cf_rounded(single, one, e * c_alpha3) - cf_rounded(single, one, f * c_alpha3);
+    const real_t t20 = t19 - cf_rounded(single, one, c_alpha3 * t16);
+    const real_t t21 = t3 - t20;
+    const real_t t22 = cf_rounded(single, one, t6 * t18) - cf_rounded(single, one, t12 * t21);
+    const real_t v_z = t7 - cf_rounded(single, one, L * s3);
+    const real_t t23 = cf_rounded(single, one, v_z * t6) - cf_rounded(single, one, u_z * t21);
+    const real_t t24 = cf_rounded(single, one, t12 * t22) + cf_rounded(single, one, u_z * t23);
+    const real_t t25 = over * t24;
+    const real_t t26 = cf_rounded(single, one, v_z * t12) - cf_rounded(single, one, u_z * t18);
+    const real_t t27 = cf_rounded(single, one, t6 * t22) - cf_rounded(single, one, u_z * t26);
+    const real_t t28 = over * t27;
+    const real_t t29 = cf_rounded(single, one, t25 * t25) + cf_rounded(single, one, t28 * t28);
+    const real_t t30 = cf_rounded(single, one, t6 * t23) + cf_rounded(single, one, t12 * t26);
+    const real_t n_z = over * t30;
+    const real_t nu = t29 + cf_rounded(single, one, n_z * n_z);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t14) | (nu <= t14), u_u * nu);
+    const real_t t31 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t21 * (t6 - t21));
+    const real_t t32 = t31 + cf_rounded(single, one, t18 * (t12 - t18));
+    const real_t t33 = u_u * part * t32 * CLOSEDFORM_C(0.5);
+    const real_t t34 = t6 * CLOSEDFORM_C(0.5) - (t3 - t25 * t33);
+    const real_t t35 = cf_rounded(single, one, nu * (t33 * t33)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t36 = cf_rounded(single, one, l * l) - t35;
+    const real_t slack = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t37 = (t12 * n_z - u_z * t28) * h;
+    const int t38 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t39 = t38 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t40 = t39 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t41 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int invalid = !(t40 & t41);
+    const int t42 = cf_abs(CLOSEDFORM_C(0.0)) <= t13 * CLOSEDFORM_FEASIBILITY;
+    const real_t t43 = l * size * CLOSEDFORM_C(0.75);
+    const int t44 = t42 & (-(CLOSEDFORM_FEASIBILITY * t43) <= t36);
+    const int unreachable = !t44;
+    const real_t t45 = cf_poison(single, invalid | unreachable);
+    const real_t t46 = h * (t6 * n_z + u_z * t25);
+    const real_t t47 = t12 * CLOSEDFORM_C(0.5) - (t10 + t28 * t33);
+    const real_t t48 = h * (t6 * t28 + t12 * t25);
+    const real_t t49 = n_z * t33 + (t7 - u_z * CLOSEDFORM_C(0.5));
+    const real_t t50 = cf_status(single, invalid, unreachable, 0);
+    const real_t t51 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t21 * t21);
+    const real_t t52 = u_u + (t51 + cf_rounded(single, one, t18 * t18));
+    const int t53 = (u_u <= t14) | (t52 <= t14) | (nu <= t14) | (slack <= CLOSEDFORM_VANISHING * t43);
+    p[0] = t34 - t37 + t45;
+    p[1] = t46 + t47 + t45;
+    p[2] = -(t48 + t49) + t45;
+    p[3] = t37 + t34 + t45;
+    p[4] = t47 - t46 + t45;
+    p[5] = t48 - t49 + t45;
+    status[0] = t50;
+    status[1] = t50;
+    rare[0] = (t53) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void delta_fk_common_batch(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *p, size_t p_stride,
+    uint8_t *status, size_t status_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const delta_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = params->alpha1;
+        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
+        real_t angle_2[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_2[i] = params->alpha2;
+        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[3], cosines[3]);
+        real_t angle_4[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_4[i] = params->alpha3;
+        cf_sincos_block_rounded(length, one, angle_4, sines[4], cosines[4]);
+        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[5], cosines[5]);
+        real_t status_real[2][CLOSEDFORM_BLOCK];
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            real_t p_i[6];
+            real_t status_i[2];
+            real_t rare_i[1];
+            delta_fk_common_kernel(0, one, &local, q_i, sines_i, cosines_i, p_i, status_i, rare_i);
+            p[start + i] = p_i[0];
+            p[p_stride + start + i] = p_i[1];
+            p[2 * p_stride + start + i] = p_i[2];
+            p[3 * p_stride + start + i] = p_i[3];
+            p[4 * p_stride + start + i] = p_i[4];
+            p[5 * p_stride + start + i] = p_i[5];
+            status_real[0][i] = status_i[0];
+            status_real[1][i] = status_i[1];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            status[start + i] = (uint8_t)status_real[0][i];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            status[status_stride + start + i] = (uint8_t)status_real[1][i];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void delta_fk_common(const delta_params *params, const real_t q[3],
+    real_t p[6], uint8_t status[2], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, q[0], params->alpha2, q[1], params->alpha3, q[2], q[2], q[2] };
+    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
+    real_t status_real[2];
+    real_t rare_real[1];
+    delta_fk_common_kernel(1, one, params, q, sines, cosines, p, status_real, rare_real);
+    for (size_t i = 0; i < 2; ++i)
+        status[i] = (uint8_t)status_real[i];
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
+}
+
+CLOSEDFORM_DISPATCHED
 void delta_fk(const delta_params *params, const real_t q[3],
     real_t p[6], uint8_t status[2])
 {
@@ -157,14 +354,9 @@ void delta_fk(const delta_params *params, const real_t q[3],
         params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
         params = &params_scaled;
     }
-    const real_t one = cf_one();
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, params->alpha3, q[2], q[2], q[2] };
-    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
-    real_t status_real[2];
-    delta_fk_kernel(1, one, params, q, sines, cosines, p, status_real);
-    for (size_t i = 0; i < 2; ++i)
-        status[i] = (uint8_t)status_real[i];
+    uint8_t rare[1];
+    delta_fk_common(params, q, p, status, rare);
+    if (CF_UNLIKELY(rare[0])) delta_fk_whole(params, q, p, status);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(6, p_degrees, exponent, p, p);
     }
@@ -193,8 +385,6 @@ void delta_fk_batch(size_t n, const delta_params *params,
     real_t *p, size_t p_stride,
     uint8_t *status, size_t status_stride)
 {
-    const delta_params local = *params;
-    const real_t one = cf_one();
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
     if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
         delta_fk_other_sizes(n, params, q, q_stride, p, p_stride, status, status_stride);
@@ -202,46 +392,19 @@ void delta_fk_batch(size_t n, const delta_params *params,
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_4, sines[4], cosines[4]);
-        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[5], cosines[5]);
-        real_t status_real[2][CLOSEDFORM_BLOCK];
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        delta_fk_common_batch(length, params, q + start, q_stride, p + start, p_stride, status + start, status_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
             real_t p_i[6];
-            real_t status_i[2];
-            delta_fk_kernel(0, one, &local, q_i, sines_i, cosines_i, p_i, status_i);
-            p[start + i] = p_i[0];
-            p[p_stride + start + i] = p_i[1];
-            p[2 * p_stride + start + i] = p_i[2];
-            p[3 * p_stride + start + i] = p_i[3];
-            p[4 * p_stride + start + i] = p_i[4];
-            p[5 * p_stride + start + i] = p_i[5];
-            status_real[0][i] = status_i[0];
-            status_real[1][i] = status_i[1];
+            uint8_t status_i[2];
+            delta_fk_whole(params, q_i, p_i, status_i);
+            for (size_t k = 0; k < 6; ++k) p[k * p_stride + i] = p_i[k];
+            for (size_t k = 0; k < 2; ++k) status[k * status_stride + i] = status_i[k];
+
         }
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i)
-            status[start + i] = (uint8_t)status_real[0][i];
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i)
-            status[status_stride + start + i] = (uint8_t)status_real[1][i];
     }
 }
 

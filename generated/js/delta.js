@@ -3,6 +3,8 @@
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   fk: 45 compare and select, 64 add, 8 divide, 87 multiply, 6 sincos, 1 sqrt
+//   fk where nothing vanishes: 28 compare and select, 62 add, 7 divide, 78 multiply, 6 sincos, 1
+//     sqrt
 //   skeleton: 44 compare and select, 179 add, 14 divide, 87 multiply, 6 sincos, 1 sqrt
 //   jacobian_parallel: 44 compare and select, 85 add, 8 divide, 87 multiply, 6 sincos, 1 sqrt
 //   jacobian_serial: 44 compare and select, 85 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
@@ -222,10 +224,101 @@ function _fk(v, o) {
     o[7] = t39;
 }
 
+/** @type {_runtime.Compute} */
+function _fk_common(v, o) {
+    const theta1 = v[0];
+    const theta2 = v[1];
+    const theta3 = v[2];
+    const f = v[3];
+    const e = v[4];
+    const L = v[5];
+    const l = v[6];
+    const alpha1 = v[7];
+    const alpha2 = v[8];
+    const alpha3 = v[9];
+    _runtime.sincos(alpha1);
+    const s_alpha1 = _runtime.found[0];
+    const c_alpha1 = _runtime.found[1];
+    _runtime.sincos(theta1);
+    const s1 = _runtime.found[0];
+    const c1 = _runtime.found[1];
+    _runtime.sincos(alpha2);
+    const s_alpha2 = _runtime.found[0];
+    const c_alpha2 = _runtime.found[1];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    const c2 = _runtime.found[1];
+    _runtime.sincos(alpha3);
+    const s_alpha3 = _runtime.found[0];
+    const c_alpha3 = _runtime.found[1];
+    _runtime.sincos(theta3);
+    const s3 = _runtime.found[0];
+    const c3 = _runtime.found[1];
+    const t1 = L * c1;
+    const t2 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t1;
+    const t3 = L * c2;
+    const t4 = t2 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t3);
+    const t5 = L * s1;
+    const u_z = t5 - L * s2;
+    const t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t1;
+    const t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t3);
+    const u_u = u_z * u_z + t4 * t4 + t7 * t7;
+    const over = 1.0 / u_u;
+    const t8 = L * c3;
+    const t9 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8);
+    const t10 = t2 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8);
+    const t11 = t4 * t9 - t7 * t10;
+    const v_z = t5 - L * s3;
+    const t12 = v_z * t4 - u_z * t10;
+    const t13 = over * (t7 * t11 + u_z * t12);
+    const t14 = v_z * t7 - u_z * t9;
+    const t15 = over * (t4 * t11 - u_z * t14);
+    const n_z = over * (t4 * t12 + t7 * t14);
+    const nu = t13 * t13 + t15 * t15 + n_z * n_z;
+    const part = 1.0 / (u_u * nu);
+    const t16 = v_z * (u_z - v_z) + t10 * (t4 - t10) + t9 * (t7 - t9);
+    const t17 = u_u * part * t16 * 0.5;
+    const t18 = t4 * 0.5 - (t2 - t13 * t17);
+    const t19 = l * l - (nu * (t17 * t17) + u_u * 0.25);
+    const slack = Math.max(t19, 0.0);
+    const h = Math.sqrt(part * slack);
+    const t20 = (t7 * n_z - u_z * t15) * h;
+    const t21 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
+        Number.isFinite(l) && Number.isFinite(alpha1) && Number.isFinite(alpha2) &&
+        Number.isFinite(alpha3);
+    const t22 = t21 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
+    const t23 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const invalid = !(t22 && t23);
+    const size = f + e + L + l;
+    const t24 = size * size;
+    const t25 = l * size * 0.75;
+    const t26 = Math.abs(0.0) <= t24 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t25) <=
+        t19;
+    const unreachable = !t26;
+    const t27 = invalid || unreachable ? NaN : 0;
+    const t28 = h * (t4 * n_z + u_z * t13);
+    const t29 = t7 * 0.5 - (t6 + t15 * t17);
+    const t30 = h * (t4 * t15 + t7 * t13);
+    const t31 = n_z * t17 + (t5 - u_z * 0.5);
+    const t32 = invalid ? 3 : unreachable ? 1 : false ? 2 : 0;
+    const t33 = _runtime.VANISHING * _runtime.VANISHING * t24;
+    const all_same = u_u + (v_z * v_z + t10 * t10 + t9 * t9) <= t33;
+    const t34 = u_u <= t33 || all_same || nu <= t33 || slack <= _runtime.VANISHING * t25;
+    o[0] = t18 - t20 + t27;
+    o[1] = t28 + t29 + t27;
+    o[2] = -(t30 + t31) + t27;
+    o[3] = t20 + t18 + t27;
+    o[4] = t29 - t28 + t27;
+    o[5] = t30 - t31 + t27;
+    o[6] = t32;
+    o[7] = t32;
+    o[8] = (t34) ? 1 : 0;
+}
+
 const _FK = _runtime.kernel({
     name: "delta.fk",
     compute: _fk,
-    common: null,
+    common: _fk_common,
     inputs: [
         { name: "q", shape: [3], branches: 0, kind: "real" },
     ],

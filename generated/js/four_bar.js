@@ -51,6 +51,7 @@ export const SKELETON = Object.freeze(/** @type {const} */ ({
     },
     joints: {
         theta: { kind: "revolute", points: ["A1"] },
+        psi: { kind: "revolute", points: ["A2"] },
     },
     hand: "B2",
     ground: ["A1", "A2"],

@@ -1105,18 +1105,18 @@ function _ik(v, o) {
     const t7 = L2 * 2.0;
     const t8 = _runtime.FEASIBILITY * (t1 * (L1 * 2.0 + t7));
     const t9 = t1 * t1;
-    const square_c = rP2 + y * y;
-    const t10 = t9 - square_c;
+    const a2 = rP2 + y * y;
+    const t10 = t9 - a2;
     const t11 = L1 * 1.1368683772161603e-13 + L2 * 1.1368683772161603e-13;
     const t12 = L1 - L2;
     const t13 = Math.abs(t12);
     const t14 = _runtime.FEASIBILITY * (t1 * (t11 + 2.0 * t13));
     const t15 = t12 * t12;
-    const t16 = square_c - t15;
+    const t16 = a2 - t15;
     const t17 = y - L0;
-    const square_d = rP2 + t17 * t17;
-    const t18 = t9 - square_d;
-    const t19 = square_d - t15;
+    const b2 = rP2 + t17 * t17;
+    const t18 = t9 - b2;
+    const t19 = b2 - t15;
     const t20 = -t8 <= t10 && -t14 <= t16 && -t8 <= t18 && -t14 <= t19;
     const unreachable = !t20;
     const t21 = invalid || unreachable ? NaN : 0;
@@ -1162,8 +1162,8 @@ function _ik(v, o) {
     const t50 = (t49 <= -Math.PI ? Math.PI : t49) + t21;
     const t51 = on_axis || at_A || at_B || L1 <= t1 * _runtime.VANISHING;
     const t52 = t1 * t12;
-    const inner_c = square_c - t52;
-    const inner_d = square_d - t52;
+    const inner_c = a2 - t52;
+    const inner_d = b2 - t52;
     const t53 = inner_c * inner_d;
     const t54 = t24 * t31;
     const t55 = L0 * rP;
@@ -1172,9 +1172,9 @@ function _ik(v, o) {
     const t58 = inner_d * t24;
     const t59 = inner_c * t31;
     const t60 = t57 * (t58 - t59);
-    const t61 = _runtime.DETERMINED * (square_c * square_d * 4.0 * (L2 * L2));
-    const t62 = Math.sqrt(square_c);
-    const t63 = Math.sqrt(square_d);
+    const t61 = _runtime.DETERMINED * (a2 * b2 * 4.0 * (L2 * L2));
+    const t62 = Math.sqrt(a2);
+    const t63 = Math.sqrt(b2);
     const t64 = Math.max(Math.max(0.0, t13 - t62), t62 - t1) + Math.max(Math.max(0.0, t13 -
         t63), t63 - t1);
     const t65 = t61 * (t2 + t64);
@@ -1305,16 +1305,15 @@ function _workspace_contains(v, o) {
     const t5 = _runtime.FEASIBILITY * (t4 * (L1 * 2.0 + L2 * 2.0));
     const t6 = t4 * t4;
     const rP2 = x * x + z * z;
-    const square_c = rP2 + y * y;
+    const a2 = rP2 + y * y;
     const t7 = L1 * 1.1368683772161603e-13 + L2 * 1.1368683772161603e-13;
     const t8 = L1 - L2;
     const t9 = _runtime.FEASIBILITY * (t4 * (t7 + 2.0 * Math.abs(t8)));
     const t10 = t8 * t8;
-    const t11 = -t5 <= t6 - square_c && -t9 <= square_c - t10;
-    const t12 = y - L0;
-    const square_d = rP2 + t12 * t12;
-    const t13 = t11 && -t5 <= t6 - square_d && -t9 <= square_d - t10;
-    o[0] = (!(!t3 || !t13)) ? 1 : 0;
+    const t11 = y - L0;
+    const b2 = rP2 + t11 * t11;
+    const t12 = -t5 <= t6 - a2 && -t9 <= a2 - t10 && -t5 <= t6 - b2;
+    o[0] = (!(!t3 || !(t12 && -t9 <= b2 - t10))) ? 1 : 0;
 }
 
 const _WORKSPACE_CONTAINS = _runtime.kernel({

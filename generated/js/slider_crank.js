@@ -49,6 +49,7 @@ export const SKELETON = Object.freeze(/** @type {const} */ ({
     },
     joints: {
         theta: { kind: "revolute", points: ["A1"] },
+        x: { kind: "prismatic", points: ["A2", "B2"] },
     },
     hand: "B2",
     ground: ["A1", "A2"],

@@ -3,6 +3,8 @@
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 45 compare and select, 64 add, 8 divide, 87 multiply, 6 sincos, 1 sqrt
+#   fk where nothing vanishes: 28 compare and select, 62 add, 7 divide, 78 multiply, 6 sincos, 1
+#     sqrt
 #   skeleton: 44 compare and select, 179 add, 14 divide, 87 multiply, 6 sincos, 1 sqrt
 #   jacobian_parallel: 44 compare and select, 85 add, 8 divide, 87 multiply, 6 sincos, 1 sqrt
 #   jacobian_serial: 44 compare and select, 85 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
@@ -269,6 +271,103 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     )
 
 
+def _fk_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    # Where nothing vanishes; last, whether something does.
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
+    t1 = L * c1
+    del c1
+    t2 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t1
+    del c_alpha1
+    t3 = L * c2
+    del c2
+    t4 = t2 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t3)
+    del c_alpha2
+    t5 = L * s1
+    del s1
+    u_z = t5 - L * s2
+    del s2
+    t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t1
+    del s_alpha1, t1
+    t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t3)
+    del s_alpha2, t3
+    u_u = u_z * u_z + t4 * t4 + t7 * t7
+    over = 1.0 / u_u
+    t8 = L * c3
+    del c3
+    t9 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8)
+    del s_alpha3
+    t10 = t2 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8)
+    del c_alpha3, t8
+    t11 = t4 * t9 - t7 * t10
+    v_z = t5 - L * s3
+    del s3
+    t12 = v_z * t4 - u_z * t10
+    t13 = over * (t7 * t11 + u_z * t12)
+    t14 = v_z * t7 - u_z * t9
+    t15 = over * (t4 * t11 - u_z * t14)
+    del t11
+    n_z = over * (t4 * t12 + t7 * t14)
+    del over, t12, t14
+    nu = t13 * t13 + t15 * t15 + n_z * n_z
+    part = 1.0 / (u_u * nu)
+    t16 = v_z * (u_z - v_z) + t10 * (t4 - t10) + t9 * (t7 - t9)
+    t17 = u_u * part * t16 * 0.5
+    del t16
+    t18 = t4 * 0.5 - (t2 - t13 * t17)
+    del t2
+    t19 = l * l - (nu * (t17 * t17) + u_u * 0.25)
+    slack = np.maximum(t19, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t20 = (t7 * n_z - u_z * t15) * h
+    t21 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t22 = t21 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t21
+    t23 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    invalid = np.logical_not(t22 & t23)
+    del t22, t23
+    size = f + e + L + l
+    t24 = size * size
+    t25 = l * size * 0.75
+    del size
+    t26 = (np.abs(0.0) <= t24 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t25) <= t19)
+    del t19
+    unreachable = np.logical_not(t26)
+    del t26
+    t27 = _runtime.poison(invalid | unreachable)
+    t28 = h * (t4 * n_z + u_z * t13)
+    t29 = t7 * 0.5 - (t6 + t15 * t17)
+    del t6
+    t30 = h * (t4 * t15 + t7 * t13)
+    del h, t13, t15, t4, t7
+    t31 = n_z * t17 + (t5 - u_z * 0.5)
+    del n_z, t17, t5, u_z
+    t32 = _runtime.status(invalid, unreachable, np.False_)
+    del invalid, unreachable
+    t33 = _runtime.VANISHING * _runtime.VANISHING * t24
+    del t24
+    all_same = u_u + (v_z * v_z + t10 * t10 + t9 * t9) <= t33
+    del t10, t9, v_z
+    t34 = (u_u <= t33) | all_same | (nu <= t33) | (slack <= _runtime.VANISHING * t25)
+    del all_same, nu, slack, t25, t33, u_u
+    return (
+        t18 - t20 + t27,
+        t28 + t29 + t27,
+        -(t30 + t31) + t27,
+        t20 + t18 + t27,
+        t29 - t28 + t27,
+        t30 - t31 + t27,
+        t32,
+        t32,
+        t34,
+    )
+
+
 _FK = _runtime.Kernel(
     "delta.fk",
     _fk,
@@ -276,6 +375,7 @@ _FK = _runtime.Kernel(
     (_runtime.Array("p", (2, 3)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    common=_fk_common,
     size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 

@@ -1132,19 +1132,19 @@ def _ik(x, y, z, L0, L1, L2):
     t7 = L2 * 2.0
     t8 = _runtime.FEASIBILITY * (t1 * (L1 * 2.0 + t7))
     t9 = t1 * t1
-    square_c = rP2 + y * y
-    t10 = t9 - square_c
+    a2 = rP2 + y * y
+    t10 = t9 - a2
     t11 = L1 * 1.1368683772161603e-13 + L2 * 1.1368683772161603e-13
     t12 = L1 - L2
     t13 = np.abs(t12)
     t14 = _runtime.FEASIBILITY * (t1 * (t11 + 2.0 * t13))
     del t11
     t15 = t12 * t12
-    t16 = square_c - t15
+    t16 = a2 - t15
     t17 = y - L0
-    square_d = rP2 + t17 * t17
-    t18 = t9 - square_d
-    t19 = square_d - t15
+    b2 = rP2 + t17 * t17
+    t18 = t9 - b2
+    t19 = b2 - t15
     del t15
     t20 = (-t8 <= t10) & (-t14 <= t16) & (-t8 <= t18) & (-t14 <= t19)
     del t14, t8
@@ -1211,8 +1211,8 @@ def _ik(x, y, z, L0, L1, L2):
     del at_A, at_B, on_axis
     t48 = t1 * t12
     del t12
-    inner_c = square_c - t48
-    inner_d = square_d - t48
+    inner_c = a2 - t48
+    inner_d = b2 - t48
     del t48
     t49 = inner_c * inner_d
     t50 = t24 * t31
@@ -1226,13 +1226,13 @@ def _ik(x, y, z, L0, L1, L2):
     t55 = inner_c * t31
     del inner_c, t31
     t56 = t53 * (t54 - t55)
-    t57 = _runtime.DETERMINED * (square_c * square_d * 4.0 * (L2 * L2))
-    t58 = np.sqrt(square_c)
-    del square_c
+    t57 = _runtime.DETERMINED * (a2 * b2 * 4.0 * (L2 * L2))
+    t58 = np.sqrt(a2)
+    del a2
     t59 = np.maximum(np.maximum(0.0, t13 - t58), t58 - t1)
     del t58
-    t60 = np.sqrt(square_d)
-    del square_d
+    t60 = np.sqrt(b2)
+    del b2
     t61 = np.maximum(np.maximum(0.0, t13 - t60), t60 - t1)
     del t1, t13, t60
     t62 = t57 * (t2 + (t59 + t61))
@@ -1358,24 +1358,22 @@ def _workspace_contains(x, y, z, L0, L1, L2):
     t5 = _runtime.FEASIBILITY * (t4 * (L1 * 2.0 + L2 * 2.0))
     t6 = t4 * t4
     rP2 = x * x + z * z
-    square_c = rP2 + y * y
+    a2 = rP2 + y * y
     t7 = L1 * 1.1368683772161603e-13 + L2 * 1.1368683772161603e-13
     t8 = L1 - L2
     t9 = _runtime.FEASIBILITY * (t4 * (t7 + 2.0 * np.abs(t8)))
     del t4, t7
     t10 = t8 * t8
     del t8
-    t11 = (-t5 <= t6 - square_c) & (-t9 <= square_c - t10)
-    del square_c
-    t12 = y - L0
-    square_d = rP2 + t12 * t12
-    del rP2, t12
-    t13 = t11 & (-t5 <= t6 - square_d) & (-t9 <= square_d - t10)
-    del square_d, t10, t11, t5, t6, t9
-    t14 = np.logical_not(np.logical_not(t3) | np.logical_not(t13))
-    del t13, t3
+    t11 = y - L0
+    b2 = rP2 + t11 * t11
+    del rP2, t11
+    t12 = (-t5 <= t6 - a2) & (-t9 <= a2 - t10) & (-t5 <= t6 - b2)
+    del a2, t5, t6
+    failed = np.logical_not(t3) | np.logical_not(t12 & (-t9 <= b2 - t10))
+    del b2, t10, t12, t3, t9
     return (
-        t14,
+        np.logical_not(failed),
     )
 
 

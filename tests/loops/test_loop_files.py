@@ -162,6 +162,36 @@ v = {between = ["p3", "bucket"], at = "V"}
 """
 
 
+LAMP = """hand = "P"
+[parameters]
+l = {value = "0.4"}
+r = {value = "0.35"}
+w = {value = "0.05"}
+[bodies]
+ground = {A = [0, 0], A2 = ["w", 0]}
+lower = {A = [0, 0], B = [0, "l"]}
+lower2 = {length = "l"}
+elbow = {B = [0, 0], B2 = ["w", 0], E = [0, "w"]}
+upper = {B = [0, 0], C = ["r", 0]}
+upper2 = {length = "r"}
+head = {C = [0, 0], F = [0, "w"], P = [0.1, 0]}
+[joints]
+theta1 = {between = ["ground", "lower"], at = "A", driven = true}
+a2 = {between = ["ground", "lower2"], at = "A2"}
+b = {between = ["lower", "elbow"], at = "B"}
+b2 = {between = ["lower2", "elbow"], at = "B2"}
+theta2 = {between = ["elbow", "upper"], at = "B", driven = true}
+e2 = {between = ["elbow", "upper2"], at = "E"}
+c = {between = ["upper", "head"], at = "C"}
+f = {between = ["upper2", "head"], at = "F"}
+"""
+
+
+def test_the_file_of_a_desk_lamp_is_told_what_to_write_instead(tmp_path: Path) -> None:
+    with pytest.raises(TableError, match=r"between elbow and upper.*a table of joints with motors"):
+        script_of("lamp", LAMP, tmp_path)
+
+
 def test_the_file_of_an_excavator_is_told_what_to_write_instead(tmp_path: Path) -> None:
     assert "linkage(" in script_of("excavator", EXCAVATOR, tmp_path)
     with pytest.raises(TableError, match=r'write each loop as a file of its own.*hand = "o"'):

@@ -135,11 +135,24 @@ class Legs:
         driven = self.driven()
         if not driven:
             raise loop.error("no joint is driven; set driven = true")
+        for joint in driven:
+            self.check_place(joint)
         if self.halves:
             bars = {joint.name for half in self.halves for joint in loop.of(half)}
             self.used |= {name for name in bars if loop.joints[name].kind == "revolute"}
             return [self.on_half(j) for j in driven]
         return [self.leg(j) for j in driven]
+
+    def check_place(self, joint: Joint) -> None:
+        """Refuse a drive between two bodies that both move, unless it slides them."""
+        if GROUND not in joint.between and joint.kind != "prismatic":
+            raise self.loop.error(
+                f"{joint.name} is driven, so it must be between the ground and a body, or slide "
+                f"the two halves of a leg; it is between {listed(joint.between)}.  An arm whose "
+                f"bodies parallelograms keep from turning, as a desk lamp, is a table of joints "
+                f"with motors, such as m2 - m1, in a column of that name.  Of another arm each "
+                f"loop is a file of its own"
+            )
 
     def on_half(self, joint: Joint) -> LoopLeg:
         """A leg that ends on one of the halves of the hand."""
@@ -394,11 +407,6 @@ class Legs:
     def stretch(self, joint: Joint) -> LoopLeg:
         """A leg of two bodies that slide along each other."""
         loop = self.loop
-        if joint.kind != "prismatic":
-            raise loop.error(
-                f"{joint.name} is driven, so it must be between the ground and a body, or slide "
-                f"the two halves of a leg"
-            )
         ends: dict[bool, Joint] = {}
         for half in joint.between:
             others = [j for j in loop.of(half) if j is not joint]

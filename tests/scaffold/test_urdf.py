@@ -252,6 +252,12 @@ def test_a_file_that_is_taken_literally_moves_nothing() -> None:
     assert not any("other numbers" in note for note in read_urdf(ARMS / "a1xy.urdf").notes)
 
 
+def test_lengths_in_millimetres_are_pointed_out(ur5: Path) -> None:
+    assert not any("millimetres" in note for note in read_urdf(ur5).notes)
+    ur5.write_text(edited("0.425", "425"), "utf-8")
+    assert any("is 425 m from the origin" in note for note in read_urdf(ur5).notes)
+
+
 def test_notes_are_those_of_the_chain(ur5: Path) -> None:
     """A camera beside it has a rounded angle too."""
     camera = """<joint name="camera" type="fixed"><parent link="base"/><child link="eye"/>

@@ -38,6 +38,8 @@ NEAR = sp.Rational(1, 2000)
 """An angle this close to a multiple of pi/12 stands for it; so does a direction to an axis."""
 ROUNDED = sp.Rational(1, 10**6)
 """An angle is never exact: a difference from what it stands for below this is not worth a note."""
+FAR = 20
+"""Joints farther apart than this are probably not placed in metres."""
 SHORT = 1 / 200
 """Of the longest length of a chain: a shorter one is named if no inverse is found."""
 
@@ -81,7 +83,7 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
         f"{file}: the chain leads from {shown_name(chain[0].parent)} to "
         f"{shown_name(chain[-1].child)}"
     )
-    table.notes += moved.notes(file)
+    table.notes += moved.notes(file) + _units(as_written, file)
     use_exact(table, file)
     return table
 
@@ -252,6 +254,18 @@ def _unit(axis: sp.Matrix, frame: sp.Matrix, table: Table, where: str) -> sp.Mat
 
 def _size(value: sp.Matrix) -> float:
     return math.sqrt(sum(float(e.evalf(30)) ** 2 for e in value))
+
+
+def _units(chain: Sequence[Joint], file: str) -> list[str]:
+    """A note if the lengths are too large for metres."""
+    far = max(chain, key=lambda joint: _size(joint.origin[:3, 3]))
+    length = _size(far.origin[:3, 3])
+    if length <= FAR:
+        return []
+    return [
+        f"{file}: joint {shown_name(far.name)} is {length:.4g} m from the origin of its parent "
+        f"link; if the file is in millimetres, divide its lengths by 1000"
+    ]
 
 
 def _without_short(

@@ -99,8 +99,8 @@ def page() -> str:
         "",
         "## Figures of the mechanisms",
         "",
-        "A map needs two joints and a forward map. A map of the workspace also needs a position in",
-        "the task that is not confined to a surface.",
+        "A map needs two joints; a mechanism with one joint shows its motion. There is no map of the",
+        "workspace of a hand that only turns.",
         "",
         *_of_mechanisms(),
         "",
@@ -119,10 +119,13 @@ def _of_mechanisms() -> Iterator[str]:
         without = [n for n, figures in drawn.items() if figure not in {f.name for f in figures}]
         listed = f" Not for {', '.join(f'`{n}`' for n in without)}." if without else ""
         yield f"- `{figure}`: {caption}{listed}"
+    further: dict[tuple[str, str], list[str]] = {}
     for name, figures in drawn.items():
         for f in figures:
             if f.name not in usual and (name, f.name) not in shown():
-                yield f"- `{f.name}`, of `{name}` only: {f.caption}"
+                further.setdefault((f.name, f.caption), []).append(f"`{name}`")
+    for (figure, caption), of in further.items():
+        yield f"- `{figure}`, of {' and '.join(of)} only: {caption}"
 
 
 def _of_paper(paper: Any) -> Iterator[str]:

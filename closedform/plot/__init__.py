@@ -12,6 +12,7 @@ Every function takes a generated module, ``closedform.generated.numpy.<robot>`` 
 from closedform.plot.axes import joint_axes
 from closedform.plot.diagram import Diagram
 from closedform.plot.maps import field, singularities, workspace
+from closedform.plot.motion import motion
 from closedform.plot.paths import line, path
 from closedform.plot.postures import branches, mechanism, posture
 from closedform.plot.style import colour, new_axes, new_panels, save, styled
@@ -24,6 +25,7 @@ __all__ = [
     "joint_axes",
     "line",
     "mechanism",
+    "motion",
     "new_axes",
     "new_panels",
     "path",

@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from closedform.plot.maps import Limits, unsectioned, workspace
 from closedform.plot.maps import field as field_map
+from closedform.plot.maps import workspace
+from closedform.plot.motion import motion
 from closedform.plot.postures import branches, mechanism, spoken
-from closedform.plot.robot import Array, Robot
+from closedform.plot.robot import JACOBIANS, Array, Robot
+from closedform.plot.sections import Limits, unsectioned
 from closedform.plot.style import new_panels, styled
 from closedform.plot.symbols import symbol
 
@@ -102,9 +104,10 @@ def standard(view: View) -> list[Figure]:
         ),
         Figure(
             "workspace",
-            "How many branches reach each point of a section of the workspace. Black lines are "
-            "where branches end; the legend names the factors of the singular set that vanish "
-            "there. Other lines are where a factor of some branch vanishes inside.",
+            "How many branches reach each point of a section of the workspace, or of the sphere "
+            "on which the hand stays. Black lines are where branches end; the legend names the "
+            "factors of the singular set that vanish there. Other lines are where a factor of some "
+            "branch vanishes inside.",
             lambda robot: workspace(
                 robot, view.plane, at=view.at, limits=view.limits, unit=view.unit, given=view.given
             ),
@@ -121,6 +124,13 @@ def standard(view: View) -> list[Figure]:
             ),
             INVERSE,
         ),
+        Figure(
+            "motion",
+            "The task and its derivative over the joint, a curve for each assembly mode. Dots are "
+            "where a factor of the singular set vanishes, which the legend names.",
+            lambda robot: motion(robot, unit=view.unit),
+            INVERSE,
+        ),
     ]  # fmt: skip
 
 
@@ -135,19 +145,20 @@ def _shown(view: View) -> str:
 def fits(robot: ModuleType, figure: str) -> bool:
     """Whether a figure makes sense for a mechanism.
 
-    Branches are shown if there are several.  A map needs two joints and a forward map, and a
-    workspace a position in the task that no surface holds.
+    Branches are shown if there are several.  A map needs two joints; with one, the motion is
+    shown.
     """
     r = Robot.of(robot)
+    one = len(robot.JOINTS) == 1
     if figure == "branches":
         return len(robot.BRANCHES) > 1
+    if figure == "motion":
+        return one and len(robot.TASK) == 1
     if figure not in ("workspace", "conditioning"):
         return True
-    if len(robot.JOINTS) < 2 or not r.has_forward_map:
-        return False
     if figure == "conditioning":
-        return True
-    return not unsectioned(r)
+        return not one and any(map(r.has, JACOBIANS))
+    return not one and r.has("ik") and not unsectioned(r)
 
 
 @styled

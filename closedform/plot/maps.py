@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from textwrap import fill
 from types import ModuleType
@@ -18,12 +17,11 @@ from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike, NDArray
 
 from closedform.plot.postures import spoken
-from closedform.plot.robot import OK, Array, Robot, positions, singular_values
+from closedform.plot.robot import JACOBIANS, Array, Robot, singular_values
+from closedform.plot.sections import DIRECTION, Grid, Limits, answered, grid_over, task_grid
 from closedform.plot.style import colour, new_axes, styled
 from closedform.plot.symbols import equation, symbol
 
-Limits = Sequence[tuple[float, float]]
-SINGULAR = 2
 NEAR_EDGE = 0.2
 """A factor below this part of its usual size beside the border counts as zero on it."""
 BLUES = mpl.colormaps["Blues"]
@@ -37,10 +35,6 @@ POLE = 8.0
 """Values beyond this multiple of their median, as beside a parallel singularity, are alike."""
 SIZE, AROUND = (5.2, 4.4), 1.2
 """The largest figure of a map, and what its labels take of it, in inches."""
-ROUNDS, EDGE = 12, 120
-"""How often a window is opened, and the points along its border that are tried."""
-AREA = 2
-"""The coordinates of a plane."""
 SHORT = 25
 """A curve of fewer points than this is taken for noise of the grid."""
 MEASURES = ("manipulability", "condition")
@@ -70,7 +64,8 @@ def workspace(
     robot
         a generated module with an inverse
     plane
-        two task coordinates, such as ``("x", "z")``; by default the first two lengths
+        two task coordinates, such as ``("x", "z")``; by default the first two lengths, and for
+        a hand on a sphere longitude and latitude
     at
         the target that gives the other coordinates; by default the image of a regular posture
     limits
@@ -87,7 +82,7 @@ def workspace(
         as in :func:`closedform.plot.mechanism`
     """
     r = Robot.of(robot, params, given)
-    grid = _task_plane(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
+    grid = task_grid(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
     q, status = r.branches(grid.targets)
     reached = answered(status).sum(-1)
     ax = _map_axes(grid) if ax is None else ax
@@ -109,7 +104,7 @@ def workspace(
 
 
 def _singular_curves(
-    ax: Any, r: Robot, grid: _Grid, q: Array, status: NDArray[np.uint8]
+    ax: Any, r: Robot, grid: Grid, q: Array, status: NDArray[np.uint8]
 ) -> list[Any]:
     """The border, and where a factor of a branch changes its sign inside; what the legend shows."""
     there = answered(status)
@@ -152,7 +147,7 @@ def _broken(name: str) -> str:
     return equation(name) if "=" in name else fill(name, WIDE)
 
 
-def _lines(grid: _Grid, values: Any, level: float) -> Iterator[Array]:
+def _lines(grid: Grid, values: Any, level: float) -> Iterator[Array]:
     """The curves on which values on the grid have a level, without the shortest."""
     for curve in contour_generator(*grid.sides, values).lines(level):
         points = np.asarray(curve, dtype=float)
@@ -160,7 +155,7 @@ def _lines(grid: _Grid, values: Any, level: float) -> Iterator[Array]:
             yield points
 
 
-def _edges(grid: _Grid, count: NDArray[np.int_]) -> Iterator[Array]:
+def _edges(grid: Grid, count: NDArray[np.int_]) -> Iterator[Array]:
     """The curves at which the number of branches changes."""
     present = [n for n in np.unique(count) if (count == n).mean() > FEW]
     for low, high in pairwise(present):
@@ -170,10 +165,11 @@ def _edges(grid: _Grid, count: NDArray[np.int_]) -> Iterator[Array]:
 
 def _of_branches(r: Robot, targets: Array, q: Array) -> Array:
     """The factors of each branch, in the assembly mode that reaches the target."""
-    factors = np.asarray(r.call("singularities", q))
+    of_branches = np.expand_dims(targets, q.ndim - 2)
+    factors = np.asarray(r.measured("singularities", q, of_branches))
     if not r.modes:
         return factors
-    mode = r.mode_that_reaches(q, targets[..., None, :])
+    mode = r.mode_that_reaches(q, of_branches)
     return np.take_along_axis(factors, mode[..., None, None], axis=-2)[..., 0, :]
 
 
@@ -234,11 +230,11 @@ def field(
         as in :func:`workspace`; over two joints, ``at`` gives the other joints
     """
     r = Robot.of(robot, params, given)
-    grid = _plane(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
+    grid = grid_over(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
     q = grid.targets if grid.joints else _answers(r, grid.targets, branch)
     first = np.zeros(q.shape[:-1], dtype=np.intp)
     mode = first if grid.joints else r.mode_that_reaches(q, grid.targets)
-    values, label = _quantity(r, q, mode, function)
+    values, label = _quantity(r, (q, grid.targets), mode, function)
     if function in MEASURES and r.mixes_units:
         label += f"\n({unit or 'unit of length'}, rad)"
     ax = _map_axes(grid) if ax is None else ax
@@ -287,7 +283,7 @@ def singularities(
         as in :func:`field`
     """
     r = Robot.of(robot, params, given)
-    grid = _plane(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
+    grid = grid_over(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
     ax = _map_axes(grid) if ax is None else ax
     drawn: dict[str, Any] = {}
     if grid.joints:
@@ -312,160 +308,10 @@ def singularities(
     return ax
 
 
-def answered(status: NDArray[np.uint8]) -> NDArray[np.bool_]:
-    """Where there are joints that reach the target, singular or not."""
-    return np.asarray((status == OK) | (status == SINGULAR))
-
-
 def _factors(r: Robot, q: Array) -> Array:
     """The factors of the singular set, an axis for the assembly mode before the last."""
     found = np.asarray(r.call("singularities", q))
     return found if r.modes else found[..., None, :]
-
-
-@dataclass(frozen=True)
-class _Grid:
-    """A grid over a plane: its sides, the targets or joints on it, and the names of its axes."""
-
-    sides: tuple[Array, Array]
-    targets: Array
-    names: tuple[str, str]
-    joints: bool
-    section: str = ""
-    """The other coordinates of the position."""
-    unit: str = ""
-    """That of lengths, if it is told."""
-
-
-def _plane(
-    r: Robot,
-    plane: Sequence[str] | None,
-    *,
-    at: ArrayLike | None,
-    resolution: int,
-    limits: Limits | None,
-    unit: str,
-) -> _Grid:
-    """A plane of the task, or of two joints: where both are named, or the task has no section."""
-    names = list(r.module.JOINTS)
-    if plane is None and unsectioned(r):
-        if len(names) < AREA:
-            raise ValueError(f"{r.name} has one joint, and a map needs two")
-        plane = names[:AREA]
-    if plane is None or not all(p in names for p in plane):
-        return _task_plane(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
-    _check_plane(r, plane, names)
-    base = r.posture() if at is None else np.asarray(at, dtype=float)
-    places = [names.index(p) for p in plane]
-    ends = limits or [(0, r.size) if k in r.slides else (-np.pi, np.pi) for k in places]
-    sides = tuple(np.linspace(low, high, resolution) for low, high in ends)
-    targets = np.broadcast_to(base, (resolution, resolution, len(names))).copy()
-    targets[..., places[0]], targets[..., places[1]] = sides[0], sides[1][:, None]
-    return _Grid((sides[0], sides[1]), targets, (plane[0], plane[1]), True)
-
-
-def unsectioned(robot: ModuleType | Robot) -> str:
-    """Why the workspace of a mechanism has no section; empty if it has one."""
-    r = Robot.of(robot)
-    image = r.task(r.posture())
-    count = len(positions(r, image[0] if r.modes else image))
-    if not count:
-        return f"the task of {r.name} has no position, so there is no section of its workspace"
-    if count == 1 or count > len(r.module.JOINTS):
-        held = "line" if count == 1 else "curve" if len(r.module.JOINTS) == 1 else "surface"
-        return f"the hand of {r.name} moves on a {held}, of which there is no section"
-    return ""
-
-
-def _check_plane(r: Robot, plane: Sequence[str], *kinds: Sequence[str]) -> None:
-    """Refuse what is not two different coordinates of the first kind; the others may be named."""
-    if len(plane) != AREA or len({*plane} & {*kinds[0]}) != AREA:
-        listed = " or ".join(f"two of {', '.join(k)}" for k in kinds if len(k) >= AREA)
-        raise ValueError(f"the plane of {r.name} must be {listed}, not {', '.join(plane)}")
-
-
-def _task_plane(
-    r: Robot,
-    plane: Sequence[str] | None,
-    *,
-    at: ArrayLike | None,
-    resolution: int,
-    limits: Limits | None,
-    unit: str,
-) -> _Grid:
-    r.require("ik")
-    if why := unsectioned(r):
-        raise ValueError(why)
-    image = r.task(r.posture())
-    target = (image[0] if r.modes else image) if at is None else np.asarray(at, dtype=float)
-    places = positions(r, target)
-    chosen = list(plane or list(places)[:AREA]) if r.flat else list(plane or ("x", "z"))
-    _check_plane(r, chosen, list(places), r.module.JOINTS)
-    hand = r.module.SKELETON.points.index(r.module.SKELETON.hand)
-    seen = r.points(r.draw(2000, seed=2))[..., hand, :].reshape(-1, 3)
-    seen = seen[np.isfinite(seen).all(1)]
-    target = target.copy()
-    if at is None:
-        for name, k in places.items():
-            if name not in chosen and name != "z":
-                target.reshape(-1)[k] = 0.0
-    ends = list(limits or ())
-    for name in chosen[len(ends) :]:
-        low, high = np.quantile(seen[:, "xyz".index(name)], (0, 1))
-        margin = 0.08 * (high - low)
-        ends.append((low - margin, high + margin))
-    if limits is None:
-        ends = _opened(r, target, (places[chosen[0]], places[chosen[1]]), ends)
-    sides = [np.linspace(low, high, resolution) for low, high in ends]
-    flat = np.broadcast_to(target.reshape(-1), (resolution, resolution, target.size)).copy()
-    flat[..., places[chosen[0]]] = sides[0]
-    flat[..., places[chosen[1]]] = sides[1][:, None]
-    targets = flat.reshape(resolution, resolution, *target.shape)
-    others = [n for n in places if n not in chosen]
-    section = ", ".join(
-        [_coordinate(n, flat[0, 0, places[n]], unit) for n in others]
-        + [f"{_spoken(r, name)} {value:.3g} rad" for name, value in r.beside.items()]
-    )
-    return _Grid(
-        sides=(sides[0], sides[1]),
-        targets=targets,
-        names=(chosen[0], chosen[1]),
-        joints=False,
-        section=section,
-        unit=unit,
-    )
-
-
-def _spoken(r: Robot, name: str) -> str:
-    """A joint as in formulas, and any other angle in words."""
-    return f"{symbol(name)} =" if name in r.module.JOINTS else spoken(name)
-
-
-def _coordinate(name: str, value: float, unit: str) -> str:
-    told = f"\\,\\mathrm{{{unit}}}" if unit and value else ""
-    return f"${name} = {value + 0.0:.3g}{told}$"
-
-
-def _opened(
-    r: Robot, target: Array, places: tuple[int, int], ends: list[tuple[float, float]]
-) -> list[tuple[float, float]]:
-    """A window without targets at its border that can be reached; as is, if there is none."""
-    window = [list(e) for e in ends]
-    for _ in range(ROUNDS):
-        touched = False
-        for k in (0, 1):
-            along = np.linspace(window[1 - k][0], window[1 - k][1], EDGE)
-            for end in (0, 1):
-                points = np.broadcast_to(target.reshape(-1), (EDGE, target.size)).copy()
-                points[:, places[k]], points[:, places[1 - k]] = window[k][end], along
-                _, status = r.branches(points.reshape(EDGE, *target.shape))
-                if answered(status).any():
-                    touched = True
-                    step = 0.08 * (window[k][1] - window[k][0])
-                    window[k][end] += step if end else -step
-        if not touched:
-            return [(e[0], e[1]) for e in window]
-    return ends
 
 
 def _answers(r: Robot, targets: Array, branch: int | str) -> Array:
@@ -479,9 +325,16 @@ def _branch_name(r: Robot, branch: int | str) -> str:
 
 
 def _quantity(
-    r: Robot, q: Array, mode: NDArray[np.intp], function: str | Callable[[Array], Array]
+    r: Robot,
+    place: tuple[Array, Array],
+    mode: NDArray[np.intp],
+    function: str | Callable[[Array], Array],
 ) -> tuple[Array, str]:
-    """The values of a function for each posture, in its assembly mode, and what they are."""
+    """The values of a function for each posture, in its assembly mode, and what they are.
+
+    The ``place`` is the joints and the target; the target counts if no forward map gives it.
+    """
+    q, x = place
 
     def in_mode(values: Array) -> Array:
         axes = tuple(range(mode.ndim, values.ndim))
@@ -490,13 +343,14 @@ def _quantity(
     if callable(function):
         return np.asarray(function(q)), getattr(function, "__name__", "")
     if r.has(function):
-        values = np.asarray(r.call(function, q))
+        values = np.asarray(r.measured(function, q, x))
         return (in_mode(values) if values.ndim >= q.ndim else values), function
     if function not in MEASURES:
-        known = dict.fromkeys([*MEASURES, *(n for n in r.module.__all__ if n.islower())])
-        raise ValueError(f"{r.name} has no function {function}; there are {', '.join(known)}")
-    name = next((n for n in ("jacobian", "jacobian_space") if r.has(n)), "jacobian")
-    J = np.asarray(r.call(name, q))
+        there = dict.fromkeys([*MEASURES, *(n for n in r.module.__all__ if n.islower())])
+        raise ValueError(f"{r.name} has no function {function}; there are {', '.join(there)}")
+    known = JACOBIANS if function == "condition" else JACOBIANS[:2]
+    name = next((n for n in known if r.has(n)), "jacobian")
+    J = np.asarray(r.measured(name, q, x))
     J = in_mode(J) if r.modes else J
     sizes = singular_values(J[..., : J.shape[-1], :])
     if function == "condition":
@@ -505,17 +359,18 @@ def _quantity(
     return np.prod(sizes, axis=-1), "manipulability"
 
 
-def _map_axes(grid: _Grid) -> Any:
+def _map_axes(grid: Grid) -> Any:
     """Axes of a figure that is as low as the section is."""
     width, height = (float(np.ptp(side)) for side in grid.sides)
     low = SIZE[1] if grid.joints else AROUND + (SIZE[0] - AROUND) * height / width
     return new_axes(False, (SIZE[0], min(max(low, 2 * AROUND), SIZE[1])))
 
 
-def _name(ax: Any, grid: _Grid) -> None:
-    unit = f" ({grid.unit})" if grid.unit else ""
-    ax.set(xlabel=symbol(grid.names[0]) + unit)
-    ax.set_ylabel(symbol(grid.names[1]) + unit, rotation=90 if unit else 0)
+def _name(ax: Any, grid: Grid) -> None:
+    unit = f" ({grid.unit})" if grid.unit else "" if grid.joints else " (rad)"
+    named = [name if name in DIRECTION else symbol(name) for name in grid.names]
+    ax.set(xlabel=named[0] + unit)
+    ax.set_ylabel(named[1] + unit, rotation=90 if unit else 0)
     if not grid.joints:
         ax.set_aspect("equal")
         named = [text for text in (ax.get_title(), grid.section) if text]

@@ -31,6 +31,9 @@ STILL = 1e-9
 POSITION = "xyz"
 """The coordinates of a task that are lengths, if no forward map gives it."""
 
+JACOBIANS = ("jacobian", "jacobian_space", "jacobian_inverse")
+"""Functions whose matrix has the condition number of the Jacobian."""
+
 POSE = {"x": 3, "y": 7, "z": 11}
 """The places of the position among the 16 entries of a pose."""
 
@@ -70,6 +73,10 @@ class Robot:
     def call(self, function: str, *arguments: Any) -> Any:
         self.require(function)
         return getattr(self.module, function)(*arguments, params=self.params)
+
+    def measured(self, function: str, q: ArrayLike, x: ArrayLike) -> Any:
+        """A function of postures that reach targets, which it takes too without a forward map."""
+        return self.call(function, *([] if self.has_forward_map else [x]), q)
 
     def task(self, q: ArrayLike) -> Array:
         """The forward map; assembly modes come before the coordinates."""
@@ -169,7 +176,7 @@ class Robot:
 
     def _conditioning(self, q: Array) -> Array:
         """The inverse condition number of the Jacobian, the best of the assembly modes."""
-        name = next((n for n in ("jacobian", "jacobian_space") if self.has(n)), None)
+        name = next((n for n in JACOBIANS[:2] if self.has(n)), None)
         if name is None:
             return np.ones(len(q))
         sizes = singular_values(np.asarray(self.call(name, q)))

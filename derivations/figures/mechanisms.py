@@ -68,7 +68,13 @@ VIEWS = {
     "orthoglide": View(
         unit="m", home=(1, 1, 1), general=(1.15, 0.9, 0.8), plane=("x", "y"), at=(0, 0, 0), mode=1
     ),
-    "three_prs": View(unit="m", home=(0.5, 0, 0), general=(0.45, *degrees(20, -25))),
+    "three_prs": View(
+        unit="m",
+        home=(0.5, 0, 0),
+        general=(0.45, *degrees(20, -25)),
+        plane=("tilt_x", "tilt_y"),
+        at=(0.45, 0, 0),
+    ),
     "spherical_five_bar": View(
         unit="m",
         home=degrees(110, 70),

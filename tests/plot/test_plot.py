@@ -125,7 +125,7 @@ def test_field_has_the_values_of_the_function() -> None:
 def test_conditioning_over_the_task_is_that_of_the_mode_that_reaches_it(name: str) -> None:
     robot = import_module(f"closedform.generated.numpy.{name}")
     r = plot.robot.Robot.of(robot)
-    grid = plot.maps._plane(r, None, at=None, resolution=12, limits=None, unit="")
+    grid = plot.sections.grid_over(r, None, at=None, resolution=12, limits=None, unit="")
     drawn = np.asarray(plot.field(robot, "condition", resolution=12).collections[0].get_array())
     h, size = 1e-6, r.size
     compared = 0
@@ -247,12 +247,57 @@ def test_links_of_a_spherical_mechanism_are_arcs_about_its_centre() -> None:
         assert np.allclose(plane @ rod, 0, atol=1e-12)
 
 
-def test_a_hand_on_a_surface_has_no_section() -> None:
+def test_the_workspace_of_a_hand_on_a_sphere_is_over_its_directions() -> None:
     robot = import_module("closedform.generated.numpy.spherical_five_bar")
-    assert fits(robot, "conditioning")
-    assert not fits(robot, "workspace")
-    with pytest.raises(ValueError, match="moves on a surface"):
-        plot.workspace(robot)
+    assert fits(robot, "workspace")
+    mesh = plot.workspace(robot, resolution=SMALL, singular=False).collections[0]
+    counts = np.ma.filled(mesh.get_array(), 0).astype(float)
+    hands = robot.fk([[1.9, 1.2], [0.3, -0.7], [2.8, 0.4]])
+    seen = 0
+    for x, status in zip(hands.p.reshape(-1, 3), hands.status.reshape(-1), strict=True):
+        if status == 0:
+            place = np.arctan2(x[1], x[0]), np.arcsin(x[2] / np.linalg.norm(x))
+            column, row = (
+                round((v / end + 1) * (SMALL - 1) / 2)
+                for v, end in zip(place, (np.pi, np.pi / 2), strict=True)
+            )
+            near = counts[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
+            assert (robot.ik(x).status == 0).sum() in near
+            seen += 1
+    assert seen > 2 and 0 in counts
+
+
+def test_a_mechanism_without_a_forward_map_has_maps_over_its_task() -> None:
+    robot = import_module("closedform.generated.numpy.three_prs")
+    assert fits(robot, "workspace") and fits(robot, "conditioning")
+    at, tilts = (0.45, 0, 0), ("tilt_x", "tilt_y")
+    mesh = plot.field(robot, "condition", tilts, at=at, resolution=SMALL).collections[0]
+    x, k = np.array([0.45, -np.pi / 2, np.pi / 2]), 0
+    sides = np.linspace(-np.pi / 2, np.pi / 2, SMALL)
+    row, column = SMALL // 3, SMALL // 2
+    x[1:] = sides[column], sides[row]
+    J = robot.jacobian(x, robot.ik(x).q[k])
+    drawn = float(mesh.get_array().reshape(SMALL, SMALL)[row, column])
+    assert drawn == pytest.approx(1 / np.linalg.cond(J), rel=1e-9)
+    ax = plot.workspace(robot, tilts, at=at, resolution=SMALL)
+    assert "all legs" in [text.get_text() for text in ax.get_legend().get_texts()]
+    with pytest.raises(ValueError, match="must be two of z, tilt_x, tilt_y, not rho1, rho2"):
+        plot.field(robot, "condition", ("rho1", "rho2"), resolution=SMALL)
+
+
+@pytest.mark.parametrize(("name", "dots"), [("four_bar", 4), ("slider_crank", 6)])
+def test_the_motion_of_a_mechanism_with_one_joint(name: str, dots: int) -> None:
+    robot = import_module(f"closedform.generated.numpy.{name}")
+    assert fits(robot, "motion") and not fits(robot, "workspace")
+    above, below = plot.motion(robot).figure.axes
+    curves = [line.get_data() for line in above.lines if len(line.get_xdata()) > 1]
+    slopes = [line.get_ydata() for line in below.lines]
+    for (q, x), slope in zip(curves, slopes, strict=True):
+        assert np.allclose(np.gradient(x, q)[2:-2], slope[2:-2], atol=1e-3)
+    marked = [line.get_xdata()[0] for line in above.lines if len(line.get_xdata()) == 1]
+    assert len(marked) == dots
+    turns = np.abs(robot.jacobian(np.reshape(marked, (-1, 1)))).min(axis=1)
+    assert turns.max() < 1e-3
 
 
 def test_a_map_of_a_hand_that_turns_is_over_two_joints() -> None:

@@ -76,6 +76,8 @@ class View:
     given: float | None = None
     """What the inverse takes besides a target, if it is not that of a regular posture."""
     limits: Limits | None = None
+    on_sphere: bool = False
+    """Whether the hand stays on a sphere, so that its workspace is a part of that."""
     measured: tuple[str, str] | None = None
     """The plane of the map of conditioning, if it is another one."""
     unit: str = ""
@@ -104,10 +106,9 @@ def standard(view: View) -> list[Figure]:
         ),
         Figure(
             "workspace",
-            "How many branches reach each point of a section of the workspace, or of the sphere "
-            "on which the hand stays. Black lines are where branches end; the legend names the "
-            "factors of the singular set that vanish there. Other lines are where a factor of some "
-            "branch vanishes inside.",
+            f"How many branches reach each point of {_shown_part(view)}. Black lines are where "
+            "branches end; the legend names the factors of the singular set that vanish there. "
+            "Other lines are where a factor of some branch vanishes inside.",
             lambda robot: workspace(
                 robot, view.plane, at=view.at, limits=view.limits, unit=view.unit, given=view.given
             ),
@@ -132,6 +133,11 @@ def standard(view: View) -> list[Figure]:
             INVERSE,
         ),
     ]  # fmt: skip
+
+
+def _shown_part(view: View) -> str:
+    """What part of the workspace is drawn."""
+    return "the sphere on which the hand stays" if view.on_sphere else "a section of the workspace"
 
 
 def _shown(view: View) -> str:

@@ -79,6 +79,7 @@ VIEWS = {
         unit="m",
         home=degrees(110, 70),
         general=degrees(130, 60),
+        on_sphere=True,
         measured=("theta1", "theta2"),
         faint=("rod0",),
     ),

@@ -275,6 +275,15 @@ def test_the_rate_of_a_target_is_a_differential() -> None:
     )
 
 
+def test_points_in_the_errata_are_written_as_in_the_derivation() -> None:
+    written = Prose(derivation("hybrid_five_bar")).with_points
+    told = written("A test of P.  A path from A meets AB at (0, 1); A controller waits.")
+    assert told == (
+        r"A test of $P$.  A path from $A$ meets $\mathit{AB}$ at (0, 1); A controller waits."
+    )
+    assert written("A and B turn", first=False) == "$A$ and $B$ turn"
+
+
 def test_a_vector_of_the_formulas_is_bold_in_sentences() -> None:
     told = Prose(derivation("rpr_planar"))("A2 is at b, and p - b_1 has the length rho1.")
     assert r"at $b$, and $\mathbf p - \mathbf b_1$ has" in told  # b is also a parameter

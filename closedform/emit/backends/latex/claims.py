@@ -48,11 +48,11 @@ class Claims:
     def erratum(self, entry: Entry) -> dict[str, Any]:
         return {
             "key": entry.erratum.key,
-            "title": mixed(entry.erratum.title),
+            "title": self.text(entry.erratum.title),
             "gravity": entry.gravity.value.capitalize(),
             "verdict": ", ".join(entry.verdicts),
-            "why": mixed(entry.erratum.why),
-            "use": mixed(entry.erratum.use),
+            "why": self.text(entry.erratum.why),
+            "use": self.text(entry.erratum.use),
             "claims": [self.claim(c) for c in entry.claims],
         }
 
@@ -67,7 +67,7 @@ class Claims:
         return rows
 
     def claim(self, claim: ClaimResult) -> dict[str, Any]:
-        titles = {e.key: mixed(e.title) for e in self.proof.errata}
+        titles = {e.key: self.text(e.title) for e in self.proof.errata}
         steps = self.derivation.steps
         return {
             "where": escape(claim.where),
@@ -80,8 +80,10 @@ class Claims:
             "judged": f"{claim.kind.capitalize()}{':' if claim.evidence else '.'}",
             "found": "Assumption:" if claim.kind == PROVED_UNDER else "Found:",
             "evidence": self.told(claim.evidence),
-            "reading": mixed(claim.readings[0].text) if claim.readings else "",
-            "others": [(mixed(r.text), r.kind, self.told(r.evidence)) for r in claim.readings[1:]],
+            "reading": self.text(claim.readings[0].text) if claim.readings else "",
+            "others": [
+                (self.text(r.text), r.kind, self.told(r.evidence)) for r in claim.readings[1:]
+            ],
             "corrected": mixed(claim.corrected, led=True),
             "erratum": claim.erratum,
             "title": titles.get(claim.erratum, ""),
@@ -95,6 +97,13 @@ class Claims:
         formula = "|".join([COMPARED, *names])
         for i in range(0, len(parts), 2):
             parts[i] = re.sub(formula, lambda m: f"${self.prose.formula(m[0])}$", parts[i])
+        return self.text("$".join(parts))
+
+    def text(self, text: str) -> str:
+        """A text in which points of the drawing, and lines through them, are formulas."""
+        parts = text.split("$")
+        for i in range(0, len(parts), 2):
+            parts[i] = self.prose.with_points(parts[i], first=not i)
         return mixed("$".join(parts))
 
     def equations_of(self, label: str) -> str:

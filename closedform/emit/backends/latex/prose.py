@@ -262,8 +262,11 @@ class Prose:
         self.parts_of_branches = {part for label in labels for part in label.split("_")} - names
         """The words of the names of branches."""
         letters = {n for n in drawn if re.fullmatch("[A-Z]", n)}
-        self.lines = re.compile(rf"[{''.join(sorted(letters)) or '?'}]{{2,}}")
+        some = "".join(sorted(letters)) or "?"
+        self.lines = re.compile(rf"[{some}]{{2,}}")
         """Lines and triangles through points that have letters: ``AC``, ``BDP``."""
+        self.lettered = re.compile(rf"(?<![\w$\\{{^_-])[{some}]+(?![\w'}}])")
+        """These and the points."""
         self.parts_of_branches -= {p for p in self.parts_of_branches if self.lines.fullmatch(p)}
         self.code = ({f.name for f in functions if f.has_status} | {"fk", "ik"}) - self.known
         shown = [left for step in derivation.steps for left, _ in step.shown]
@@ -293,6 +296,21 @@ class Prose:
             self._known(piece) if i % 2 else self._sentences(piece)
             for i, piece in enumerate(pieces)
         )
+
+    def with_points(self, text: str, *, first: bool = True) -> str:
+        """Text with its points and lines as formulas between dollar signs.
+
+        It begins a sentence if it is the ``first`` part of a text.
+        """
+
+        def written(found: re.Match[str]) -> str:
+            before = text[: found.start()]
+            begins = starts([before]) and bool(before or first)
+            if found[0] == "A" and begins and ARTICLE.match(text[found.end() :]):
+                return "A"
+            return f"${found[0]}$" if len(found[0]) == 1 else rf"$\mathit{{{found[0]}}}$"
+
+        return self.lettered.sub(written, text)
 
     def _known(self, piece: str) -> str:
         """An angle, the matrix of a cross product, or a part of the name of a branch."""

@@ -83,7 +83,10 @@ class Values:
         self.degrees = np.array(degrees.degrees)
         """Upper bounds for the degrees of the entries in lengths."""
         self._sized = [k for k, s in enumerate(symbols) if s in degrees.symbols]
-        self.operations = sum(lower(function, derivation).operations().values())
+        lowered = lower(function, derivation)
+        self.operations = sum(lowered.operations().values())
+        self.scaled = function.has_status and lowered.degrees is not None
+        """Whether lengths are divided by the largest one, so that their powers do not overflow."""
         self._bounds = [_margins(function, symbols, s) for s in signs]
         self._flags = [_margins(function, symbols, s, Vanishes) for s in signs]
 
@@ -117,6 +120,10 @@ class Values:
         longest = abs(rows[:, self._sized]).max(axis=1, initial=0.0)[:, None]
         with np.errstate(over="ignore"):
             return np.asarray(longest ** np.maximum(self.degrees, 0.0))
+
+    def longest(self, row: Array) -> float:
+        """The largest length of a row."""
+        return float(abs(row[self._sized]).max(initial=0.0))
 
     def existence(self, rows: Array, slack: float) -> Array:
         """For each entry: 1 where it exists, -1 where not, 0 within ``slack`` of the boundary."""

@@ -17,6 +17,7 @@ from closedform.check.samples import Sample, joint_samples
 from closedform.check.truth import Values, condition_of, values_of
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
+from closedform.model.tolerances import HIGHEST_DEGREE
 
 WELL_CONDITIONED = 3.0
 """Larger errors, in ulps, are compared with the change of the value if the inputs change."""
@@ -138,6 +139,8 @@ class _Errors:
             grown = float(self._amplified[row, k])
             if self.backend.eps * grown >= self._scale(row, k, exacts):  # no digit is known
                 return None
+            if self._overflows(row):
+                return None
             if self.values.beside_pose or self._near_pole(row):
                 error = _ulps(self.computed[row, k], exact, scale + grown, self.backend)
         return error
@@ -150,6 +153,11 @@ class _Errors:
         most = NESTED * max(self._largest[row], self.powers[row, k])
         scale = max(min(self.scales[row, k], most), self.least[row, k])
         return float(scale) if math.isfinite(self.scales[row, k]) else math.inf
+
+    def _overflows(self, row: int) -> bool:
+        """Whether powers of lengths may overflow, because they are not scaled."""
+        largest = self.backend.tolerances.sizes(HIGHEST_DEGREE)[1]
+        return not self.values.scaled and self.values.longest(self.rows[row]) > largest
 
     def _near_pole(self, row: int) -> bool:
         """Whether assembly modes are so close that divisors nearly cancel, or hardly exist."""

@@ -95,7 +95,7 @@ class _Errors:
         self.scales = values.scales(rows, backend.dtype)
         powers = values.powers(rows)
         self.powers = np.where(values.beside_pose & (values.degrees > 1), powers, 0.0)
-        # lengths are divided by the largest one, so what is smaller than this is lost
+        # if lengths are divided by the largest one, what is smaller than this is lost
         self.least = np.finfo(backend.dtype).tiny * np.maximum(powers, 1.0)
         self.middle, self.radius = values.exact.balls(rows)
         # an angle just above -pi may be rounded to -pi, which is returned as pi

@@ -367,7 +367,7 @@ def _map_axes(grid: Grid) -> Any:
 
 
 def _name(ax: Any, grid: Grid) -> None:
-    unit = f" ({grid.unit})" if grid.unit else "" if grid.joints else " (rad)"
+    unit = f" ({grid.unit})" if grid.unit else ""
     named = [name if name in DIRECTION else symbol(name) for name in grid.names]
     ax.set(xlabel=named[0] + unit)
     ax.set_ylabel(named[1] + unit, rotation=90 if unit else 0)

@@ -39,7 +39,7 @@ class Grid:
     section: str = ""
     """The other coordinates of the target."""
     unit: str = ""
-    """That of lengths, if it is told."""
+    """That of both axes, if it is told."""
 
 
 def grid_over(
@@ -114,7 +114,7 @@ def task_grid(
         names=(chosen[0], chosen[1]),
         joints=False,
         section=section,
-        unit=unit if {*chosen} <= {*POSITION} else "",
+        unit=_unit(chosen, unit),
     )
 
 
@@ -161,7 +161,8 @@ def _over_sphere(target: Array, resolution: int, limits: Limits | None) -> Grid:
     sides = [np.linspace(low, high, resolution) for low, high in limits or SPHERE]
     a, b = np.meshgrid(*sides)
     unit = np.stack([np.cos(b) * np.cos(a), np.cos(b) * np.sin(a), np.sin(b)], axis=-1)
-    return Grid((sides[0], sides[1]), np.linalg.norm(target) * unit, DIRECTION, False)
+    targets = np.linalg.norm(target) * unit
+    return Grid((sides[0], sides[1]), targets, DIRECTION, False, unit="rad")
 
 
 def _places(r: Robot, target: Array) -> Mapping[str, int]:
@@ -194,6 +195,12 @@ def _reached(r: Robot, target: Array, places: Mapping[str, int], name: str) -> t
     low, high = np.quantile(seen[:, "xyz".index(name)], (0, 1))
     margin = 0.08 * (high - low)
     return low - margin, high + margin
+
+
+def _unit(chosen: Sequence[str], of_lengths: str) -> str:
+    """The unit of both coordinates; none if they differ, or that of lengths is not told."""
+    lengths = [name in POSITION for name in chosen]
+    return of_lengths if all(lengths) else "" if any(lengths) else "rad"
 
 
 def _check_plane(r: Robot, plane: Sequence[str], *kinds: Sequence[str]) -> None:

@@ -267,6 +267,17 @@ def test_the_workspace_of_a_hand_on_a_sphere_is_over_its_directions() -> None:
     assert seen > 2 and 0 in counts
 
 
+@pytest.mark.parametrize(
+    ("name", "unit", "label"),
+    [("planar_2r", "", "$x$"), ("planar_2r", "cm", "$x$ (cm)"), ("delta", "", "$x$"),
+     ("spherical_five_bar", "m", "longitude (rad)")],
+)  # fmt: skip
+def test_axes_of_lengths_have_the_unit_that_is_told(name: str, unit: str, label: str) -> None:
+    robot = import_module(f"closedform.generated.numpy.{name}")
+    ax = plot.workspace(robot, unit=unit, resolution=SMALL, singular=False)
+    assert ax.get_xlabel() == label
+
+
 def test_a_mechanism_without_a_forward_map_has_maps_over_its_task() -> None:
     robot = import_module("closedform.generated.numpy.three_prs")
     assert fits(robot, "workspace") and fits(robot, "conditioning")

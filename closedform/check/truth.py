@@ -95,13 +95,15 @@ class Values:
 
         This is the radius of a ball that grows with each operation of the function.
         """
-        outputs = [e for a in self._function.outputs for e in a.entries]
-        cases = [
-            _in_case(self._function, self._symbols, signs, outputs)
-            for _, signs in self._function.cases()
-        ]
-        radius = np.concatenate([case.balls(rows)[1] for case in cases], axis=1)
+        radius = np.concatenate([case.balls(rows)[1] for case in self._as_computed], axis=1)
         return np.asarray(radius / np.finfo(WIDE).eps, float)
+
+    @cached_property
+    def _as_computed(self) -> list[RowEvaluator]:
+        """The outputs of each case in the names of the function, step by step."""
+        function = self._function
+        outputs = [e for a in function.outputs for e in a.entries]
+        return [_in_case(function, self._symbols, s, outputs) for _, s in function.cases()]
 
     @cached_property
     def named(self) -> Callable[[Array, type], Array]:
@@ -117,13 +119,12 @@ class Values:
 
     def powers(self, rows: Array) -> Array:
         """For each entry, the largest length to the power of its degree; 1 for negative degrees."""
-        longest = abs(rows[:, self._sized]).max(axis=1, initial=0.0)[:, None]
         with np.errstate(over="ignore"):
-            return np.asarray(longest ** np.maximum(self.degrees, 0.0))
+            return np.asarray(self.longest(rows)[:, None] ** np.maximum(self.degrees, 0.0))
 
-    def longest(self, row: Array) -> float:
-        """The largest length of a row."""
-        return float(abs(row[self._sized]).max(initial=0.0))
+    def longest(self, rows: Array) -> Array:
+        """The largest length of each row."""
+        return np.asarray(abs(rows[:, self._sized]).max(axis=1, initial=0.0))
 
     def existence(self, rows: Array, slack: float) -> Array:
         """For each entry: 1 where it exists, -1 where not, 0 within ``slack`` of the boundary."""

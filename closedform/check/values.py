@@ -125,7 +125,7 @@ class _Errors:
         except Undetermined:  # whether it is at a pole, where irrational numbers cancel
             self.unsettled.add(row)
             return None
-        scale = self._scale(row, k, exacts)
+        scale = natural = self._scale(row, k, exacts)
         exact = _turned(exacts[k]) if self.turned[row, k] else exacts[k]
         error = _ulps(self.computed[row, k], exact, scale, self.backend)
         if error > WELL_CONDITIONED:
@@ -137,9 +137,7 @@ class _Errors:
             error = _ulps(self.computed[row, k], exact, scale, self.backend)
         if error > WELL_CONDITIONED and (self.values.beside_pose or self.values.in_modes):
             grown = float(self._amplified[row, k])
-            if self.backend.eps * grown >= self._scale(row, k, exacts):  # no digit is known
-                return None
-            if self._overflows(row):
+            if self.backend.eps * grown >= natural or self._overflows(row):  # no digit is known
                 return None
             if self.values.beside_pose or self._near_pole(row):
                 error = _ulps(self.computed[row, k], exact, scale + grown, self.backend)
@@ -157,7 +155,8 @@ class _Errors:
     def _overflows(self, row: int) -> bool:
         """Whether powers of lengths may overflow, because they are not scaled."""
         largest = self.backend.tolerances.sizes(HIGHEST_DEGREE)[1]
-        return not self.values.scaled and self.values.longest(self.rows[row]) > largest
+        longest = self.values.longest(self.rows[row : row + 1])[0]
+        return bool(not self.values.scaled and longest > largest)
 
     def _near_pole(self, row: int) -> bool:
         """Whether assembly modes are so close that divisors nearly cancel, or hardly exist."""

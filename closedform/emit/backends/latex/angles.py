@@ -284,7 +284,10 @@ class _InAngles:
         return False
 
     def _varies(self, value: sp.Expr, flag: sp.Symbol) -> bool:
-        """Whether an angle is no number where a flag holds, by the names that it changes alone."""
+        """Whether an angle is certainly not a number where a flag holds.
+
+        Only the names that the flag changes are looked at.
+        """
         flags = self.usual | {flag: sp.true}
         while True:
             value = substitute(value, flags)

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from closedform.plot.postures import spoken
 from closedform.plot.robot import JACOBIANS, Array, Robot, singular_values
-from closedform.plot.sections import DIRECTION, Grid, Limits, answered, grid_over, task_grid
+from closedform.plot.sections import DIRECTION, Grid, Limits, Window, answered, grid_over, task_grid
 from closedform.plot.style import colour, new_axes, styled
 from closedform.plot.symbols import equation, symbol
 
@@ -82,7 +82,7 @@ def workspace(
         as in :func:`closedform.plot.mechanism`
     """
     r = Robot.of(robot, params, given)
-    grid = task_grid(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
+    grid = task_grid(r, plane, Window(at, resolution, limits, unit))
     q, status = r.branches(grid.targets)
     reached = answered(status).sum(-1)
     ax = _map_axes(grid) if ax is None else ax
@@ -230,7 +230,7 @@ def field(
         as in :func:`workspace`; over two joints, ``at`` gives the other joints
     """
     r = Robot.of(robot, params, given)
-    grid = grid_over(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
+    grid = grid_over(r, plane, Window(at, resolution, limits, unit))
     q = grid.targets if grid.joints else _answers(r, grid.targets, branch)
     first = np.zeros(q.shape[:-1], dtype=np.intp)
     mode = first if grid.joints else r.mode_that_reaches(q, grid.targets)
@@ -283,7 +283,7 @@ def singularities(
         as in :func:`field`
     """
     r = Robot.of(robot, params, given)
-    grid = grid_over(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
+    grid = grid_over(r, plane, Window(at, resolution, limits, unit))
     ax = _map_axes(grid) if ax is None else ax
     drawn: dict[str, Any] = {}
     if grid.joints:

@@ -60,7 +60,7 @@ def mechanism(
     q
         the joints, (joints,); by default a posture that is far from singular
     x
-        the pose of the hand, only for a mechanism without a forward map
+        the target, only for a mechanism without a forward map, where ``q`` needs it
     params
         the dimensions; by default those of the example
     mode
@@ -79,7 +79,8 @@ def mechanism(
     hues
         the number of the colour of links that have one of their own, such as those of a leg
     """
-    r = _posed(Robot.of(robot, params), x)
+    r = Robot.of(robot, params)
+    r = r if q is not None and x is None else _posed(r, x)
     joints = _first(r) if q is None else np.asarray(q, dtype=float)
     if joints.shape != (len(robot.JOINTS),):
         raise ValueError(f"q must have the shape ({len(robot.JOINTS)},), not {joints.shape}")

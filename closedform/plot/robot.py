@@ -87,7 +87,7 @@ class Robot:
         """The points of the skeleton, an axis for the assembly mode first, even for one mode."""
         if not self.has_forward_map and self.target is None:
             raise ValueError(
-                f"{self.name} has no fk, so only its mechanism and its branches can be drawn"
+                f"{self.name} has no fk: its joints show no posture without the target x"
             )
         given = [] if self.has_forward_map else [self.target]
         found = np.asarray(self.call("skeleton", *given, q))

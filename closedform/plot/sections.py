@@ -29,6 +29,19 @@ TURN = (-np.pi / 2, np.pi / 2)
 
 
 @dataclass(frozen=True)
+class Window:
+    """What a map shows of its plane, as the caller gives it; ``None`` is the usual."""
+
+    at: ArrayLike | None = None
+    """The target, or the joints, that give the other coordinates."""
+    resolution: int = 400
+    """The points along each side."""
+    limits: Limits | None = None
+    unit: str = ""
+    """That of lengths."""
+
+
+@dataclass(frozen=True)
 class Grid:
     """A grid over a plane: its sides, the targets or joints on it, and the names of its axes."""
 
@@ -42,15 +55,7 @@ class Grid:
     """That of both axes, if it is told."""
 
 
-def grid_over(
-    r: Robot,
-    plane: Sequence[str] | None,
-    *,
-    at: ArrayLike | None,
-    resolution: int,
-    limits: Limits | None,
-    unit: str,
-) -> Grid:
+def grid_over(r: Robot, plane: Sequence[str] | None, window: Window) -> Grid:
     """A plane of the task, or of two joints: where both are named, or the task has no position."""
     names = list(r.module.JOINTS)
     if plane is None and r.has_forward_map and _without_position(r):
@@ -58,63 +63,57 @@ def grid_over(
             raise ValueError(f"{r.name} has one joint, and a map needs two")
         plane = names[:AREA]
     if plane is None or not r.has_forward_map or not all(p in names for p in plane):
-        return task_grid(r, plane, at=at, resolution=resolution, limits=limits, unit=unit)
+        return task_grid(r, plane, window)
     _check_plane(r, plane, names)
-    base = r.posture() if at is None else np.asarray(at, dtype=float)
+    base = r.posture() if window.at is None else np.asarray(window.at, dtype=float)
     places = [names.index(p) for p in plane]
-    ends = limits or [(0, r.size) if k in r.slides else (-np.pi, np.pi) for k in places]
-    sides = tuple(np.linspace(low, high, resolution) for low, high in ends)
-    targets = np.broadcast_to(base, (resolution, resolution, len(names))).copy()
+    ends = window.limits or [(0, r.size) if k in r.slides else (-np.pi, np.pi) for k in places]
+    sides = tuple(np.linspace(low, high, window.resolution) for low, high in ends)
+    targets = np.broadcast_to(base, (window.resolution, window.resolution, len(names))).copy()
     targets[..., places[0]], targets[..., places[1]] = sides[0], sides[1][:, None]
     return Grid((sides[0], sides[1]), targets, (plane[0], plane[1]), True)
 
 
-def task_grid(
-    r: Robot,
-    plane: Sequence[str] | None,
-    *,
-    at: ArrayLike | None,
-    resolution: int,
-    limits: Limits | None,
-    unit: str,
-) -> Grid:
+def task_grid(r: Robot, plane: Sequence[str] | None, window: Window) -> Grid:
     """A plane of the task; all directions of a hand that stays on a sphere."""
     r.require("ik")
     if why := unsectioned(r):
         raise ValueError(why)
-    target = _image(r) if at is None else np.asarray(at, dtype=float)
+    target = _image(r) if window.at is None else np.asarray(window.at, dtype=float)
     if _on_sphere(r):
         _check_plane(r, plane or DIRECTION, DIRECTION, r.module.JOINTS)
-        return _over_sphere(target, resolution, limits)
+        return _over_sphere(target, window.resolution, window.limits)
     places = _places(r, target)
     chosen = list(plane or _usual(r, places))
     known = () if not r.has_forward_map else r.module.JOINTS
     _check_plane(r, chosen, list(places), known)
     target = target.copy()
-    if at is None and r.has_forward_map:
+    if window.at is None and r.has_forward_map:
         for name, k in places.items():
             if name not in chosen and name != "z":
                 target.reshape(-1)[k] = 0.0
     first, second = (places[name] for name in chosen)
-    ends = list(limits or ())
+    ends = list(window.limits or ())
     ends += [_reached(r, target, places, name) for name in chosen[len(ends) :]]
-    if limits is None and {*chosen} <= {*POSITION}:
+    if window.limits is None and {*chosen} <= {*POSITION}:
         ends = _opened(r, target, (first, second), ends)
-    sides = [np.linspace(low, high, resolution) for low, high in ends]
-    flat = np.broadcast_to(target.reshape(-1), (resolution, resolution, target.size)).copy()
+    sides = [np.linspace(low, high, window.resolution) for low, high in ends]
+    flat = np.broadcast_to(
+        target.reshape(-1), (window.resolution, window.resolution, target.size)
+    ).copy()
     flat[..., first], flat[..., second] = sides[0], sides[1][:, None]
     others = [n for n in places if n not in chosen]
     section = ", ".join(
-        [_coordinate(n, flat[0, 0, places[n]], unit) for n in others]
+        [_coordinate(n, flat[0, 0, places[n]], window.unit) for n in others]
         + [f"{_spoken(r, name)} {value:.3g} rad" for name, value in r.beside.items()]
     )
     return Grid(
         sides=(sides[0], sides[1]),
-        targets=flat.reshape(resolution, resolution, *target.shape),
+        targets=flat.reshape(window.resolution, window.resolution, *target.shape),
         names=(chosen[0], chosen[1]),
         joints=False,
         section=section,
-        unit=_unit(chosen, unit),
+        unit=_unit(chosen, window.unit),
     )
 
 
@@ -249,4 +248,13 @@ def answered(status: NDArray[np.uint8]) -> NDArray[np.bool_]:
     return np.asarray((status == OK) | (status == SINGULAR))
 
 
-__all__ = ["DIRECTION", "Grid", "Limits", "answered", "grid_over", "task_grid", "unsectioned"]
+__all__ = [
+    "DIRECTION",
+    "Grid",
+    "Limits",
+    "Window",
+    "answered",
+    "grid_over",
+    "task_grid",
+    "unsectioned",
+]

@@ -398,5 +398,18 @@ def test_it_can_be_drawn(stage: ModuleType, hexapod: ModuleType) -> None:
         assert np.min(np.linalg.norm(drawn - point, axis=1)) < 1e-9
     with pytest.raises(ValueError, match="in no branch"):
         plot.mechanism(stage, x=[9, 9, 0])
-    with pytest.raises(ValueError, match="stage has no fk, so only its mechanism and its branches"):
-        plot.workspace(stage)
+    with pytest.raises(ValueError, match="no fk: its joints show no posture without the target x"):
+        plot.mechanism(stage, stage.ik(x).q[3])
+
+
+def test_its_workspace_is_a_section_of_its_targets(stage: ModuleType) -> None:
+    ax = plot.workspace(stage, at=[0.0, 0.0, 0.2], resolution=60)
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("$x$", "$y$")
+    shown = ax.collections[0].get_array().reshape(60, 60)
+    targets = np.stack(
+        [*np.meshgrid(*(np.linspace(*e, 60) for e in (ax.get_xlim(), ax.get_ylim())))], -1
+    )
+    counted = (stage.ik(np.insert(targets, 2, 0.2, axis=-1)).status == OK).sum(-1)
+    assert np.mean(np.ma.filled(shown, 0) != counted) < 0.02
+    with pytest.raises(ValueError, match="the plane of stage must be two of x, y, not theta1"):
+        plot.singularities(stage, ("theta1", "theta2"))

@@ -125,7 +125,7 @@ def test_field_has_the_values_of_the_function() -> None:
 def test_conditioning_over_the_task_is_that_of_the_mode_that_reaches_it(name: str) -> None:
     robot = import_module(f"closedform.generated.numpy.{name}")
     r = plot.robot.Robot.of(robot)
-    grid = plot.sections.grid_over(r, None, at=None, resolution=12, limits=None, unit="")
+    grid = plot.sections.grid_over(r, None, plot.sections.Window(resolution=12))
     drawn = np.asarray(plot.field(robot, "condition", resolution=12).collections[0].get_array())
     h, size = 1e-6, r.size
     compared = 0

@@ -45,6 +45,7 @@ from closedform.derivations.h6ar_mechanism import (
     product,
     psi,
     reach,
+    report_short_wrist,
     solve_mid_plane,
     straight,
     target,
@@ -498,7 +499,7 @@ for k in (1, 2):
     d.write(f"p_{k}_beta", rf"\hat p_{k}", "gap of the tips, in the axes of the virtual upper arm")
     d.write(f"v_{k}_beta", rf"\hat v_{k}", "virtual fore-arm, in the axes of the virtual upper arm")
 # the turns that meet each limit alone miss both together by a little; the status says so
-unsure = sp.And(sp.Symbol("tangent"), sp.Or(sp.Symbol("spent_alpha"), sp.Symbol("spent_beta")))
+at_limits = sp.Or(sp.Symbol("spent_alpha"), sp.Symbol("spent_beta"))
 half = two_sines(
     p,
     (alpha, beta),
@@ -506,18 +507,20 @@ half = two_sines(
     seen,
     scale=beside,
     free=(theta3R, theta3L),
-    leniency=choose(unsure, 64, 1),
+    leniency=choose(at_limits, free.leniency, 1),
 ).implying([s.symbol for s in p.body[before:] if isinstance(s, Bound)])
 # near a right angle, sines at their limits may miss the gap by more than yaw and roll allow
 at_limit = sp.Or(*(sp.Symbol(f"spent_{n}") for n in ("alpha", "beta", "along")))
 sines = [next(s for s, e in half.means.items() if e == sin(x)) for x in (alpha, beta)]
 missed = v[0] * sines[1] - seen[0], m.L1 * sines[0] + v[1] * sines[1] - seen[1]
 missed = p.let("missed", choose(at_limit, sum(map(sp.Abs, missed)), 0))
-# and what is missed moves the tip farther if the wrist links are nearly stretched
-allowed = (1 + sp.Min(*(t**2 for t in tangents))) * (m.d + sum(m) / 64) * length / m.al
+# what is missed turns yaw and roll, and moves the tip more if the wrist links are nearly stretched
+turning = (1 + sp.Min(*(t**2 for t in tangents))) * sp.Max(m.d, sum(m) / 64)
+allowed = sp.Min(turning, sum(m) * length / m.al)
 p.determined(
     choose(at_limit, allowed, 1), missed * 2**50, "sines at their limits miss the gap of the tips"
 )
+report_short_wrist(p, m, sp.Or(at_limit, sp.Symbol("tangent")))
 lemmas = (*middle.lemmas, half)
 solution = {s: e for lemma in lemmas for s, e in lemma.solution.items()}
 
@@ -559,7 +562,8 @@ d.function(
         "returned.",
         "SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): "
         "rounded joints do not determine the tip to 1e-12 there; or if a half difference is at a "
-        "right angle and rounding of the target decides whether the tips can be so far apart.",
+        "right angle, or the waist is tangent, and rounding of the target decides whether the arms "
+        "reach it.",
         ACCURACY,
         "INVALID: d, L1, or both L2 and a3 are zero.",
     ),

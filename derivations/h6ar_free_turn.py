@@ -20,6 +20,9 @@ from sympy import Rational, sqrt
 
 from closedform import Derivation, Program, choose, real, sign_of, used_up
 
+WIDER = 2**7
+"""The root of how many tolerances a turn may take at a tangent waist, where three events meet."""
+
 
 class Correction(NamedTuple):
     """How small turns make an area large enough that is too small by rounding.
@@ -73,6 +76,10 @@ class FreeTurn:
     """The share of the way of the tip that the waist does not make up for."""
     curve: sp.Expr = sp.S.Zero
     """The same of half of the square of the way."""
+    wider: sp.Expr = sp.S.One
+    """Turns may miss the tip by the square of this times the tolerance; SINGULAR says so."""
+    leniency: sp.Expr = sp.S.One
+    """Real arms may be beyond their limits by this many tolerances; SINGULAR says so."""
 
     def upper_turn(self, turn: sp.Expr, aside: sp.Expr) -> sp.Expr:
         """The tangent of the turn of the upper arm that belongs to a free turn."""
@@ -98,20 +105,35 @@ class FreeTurn:
         upper = self.upper_turn(sp.S.One, sp.S.Zero)
         square = self.m.L1 * upper**2 + fore * self.fore**2 + self.curve * self.tilt**2
         squares = (square, self.m.L1)
-        tip_rates = [
-            (by + sqrt(self.slack * square / 2) / 10**6) / self.slack
-            for by, square in zip((self.left * sp.Abs(self.tilt), self.m.L1), squares, strict=True)
-        ]
+        ways = list(zip((self.left * sp.Abs(self.tilt), self.m.L1), squares, strict=True))
         spent = self.program.vanishes(
             f"spent_{name}", used_up(margin), scale, f"no margin left: {meaning}"
         )
-        tip_rates = [let(f"heavy_{k}_{name}", choose(spent, e, 1)) for k, e in enumerate(tip_rates)]
+
+        def rate(by: sp.Expr, square: sp.Expr, wider: sp.Expr) -> sp.Expr:
+            root = sqrt(self.slack * square / 2) / 10**6
+            return (by + wider * root) / (wider**2 * self.slack)
+
+        tip_rates = [
+            let(f"heavy_{k}_{name}", choose(spent, rate(*way, self.wider), 1))
+            for k, way in enumerate(ways)
+        ]
         gains = [
             let(f"gain_{k}_{name}", choose(spent, sp.Abs(s) / e, 0))
             for k, (s, e) in enumerate(zip(slopes, tip_rates, strict=True))
         ]
         play = let(f"play_{name}", scale + choose(spent, sum(gains), 0))
-        self.program.bound(f"kept_{name}", margin, play, meaning)
+        self.program.bound(f"kept_{name}", margin, choose(spent, self.leniency, 1) * play, meaning)
+        if self.wider != 1:
+            usual = sum(
+                sp.Abs(s) / rate(*way, sp.S.One) for s, way in zip(slopes, ways, strict=True)
+            )
+            usual = let(f"usual_{name}", scale + choose(spent, usual, 0))
+            self.program.determined(
+                usual + choose(spent, 2**40 * margin, 0),
+                usual,
+                f"the tolerance of the tip is used up: {meaning}",
+            )
         share = gains[1] ** 2 / (gains[0] ** 2 + gains[1] ** 2 + scale**2)
         share = let(f"share_{name}", choose(spent, sp.Piecewise((share, margin < 0), (0, True)), 0))
         floors = [scale * e / 2**24 for e in tip_rates]
@@ -194,6 +216,8 @@ def with_waist(free: FreeTurn, upper: Pair, outward: sp.Expr) -> tuple[FreeTurn,
         16 * sp.Abs(outward) <= sp.Abs(L_theta),
         sp.Abs(free.tilt) >= free.m.L1 / 2**20,
     )
+    not_stretched = sp.Not(sp.Symbol("stretched"))
+    lenient = sp.And(sp.Symbol("tangent"), not_stretched)
     far = sqrt(outward**2 + L_theta**2) + free.slack / 2**60
     free = replace(
         free,
@@ -201,6 +225,8 @@ def with_waist(free: FreeTurn, upper: Pair, outward: sp.Expr) -> tuple[FreeTurn,
         aside=let("aside_rate", choose(tangent, -upper.s * free.tilt / free.m.L1, 0)),
         left=let("left_rate", choose(tangent, sp.Abs(outward) / far, 1)),
         curve=let("left_curve", choose(tangent, 1 / far, 0)),
+        wider=let("wider", choose(sp.And(tangent, not_stretched), WIDER, 1)),
+        leniency=let("leniency", choose(lenient, WIDER**2, 1)),
     )
     return free, choose(tangent, L_theta * free.tilt / far**2, 0)
 

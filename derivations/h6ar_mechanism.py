@@ -341,19 +341,32 @@ def allowances(
 
     They are a quarter of the error that an answer may have, because several limits may be missed at
     once.  Yaw and roll are only known to some units in the last place; ``apart`` says how far the
-    tips move by such an error.  Such an error changes the length of a ``wrist`` whose links are
-    stretched by its root; there the status is SINGULAR.
+    tips move by such an error.  Such an error changes the length of a ``wrist`` the more, the
+    shorter it is, and if its links are stretched by its root; there the status is SINGULAR.  With
+    a ``gap``, this part is allowed for any length of the wrist: see `report_short_wrist`.
     """
     base = m.al + m.gs + apart
     by_root = m.al * base / (2**9 * wrist + sqrt(m.al * base) / 2**15 + base / 2**60)
     stretched = program.vanishes(
         "stretched", wrist - m.al / 2**10, m.al, "the wrist links are stretched"
     )
-    far = program.let("far_apart", apart / 512 + choose(stretched, by_root, 0), nonnegative=True)
+    by_root = by_root if gap else choose(stretched, by_root, 0)
+    by_wrist = program.let("by_wrist", by_root, nonnegative=True)
+    far = program.let("far_apart", apart / 512 + by_wrist, nonnegative=True)
     lengths = program.let("lengths", sum(m))
     reached = program.let("slack", lengths / 4 + far, nonnegative=True)
     beside = program.let("play", sum(map(sp.Abs, gap), m.d) / 4 + lengths / 2048 + far)
     return reached, beside
+
+
+def report_short_wrist(program: Program, m: Dimensions, at_limit: sp.Basic) -> None:
+    """Report SINGULAR at a limit where a short wrist lets an answer miss more than is promised."""
+    by_wrist, lengths = real("by_wrist", nonnegative=True), sum(m)
+    program.determined(
+        choose(at_limit, lengths - 4 * by_wrist, lengths),
+        lengths,
+        "the wrist is short, and rounding decides what is within reach",
+    )
 
 
 def distances_across_gap(

@@ -15,7 +15,10 @@ def published(request: pytest.FixtureRequest):
 
 
 def with_tangent_waist(model, n: int, seed: int, params) -> np.ndarray:
-    """Real arms a right angle apart at both joints, with the tip above or below the waist axis."""
+    """Real arms a right angle apart at both joints, with the tip above or below the waist axis.
+
+    NaN where the tip comes to neither.
+    """
     rng = np.random.default_rng(seed)
     waist, upper, fore, pitch = rng.uniform(-3, 3, (4, n))
     tiny = rng.choice((0, 1e-15, 1e-12, 1e-9), (2, n))
@@ -37,7 +40,8 @@ def with_tangent_waist(model, n: int, seed: int, params) -> np.ndarray:
         middle = (low + high) / 2
         same = (outward(middle) > 0) == side
         low, high = np.where(same, middle, low), np.where(same, high, middle)
-    return posture(low)[(outward(low) > 0) != (outward(high) > 0)]
+    there = (outward(low) > 0) != (outward(high) > 0)
+    return np.where(there[:, None], posture(low), np.nan)
 
 
 def test_a_tangent_waist_and_arms_a_right_angle_apart_are_not_lost(published) -> None:
@@ -50,6 +54,24 @@ def test_a_tangent_waist_and_arms_a_right_angle_apart_are_not_lost(published) ->
     assert np.isin(status, (OK, SINGULAR)).any(-1).all()
     off = missed(published, solutions, x, params)[status == OK]
     assert np.abs(off).max() < 1e-12 * sum(params)
+
+
+def test_three_events_with_dissimilar_lengths_are_not_lost(published) -> None:
+    """Rounding moves the tip more the shorter the wrist is; what misses more is SINGULAR."""
+    lengths = draw_lengths(np.random.default_rng(71), robot("h6ar"), 60_000)
+    params = published.Parameters(*lengths.T)
+    with np.errstate(all="ignore"):
+        x = published.fk(with_tangent_waist(published, len(lengths), 71, params), params)
+    rows = np.isfinite(x).all(-1)
+    x, lengths = x[rows], lengths[rows]
+    assert len(x) > 15_000
+    solutions, status = published.ik(x, published.Parameters(*lengths.T))
+    assert np.isin(status, (OK, SINGULAR)).any(-1).all()
+    off = missed(published, solutions, x, published.Parameters(*lengths.T[:, :, None]))
+    off[..., :3] /= lengths.sum(-1)[:, None, None]
+    d = lengths[:, list(published.Parameters._fields).index("d")]
+    promised = np.maximum(1e-12, 2.0**-46 * lengths.sum(-1) / d)
+    assert (np.abs(off).max(-1) <= promised[:, None])[status == OK].all()
 
 
 def with_stretched_wrist(model, n: int, seed: int, params=P) -> np.ndarray:

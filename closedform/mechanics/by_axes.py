@@ -8,6 +8,7 @@ from functools import partial
 
 import sympy as sp
 
+from closedform.algebra.operations import operations
 from closedform.mechanics.frames import twist_matrix
 from closedform.model.derivation import Derivation
 
@@ -52,7 +53,7 @@ def by_axes(
     it as in a modified table.  The meanings of the names are added to ``d``.
     """
     n = len(joints)
-    if sp.count_ops(pose) <= ENTRIES or len(moves) != n:
+    if operations(pose) <= ENTRIES or len(moves) != n:
         return None
     for after, last in ((0, "i-1"), (1, "i")):
         if all(_turns(A, joint, after) for A, joint in zip(moves, joints, strict=True)):

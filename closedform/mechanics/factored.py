@@ -5,13 +5,14 @@ from __future__ import annotations
 import sympy as sp
 
 from closedform.algebra.normal_form import determinant
+from closedform.algebra.operations import operations
 from closedform.mechanics.frames import merge_angles
 
 
 def factored_determinant(J: sp.Matrix) -> sp.Expr:
     """A determinant as a polynomial in sines and cosines, reduced on their circles and factored."""
     reduced = determinant(J)
-    found = min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=sp.count_ops)
+    found = min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=operations)
     return _in_decimals(found)
 
 

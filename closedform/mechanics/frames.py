@@ -12,6 +12,7 @@ from itertools import combinations
 import sympy as sp
 
 from closedform.algebra.normal_form import normal
+from closedform.algebra.operations import operations
 from closedform.model.functions import Program, real
 
 
@@ -138,7 +139,7 @@ def reduce_circle(value: sp.Matrix) -> sp.Matrix:
 
 @cache
 def _shorter(entry: sp.Expr) -> sp.Expr:
-    return min((entry, normal(entry)), key=sp.count_ops)
+    return min((entry, normal(entry)), key=operations)
 
 
 def simplest(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:
@@ -149,7 +150,7 @@ def simplest(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:
     if isinstance(value, sp.MatrixBase):
         return value.applyfunc(simplest)
     reduced = merge_angles(normal(value))
-    return min((value, reduced, sp.factor(reduced)), key=sp.count_ops)
+    return min((value, reduced, sp.factor(reduced)), key=operations)
 
 
 def frame_along(w: sp.Matrix) -> sp.Matrix:
@@ -195,7 +196,7 @@ def twist_matrix(twist: sp.Matrix) -> sp.Matrix:
 def determinant(J: sp.Matrix) -> sp.Expr:
     """The determinant of a Jacobian, factored, with the angles of parallel axes added."""
     reduced = normal(J.det(method="berkowitz"))
-    return min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=sp.count_ops)
+    return min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=operations)
 
 
 def merge_angles(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:
@@ -298,4 +299,4 @@ def _operations(term: sp.Expr) -> tuple[int, bool]:
     """The operations of a term without its minus sign, and whether it has one."""
     coefficient, _ = term.as_coeff_Mul()
     minus = bool(coefficient.is_negative)
-    return int(sp.count_ops(-term if minus else term, visual=False)), minus
+    return operations(-term if minus else term), minus

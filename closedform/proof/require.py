@@ -11,6 +11,7 @@ import sympy as sp
 from closedform.algebra.counterexample import Counterexample
 from closedform.algebra.expressions import shortened
 from closedform.algebra.normal_form import Decision, Undecided, decide
+from closedform.algebra.operations import operations
 
 
 class ProofError(ValueError):
@@ -46,7 +47,7 @@ def require(
         residual = sp.Matrix([difference])[entry]
         if decision.proof is not None and entry < len(decision.proof.remainders):
             short = decision.proof.remainders[entry]
-            residual = min((residual, short), key=sp.count_ops) if short != 0 else residual
+            residual = min((residual, short), key=operations) if short != 0 else residual
         raise ProofError(
             f"{fault}. {decision.counterexample.describe()}; "
             f"the residual{about} is {shortened(residual)}"

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from closedform.algebra.operations import operations
 from closedform.emit.backends.latex.algorithm import ONCE, Algorithm
 from closedform.emit.backends.latex.inequalities import equality
 from closedform.emit.backends.latex.plain import is_rounding
@@ -164,7 +165,7 @@ class Cases:
         if scale == 0 or (value and value.has(sp.Piecewise)):
             return Case(f"within rounding of the case that {meaning}", "", answer, "singular")
         if value:
-            if sp.count_ops(value) > LONGEST:
+            if operations(value) > LONGEST:
                 value = self.algorithm.shown(statement.value)
             rows = self.page.equations("", value)
             first, rest = rows[0][1], [f"${a} = {b}$" for a, b in rows[1:]]

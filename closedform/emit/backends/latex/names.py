@@ -9,6 +9,7 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.algebra.operations import operations
 from closedform.emit.backends.latex.formulas import Printer, measure
 from closedform.emit.backends.latex.grouping import joint_by_joint
 from closedform.emit.backends.latex.prose import GREEK, symbol_name, written_name
@@ -114,9 +115,9 @@ class Quantities:
         return named
 
     def _named(self, value: Any, known: Iterable[tuple[sp.Expr, sp.Symbol]]) -> Any:
-        if not isinstance(value, sp.Expr) or value.is_Atom or sp.count_ops(value) > LARGEST:
+        if not isinstance(value, sp.Expr) or value.is_Atom or operations(value) > LARGEST:
             return value
-        known = sorted(known, key=lambda k: (-sp.count_ops(k[0]), str(k[1])))
+        known = sorted(known, key=lambda k: (-operations(k[0]), str(k[1])))
         for expr, symbol in known:
             if expr.free_symbols <= value.free_symbols:
                 whole = value.xreplace({expr: symbol, -expr: -symbol})

@@ -16,6 +16,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.factoring import factored
+from closedform.algebra.operations import operations
 from closedform.emit.backends.latex.equations import runs
 from closedform.emit.backends.latex.formulas import FITS, Printer, measure, stacked
 from closedform.emit.backends.latex.grouping import joint_by_joint, without_minus
@@ -134,11 +135,11 @@ class Lines:
                 return self.width(form) - bonus
 
             # no product of sums is multiplied out unless terms cancel
-            terms, size = len(sp.Add.make_args(value)), sp.count_ops(value)
+            terms, size = len(sp.Add.make_args(value)), operations(value)
             forms = (
                 f
                 for f in self._forms(value)
-                if len(sp.Add.make_args(f)) <= terms or sp.count_ops(f) < size
+                if len(sp.Add.make_args(f)) <= terms or operations(f) < size
             )
             best = min(forms, key=cost)
             narrower = cost(best) < cost(value) - GAIN
@@ -147,7 +148,7 @@ class Lines:
 
     def _forms(self, value: sp.Expr) -> Iterator[sp.Expr]:
         yield value
-        size = sp.count_ops(value)
+        size = operations(value)
         if value.is_Add and sp.pi in (t.as_coeff_Mul()[1] for t in value.args):
             return  # an angle and a part of a turn
         if value.is_Atom or size > SIMPLIFIED or value.has(sp.Piecewise, sp.Max, sp.Min):
@@ -205,7 +206,7 @@ class Lines:
             wide += sorted(value.atoms(sp.Piecewise), key=str)
         elif isinstance(value, sp.Piecewise):
             wide += sorted({p for e, _ in value.args for p in e.atoms(sp.Piecewise)}, key=str)
-        return min(wide, key=lambda e: (sp.count_ops(e), str(e)), default=None)
+        return min(wide, key=lambda e: (operations(e), str(e)), default=None)
 
     def _widest_case(self, value: sp.Piecewise) -> sp.Basic | None:
         """The widest value or side of a condition of cases that has more than a name."""

@@ -15,6 +15,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.expressions import Derivatives
+from closedform.algebra.operations import operations
 from closedform.mechanics import linkwise
 from closedform.mechanics.by_axes import AXES, by_axes
 from closedform.mechanics.entries import RowError, check_unit, constant, exact, rigid
@@ -32,7 +33,7 @@ from closedform.mechanics.frames import (
 from closedform.mechanics.links import Group, Link, Motion, Row, groups_of
 from closedform.mechanics.linkwise import Named
 from closedform.mechanics.mobility import dependent_in_chain, dependent_joints, singular_everywhere
-from closedform.mechanics.places import at_tool, seen_from, to_base, to_frame
+from closedform.mechanics.places import Places
 from closedform.mechanics.skeleton import serial_skeleton, skeleton
 from closedform.mechanics.twists import SHIFT, SPELLED, TURN, TURNED, from_geometric
 from closedform.model.derivation import Derivation
@@ -61,40 +62,34 @@ class Serial:
     last: sp.Matrix
 
     @cached_property
+    def _frames(self) -> Places:
+        return Places(self.groups, self.lead, self.last)
+
+    @cached_property
     def pose(self) -> sp.Matrix:
-        T = self.lead
-        for group in self.groups:
-            T = (T * group.transform()).applyfunc(sp.expand)
-        return reduce_circle((T * self.last).applyfunc(sp.expand))
+        return self._frames.pose()
 
     @cached_property
     def space(self) -> sp.Matrix:
-        return sp.Matrix.hstack(
-            *(to_base(*self.groups[k].twist(j), self.groups[:k], self.lead) for k, j in self.places)
-        )
+        return sp.Matrix.hstack(*(self._frames.at_base(k, j) for k, j in self.places))
 
     @cached_property
     def body(self) -> sp.Matrix:
-        end = len(self.groups)
-        return sp.Matrix.hstack(
-            *(to_frame(k, j, self.groups, end, self.last) for k, j in self.places)
-        )
+        return sp.Matrix.hstack(*(self._frames.at_end(k, j) for k, j in self.places))
 
     @cached_property
     def geometric(self) -> sp.Matrix:
-        return sp.Matrix.hstack(
-            *(at_tool(k, j, self.groups, self.lead, self.last) for k, j in self.places)
-        )
+        return sp.Matrix.hstack(*(self._frames.at_tool(k, j) for k, j in self.places))
 
     @cached_property
     def middle(self) -> sp.Matrix:
         """The twists in that frame along the chain in which they are shortest."""
         return min(
             (
-                sp.Matrix.hstack(*(seen_from(k, j, self.groups, cut) for k, j in self.places))
+                sp.Matrix.hstack(*(self._frames.seen_from(k, j, cut) for k, j in self.places))
                 for cut in range(1, len(self.groups) + 1)
             ),
-            key=sp.count_ops,
+            key=operations,
         )
 
     @property
@@ -192,7 +187,7 @@ class Serial:
         geometric = linkwise.geometric_jacobian(d.program(), links, q)
         space = linkwise.space_jacobian(d.program(), links, q)
         body = linkwise.body_jacobian(d.program(), links, q)
-        spelled = max(sp.count_ops(self.space), sp.count_ops(self.body)) <= SPELLED
+        spelled = max(operations(self.space), operations(self.body)) <= SPELLED
 
         def equal() -> list[tuple[Any, Any]]:
             pose, J, J_s, J_b = self.pose, self.geometric, self.space, self.body

@@ -6,49 +6,79 @@ from collections.abc import Sequence
 
 import sympy as sp
 
+from closedform.algebra.expansion import Expansion, Rows
 from closedform.mechanics.frames import reduce_circle
 from closedform.mechanics.links import Group
 
 
-def to_base(w: sp.Matrix, v: sp.Matrix, groups: Sequence[Group], lead: sp.Matrix) -> sp.Matrix:
-    """A twist in the frame where the ``groups`` end, in the base frame."""
-    for T in [*(group.transform() for group in reversed(groups)), lead]:
-        w, v = T[:3, :3] * w, T[:3, :3] * v
-        v = (v + T[:3, 3].cross(w)).applyfunc(sp.expand)
-    return reduce_circle(sp.Matrix([*v, *w]).applyfunc(sp.expand))
+class Places:
+    """The frames along a chain: ``lead``, the groups of joints with parallel axes, ``last``."""
+
+    def __init__(self, groups: Sequence[Group], lead: sp.Matrix, last: sp.Matrix):
+        self.groups, whole = groups, [lead, *(g.transform() for g in groups), last]
+        starts = [g.twist(j) for g in groups for j in range(len(g.rows))]
+        ends = [g.twist_at_end(j) for g in groups for j in range(len(g.rows))]
+        spans = [g.span(0, j) for g in groups for j in range(len(g.rows))]
+        self._in = Expansion([*whole, *(part for twist in starts + ends for part in twist), *spans])
+        self._whole = [self._in.read(T) for T in whole]
+        self._turns = [self._in.read(T[:3, :3]) for T in whole]
+        self._back = [self._in.read(T[:3, :3].T) for T in whole]
+        self._shifts = [self._in.read(T[:3, 3]) for T in whole]
+
+    def pose(self) -> sp.Matrix:
+        """The frame at the end."""
+        T, *others = self._whole
+        for step in others:
+            T = self._in.times(T, step)
+        return reduce_circle(self._in.written(T))
+
+    def at_base(self, k: int, j: int) -> sp.Matrix:
+        """The twist of axis ``j`` of group ``k`` in the base frame."""
+        return self._before(k, j, 0)
+
+    def at_end(self, k: int, j: int) -> sp.Matrix:
+        """The same in the frame at the end."""
+        return self._after(k, j, len(self.groups) + 1)
+
+    def seen_from(self, k: int, j: int, cut: int) -> sp.Matrix:
+        """The same where group ``cut`` starts, before or after it."""
+        return self._after(k, j, cut) if k < cut else self._before(k, j, cut + 1)
+
+    def at_tool(self, k: int, j: int) -> sp.Matrix:
+        """The velocity that an axis gives to the tool, and the axis, in base axes."""
+        ring, group = self._in, self.groups[k]
+        tool = self._shifts[-1]
+        for i in range(len(self.groups), k, -1):
+            tool = ring.plus(ring.times(self._turns[i], tool), self._shifts[i])
+        w = v = ring.read(sp.Matrix([0, 0, group.rows[j].sign]))
+        if group.rows[j].slides:
+            w = ring.read(sp.zeros(3, 1))
+        else:
+            v = ring.cross(w, ring.plus(tool, ring.read(group.span(0, j)), -1))
+        for R in reversed(self._turns[: k + 1]):
+            w, v = ring.times(R, w), ring.times(R, v)
+        return self._written(w, v)
+
+    def _before(self, k: int, j: int, cut: int) -> sp.Matrix:
+        """The twist in a frame before the group."""
+        ring = self._in
+        w, v = map(ring.read, self.groups[k].twist(j))
+        for R, p in reversed([*zip(self._turns, self._shifts, strict=True)][cut : k + 1]):
+            w, v = ring.times(R, w), ring.times(R, v)
+            v = ring.plus(v, ring.cross(p, w))
+        return self._written(w, v)
+
+    def _after(self, k: int, j: int, cut: int) -> sp.Matrix:
+        """The twist in a frame after the group."""
+        ring = self._in
+        w, v = map(ring.read, self.groups[k].twist_at_end(j))
+        for i in range(k + 2, cut + 1):
+            v = ring.plus(v, ring.cross(w, self._shifts[i]))
+            w, v = ring.times(self._back[i], w), ring.times(self._back[i], v)
+        return self._written(w, v)
+
+    def _written(self, w: Rows, v: Rows) -> sp.Matrix:
+        return reduce_circle(self._in.written([*v, *w]))
 
 
-def to_frame(k: int, j: int, groups: Sequence[Group], cut: int, last: sp.Matrix) -> sp.Matrix:
-    """The axis ``j`` of group ``k`` where group ``cut`` starts, seen from the frame ``last``."""
-    w, v = groups[k].twist_at_end(j)
-    for group in groups[k + 1 : cut]:
-        back = group.rotation.T
-        w, v = back * w, back * (v + w.cross(group.span(0))).applyfunc(sp.expand)
-        w, v = w.applyfunc(sp.expand), v.applyfunc(sp.expand)
-    w, v = last[:3, :3].T * w, last[:3, :3].T * (v + w.cross(last[:3, 3]))
-    return reduce_circle(sp.Matrix([*v, *w]).applyfunc(sp.expand))
-
-
-def at_tool(k: int, j: int, groups: Sequence[Group], lead: sp.Matrix, last: sp.Matrix) -> sp.Matrix:
-    """The velocity that an axis gives to the tool, and the axis, in base axes."""
-    tool = last[:3, 3]
-    for group in reversed(groups[k + 1 :]):
-        tool = (group.rotation * tool + group.span(0)).applyfunc(sp.expand)
-    group = groups[k]
-    axis = sp.Matrix([0, 0, group.rows[j].sign])
-    w, v = axis, axis.cross(group.rotation * tool + group.span(0) - group.span(0, j))
-    if group.rows[j].slides:
-        w, v = sp.zeros(3, 1), axis
-    for R in [*(g.rotation for g in reversed(groups[:k])), lead[:3, :3]]:
-        w, v = (R * w).applyfunc(sp.expand), (R * v).applyfunc(sp.expand)
-    return reduce_circle(sp.Matrix([*v, *w]).applyfunc(sp.expand))
-
-
-def seen_from(k: int, j: int, groups: Sequence[Group], cut: int) -> sp.Matrix:
-    """The axis ``j`` of group ``k`` where group ``cut`` starts, before or after it."""
-    if k < cut:
-        return to_frame(k, j, groups, cut, sp.eye(4))
-    return to_base(*groups[k].twist(j), groups[cut:k], sp.eye(4))
-
-
-__all__ = ["at_tool", "seen_from", "to_base", "to_frame"]
+__all__ = ["Places"]

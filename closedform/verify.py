@@ -210,12 +210,17 @@ class Fraction:
     """A fraction of polynomials in the generators of a field, reduced by its relations."""
 
     def __init__(self, field: Field, num: Polynomial, den: Polynomial):
-        num, den = field.reduced(num), field.reduced(den)
-        require(den != 0, "a denominator is identically zero")
-        common = num.gcd(den) * den.leading_coefficient()
-        self.field, self.num, self.den = field, num / common, den / common
+        num = field.reduced(num)
+        if not den.is_one():
+            den = field.reduced(den)
+            require(den != 0, "a denominator is identically zero")
+            common = num.gcd(den) * den.leading_coefficient()
+            num, den = num / common, den / common
+        self.field, self.num, self.den = field, num, den
 
     def __add__(self, other: Fraction) -> Fraction:
+        if self.den == other.den:
+            return Fraction(self.field, self.num + other.num, self.den)
         common = self.den.gcd(other.den)
         left, right = self.den / common, other.den / common
         return Fraction(self.field, self.num * right + other.num * left, self.den * right)
@@ -353,9 +358,11 @@ class Field:
         return self.fraction(self.context.constant(fmpq(value)))
 
     def reduced(self, p: Polynomial) -> Polynomial:
-        for i in reversed(self.relations if max(p.degrees(), default=0) > 1 else ()):
-            if p.degrees()[-1 - i] > 1:
+        degrees = p.degrees()
+        for i in reversed(self.relations if max(degrees, default=0) > 1 else ()):
+            if degrees[-1 - i] > 1:
                 p = divmod(p, self.relations[i])[1]
+                degrees = p.degrees()
         return p
 
     def leading(self, p: Polynomial) -> tuple[Monomial, Polynomial]:

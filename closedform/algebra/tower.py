@@ -111,7 +111,7 @@ class Tower:
         if e.is_Add:
             return reduce(self._add, map(self.convert, e.args))
         if e.is_Mul:
-            return reduce(self._mul, map(self.convert, e.args))
+            return self._product([self.convert(a) for a in e.args])
         if e.is_Pow:
             return self._pow(e)
         if isinstance(e, sp.sin | sp.cos):
@@ -170,6 +170,16 @@ class Tower:
         if a.den.is_one() and b.den.is_one():
             return Fraction(self._reduced(a.num * b.num), a.den)
         return self._cancelled(a.num * b.num, a.den * b.den)
+
+    def _product(self, factors: Sequence[Fraction]) -> Fraction:
+        """A product; single terms are multiplied first, and reduced once."""
+        terms, others = self.one.num, []
+        for a in factors:
+            if a.den.is_one() and len(a.num) == 1:
+                terms *= a.num
+            else:
+                others.append(a)
+        return reduce(self._mul, others, Fraction(self._reduced(terms), self.one.den))
 
     def _inverse(self, a: Fraction) -> Fraction:
         """1/a; a root that divides the denominator moves to the numerator: `1/w = w/radicand`."""

@@ -384,6 +384,14 @@ def substitute(expr: sp.Basic, known: Mapping[sp.Basic, sp.Basic]) -> Any:
     return _image(expr, images)
 
 
+def replaced(expr: sp.Basic, old: sp.Basic, new: sp.Basic) -> Any:
+    """Replace a part of an expression or of a matrix, in each part that contains it once."""
+    images = {old: new}
+    if isinstance(expr, sp.MatrixBase):
+        return expr.applyfunc(lambda e: _image(e, images))
+    return _image(expr, images)
+
+
 def _image(expr: sp.Basic, images: dict[sp.Basic, Any]) -> Any:
     """The image of an expression, which is kept with those of its parts.
 

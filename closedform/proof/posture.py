@@ -15,6 +15,7 @@ from closedform.model.functions import (
     Vanishes,
     free_symbols,
     parts,
+    replaced,
     substitute,
 )
 from closedform.model.inverse import Combination, Inverse, Rank
@@ -116,7 +117,7 @@ def outcomes(expr: Expr) -> Iterator[Expr]:
         yield expr
         return
     for holds in (sp.true, sp.false):
-        yield from outcomes(expr.xreplace({choices[0]: holds}))
+        yield from outcomes(replaced(expr, choices[0], holds))
 
 
 def generic(expr: Expr) -> Expr:

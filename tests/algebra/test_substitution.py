@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from closedform.model.functions import free_symbols, parts, substitute
+from closedform.model.functions import free_symbols, parts, replaced, substitute
 from closedform.proof.posture import outcomes
 
 X, Y = sp.symbols("x y", real=True)
@@ -22,18 +22,27 @@ def test_a_symbol_in_a_part_that_occurs_often_is_replaced() -> None:
     assert len(parts([deep])) == 101
     assert free_symbols([deep]) == {X}
     assert substitute(deep, {Y: X}) is deep
-    replaced = substitute(deep, {X: Y})
-    assert free_symbols([replaced]) == {Y}
-    assert len(parts([replaced])) == 101
-    while replaced.args:
-        assert replaced.args[0] is replaced.args[1]
-        replaced = replaced.args[0]
+    found = substitute(deep, {X: Y})
+    assert free_symbols([found]) == {Y}
+    assert len(parts([found])) == 101
+    while found.args:
+        assert found.args[0] is found.args[1]
+        found = found.args[0]
 
 
 def test_the_same_as_xreplace() -> None:
     expr = nested(sp.sin(X) + sp.Piecewise((X * Y, X > 0), (Y**2, True)), 3)
     for known in ({X: Y, Y: X}, {X: sp.Integer(2)}, {X: sp.Integer(-1), Y: X + 1}):
         assert substitute(expr, known) == expr.xreplace(known)
+
+
+def test_a_condition_that_occurs_often_is_replaced() -> None:
+    choice = sp.Piecewise((X, X > 0), (Y, True))
+    deep = sp.Matrix([nested(choice, 60), choice])
+    found = replaced(deep, X > 0, sp.true)
+    assert free_symbols(found) == {X}
+    assert found[1] == choice.xreplace({X > 0: sp.true}) == X
+    assert len(parts([found[0]])) == 61
 
 
 def test_extremes_of_simple_values_are_evaluated() -> None:

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from closedform.check.finding import Backend, Finding, called, rounded, thinned
 from closedform.check.samples import Sample, inverse_postures, joint_samples, perturbed
 from closedform.check.singular import singular_samples
-from closedform.check.truth import Solutions, cached, solutions_of
+from closedform.check.truth import Solutions, solutions_of
 from closedform.check.values import check_forward
-from closedform.lower.program import lower
+from closedform.lower import lowered
+from closedform.model.cached import cached
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
 from closedform.model.inverse import Inverse
@@ -218,7 +219,7 @@ def _in_range(
     """
     limit = backend.tolerances.sizes(HIGHEST_DEGREE)[1]
     beyond = (abs(sample.values) > limit).any(axis=1)
-    beyond &= beyond.any() and lower(function, derivation).degrees is None
+    beyond &= beyond.any() and lowered(function, derivation).degrees is None
     for rows in (~beyond, beyond):
         if rows.any():
             yield replace(sample, values=sample.values[rows]), rows is not beyond

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property, lru_cache
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 from closedform.algebra.balls import Undetermined, to_float
 from closedform.check.rows import WIDE, RowEvaluator, crosses
 from closedform.check.samples import Degrees, Magnitudes, Sample, with_parameters
-from closedform.lower import lower
+from closedform.lower import lowered
 from closedform.mechanics.lengths import numbers_of_tool
+from closedform.model.cached import KEPT, cached
 from closedform.model.derivation import Derivation
 from closedform.model.functions import (
     Bound,
@@ -36,27 +37,11 @@ from closedform.model.functions import (
 from closedform.model.inverse import Combination, Inverse
 
 Array = NDArray[Any]
-T = TypeVar("T")
 
 CLOSE = 1e-10
 """Below this singular value of the forward map, an ulp of the target turns a joint by 1e-6."""
-KEPT = 32
-"""The number of functions whose exact values are cached for the next back end."""
 
-
-def cached(make: Callable[..., T]) -> Callable[..., T]:
-    """Make something once for the same objects, which need not be hashable."""
-    made: dict[tuple[int, ...], tuple[tuple[Any, ...], T]] = {}
-
-    def find(*arguments: Any) -> T:
-        key = tuple(map(id, arguments))
-        if key not in made:
-            if len(made) >= KEPT:
-                del made[next(iter(made))]
-            made[key] = arguments, make(*arguments)
-        return made[key][1]
-
-    return find
+_numbers_of_tool = cached(numbers_of_tool)
 
 
 class Values:
@@ -78,14 +63,14 @@ class Values:
         which samples do not close the loop, so that what belongs together cancels less well."""
         self.in_modes = function.branches is not None
         """Whether it has a value in each assembly mode; divisors nearly cancel where modes meet."""
-        self.lengths = numbers_of_tool(derivation)
+        self.lengths = _numbers_of_tool(derivation)
         degrees = Degrees(self.exprs)
         self.degrees = np.array(degrees.degrees)
         """Upper bounds for the degrees of the entries in lengths."""
         self._sized = [k for k, s in enumerate(symbols) if s in degrees.symbols]
-        lowered = lower(function, derivation)
-        self.operations = sum(lowered.operations().values())
-        self.scaled = function.has_status and lowered.degrees is not None
+        program = lowered(function, derivation)
+        self.operations = sum(program.operations().values())
+        self.scaled = function.has_status and program.degrees is not None
         """Whether lengths are divided by the largest one, so that their powers do not overflow."""
         self._bounds = [_margins(function, symbols, s) for s in signs]
         self._flags = [_margins(function, symbols, s, Vanishes) for s in signs]
@@ -212,7 +197,7 @@ class Solutions:
             np.array([bool(free_symbols([e]) & sized) or k in places for k, e in enumerate(m)])
             for m in maps
         ]
-        self._in_numbers = max([*numbers_of_tool(derivation), _numbers_of_size(function)])
+        self._in_numbers = max([*_numbers_of_tool(derivation), _numbers_of_size(function)])
         given = (*function.symbols, *parameters)
         self._bounds = [_margins(function, given, signs) for _, signs in function.cases()]
         self._matches = [_margins(function, given, signs, Match) for _, signs in function.cases()]
@@ -509,7 +494,6 @@ __all__ = [
     "Condition",
     "Solutions",
     "Values",
-    "cached",
     "condition_of",
     "solutions_of",
     "values_of",

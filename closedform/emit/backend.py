@@ -13,7 +13,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from closedform.lower import Lowered, lower
+from closedform.lower import Lowered, lowered
 from closedform.model.derivation import Derivation
 from closedform.proof.prove import Proof
 
@@ -31,7 +31,7 @@ class Mechanism:
     @cached_property
     def lowered(self) -> Mapping[str, Lowered]:
         """The program of each function, made when the first back end asks for it."""
-        return {f.name: lower(f, self.derivation) for f in self.derivation.functions}
+        return {f.name: lowered(f, self.derivation) for f in self.derivation.functions}
 
 
 @dataclass(frozen=True)

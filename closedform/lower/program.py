@@ -21,6 +21,7 @@ from closedform.lower.ranges import Ranges
 from closedform.lower.roots import fewer_roots
 from closedform.lower.share import share
 from closedform.lower.turns import Turns
+from closedform.model.cached import cached
 from closedform.model.derivation import Derivation
 from closedform.model.functions import (
     Array,
@@ -127,6 +128,9 @@ def lower(function: Function, derivation: Derivation) -> Lowered:
         short = branch is not None and branch.length < LENGTH_OF_BRANCH * whole.common.length
         whole = replace(whole, branch=branch if short else None)
     return whole
+
+
+lowered = cached(lower)
 
 
 def results_of(function: Function) -> list[Result]:

@@ -11,6 +11,7 @@ from interpreter import run
 from sympy import cos, sin, sqrt
 
 from closedform.lower import Lowered, lower
+from closedform.lower import lowered as lowered_once
 from closedform.lower.graph import Graph, hardly_ever, reachable
 from closedform.lower.share import same
 from closedform.mechanics.frames import exponential
@@ -26,6 +27,12 @@ EMPTY = Derivation("test", "", Paper("", "", ()), "")
 def lowered(*exprs: sp.Expr) -> Lowered:
     d = Derivation("test", "", Paper("", "", ()), "")
     return lower(d.function("f", "", {"q": SYMBOLS}, {"y": list(exprs)}), d)
+
+
+def test_a_function_is_lowered_once() -> None:
+    d = Derivation("test", "", Paper("", "", ()), "")
+    f, g = (d.function(name, "", {"q": SYMBOLS}, {"y": [x + y * z]}) for name in "fg")
+    assert lowered_once(f, d) is lowered_once(f, d) is not lowered_once(g, d)
 
 
 leaves = st.sampled_from(

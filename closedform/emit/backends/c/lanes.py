@@ -96,7 +96,8 @@ class LanesPrinter(CPrinter):
 
     def _loop(self, block: Block) -> None:
         here = {n.id for p in block.packs for n in p.nodes}
-        kept = [p for p in block.packs if self._leaves(p, here)]
+        inside = self._uses_inside(here)
+        kept = [p for p in block.packs if self._leaves(p, inside)]
         for pack in kept:
             self._arrays[pack.nodes] = self._array_of(pack)
         for boolean, kind in ((False, "real_t"), (True, "cf_word")):
@@ -122,12 +123,13 @@ class LanesPrinter(CPrinter):
             for k, node in enumerate(pack.nodes):
                 self.text[node.id] = self._entry(name, str(k), boolean)
 
-    def _leaves(self, pack: Pack, here: set[int]) -> bool:
+    def _uses_inside(self, here: set[int]) -> Counter[int]:
+        """How often the packs of a loop use each node."""
+        packs = {self.packing.pack[k] for k in here}
+        return Counter(n.id for p in packs for column in p.columns for n in column)
+
+    def _leaves(self, pack: Pack, inside: Counter[int]) -> bool:
         """Whether something outside of the loop uses the pack."""
-        inside: Counter[int] = Counter()
-        for other in {self.packing.pack[k] for k in here}:
-            for column in other.columns:
-                inside.update(n.id for n in column)
         return any(self._users[n.id] > inside[n.id] for n in pack.nodes)
 
     def _array_of(self, pack: Pack) -> str:

@@ -28,11 +28,11 @@ def shared(
     return folder
 
 
-def quick_compiler(folder: Path, level: str = "-O0") -> str:
+def quick_compiler(folder: Path) -> str:
     """The C compiler as a program that does not optimise, for code whose speed is not looked at."""
-    from closedform.check.clibrary import compiler  # with SymPy, which few processes need
+    from closedform.check.clibrary import CALLED, compiler  # with SymPy, which few processes need
 
-    return remembering(folder / "cc-quick", f'{compiler()} "$@" {level}')
+    return remembering(folder / "cc-quick", f'{compiler()} "$@" -O0 {CALLED}')
 
 
 def compile_quickly(patch: pytest.MonkeyPatch, folder: Path) -> None:

@@ -210,17 +210,12 @@ class Fraction:
     """A fraction of polynomials in the generators of a field, reduced by its relations."""
 
     def __init__(self, field: Field, num: Polynomial, den: Polynomial):
-        num = field.reduced(num)
-        if not den.is_one():
-            den = field.reduced(den)
-            require(den != 0, "a denominator is identically zero")
-            common = num.gcd(den) * den.leading_coefficient()
-            num, den = num / common, den / common
-        self.field, self.num, self.den = field, num, den
+        self.field, num, den = field, field.reduced(num), field.reduced(den)
+        require(den != 0, "a denominator is identically zero")
+        common = num.gcd(den) * den.leading_coefficient()
+        self.num, self.den = (num, den) if common.is_one() else (num / common, den / common)
 
     def __add__(self, other: Fraction) -> Fraction:
-        if self.den == other.den:
-            return Fraction(self.field, self.num + other.num, self.den)
         common = self.den.gcd(other.den)
         left, right = self.den / common, other.den / common
         return Fraction(self.field, self.num * right + other.num * left, self.den * right)
@@ -358,11 +353,9 @@ class Field:
         return self.fraction(self.context.constant(fmpq(value)))
 
     def reduced(self, p: Polynomial) -> Polynomial:
-        degrees = p.degrees()
-        for i in reversed(self.relations if max(degrees, default=0) > 1 else ()):
-            if degrees[-1 - i] > 1:
+        for i in () if p.is_constant() or max(p.degrees()) < 2 else reversed(self.relations):
+            if p.degrees()[-1 - i] > 1:
                 p = divmod(p, self.relations[i])[1]
-                degrees = p.degrees()
         return p
 
     def leading(self, p: Polynomial) -> tuple[Monomial, Polynomial]:

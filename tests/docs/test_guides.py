@@ -2,6 +2,7 @@
 
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -9,6 +10,8 @@ from pathlib import Path
 
 import pytest
 from places import ROOT
+
+from closedform.cli.commands import main
 
 pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
@@ -40,8 +43,9 @@ def run(*command: str, folder: Path) -> subprocess.CompletedProcess[str]:
 class Snippets:
     """The snippets of a guide, run one after another; a method for each kind."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, output: pytest.CaptureFixture[str]) -> None:
         self.folder = folder
+        self.output = output
         self.counts: dict[str, int] = {}
         self.failed = ""
         self.said: list[str] = []
@@ -52,11 +56,15 @@ class Snippets:
     csv = toml = file
 
     def sh(self, _: str, text: str) -> None:
+        """Commands, in this process, because each would need seconds to load SymPy."""
         self.said = []
         for line in text.splitlines():
-            done = run("sh", "-c", f"{sys.executable} -m {line}", folder=self.folder)
-            assert done.returncode == 0, f"{line}\n{done.stderr}"
-            self.said.append(done.stdout.splitlines()[-1])
+            program, *words = shlex.split(line)
+            assert program == "closedform"
+            status = main(words)
+            said = self.output.readouterr()
+            assert status == 0, f"{line}\n{said.err}"
+            self.said.append(said.out.splitlines()[-1])
 
     def console(self, _: str, text: str) -> None:
         assert text.splitlines() == self.said
@@ -79,8 +87,15 @@ class Snippets:
 
 
 @pytest.mark.parametrize("guide", COUNTS)
-def test_every_snippet(tmp_path: Path, guide: str) -> None:
-    snippets = Snippets(tmp_path)
+def test_every_snippet(
+    tmp_path: Path,
+    guide: str,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)  # for a lemma beside a script
+    snippets = Snippets(tmp_path, capsys)
     for kind, name, text in BLOCK.findall((DOCS / f"{guide}.md").read_text("utf-8")):
         try:
             follow = getattr(snippets, kind)

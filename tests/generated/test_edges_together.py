@@ -26,6 +26,8 @@ def last(holds: Callable[[Array], Array], start: Array, end: Array) -> Array:
     """The last place of each row, on the way from its start to its end, where a condition holds."""
     for _ in range(80):
         middle = (start + end) / 2
+        if np.all((middle == start) | (middle == end)):
+            break  # neighbours in double precision
         there = holds(middle).reshape(-1, *[1] * (start.ndim - 1))
         start, end = np.where(there, middle, start), np.where(there, end, middle)
     return start

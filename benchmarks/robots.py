@@ -100,18 +100,21 @@ def seconds_of_computing() -> float:
     return sum(os.times()[:4])
 
 
-def rows(robot: Robot) -> Iterator[str]:
-    """The lines of the table: a second one if the arm angle can be an input."""
+def rows(robot: Robot, *, timed: bool = True) -> Iterator[str]:
+    """The lines of the table: a second one if the arm angle can be an input.
+
+    If they are not ``timed``, no C is printed and compiled, and the last column is empty.
+    """
     start = seconds_of_computing()
     script = robot.script()
-    yield row(robot, script, start)
+    yield row(robot, script, start, timed=timed)
     start = seconds_of_computing()
     script = robot.script(ARM_ANGLE)
     if script.structure:
-        yield row(robot, script, start)
+        yield row(robot, script, start, timed=timed)
 
 
-def row(robot: Robot, script: Script, start: float) -> str:
+def row(robot: Robot, script: Script, start: float, *, timed: bool = True) -> str:
     """A line of the table; the time counts from ``start``."""
     name = f"[{robot.title}]({robot.source})"
     if not script.structure:
@@ -123,9 +126,11 @@ def row(robot: Robot, script: Script, start: float) -> str:
         d = scripts.load(source)
         proof = prove(d)
         seconds = seconds_of_computing() - start
-        done = pages(d, proof, ["c"])
-        pipeline.write(Path(folder), {**done.files, **shared_files([done.share], ["c"])})
-        taken = nanoseconds(d, Path(folder, "c"))
+        taken = ""
+        if timed:
+            done = pages(d, proof, ["c"])
+            pipeline.write(Path(folder), {**done.files, **shared_files([done.share], ["c"])})
+            taken = nanoseconds(d, Path(folder, "c"))
     (inverse,) = proof.inverses
     lemmas = ", ".join(f"`{lemma}`" for lemma in script.lemmas)
     structure = script.structure

@@ -295,6 +295,21 @@ def direction(
     return Link(tuple(x), lemma.equations, {}, lemma, body, degenerate=(case,)), missed
 
 
+def either_way(way: sp.Matrix, unknowns: sp.Matrix, sigma: sp.Symbol) -> Link:
+    """The unit vectors along a line whose direction is a unit vector, forwards and backwards."""
+    x = unknowns
+    lemma = Lemma(
+        "direction of a line",
+        r"\mathbf t = \sigma\,\mathbf w",
+        (cross_in_plane(x, way), x.dot(x) - 1),
+        dict(zip(x, sigma * way, strict=True)),
+        2,
+        signs=(sigma,),
+        roles=((r"\mathbf w", way), ("e", sp.S.Zero)),
+    )
+    return Link(tuple(x), lemma.equations, {}, lemma)
+
+
 def coordinate(x: sp.Symbol, value: sp.Expr) -> Link:
     """A coordinate that is known."""
     lemma = Lemma(
@@ -308,4 +323,12 @@ def coordinate(x: sp.Symbol, value: sp.Expr) -> Link:
     return Link((x,), lemma.equations, {}, lemma)
 
 
-__all__ = ["Ray", "coordinate", "direction", "line_and_circle", "slide_to_line", "two_lines"]
+__all__ = [
+    "Ray",
+    "coordinate",
+    "direction",
+    "either_way",
+    "line_and_circle",
+    "slide_to_line",
+    "two_lines",
+]

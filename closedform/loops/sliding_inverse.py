@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import sympy as sp
 
 from closedform.lemmas.legs import Naming, Stretch, cross_in_plane
+from closedform.loops.crossed import Crossed, crossed, state
 from closedform.loops.from_hand import export_inverse
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import MISSED
@@ -15,6 +16,7 @@ from closedform.loops.linkage import GROUND
 from closedform.loops.sliding import Frame, SlidingLinkage, swing_name
 from closedform.loops.sliding_solver import Block, Solver
 from closedform.mechanics.assur_slides import (
+    EitherWay,
     Hold,
     Meet,
     OnLine,
@@ -30,7 +32,9 @@ def inverse(m: SlidingLinkage, loop: Step, poles: Sequence[Block]) -> None:
     """Derive and export the inverse, or say why there is none."""
     known = [GROUND, *[m.follower] * bool(m.follower)]
     bars = {name: at for name, at in m.points.items() if name not in m.cylinders}
-    found = sliding_order(bars, m.pairs, known, [m.hand_at] * bool(m.hand_at))
+    bars_across = {case.body: case for case in crossed(m)}
+    parallel = [(body, GROUND) for body in bars_across]
+    found = sliding_order(bars, m.pairs, known, [m.hand_at] * bool(m.hand_at), parallel)
     if found.left:
         m.d.no_inverse(f"with the hand held, {found.undone}")
         return
@@ -42,7 +46,9 @@ def inverse(m: SlidingLinkage, loop: Step, poles: Sequence[Block]) -> None:
         if loose := [p for p in m.points[name] if p not in there]:
             m.d.no_inverse(f"with the hand held, the end {loose[0]} of {name} can still move")
             return
-    _Reverse(m, loop, found, poles).export()
+    used = {g.body: bars_across[g.body] for g in found.groups if isinstance(g, EitherWay)}
+    steps = [loop, *(state(m, case, loop) for case in used.values())]
+    _Reverse(m, steps, found, poles, used).export()
 
 
 @dataclass
@@ -50,9 +56,11 @@ class _Reverse:
     """The inverse as it is written into a program."""
 
     m: SlidingLinkage
-    loop: Step
+    steps: Sequence[Step]
     order: SlidingOrder
     poles: Sequence[Block]
+    across: Mapping[str, Crossed]
+    """The bodies that crossed bars keep parallel to the ground."""
     values: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     lost: list[sp.Expr] = field(default_factory=list)
     """How much each group enlarges an error of the target."""
@@ -72,6 +80,9 @@ class _Reverse:
         for k, group in enumerate(self.order.groups, 1):
             if isinstance(group, Hold):
                 self._hold(group, k)
+            elif isinstance(group, EitherWay):
+                case = self.across[group.body]
+                self.solver.either_way(group.body, group.near, (case.along, case.way), k)
             else:
                 before = len(self.solver.blocks)
                 self.solver.solve(group, k)
@@ -222,7 +233,7 @@ class _Reverse:
             )
             * near_pole,
             {},
-            uses=[self.loop],
+            uses=list(self.steps),
             solves={"ik": ()},
         )
         export_inverse(
@@ -239,6 +250,11 @@ class _Reverse:
                 "SINGULAR: a group is free to move, as where its pivots coincide; one posture is "
                 "used.",
                 *["SINGULAR also near a parallel singularity."] * near_pole,
+                *(
+                    f"Where {' and '.join(c.near)} coincide, {body} is free to turn; it is found "
+                    f"only where it is parallel to the {GROUND}."
+                    for body, c in self.across.items()
+                ),
             ),
             links=solver.links,
             equations=self.equations,

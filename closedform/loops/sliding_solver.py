@@ -9,7 +9,14 @@ import sympy as sp
 
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.legs import Naming, cross_in_plane
-from closedform.lemmas.lines import Ray, coordinate, direction, line_and_circle, two_lines
+from closedform.lemmas.lines import (
+    Ray,
+    coordinate,
+    direction,
+    either_way,
+    line_and_circle,
+    two_lines,
+)
 from closedform.loops.from_hand import turned
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import named_in
@@ -267,6 +274,26 @@ class Solver:
                 )
             ]
             self.know(body, *frames)
+
+    def either_way(self, body: str, near: str, ways: tuple[sp.Matrix, sp.Matrix], k: int) -> None:
+        """A body with a known point, whose line is parallel to one of the ground.
+
+        ``ways`` are the directions of both, that of the body first.
+        """
+        m, (along, way) = self.m, ways
+        unknowns = m.unknown(f"t_{body}")
+        link = either_way(way, unknowns, self._sign(f"{k}"))
+        t = self._done(link, unknowns, f"pt_{body}")
+        equations = (cross_in_plane(unknowns, way), square(unknowns) - 1)
+        self.blocks.append(Block("", tuple(unknowns), equations, (False, True), sp.S.One))
+        frames = [
+            Frame(world.at[near], m.local(body, near), arm, along, still)
+            for world, arm, still in (
+                (self.here, t, sp.S.Zero),
+                (self.meant, unknowns, equations[1]),
+            )
+        ]
+        self.know(body, *frames)
 
     def linear(self, x: sp.Symbol, value: sp.Expr, meant: sp.Expr) -> sp.Expr:
         """A coordinate that is known; returns its value."""

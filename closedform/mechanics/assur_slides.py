@@ -4,6 +4,8 @@ Bodies that slide on each other are not turned to each other.  So a body that sl
 is known but for one number, and each of its points is on a line.  A group is a pin of two bodies,
 each of which holds it on a circle or on such a line; a body that slides on two known ones; or two
 bodies that slide on each other, each of which is pinned to a known point.
+
+Whether crossed bars keep a body parallel to another one is a matter of lengths, so it is given.
 """
 
 from __future__ import annotations
@@ -80,7 +82,20 @@ class Hold:
         return (self.body,)
 
 
-Group = Meet | Swing | Place | Hold
+@dataclass(frozen=True)
+class EitherWay:
+    """A body with the known point ``near``, parallel to the body ``like`` but for half a turn."""
+
+    body: str
+    like: str
+    near: str
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        return (self.body,)
+
+
+Group = Meet | Swing | Place | Hold | EitherWay
 
 
 @dataclass
@@ -149,17 +164,19 @@ def sliding_order(
     slides: Sequence[tuple[str, str]],
     known: Iterable[str],
     points: Iterable[str] = (),
+    parallel: Sequence[tuple[str, str]] = (),
 ) -> SlidingOrder:
     """The order for bodies with named points, some of which slide on each other.
 
     Bodies that have a point of the same name are pinned together there.  Some bodies are ``known``,
-    and some ``points`` besides theirs.
+    and some ``points`` besides theirs.  The first body of a ``parallel`` pair is parallel to the
+    second but for half a turn; this is used where nothing else is left.
     """
     on = {name: tuple(dict.fromkeys(at)) for name, at in bodies.items()}
     here = {*known}
     now = _Known(on, slides, here, {p for name in here for p in on[name]} | {*points})
     found = SlidingOrder(left=[name for name in on if name not in here])
-    while group := _next(now, found.left):
+    while group := _next(now, found.left) or _either_way(now, found.left, parallel):
         found.groups.append(group)
         now.bodies |= {*group.bodies}
         now.points |= {p for name in group.bodies for p in on[name]}
@@ -190,6 +207,15 @@ def _next(now: _Known, left: Sequence[str]) -> Group | None:
         first_hold, second_hold = now.holds(a), now.holds(b)
         if shared and first_hold and second_hold:
             return Meet(shared[0], (first_hold, second_hold))
+    return None
+
+
+def _either_way(
+    now: _Known, left: Sequence[str], parallel: Sequence[tuple[str, str]]
+) -> EitherWay | None:
+    for body, like in parallel:
+        if body in left and like in now.bodies and (near := now.near(body)):
+            return EitherWay(body, like, near[0])
     return None
 
 
@@ -238,12 +264,13 @@ def _needs(group: Group, slides: Sequence[tuple[str, str]]) -> tuple[set[str], s
         return near, {other(h.slide, h.body) for h in group.holds if isinstance(h, OnLine)}
     if isinstance(group, Swing):
         return {*group.near}, set()
-    if isinstance(group, Place):
+    if isinstance(group, Place | EitherWay):
         return {group.near}, {group.like}
     return {*group.points}, {other(k, group.body) for k in group.slides}
 
 
 __all__ = [
+    "EitherWay",
     "Group",
     "Hold",
     "Meet",

@@ -11,7 +11,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 import sympy as sp
-from loop_files import derived, script_of
+from loop_files import derived, read_script, script_of
 from places import TESTS
 
 from closedform.scaffold.inputs.tables import TableError
@@ -202,8 +202,7 @@ def test_it_is_drawn_in_modes_that_exist(loop: ModuleType) -> None:
 
 
 def test_the_inverse_finds_every_posture(loop: ModuleType) -> None:
-    if hasattr(loop, "ik"):
-        check_inverse(loop, text(name_of(loop)))
+    check_inverse(loop, text(name_of(loop)))
 
 
 def test_the_jacobian_is_the_derivative(loop: ModuleType) -> None:
@@ -236,6 +235,32 @@ def test_a_file_that_does_not_fit_says_why(
     assert old in content
     with pytest.raises(TableError, match=message):
         script_of(name, content.replace(old, new), tmp_path)
+
+
+BARS = 'bar2 = {Q = [0, 0], M = ["l/2", 0], V = ["l", 0]}'
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "parallel"),
+    [
+        ("", "", True),
+        (BARS, 'bar2 = {Q = [0, 0], M = ["0.4*l", 0], V = ["0.8*l", 0]}', True),
+        (BARS, 'bar2 = {Q = [0, 0], M = ["0.4*l", 0], V = ["l", 0]}', False),
+        (BARS, 'bar2 = {Q = [0, 0], M = ["l/2", "0.1"], V = ["l", 0]}', False),
+        ("foot = {Q = [0, 0]}", "foot = {Q = [0, -0.1]}", False),  # the line does not pass O
+        ('at = "V", kind', 'at = "H", kind', False),  # that of the table does not pass V
+    ],
+)  # fmt: skip
+def test_crossed_bars_keep_a_table_parallel_if_their_pin_divides_both_alike(
+    old: str, new: str, parallel: bool, tmp_path: Path
+) -> None:
+    """The table is found from the hand alone; else the linkage has a group of a higher class."""
+    content = text("scissor_lift")
+    assert old in content
+    d = read_script(script_of("lift", content.replace(old, new), tmp_path))
+    assert ("table stays parallel" in [step.title for step in d.steps]) == parallel
+    assert ("ik" in [function.name for function in d.functions]) == parallel
+    assert parallel or "a class above II" in d.without_inverse
 
 
 WEDGE = """

@@ -94,7 +94,6 @@ def test_every_snippet(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.syspath_prepend(tmp_path)  # for a lemma beside a script
     snippets = Snippets(tmp_path, capsys)
     for kind, name, text in BLOCK.findall((DOCS / f"{guide}.md").read_text("utf-8")):
         try:

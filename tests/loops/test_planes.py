@@ -69,7 +69,7 @@ def test_the_chains_of_joints_find_no_posture_that_the_closed_form_lacks(
 ) -> None:
     """A hand on two different axes does not turn, wherever the search begins."""
     rng, found = np.random.default_rng(1), 0
-    for q in rng.uniform(-0.3, 0.3, (20, 3)):
+    for q in rng.uniform(-0.3, 0.3, (7, 3)):
         [p], [status] = robot.fk(q)
         for start in rng.uniform(-np.pi, np.pi, (6, 9)):
             angles = newton(lambda a: missed(robot, q, a), start)  # noqa: B023
@@ -80,7 +80,7 @@ def test_the_chains_of_joints_find_no_posture_that_the_closed_form_lacks(
             assert np.abs(R - np.eye(3)).max() < 1e-9
             assert np.linalg.norm(at - p) < 1e-9
             found += 1
-    assert found > 10
+    assert found > 5
 
 
 def test_targets_at_random(robot: ModuleType) -> None:

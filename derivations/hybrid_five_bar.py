@@ -190,7 +190,7 @@ for name, meaning in (
     ("L3", "length of the driven bar BD, if it differs from AC"),
     ("L4", "length of the passive bar DP, if it differs from CP"),
     ("psi", "angle from CP to DP"),
-    ("kappa", "condition number of A"),
+    ("kappa", "condition number of 𝐀"),
     ("w", "by how much L0 exceeds 2*L1"),
     ("s", "how far L0 is above its lower limit in a regime"),
     ("t", "how far L0 is below its upper limit in a regime"),
@@ -212,7 +212,10 @@ d.explain(
         r"\overrightarrow{BP}": "vector from B to P, along AB and away from it",
         r"\overrightarrow{CP}": "vector of the bar CP",
         r"\overrightarrow{DP}": "vector of the bar DP",
-        r"\varsigma": "singular values of A",
+        r"\varsigma": "singular values of 𝐀",
+        r"\mathbf A": "factor of the rate of P in 𝐀*dp = 𝐁*dq",
+        r"\mathbf B": "factor of the rates of the joints, diagonal",
+        r"\mathbf J": "derivative of p with respect to q",
         "a": "distance of P from A",
         "b": "distance of P from B",
         r"\mathbf c": "place of C",
@@ -282,15 +285,15 @@ passive = dict(
 )
 by_angles = merge_angles(B_q.subs(passive).expand())
 d.step(
-    "Velocity: A and B",
-    "These are the derivatives of the loop equations.  The rows of A are L2*k, p - c and p - d.  B "
+    "Velocity: the two matrices",
+    "These are the derivatives of the loop equations.  The rows of 𝐀 are L2*k, p - c and p - d.  𝐁 "
     "is diagonal because each leg depends on its own motor only and a turn about AB moves P at "
     "right angles to both bars.  CP_y is the component of CP along AB and CP_r the one away from "
     "it; DP likewise.",
-    {"A": A_p, "B": B_q, r"B(\theta)": by_angles},
+    {r"\mathbf A": A_p, r"\mathbf B": B_q, r"\mathbf B(\theta)": by_angles},
     published=("(2)", "(3)", "(4)"),
     proves=(
-        "The rows of A are L2*k, p - c and p - d; in the angles, B is diagonal with the entries "
+        "The rows of 𝐀 are L2*k, p - c and p - d; in the angles, 𝐁 is diagonal with the entries "
         "L2*rho, L1*L2*sin(theta4 - theta2) and L1*L2*sin(theta5 - theta3)."
     ),
     equal=[
@@ -312,10 +315,10 @@ general = sp.Matrix.hstack(A_other, B_other).subs(over_d, simultaneous=True).app
 d.step(
     "Velocity: unequal legs",
     "With bars of lengths L3 and L4 over D only the last rows change.  From here on L1 = L3 and "
-    "L2 = L4.  Then the triangle over CD is isosceles, L2^2 is a common factor of A*A^T, which the "
+    "L2 = L4.  Then the triangle over CD is isosceles, L2^2 is a common factor of 𝐀*𝐀^T, which the "
     "condition number uses, and the two hollow spheres of the workspace have the same size.",
     {r"B_{33}(L_3, L_4)": L3 * L4 * sin(theta5 - theta3)},
-    proves="The last rows of A and B are those of the bars L3 and L4.",
+    proves="The last rows of 𝐀 and 𝐁 are those of the bars L3 and L4.",
     equal=[
         (general[:, :3], bar(L4, theta5).T),
         (general[:, 3:], sp.Matrix([[0, 0, L3 * L4 * sin(theta5 - theta3)]])),
@@ -343,24 +346,24 @@ det_a = L2**3 * sin(theta5 - theta4)
 det_b = L1**2 * L2**3 * rho * sin(theta4 - theta2) * sin(theta5 - theta3)
 det_j = L1**2 * rho * sin(theta4 - theta2) * sin(theta5 - theta3) / sin(theta5 - theta4)
 d.step(
-    "Velocity: J and the determinants",
-    "J = A^-1*B.  All determinants factor: det(A) contains the sine of the angle between CP and "
-    "DP, det(B) contains rho and the sine of the angle between the bars of each leg.  At a "
-    "parallel singularity, det(A) = 0, either C, D, P are in line or C = D: P can move although "
+    "Velocity: the Jacobian and the determinants",
+    "𝐉 = 𝐀^-1*𝐁.  All determinants factor: det(𝐀) contains the sine of the angle between CP and "
+    "DP, det(𝐁) contains rho and the sine of the angle between the bars of each leg.  At a "
+    "parallel singularity, det(𝐀) = 0, either C, D, P are in line or C = D: P can move although "
     "the motors stand still, at right angles to CP or on a circle about D.  At a serial "
-    "singularity, det(B) = 0, a motor turns and P stands still.  For theta1 this happens with P on "
+    "singularity, det(𝐁) = 0, a motor turns and P stands still.  For theta1 this happens with P on "
     "AB (rho = 0), which section 2.6 of the paper does not mention; for theta2 with A, C, P in "
     "line; for theta3 with B, D, P in line.  In the last two cases a leg is stretched or folded.",
     {
-        r"\bigl(\overrightarrow{CP}\times\overrightarrow{DP}\bigr) A^{-1}": (
+        r"\bigl(\overrightarrow{CP}\times\overrightarrow{DP}\bigr) \mathbf A^{-1}": (
             A_inverse * product
         ).applyfunc(lambda entry: sp.factor(normal(entry))),
-        r"\det A": det_a,
-        r"\det B": det_b,
-        r"\det J": det_j,
+        r"\det\mathbf A": det_a,
+        r"\det\mathbf B": det_b,
+        r"\det\mathbf J": det_j,
     },
     proves=(
-        "A*J = B; the determinants of A, B and J are as stated; and the cross product of CP and "
+        "𝐀*𝐉 = 𝐁; the determinants of 𝐀, 𝐁 and 𝐉 are as stated; and the cross product of CP and "
         "DP is 2*h*e."
     ),
     equal=[
@@ -378,19 +381,19 @@ for symbol, value in driven.items():
 
 
 J_named = J.xreplace({-sp.expand(product): -sideways})
-shown_as = {"jacobian_parallel": "A", "jacobian_serial": "B"}
+shown_as = {"jacobian_parallel": r"\mathbf A", "jacobian_serial": r"\mathbf B"}
 for name, summary, outputs, notes in (
-    ("jacobian_parallel", "A of A*dp = B*dq; its rows are L2*k, p - c and p - d.", {"A": A_p}, ()),
+    ("jacobian_parallel", "𝐀 of 𝐀*dp = 𝐁*dq; its rows are L2*k, p - c and p - d.", {"A": A_p}, ()),
     (
         "jacobian_serial",
-        "The diagonal of B of A*dp = B*dq: L2*rho, L1*L2*sin(theta4 - theta2) and L1*L2*sin(theta5 "
+        "The diagonal of 𝐁 of 𝐀*dp = 𝐁*dq: L2*rho, L1*L2*sin(theta4 - theta2) and L1*L2*sin(theta5 "
         "- theta3).",
         {"B": [L2 * P_r, along_c, along_d]},
         ("Its signs distinguish the working modes; BRANCHES lists them in the same order.",),
     ),
     (
         "jacobian",
-        "Derivative of p with respect to q: A^-1*B.",
+        "Derivative of p with respect to q: 𝐀^-1*𝐁.",
         {"J": J_named},
         ("Not finite at a parallel singularity.",),
     ),
@@ -409,7 +412,7 @@ for name, summary, outputs, notes in (
     ),
     (
         "condition_number",
-        "Ratio of the largest to the smallest singular value of A.",
+        "Ratio of the largest to the smallest singular value of 𝐀.",
         {"kappa": choose(chord.flag, 1, sp.Max(half, height)) / sp.Min(half, height)},
         (
             "Infinite at a parallel singularity.  It does not depend on theta1 and is the same for "

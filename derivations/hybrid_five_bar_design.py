@@ -34,21 +34,21 @@ def conditioning(
     h, e = real("h", nonnegative=True), real("e", nonnegative=True)
     by_chord = [(cos(psi), (e**2 - h**2) / L2**2), (L2, sqrt(h**2 + e**2))]
     d.step(
-        "Singular values and condition number of A",
-        "k is at right angles to CP and DP, so the only entry of A*A^T off its diagonal is the "
+        "Singular values and condition number",
+        "k is at right angles to CP and DP, so the only entry of 𝐀*𝐀^T off its diagonal is the "
         "scalar product of CP and DP.  Let h be half of CD and e the distance of P from CD.  The "
         "scalar product is e^2 - h^2, and L2^2 = h^2 + e^2, so the singular values are L2, "
         "sqrt(2)*h and sqrt(2)*e.  L2 lies between the other two, and the condition number is the "
         "larger of h/e and e/h, for either sign of the cosine.",
         {
-            r"A A^T": gram,
+            r"\mathbf A \mathbf A^T": gram,
             r"\varsigma^2": sp.Matrix([L2**2 * (1 - c), L2**2, L2**2 * (1 + c)]),
             r"\kappa^2": (1 + sp.Abs(c)) / (1 - sp.Abs(c)),
             r"\kappa(h, e)": sp.Max(h, e) / sp.Min(h, e),
         },
         published=("(6)", "(7)", "(8)"),
         proves=(
-            "The product A*A^T, its characteristic polynomial, and the squares 2*h^2 and 2*e^2 "
+            "The product 𝐀*𝐀^T, its characteristic polynomial, and the squares 2*h^2 and 2*e^2 "
             "of the singular values."
         ),
         equal=[
@@ -66,14 +66,14 @@ def conditioning(
     d.step(
         "Isotropy",
         "kappa = 1 if CP and DP are at right angles: h = e, so CD = sqrt(2)*L2.  By the range of "
-        "CD, A can be isotropic if and only if L2 is positive and sqrt(2)*L2 is in that range.",
+        "CD, 𝐀 can be isotropic if and only if L2 is positive and sqrt(2)*L2 is in that range.",
         {"d_{min}": sp.Max(0, L0 - 2 * L1), "d_{max}": L0 + 2 * L1},
-        proves="A*A^T is L2^2 times the identity if CP and DP are at right angles.",
+        proves="𝐀*𝐀^T is L2^2 times the identity if CP and DP are at right angles.",
         equal=[(gram.subs(cos(psi), 0), L2**2 * sp.eye(3))],
     )
     d.step(
         "Designs without parallel singularities",
-        "det(A) vanishes if C = D (h = 0) and if C, P, D are in line (e = 0, CD = 2*L2).  By the "
+        "det(𝐀) vanishes if C = D (h = 0) and if C, P, D are in line (e = 0, CD = 2*L2).  By the "
         "range of CD, the first is possible if and only if L0 <= 2*L1, and the second if and only "
         "if 2*L2 is in the range.  If 2*L2 is below the range, the loop never closes.  So a "
         "linkage that can be assembled has no parallel singularity if and only if both conditions "
@@ -419,13 +419,20 @@ def workspace(d: Derivation) -> dict[str, Regime]:
     whole = sp.Rational(4, 3) * pi * (R**3 - r**3)
     d.step(
         "Workspace: largest volume",
-        "In each regime (in the order above, without the last) the lengths are written in terms "
-        "of L0 and the distances s and t of L0 from its limits.  Then all coefficients of minus "
-        "the derivative with respect to L0 are positive, so the volume falls as L0 grows and is "
-        "largest at L0 = 0.  For a given reach L1 + L2 the volume at L0 = 0 grows as the inner "
+        "In each regime the lengths are written in terms of L0 and the distances s and t of L0 "
+        "from its limits.  The table has minus the derivative of the volume with respect to L0: "
+        "all its coefficients are positive, so the volume falls as L0 grows and is largest at "
+        "L0 = 0.  For a given reach L1 + L2 the volume at L0 = 0 grows as the inner "
         "radius |L1 - L2| shrinks; it is largest at L1 = L2, the whole ball.  Without such a "
         "bound on the lengths there is no largest workspace.",
-        {"V(L_0 = 0)": whole, r"-V'(L_0)": sp.Matrix([form for _, form in decrease(found)])},
+        {"V(L_0 = 0)": whole},
+        rows=[
+            ("inner balls", "fall of the volume with L0"),
+            *(
+                (name.removeprefix("inner balls "), form)
+                for name, (_, form) in zip(found, decrease(found), strict=False)
+            ),
+        ],
         proves="The volume at L0 = 0 is as stated, and so is minus the derivative for each regime.",
         equal=[
             (found["inner balls inside, overlapping"].volume.subs(L0, 0), whole),

@@ -130,7 +130,7 @@ def inverse_kinematics(d: Derivation, loop: Loop) -> None:
         result="Solutions",
         source="the working modes of section 2.4",
         notes=(
-            "BRANCHES name the signs of the diagonal of B; each posture is in one of the two "
+            "BRANCHES name the signs of the diagonal of 𝐁; each posture is in one of the two "
             "assembly modes.",
             "UNREACHABLE: the distance of P from A or from B is more than L1 + L2 or less than "
             "|L1 - L2|.",
@@ -182,7 +182,7 @@ def _explain(d: Derivation, loop: Loop, turn: Lemma) -> None:
         "rho is the distance of P from the axis with either sign; the other sign turns theta1 by "
         "half a turn.  In the plane of the linkage, A, C, P and B, D, P are triangles with known "
         "sides.  Each has two mirror images, which differ in the sign of the angle between the "
-        "bars.  So the three signs are those of the diagonal of B.  If P is on the axis, theta1 "
+        "bars.  So the three signs are those of the diagonal of 𝐁.  If P is on the axis, theta1 "
         "is free and we return 0.  P can be at A or at B only if L1 = L2; then theta2 or theta3 "
         "is free too.",
         {

@@ -12,6 +12,8 @@ from collections.abc import Callable
 import sympy as sp
 from sympy.printing.str import StrPrinter
 
+from closedform.emit.text import unbold
+
 WIDTH = 100
 TOKEN = re.compile(r"\\\\(?:\[[^\]]*\])?|\\[A-Za-z]+|\\.|\s+|.", re.DOTALL)
 SIMPLE = re.compile(r"-?\w+|.|\|\|")
@@ -208,7 +210,7 @@ def heading(title: str) -> tuple[str, ...]:
 def paragraph(text: str, indent: int = 0, hang: int = 4) -> list[str]:
     """Lines of at most :data:`WIDTH` columns; all but the first are indented more if any is."""
     first, rest = " " * indent, " " * (indent + hang * bool(indent))
-    return textwrap.wrap(text, WIDTH, initial_indent=first, subsequent_indent=rest)
+    return textwrap.wrap(unbold(text), WIDTH, initial_indent=first, subsequent_indent=rest)
 
 
 __all__ = ["WIDTH", "decimal", "expression", "from_latex", "heading", "mixed", "paragraph"]

@@ -17,6 +17,8 @@ from closedform.model.functions import Function
 from closedform.model.skeleton import Skeleton
 
 WIDTH = 96
+BOLD_LETTERS = {chr(ord("𝐀") + k): chr(ord("A") + k) for k in range(26)}
+"""A derivation writes a matrix bold if a point has its letter; plain text has the letter."""
 
 
 @dataclass(frozen=True)
@@ -79,8 +81,13 @@ def interface(derivation: Derivation) -> Interface:
 def wrapped(text: str, width: int, first: str = "", rest: str = "") -> list[str]:
     """Lines of text; a word with a hyphen stays whole, because what joins them adds a space."""
     return textwrap.wrap(
-        text, width, initial_indent=first, subsequent_indent=rest, break_on_hyphens=False
+        unbold(text), width, initial_indent=first, subsequent_indent=rest, break_on_hyphens=False
     )
+
+
+def unbold(text: str) -> str:
+    """Text with plain letters instead of bold ones, which few fonts of terminals have."""
+    return text.translate({ord(bold): plain for bold, plain in BOLD_LETTERS.items()})
 
 
 def citation(derivation: Derivation) -> str:

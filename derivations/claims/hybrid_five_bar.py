@@ -421,8 +421,8 @@ def working_modes(d: Derivation, bar: FiveBar) -> None:
         "postures in different working modes corresponding to an inverse kinematic solution.”",
         lambda indicator: Every(
             {
-                "each working mode has its own signs of B": sign_patterns(indicator),
-                "a sign of B changes only at zero": serial_by_position(bar),
+                "each working mode has its own signs of $\\mathbf{B}$": sign_patterns(indicator),
+                "a sign of $\\mathbf{B}$ changes only at zero": serial_by_position(bar),
             }
         ),
         phrases=[{"serial": lambda at: at.diagonal, "parallel": lambda at: (at.cross,)}],
@@ -441,7 +441,7 @@ def working_modes(d: Derivation, bar: FiveBar) -> None:
         moved = [e.subs(image, simultaneous=True) for e in diagonal]
         return Every(
             {
-                "every sign of B changes": Identity(
+                "every sign of $\\mathbf{B}$ changes": Identity(
                     [sp.expand_trig(e) for e in moved], [-sp.expand_trig(e) for e in diagonal]
                 ),
                 "half of the modes are images of the others": Enumeration(

@@ -435,7 +435,7 @@ def loci(d: Derivation, bar: FiveBar) -> None:
         "distance from the singularities”",
         lambda scale: Every(
             {
-                "no smaller change of A makes it singular": Identity(
+                "no smaller change of $\\mathbf{A}$ makes it singular": Identity(
                     (x.T * gram * x)[0] - scale * least * x.dot(x),
                     L2**2 * size * (x[0] ** 2 + (x[1] + x[2]) ** 2),
                 ),

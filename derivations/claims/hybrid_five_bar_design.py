@@ -82,7 +82,7 @@ def crossed(change: bool) -> Check:
     regions = [first.cross, beyond.other_mode().cross if change else beyond.cross]
     return Every(
         {
-            "det A changes its sign between two points": closed_and(
+            "$\\det \\mathbf{A}$ changes its sign between two points": closed_and(
                 beyond, sides=sp.Lt(first.cross * beyond.cross, 0)
             ),
             "it need not, with the chosen mode": closed_and(
@@ -98,7 +98,7 @@ def common_point() -> Check:
     other = first.other_mode()
     return Every(
         {
-            "the convex mode reaches the point with this sign of det A": closed_and(
+            "the convex mode reaches the point with this sign of $\\det \\mathbf{A}$": closed_and(
                 first, det_A=sp.Gt(first.cross, 0)
             ),
             "so does the other mode": closed_and(other, det_A=sp.Gt(other.cross, 0)),
@@ -237,7 +237,9 @@ def workspace(d: Derivation, bar: FiveBar) -> None:
         names = ("the product that vanishes there", "its value")
         return Every(
             {
-                "det A or det B vanishes with these": Identity(factors, form),
+                "$\\det \\mathbf{A}$ or $\\det \\mathbf{B}$ vanishes with these": Identity(
+                    factors, form
+                ),
                 **{n: Identity(place.subs(at), sp.S.Zero, names=names) for n, at in on.items()},
             }
         )
@@ -402,9 +404,16 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
     ) -> Check:
         return Every(
             {
-                "each mode has its own signs of B": required(sign_patterns(lambda at: at.diagonal)),
+                "each mode has its own signs of $\\mathbf{B}$": required(
+                    sign_patterns(lambda at: at.diagonal)
+                ),
                 "they change at the boundary": located(
-                    Every({"a sign of B changes only at zero": serial_by_position(bar), **others})
+                    Every(
+                        {
+                            "a sign of $\\mathbf{B}$ changes only at zero": serial_by_position(bar),
+                            **others,
+                        }
+                    )
                 ),
             }
         )
@@ -440,9 +449,9 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         readings=[
             Reading("the union of the sections of figures 13 and 14, against each of them"),
             Reading(
-                "the same, where each section is the part above AB in which det A is positive, "
-                "for the lengths 7, 8, 5; the union can be twice as large as each section only if "
-                "they have no point in common",
+                "the same, where each section is the part above AB in which $\\det \\mathbf{A}$ is "
+                "positive, for the lengths 7, 8, 5; the union can be twice as large as each "
+                "section only if they have no point in common",
                 lambda times: Not(common_point()) if times == 2 else common_point(),
             ),
             Reading(
@@ -515,7 +524,7 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
     def differ(matrices: tuple[int, ...]) -> Check:
         parts: dict[str, Check] = {
             "these are two working modes": closed_and(isotropic().other_mode()),
-            "entries of B for a given P": serial_by_position(bar),
+            "entries of $\\mathbf{B}$ for a given P": serial_by_position(bar),
         }
         square_kappas = [m.conditions for m in (isotropic(), isotropic().other_mode())]
         for i in matrices:

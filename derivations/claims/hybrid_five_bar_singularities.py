@@ -263,10 +263,10 @@ def serial(d: Derivation, bar: FiveBar) -> None:
                     n: Identity(row.subs(at), speed * sp.ones(1, 3))
                     for n, (row, at) in cases.items()
                 },
-                "one direction is lost with one entry of B": Enumeration(
+                "one direction is lost with one entry of $\\mathbf{B}$": Enumeration(
                     directions,
                     lambda: 3 - sp.diag(0, bar.B[1, 1], bar.B[2, 2]).rank(),
-                    "directions that are lost with one entry of B",
+                    "directions that are lost with one entry of $\\mathbf{B}$",
                 ),
             }
         ),

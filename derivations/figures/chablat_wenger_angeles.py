@@ -298,7 +298,9 @@ def cartesian(
     ax.set(xlabel="$y$", ylabel=r"$\rho$")
     ax.set_aspect("equal")
     return [
-        Patch(color=PALE, label="reached" if regular is None else r"reached with $\det A > 0$"),
+        Patch(
+            color=PALE, label="reached" if regular is None else r"reached with $\det\mathbf{A} > 0$"
+        ),
         Line2D([], [], color="#222222", linewidth=1.0, label="serial singularities"),
     ]
 
@@ -471,7 +473,7 @@ def conditioning(robot: ModuleType) -> Any:
         ax.set(title=title, xlabel="$y$", ylabel=r"$\rho$")
         ax.set_aspect("equal")
     bands = [
-        Patch(color=shade, label=rf"$1/\kappa(A)$ to {high:g}")
+        Patch(color=shade, label=rf"$1/\kappa(\mathbf{{A}})$ to {high:g}")
         for shade, high in zip(shades, [*levels, 1], strict=True)
     ]
     legend(panels[0], [
@@ -530,12 +532,12 @@ FIGURES = (
     Figure("fig4", "The four working modes with $P$ above $AB$; the remaining four are their "
            "mirror images (Figure 4).", working_modes, step="Inverse: the eight working modes"),
     Figure("fig5", "A parallel singularity: $C$, $D$ and $P$ in line (Figure 5).", in_line,
-           step="Velocity: J and the determinants"),
+           step="Velocity: the Jacobian and the determinants"),
     Figure("fig6", "A parallel singularity: $C$ and $D$ coincide, and $P$ moves on a circle while "
            "the motors are locked (Figure 6).", coincident,
-           step="Velocity: J and the determinants"),
+           step="Velocity: the Jacobian and the determinants"),
     Figure("fig7", "A serial singularity: $B$, $D$ and $P$ in line (Figure 7).", outstretched,
-           step="Velocity: J and the determinants"),
+           step="Velocity: the Jacobian and the determinants"),
     Figure("fig8", "A section of the workspace for $L_0 = 0$ and $L_1 = L_2$ (Figure 8).",
            optimal_section, step="Workspace: largest volume"),
     Figure("fig9", "The joint space for $L_0 = 0$ and $L_1 = L_2$ (Figure 9).", optimal_joints,
@@ -556,8 +558,8 @@ FIGURES = (
            step="Locus of the parallel singularities"),
     Figure("fig14", "The same for a non-convex working mode (Figure 14).",
            _mode_section(NON_CONVEX), step="Locus of the parallel singularities"),
-    Figure("fig15", "Curves of equal condition number of $A$ in two working modes, with the "
-           "isotropic locus (Figure 15).", conditioning, step="Isoconditioning loci"),
+    Figure("fig15", "Curves of equal condition number of $\\mathbf{A}$ in two working modes, "
+           "with the isotropic locus (Figure 15).", conditioning, step="Isoconditioning loci"),
     Figure("assembly", "The two assembly modes for the same angles of the motors.",
            assembly_modes, step="Forward: P from two circles"),
     Figure("isotropic", "An isotropic posture: $CP$ and $DP$ are at a right angle.", isotropic,

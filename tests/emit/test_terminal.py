@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 
 from closedform.emit.show import show
-from closedform.emit.terminal import decimal, expression, from_latex, mixed
+from closedform.emit.terminal import decimal, expression, from_latex, mixed, paragraph
 from closedform.emit.text import wrapped
 from closedform.pipeline import scripts
 
@@ -66,3 +66,7 @@ def test_a_word_with_a_hyphen_stays_on_its_line() -> None:
 def test_degrees_are_not_an_exponent() -> None:
     assert from_latex(r"-30^\circ") == from_latex(r"-30^{\circ}") == "-30°"
     assert from_latex(r"-30^\circ", pretty=False) == "-30 deg"
+
+
+def test_plain_text_has_plain_letters() -> None:
+    assert paragraph("The rows of 𝐀, and a row of θ.") == ["The rows of A, and a row of θ."]

@@ -387,7 +387,7 @@ class Page(Sheet):
         name = canonical(printed)
         any_leg = re.sub(r"\d(?=\d?\}$)", INDEX, name)
         known = self.numbers.defined
-        label = known.get(name) or known.get(any_leg) or known.get(symbols.matrix_of(name))
+        label = known.get(name) or known.get(any_leg) or known.get(symbols.matrix_of(name, known))
         joints = {canonical(self.math(j.symbol)) for j in self.derivation.joints}
         return f", where {defined_in([printed], [label])}" if label and name not in joints else ""
 

@@ -7,6 +7,7 @@ import re
 import sympy as sp
 from sympy.core.alphabets import greeks
 
+from closedform.emit.text import BOLD_LETTERS
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Let
 from closedform.model.step import Step
@@ -38,6 +39,7 @@ UNICODE = {
     "ψ": r"\psi", "ω": r"\omega", "Δ": r"\Delta", "Ω": r"\Omega", "°": r"^\circ", "±": r"\pm",
     "×": r"\times", "·": r"\cdot", "≤": r"\le", "≥": r"\ge", "≠": r"\ne", "≈": r"\approx",
     "√": r"\surd", "∞": r"\infty", "∈": r"\in", "²": "^2", "³": "^3", "−": "-",
+    **{bold: rf"\mathbf {letter}" for bold, letter in BOLD_LETTERS.items()},
 }  # fmt: skip
 
 IN_FORMULA = {
@@ -51,7 +53,8 @@ IN_FORMULA = {
 
 FUNCTIONS = r"(?:sqrt|sin|cos|tan|atan2|acos|asin|atan|det|max|min|Abs)"
 PAREN = r"\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)"
-NAME = r"[A-Za-z][A-Za-z0-9_]*"
+NAME = r"(?:[A-Za-z][A-Za-z0-9_]*|[𝐀-𝐙])"
+"""A symbol; a matrix that has the letter of a point is bold."""
 NUMBER = r"\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![A-Za-z])"
 POWER = rf"(?:\*\*|\^)(?:\{{[^}}]*\}}|-?\w+|{PAREN})"
 BALL = r"\[[^]]*\+/-[^]]*\]"
@@ -378,7 +381,8 @@ class Prose:
                 short = self._is_symbol(name) or len(name) == 1 or name[1] == "_"
                 short = short or name in self.derivation.written
                 rate = not short and DIFFERENTIAL.fullmatch(name)
-                other = rf"\mathrm{{d}}{self._name(rate[1])}" if rate else rf"\mathrm{{{name}}}"
+                font = "mathit" if self.lines.fullmatch(name) else "mathrm"
+                other = rf"\mathrm{{d}}{self._name(rate[1])}" if rate else rf"\{font}{{{name}}}"
                 done.append(self._name(name) if short else other)
             else:
                 done.append(SIGNS.get(sign, sign) or IN_FORMULA.get(other, other))
@@ -386,6 +390,8 @@ class Prose:
 
     def _name(self, name: str) -> str:
         """A symbol; a vector is bold as in the formulas."""
+        if name in BOLD_LETTERS:
+            return UNICODE[name]
         spelled = {name, name.replace("_", "")}  # a parameter gs is also called g_s
         free = not spelled & self.names and name not in self.derivation.written
         if free and name in self.vectors:

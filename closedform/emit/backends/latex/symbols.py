@@ -167,7 +167,7 @@ def table(
     in_words = {without_power(canonical(upright(n))): m for n, m in explained}
     said |= in_words
     for form, label in numbers.defined.items():
-        of_a_listed_matrix = form not in rows and matrix_of(form) in numbers.defined
+        of_a_listed_matrix = form not in rows and matrix_of(form, numbers.defined)
         if form not in taken and not of_a_listed_matrix:
             if form not in said and AUXILIARY.fullmatch(form):
                 said[form] = "abbreviation"
@@ -175,7 +175,7 @@ def table(
             told.append(f"see {reference([label])}")
     # such as a block of a matrix, of which an equation gives the determinant
     for form in in_words.keys() - rows.keys() - taken:
-        if matrix_of(form) not in numbers.defined:
+        if not matrix_of(form, numbers.defined):
             rows[form] = [prose(in_words[form])]
     cells = ((form, ", ".join(filter(None, texts))) for form, texts in rows.items())
     return sorted(((f, t) for f, t in cells if t), key=lambda row: (_place(row[0]), row))
@@ -186,12 +186,13 @@ def _place(form: str) -> str:
     return re.sub(r"\d+", lambda m: m[0].zfill(3), skeleton(form).lower())
 
 
-def matrix_of(form: str) -> str:
-    """``J_{s}`` of ``J_{s,12}`` and ``J`` of ``J_{12}``."""
+def matrix_of(form: str, known: Container[str]) -> str:
+    """``J_{s}`` of ``J_{s,12}`` and ``J`` or a bold J of ``J_{12}``, if it is ``known``."""
     entry = re.fullmatch(r"(.+)_\{(?:(.+),)?\d\d\}", form)
     if entry is None:
         return ""
-    return f"{entry[1]}_{{{entry[2]}}}" if entry[2] else entry[1]
+    plain = f"{entry[1]}_{{{entry[2]}}}" if entry[2] else entry[1]
+    return next((m for m in (plain, rf"\mathbf{{{plain}}}") if m in known), "")
 
 
 def _form(derivation: Derivation, name: str) -> str:

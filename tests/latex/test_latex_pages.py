@@ -284,6 +284,18 @@ def test_points_in_the_errata_are_written_as_in_the_derivation() -> None:
     assert written("A and B turn", first=False) == "$A$ and $B$ turn"
 
 
+def test_a_matrix_with_the_letter_of_a_point_is_bold() -> None:
+    prose = Prose(derivation("hybrid_five_bar"))
+    told = prose("A is on AB, and det(𝐀) = 0 if CD = 2*h: 𝐀*dp = 𝐁*dq has the rows of 𝐀.")
+    assert told == (
+        r"$A$ is on $\mathit{AB}$, and $\det(\mathbf A) = 0$ if $\mathit{CD} = 2\,h$: "
+        r"$\mathbf A\,\mathrm{d}\mathbf p = \mathbf B\,\mathrm{d}q$ has the rows of $\mathbf A$."
+    )
+    assert symbols.matrix_of("B_{22}", {r"\mathbf{B}"}) == r"\mathbf{B}"
+    assert symbols.matrix_of("J_{s,12}", {"J_{s}"}) == "J_{s}"
+    assert symbols.matrix_of("B_{22}", {"A"}) == ""
+
+
 def test_a_vector_of_the_formulas_is_bold_in_sentences() -> None:
     told = Prose(derivation("rpr_planar"))("A2 is at b, and p - b_1 has the length rho1.")
     assert r"at $b$, and $\mathbf p - \mathbf b_1$ has" in told  # b is also a parameter
@@ -513,3 +525,16 @@ def test_a_lemma_names_what_its_formula_contains() -> None:
     (fk,) = (i for i in context("agile_wrist")["inverses"] if i["name"] == "fk")
     told = str(fk)
     assert "is $" in told and all(rf"${letter}$ is $" in told for letter in ("C", "S"))
+
+
+def test_an_inverse_that_always_answers_says_so() -> None:
+    """Instead of a map of the workspace, which would have one colour."""
+    told = {
+        name: next(f["reached"] for f in context(name)["inverses"] if f["name"] == "ik")
+        for name in ("spherical_wrist", "planar_2r")
+    }
+    assert told == {
+        "spherical_wrist": "Every orientation is reached in every branch: the workspace has no "
+        "boundary.",
+        "planar_2r": "",
+    }

@@ -23,6 +23,7 @@ from closedform.model.functions import (
     Bound,
     Function,
     Let,
+    Match,
     Vanishes,
     real,
 )
@@ -66,10 +67,20 @@ class Told:
                 for label, signs in self.whole.cases()
                 if signs
             ],
+            "reached": self.reached(),
             "continua": [self.continuum(inverse, c) for c in inverse.degenerate if c.free]
             if inverse
             else [],
         }
+
+    def reached(self) -> str:
+        """What is said of an inverse that always answers, whose workspace has no boundary."""
+        if self.whole.name != "ik" or any(isinstance(s, Bound | Match) for s in self.whole.body):
+            return ""
+        shapes = {array.shape for array in self.whole.inputs}
+        target = "pose" if (4, 4) in shapes else "orientation" if (3, 3) in shapes else "target"
+        by = " in every branch" if len([*self.whole.cases()]) > 1 else ""
+        return f"Every {target} is reached{by}: the workspace has no boundary."
 
     # The derivation
 

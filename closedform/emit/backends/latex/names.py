@@ -52,8 +52,19 @@ class Quantities:
         self.former: dict[str, tuple[sp.Expr, sp.Symbol]] = {}
         self.narrow: dict[str, tuple[sp.Expr, sp.Symbol]] = {}
         """Short sums, which serve in algorithms alone."""
+        self.entries: dict[str, tuple[sp.Expr, sp.Symbol]] = {}
+        """Coordinates of a vector that is called by them, which a function gives as they are."""
 
     def define(self, left: str, value: Any) -> None:
+        """What a step shows; a vector that is called by its coordinates defines each of them."""
+        if isinstance(value, sp.MatrixBase) and TUPLE.fullmatch(left):
+            for k, entry in enumerate(value, 1):
+                name = element(left, str(k))
+                self.define(name, entry)
+                self.narrow.pop(name, None)
+                if name in self.known:
+                    self.entries[name] = self.known.pop(name)
+            return
         if not NAME.fullmatch(left) or _without_braces(left) in self.inputs:
             return
         if left in self.known:
@@ -76,12 +87,12 @@ class Quantities:
 
         ``names`` are the symbols of the function, of which more may be assumed.
         """
-        meanings = (self.former, *([self.narrow] if names else []), self.known)
-        every = {**self.former, **(self.narrow if names else {}), **self.known}
+        meanings = (self.former, *([self.narrow] if names else []), self.known, self.entries)
+        every = {left: k for meaning in meanings for left, k in meaning.items()}
         found = {left: k for left, k in every.items() if left not in without}
         pairs = [k for m in meanings for left, k in m.items() if left not in without]
         if not names:
-            return self._named(value, pairs)
+            return self._named(value, pairs, whole=False)
         symbols = {s for e, _ in pairs for s in e.free_symbols}
         own = {s: names[str(s)] for s in symbols if str(s) in names}
         written = {_without_braces(left): symbol for left, (_, symbol) in found.items()}
@@ -89,8 +100,8 @@ class Quantities:
             if quantity := written.get(_without_braces(self.printer.math(s))):
                 own[s] = quantity
         known = [(e.xreplace(own), s) for e, s in pairs]
-        while (whole := self._named(value, known)) != value:
-            value = whole
+        while (named := self._named(value, known, whole=False)) != value:
+            value = named
         return value
 
     @property
@@ -100,28 +111,34 @@ class Quantities:
 
     def in_value(self, value: sp.Expr) -> set[str]:
         """The names of quantities of steps in a value."""
-        meanings = (self.former, self.narrow, self.known)
+        meanings = (self.former, self.narrow, self.known, self.entries)
         return {n for m in meanings for n, (_, s) in m.items() if s in value.free_symbols}
 
     def __call__(self, value: Any) -> Any:
         """A value with the names of the quantities that occur in it."""
         if isinstance(value, sp.MatrixBase):
             return value.applyfunc(self)
-        named = self._named(value, self.known.values())
+        known = [*self.known.values(), *self.entries.values()]
+        named = self._named(value, known)
         if named == value and isinstance(value, sp.Add):  # a quantity times the cosine of a joint
             grouped = joint_by_joint(value)
-            whole = self._named(grouped, self.known.values())
+            whole = self._named(grouped, known)
             return whole if whole != grouped else value
         return named
 
-    def _named(self, value: Any, known: Iterable[tuple[sp.Expr, sp.Symbol]]) -> Any:
+    def _named(
+        self, value: Any, known: Iterable[tuple[sp.Expr, sp.Symbol]], *, whole: bool = True
+    ) -> Any:
+        """A value with names of quantities; a coordinate is one of its parts, or ``whole``."""
         if not isinstance(value, sp.Expr) or value.is_Atom or operations(value) > LARGEST:
             return value
         known = sorted(known, key=lambda k: (-operations(k[0]), str(k[1])))
+        coordinates = set[sp.Symbol]() if whole else {s for _, s in self.entries.values()}
         for expr, symbol in known:
             if expr.free_symbols <= value.free_symbols:
-                whole = value.xreplace({expr: symbol, -expr: -symbol})
-                value = whole if expr.is_Pow else self._in_sums(whole, expr, symbol)
+                named = value.xreplace({expr: symbol, -expr: -symbol})
+                named = named if expr.is_Pow else self._in_sums(named, expr, symbol)
+                value = value if named in coordinates else named
         return value
 
     def _in_sums(self, value: sp.Expr, expr: sp.Expr, symbol: sp.Symbol) -> sp.Expr:

@@ -188,6 +188,28 @@ def test_a_lemma_brings_those_that_it_rests_on() -> None:
         theorem("broken", statement="$x", proof="")
 
 
+def test_a_chapter_does_not_end_with_a_few_lines_on_a_page(tmp_path: Path) -> None:
+    """The next run sets it tighter; one that ends with more is left as it is."""
+    chapters = [book.Chapter(n, n, PAPER, (), None) for n in ("long", "longer")]
+    (tmp_path / "book.tex").write_text(
+        render("latex/book.tex.jinja", book.context(chapters)), "utf-8"
+    )
+    for one, lines in zip(chapters, (41, 60), strict=True):
+        text = f"\\mechanism{{{one.name}}}{{}}\\label{{chapter:{one.name}}}" + "\n\nA line." * lines
+        (tmp_path / f"{one.name}.tex").write_text(text, "utf-8")
+
+    def ends(passes: int) -> dict[str, tuple[float, int]]:
+        compiled("book.tex", tmp_path, passes)
+        aux = (tmp_path / "book.aux").read_text("utf-8")
+        found = re.findall(r"\\closesat\{(\w+)\}\{(.*?)pt\}\{(\d)\}", aux)
+        return {name: (float(height), int(tight)) for name, height, tight in found}
+
+    first, second = ends(1), ends(1)
+    assert first["long"][0] < 100 and first["long"][1] == 0
+    assert second["long"][0] > 600 and second["long"][1] == 1
+    assert first["longer"] == second["longer"]
+
+
 def test_chapters_are_in_the_order_of_a_course() -> None:
     def chapter(name: str) -> book.Chapter:
         return book.Chapter(name, name, PAPER, ("slide",), None)
@@ -195,7 +217,7 @@ def test_chapters_are_in_the_order_of_a_course() -> None:
     given = [chapter(n) for n in ("zebra", "puma560", "ant", "planar_2r")]
     assert [c.name for c in book.in_order(given)] == ["planar_2r", "puma560", "ant", "zebra"]
     text = render("latex/book.tex.jinja", book.context(given))
-    assert re.findall(r"\\input\{(\w+)\}", text) == ["planar_2r", "puma560", "ant", "zebra"]
+    assert re.findall(r"\\chapterof\{(\w+)\}", text) == ["planar_2r", "puma560", "ant", "zebra"]
     assert r"Used for \hyperref[chapter:planar_2r]{planar\_2r}" in text
     known = [p.stem for p in ARTICLES]
     assert set(book.COURSE) == set(known)

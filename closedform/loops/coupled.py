@@ -22,6 +22,7 @@ from closedform.loops.leg_by_leg import (
     size_of,
     where_free,
 )
+from closedform.loops.letters import letters
 from closedform.loops.modes import EQUATIONS, NO_MODE, Exported, export
 from closedform.loops.reached import bounds_of, export_reach
 from closedform.mechanics.frames import merge_angles
@@ -60,20 +61,21 @@ def coupled(
         raise ValueError(f"{d.name}: the driver and the follower must have the same rod")
     d.singularities, d.poles = ("driver", "follower"), ("follower",)
     loop = square(follower.end() - driver.end()) - sp.sympify(driver.rod, strict=True) ** 2
+    (b,) = letters(d, "b")
     keeps = "is the driver" if isinstance(driver, Stretch) else "keeps its length"
     d.loop = stated = d.step(
         "The loop",
         "The driver determines the point B1 at one end of the rod, and the follower the point B2 "
         f"at the other end.  The rod {keeps}.",
         {
-            r"\mathbf B_1": driver.end(),
-            r"\mathbf B_2": follower.end(),
-            r"|\mathbf B_2 - \mathbf B_1|": sp.sympify(driver.rod, strict=True),
+            rf"\mathbf {b}_1": driver.end(),
+            rf"\mathbf {b}_2": follower.end(),
+            rf"|\mathbf {b}_2 - \mathbf {b}_1|": sp.sympify(driver.rod, strict=True),
         },
     )
-    d.explain({r"\mathbf B_1": "end of the rod on the driver"})
+    d.explain({rf"\mathbf {b}_1": "place of B1, the end of the rod on the driver"})
     d.explain({"A": "factor of the rate of the follower", "B": "factor of the rate of the driver"})
-    d.explain({r"\mathbf B_2": "end of the rod on the follower"})
+    d.explain({rf"\mathbf {b}_2": "place of B2, the end of the rod on the follower"})
     closed = _Loop(d, driver, follower, loop, stated)
     rod = _forward(closed, modes)
     _draw(closed, rod)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from closedform.model.derivation import Derivation
 
-VECTORS = {letter: letter.upper() for letter in "uvnmse"} | {"r": "F"}
+VECTORS = {letter: letter.upper() for letter in "uvnmseb"} | {"r": "F"}
 LENGTHS = {"l": "L", "h": "H"}
 """The letters of the steps on loops, and what stands for one that is taken; R is a rotation."""
 SPARE = "WQKG"

@@ -65,7 +65,7 @@ def test_what_vanishes_says_where_it_is_defined() -> None:
 def test_points_of_a_drawing_are_symbols() -> None:
     prose = Prose(derivation("delta"))
     assert prose("B1a to C1a") == "$B_{1a}$ to $C_{1a}$"
-    assert Prose(derivation("four_bar"))("about A1") == r"about $\mathbf{A}_{1}$"
+    assert Prose(derivation("four_bar"))("about A1") == "about $A_{1}$"
 
 
 def test_a_reader_takes_squares_where_a_program_takes_products() -> None:

@@ -429,7 +429,7 @@ def workspace(d: Derivation) -> dict[str, Regime]:
         rows=[
             ("inner balls", "fall of the volume with L0"),
             *(
-                (name.removeprefix("inner balls "), form)
+                (name.removeprefix("inner balls "), sp.factor(form))
                 for name, (_, form) in zip(found, decrease(found), strict=False)
             ),
         ],

@@ -347,6 +347,7 @@ def test_symbol_names(name: str, latex: str) -> None:
         ("(front, sigma_side = 1)", r"(front, $\sigma_{\mathrm{side}} = 1$)"),
         ("free (theta1 + theta2 is given)", r"free ($\theta_{1} + \theta_{2}$ is given)"),
         ("(theta1 + theta2)/2 = gamma7", r"$(\theta_{1} + \theta_{2})/2 = \gamma_{7}$"),
+        ("l1 = l2 (theta2 = 0)", r"$l_{1} = l_{2}$ $(\theta_{2} = 0)$"),
         ("A line.  A step, and A holds: A too", "A line.  A step, and $A$ holds: $A$ too"),
     ],
 )

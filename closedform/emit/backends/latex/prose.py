@@ -69,8 +69,8 @@ SIGNS = {"+/-": r"\pm ", "<=": r"\le ", ">=": r"\ge ", "!=": r"\ne ", "*": r"\,"
 ENGLISH = re.compile(rf"(?!(?:{'|'.join(sorted(GREEK))})$)[a-z]{{3,}}")
 """The name of a symbol that is a word of a sentence."""
 GREEK_NAME = re.compile(rf"(?:{'|'.join(sorted(GREEK))})\d*(?:_\w+)?")
-PRODUCT = re.compile(r"(?<=[^\s$])\$ \$(?=[^\s$])")
-"""Between two formulas that are factors."""
+PRODUCT = re.compile(r"(?<=[^\s$])\$ \$(?=[^\s$])(?!\([^$]*=)")
+"""Between two formulas that are factors, and not before a remark such as (h = 0)."""
 WORD = r"\\mathrm\{[A-Za-z]{2,}\}(?:_\{(?:[^{}]|\{[^{}]*\})*\})?"
 """A symbol that is a word; as a factor it needs a space."""
 ARTICLE = re.compile(r"\s+(?!(?:of|is|and|has|to|vanishes)\b)[a-z]")

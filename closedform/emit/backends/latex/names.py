@@ -57,7 +57,8 @@ class Quantities:
 
     def define(self, left: str, value: Any) -> None:
         """What a step shows; a vector that is called by its coordinates defines each of them."""
-        if isinstance(value, sp.MatrixBase) and TUPLE.fullmatch(left):
+        called = TUPLE.fullmatch(left)
+        if isinstance(value, sp.MatrixBase) and called and called[1].count(",") + 1 == len(value):
             for k, entry in enumerate(value, 1):
                 name = element(left, str(k))
                 self.define(name, entry)

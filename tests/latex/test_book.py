@@ -86,6 +86,16 @@ def test_equations_have_numbers_and_later_steps_refer_to_them(tmp_path: Path) ->
     assert found == {"1": "1", "2": "2", "3": "3"}
 
 
+@pytest.mark.parametrize("tex", ARTICLES, ids=lambda path: path.stem)
+def test_what_an_algorithm_explains_is_in_it(tex: Path) -> None:
+    """A function that continues another one had its names explained a second time."""
+    text = tex.read_text("utf-8")
+    for found in re.finditer(r"\\end\{algorithm\}\nHere (.*)\.\n", text):
+        lines = text[text.rindex(r"\begin{algorithm}", 0, found.start()) : found.start()]
+        for name in re.findall(r"\$([^$]*)\$", found[1]):
+            assert name in lines
+
+
 def test_a_matrix_is_printed_once() -> None:
     text = article(toy())
     assert text.count(r"\begin{bmatrix}") == 1

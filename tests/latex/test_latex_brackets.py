@@ -3,8 +3,8 @@
 import pytest
 import sympy as sp
 
-from closedform.emit.backends.latex.equations import defined_in
-from closedform.emit.backends.latex.prose import loosen
+from closedform.emit.backends.latex.equations import by_equation, defined_in
+from closedform.emit.backends.latex.prose import loosen, symbol_name
 
 a, b, c = sp.symbols("a b c")
 
@@ -36,3 +36,13 @@ def test_a_symbol_is_said_to_be_that_of_an_equation() -> None:
 def test_a_coordinate_is_said_to_be_one_of_its_vector() -> None:
     told = defined_in(["b_{1,x}", "b_{1,y}"], ["eq:x:1"])
     assert told == r"$b_{1,x}$ and $b_{1,y}$ are coordinates of $\mathbf b_1$, see \eqref{eq:x:1}"
+
+
+def test_names_are_in_the_order_of_their_equations() -> None:
+    assert by_equation({"h": "eq:x:12", "u": "eq:x:4"}) == ["u", "h"]
+
+
+def test_an_entry_of_a_vector_of_a_leg_has_one_line_of_indices() -> None:
+    assert symbol_name("r_i1") == "r_{i1}"
+    assert symbol_name("v_ik3") == "v_{ik3}"
+    assert symbol_name("sigma_leg1") == r"\sigma_{\mathrm{leg}_{1}}"

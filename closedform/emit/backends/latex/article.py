@@ -22,6 +22,7 @@ from closedform.emit.backends.latex.angles import in_angles
 from closedform.emit.backends.latex.cases import Cases
 from closedform.emit.backends.latex.claims import Claims
 from closedform.emit.backends.latex.equations import (
+    by_equation,
     canonical,
     defined_in,
     names_in,
@@ -31,7 +32,7 @@ from closedform.emit.backends.latex.equations import (
 )
 from closedform.emit.backends.latex.formulas import flat
 from closedform.emit.backends.latex.inverse import Told
-from closedform.emit.backends.latex.listing import lines_kept
+from closedform.emit.backends.latex.listing import Line, lines_kept
 from closedform.emit.backends.latex.names import is_word
 from closedform.emit.backends.latex.places import place
 from closedform.emit.backends.latex.plain import angles_of_readers, plain
@@ -237,11 +238,8 @@ class Page(Sheet):
         known = self.numbers.defined
         found = {n: known[n] for n in dict.fromkeys(names) if n in known and n not in here}
         found = {n: label for n, label in found.items() if label not in labels}
-        where = dict[str, list[str]]()
-        for name, label in found.items():
-            where.setdefault(label, []).append(name)
-        seen = [defined_in(names, [label]) for label, names in where.items()]
-        return f"{told} Here {listed(seen)}.".lstrip() if seen else told
+        seen = defined_in(by_equation(found), found.values()) if found else ""
+        return f"{told} Here {seen}.".lstrip() if seen else told
 
     def cell(self, value: Any) -> str:
         """A cell of a table: a sentence, an expression or an increasing chain of them."""
@@ -306,18 +304,20 @@ class Page(Sheet):
             "roundings": cases.roundings(),
             "lines": lines,
             "lines_kept": lines_kept(lines),
-            "borrowed": self.borrowed(algorithm),
+            "borrowed": self.borrowed(algorithm, lines),
             "cases": cases.told(),
         }
 
-    def borrowed(self, algorithm: Algorithm) -> str:
-        """The names in an algorithm that steps define, and the numbers of their equations."""
+    def borrowed(self, algorithm: Algorithm, lines: Sequence[Line]) -> str:
+        """The names in an algorithm that steps define, and the numbers of their equations.
+
+        Names that only a function has which it continues are explained there.
+        """
         numbers = self.numbers.defined
-        labels = {n: numbers[c] for n in algorithm.borrowed if (c := canonical(n)) in numbers}
-        if not labels:
-            return ""
-        names = sorted(labels, key=lambda n: int(labels[n].rpartition(":")[2]))
-        return f"Here {defined_in(names, labels.values())}."
+        seen = {name for line in lines for name in names_in(line.text)}
+        known = numbers.keys() & seen
+        labels = {n: numbers[c] for n in algorithm.borrowed if (c := canonical(n)) in known}
+        return f"Here {defined_in(by_equation(labels), labels.values())}." if labels else ""
 
     def after(self, function: Function, algorithm: Algorithm) -> str:
         """The function with whose statements this one starts, and whether their cases matter."""

@@ -7,7 +7,7 @@ counts them: an article has (7) where the book has (3.7).
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from closedform.model.names import listed
@@ -217,6 +217,11 @@ def defined_in(names: Sequence[str], labels: Iterable[str]) -> str:
         what = "is a coordinate" if one else "are coordinates"
         return f"{told} {what} of {listed([*vectors])}, see {reference(labels)}"
     return f"{told} {'is that' if one else 'are those'} of {reference(labels)}"
+
+
+def by_equation(labels: Mapping[str, str]) -> list[str]:
+    """Names in the order of the equations that define them."""
+    return sorted(labels, key=lambda name: _place(labels[name]))
 
 
 def _place(label: str) -> int:

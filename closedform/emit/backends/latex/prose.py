@@ -132,7 +132,7 @@ def written_name(derivation: Derivation, name: str) -> str:
 
 
 def _subscript(text: str) -> str:
-    if re.fullmatch(r"\d*[a-z]?|\d", text):
+    if re.fullmatch(r"\d*[a-z]?|[i-n]{1,2}\d", text):  # r_i1 is entry 1 of r_i
         return text
     if number := re.fullmatch(r"(\d+)([A-Za-z]+)", text):
         return rf"{number[1]}\mathrm{{{number[2]}}}"

@@ -217,13 +217,15 @@ class Hand:
                 shown,
             )
         on_hand = any(leg.on_hand for leg in self.legs)
-        less = ", minus the place of its far end on the hand," if on_hand else ""
+        still = "It does not turn, so the far end of a rod keeps its place as seen from p.  "
+        less = ", minus this place," if on_hand else ""
         same = f"  The legs are alike: {INDEX} is any of 1 to {len(self.legs)}." * bool(self.alike)
         strut = "  One rod, the strut, has no joint: its near end stands still."
         strut *= len(self.driven) < len(self.legs)
         return self.d.step(
             "The loop",
-            f"The hand p hangs on {self.count} rods.  The near end of rod {INDEX}{less} is "
+            f"The hand p hangs on {self.count} rods.  {still * on_hand}The near end of rod "
+            f"{INDEX}{less} is "
             f"b_{INDEX}, which the joint of its leg determines.  Its distance from the hand is "
             f"the length of the rod.{strut}{same}",
             shown,

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 import sympy as sp
 
-from closedform.lemmas.legs import Leg, Naming, Solution, Stretch, sign_of_leg
+from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, sign_of_leg
 from closedform.lemmas.planes import Flat
 from closedform.loops.reached import bounds_of_any, export_reach, signs_of
 from closedform.mechanics.lengths import lengths_in_numbers
@@ -91,7 +91,7 @@ class LegByLeg:
     @property
     def on_modes(self) -> str:
         """A sentence on the working modes; empty if there is only one."""
-        said = "The signs of its two solutions are those of the diagonal of B.  "
+        said = "The signs of the two solutions of a leg are those of the diagonal of B.  "
         return said if self.choices else ""
 
     def export(
@@ -235,3 +235,25 @@ __all__ = [
     "size_of",
     "where_free",
 ]
+
+
+def known_sides(legs: Sequence[Leg]) -> str:
+    """Sentences on the triangle in which the lemma of a crank or a slider finds the joint."""
+    told = ""
+    if cranks := [leg for leg in legs if isinstance(leg, Crank)]:
+        told += "The target gives the far end of the rod of a crank"
+        flat = all(len(leg.base) == 2 for leg in cranks)
+        told += (
+            ": the crank, the rod and the line from the pivot to this end are a triangle whose "
+            "sides are known.  "
+            if flat
+            else ", and so how far this is from the plane of the crank.  In the plane the crank, "
+            "the rest of the rod and the line from the pivot are a triangle whose sides are "
+            "known.  "
+        )
+    if any(isinstance(leg, Slide) for leg in legs):
+        told += (
+            "The target gives the far end of the rod of a slider, and so how far this is from the "
+            "line of the slider.  The rest of the rod is along the line, to either side.  "
+        )
+    return told

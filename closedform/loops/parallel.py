@@ -28,6 +28,7 @@ from closedform.loops.leg_by_leg import (
     SIGN,
     Choice,
     LegByLeg,
+    known_sides,
     named_in,
     record_lemma,
     signs_of_modes,
@@ -514,7 +515,8 @@ def _inverse(m: Hand, loop: Step) -> None:
     )
     d.step(
         "Inverse: leg by leg",
-        f"Each leg is solved alone.  {solved.on_modes}Rounded joints miss the lengths of the rods "
+        f"Each leg is solved alone.  {known_sides(m.legs)}{solved.on_modes}"
+        "Rounded joints miss the lengths of the rods "
         "by a few units in the last place.  The error of the hand can be this error times the "
         "product of the lengths of the rods over the determinant of A.  So near a parallel "
         "singularity the joints do not determine the hand, however they are computed.  The "

@@ -20,7 +20,14 @@ from closedform.lemmas.legs import Leg, Slide
 from closedform.lemmas.planes import Plane
 from closedform.lemmas.rails import Rail
 from closedform.loops.hand import in_space, rate_of, square
-from closedform.loops.leg_by_leg import MISSED, LegByLeg, named_in, signs_of_modes, size_of
+from closedform.loops.leg_by_leg import (
+    MISSED,
+    LegByLeg,
+    known_sides,
+    named_in,
+    signs_of_modes,
+    size_of,
+)
 from closedform.loops.letters import letters
 from closedform.loops.on_rails import on_rails
 from closedform.loops.platform_legs import UPRIGHT, Half, Platform, check_holds, counted_degree
@@ -398,7 +405,8 @@ def _inverse(m: Platform, loop: Step, degree: int) -> None:
     )
     d.step(
         "Inverse: leg by leg",
-        f"Each leg is solved alone.  {solved.on_modes}Near a parallel singularity rounded "
+        f"Each leg is solved alone.  {known_sides(m.legs)}{solved.on_modes}"
+        "Near a parallel singularity rounded "
         "joints do not determine the hand.  The status is SINGULAR if the determinant of A is "
         f"less than {share} of the product of the lengths of the rods and"
         f"{'' if power == 1 else ' the third power of'} lambda, the root mean square distance "

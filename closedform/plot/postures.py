@@ -32,6 +32,8 @@ TITLE = {2: 11, 4: 15}
 """The size of the names of branches, by columns: a page is as wide as both."""
 NEARLY = 0.4
 """Branches that are so far apart, as a share of what is possible, are told apart well."""
+PAST = 0.07
+"""How far the rail of a slider leads past it, as a share of the drawing."""
 OVERLAID = 2
 """More branches than this are drawn side by side."""
 
@@ -105,7 +107,7 @@ def mechanism(
         faint=faint,
         hues=hues,
     )
-    shown = [points]
+    shown = [points, *_past_blocks(diagram, r, points)]
     if axes and diagram.spatial:
         shown += _show_axes(diagram, along)
     if labels:
@@ -205,6 +207,7 @@ def branches(
         for name, points in found.items():
             shade = colour(names.index(name))
             draw(diagram, r, points, shade, label=spoken(name), faint=faint)
+            frame += _past_blocks(diagram, r, points)
         diagram.clean([*frame, _base_frame(diagram, r, frame[0])])
         if len(names) > 1:
             ax.figure.legend(loc="outside lower center", ncols=min(len(found), 4))
@@ -226,6 +229,8 @@ def branches(
             along=along,
         )  # fmt: skip
         ends = _show_axes(diagram, along)
+        for points in found.values():
+            ends += _past_blocks(diagram, r, points)
         diagram.clean([*frame, *ends], margin=0.02, filling=UNDER_A_TITLE)
         panel.set_title(spoken(name), fontsize=TITLE[columns], y=1.0)
     return panels[0]
@@ -343,7 +348,7 @@ def draw(
     for name, joint in skeleton.joints.items():
         ends = np.array([place[p] for p in joint.points])
         if joint.kind == "prismatic":
-            (_rail if name in r.module.TASK else _slide)(diagram, ends, shade, width, named)
+            (_rail if name in r.rails else _slide)(diagram, ends, shade, width, named)
             named = {}
     pivots = _pivots(r, diagram)
     if free := [place[point] for point in _passive(skeleton, pivots)]:
@@ -384,14 +389,29 @@ def _slide(diagram: Diagram, ends: Array, shade: str, width: float, named: dict[
 
 
 def _rail(diagram: Diagram, ends: Array, shade: str, width: float, named: dict[str, Any]) -> None:
-    """A slider on a fixed line, which leads a little past it."""
+    """A block on a fixed line, which leads a little past it; links are drawn over the block."""
     a, b = ends
-    gap = b - a
-    way = gap / max(float(np.linalg.norm(gap)), 1e-300) * diagram.size
-    diagram.link([a, b + 0.12 * way], GROUND, linewidth=0.6 * width, zorder=1)
-    sleeve = [b - 0.04 * way, b + 0.04 * way]
-    diagram.link(sleeve, shade, linewidth=4 * width, solid_capstyle="butt", **named)
-    diagram.link(sleeve, "white", linewidth=2.8 * width, solid_capstyle="butt")
+    way = _past(diagram, a, b) / PAST
+    diagram.link([a, b + PAST * way], GROUND, linewidth=0.6 * width, zorder=1)
+    for half, wide, hue in ((0.04, 4.4, shade), (0.035, 3.6, "white")):
+        block = [b - half * way, b + half * way]
+        style = {"linewidth": wide * width, "solid_capstyle": "butt", "zorder": 2}
+        diagram.link(block, hue, **style, **named)
+        named = {}
+
+
+def _past(diagram: Diagram, a: Array, b: Array) -> Array:
+    """How far a rail from one point leads past another."""
+    way: Array = (b - a) / max(float(np.linalg.norm(b - a)), 1e-300)
+    return PAST * diagram.size * way
+
+
+def _past_blocks(diagram: Diagram, r: Robot, points: Array) -> list[Array]:
+    """The ends of the rails in a posture."""
+    joints = r.module.SKELETON.joints
+    place = dict(zip(r.module.SKELETON.points, points, strict=True))
+    rails = [[place[p] for p in joints[name].points] for name in r.rails]
+    return [np.atleast_2d(b + _past(diagram, a, b)) for a, b in rails]
 
 
 def _show_axes(diagram: Diagram, along: Mapping[str, tuple[Array, Array]]) -> list[Array]:

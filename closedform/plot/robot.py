@@ -221,6 +221,23 @@ class Robot:
                 return name if any(name not in link for link in moving) else ""
         return ""
 
+    @cached_property
+    def rails(self) -> list[str]:
+        """The slides along a line that is fixed on the ground; others lengthen or turn a link."""
+        skeleton, q = self.module.SKELETON, self.draw(20)
+        given = [] if self.has_forward_map else [self.poses(20)]
+        drawn = np.asarray(self.call("skeleton", *given, q)).reshape(-1, len(skeleton.points), 3)
+        place = dict(zip(skeleton.points, np.moveaxis(drawn, 1, 0), strict=True))
+        found = []
+        for name, joint in skeleton.joints.items():
+            if joint.kind != "prismatic" or joint.points[0] not in skeleton.ground:
+                continue
+            gaps = place[joint.points[1]] - place[joint.points[0]]
+            gaps = gaps[np.isfinite(gaps).all(-1)]
+            if len(gaps) and np.linalg.matrix_rank(gaps, tol=STILL * self.size) < 2:
+                found.append(name)
+        return found
+
     def branches(self, x: ArrayLike) -> tuple[Array, NDArray[np.uint8]]:
         """All postures for a target, and their status."""
         found = self.call("ik", np.asarray(x, dtype=float), *self.beside.values())

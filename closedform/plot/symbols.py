@@ -20,7 +20,9 @@ INDICES = {"al": "a_{l}", "gs": "g_{s}", "lp": "l_{p}", "w": "w"}
 LENGTH = re.compile(r"c(\d)")
 """A length that papers call c; in the texts a c with a number is a cosine."""
 WORD = re.compile(r"([A-Za-z]{2,})_(\w+)")
-"""A word with an index, such as ``tilt_x``."""
+"""A word with an index, such as ``yaw_x``."""
+LETTERS = {"tilt": r"\tau"}
+"""Words for which the texts write a letter."""
 ARM = re.compile(r"(.*\d)([RL])")
 """A joint of the right or the left arm."""
 
@@ -38,7 +40,8 @@ def _formula(name: str) -> str:
     if found := ARM.fullmatch(name):
         return f"{_formula(found[1])}^{{{found[2]}}}"
     if (found := WORD.fullmatch(name)) and found[1] not in GREEK:
-        return rf"\mathrm{{{found[1]}}}_{{{found[2]}}}"
+        word = LETTERS.get(found[1]) or rf"\mathrm{{{found[1]}}}"
+        return f"{word}_{{{found[2]}}}"
     letter = next((g for g in GREEK if name.startswith(g)), name[0])
     rest = name[len(letter) :].removeprefix("_")
     written = rf"\{letter}" if letter in GREEK else letter

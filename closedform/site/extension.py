@@ -132,6 +132,7 @@ def shown(name: str) -> dict[str, Any]:
         "general": [float(v) for v in general],
         "faint": list(found.faint),
         "about": Robot.of(module).centre,
+        "rails": Robot.of(module).rails,
         "mode": found.mode,
     }
     if found.plane:

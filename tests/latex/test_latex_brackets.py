@@ -4,7 +4,7 @@ import pytest
 import sympy as sp
 
 from closedform.emit.backends.latex.equations import by_equation, defined_in
-from closedform.emit.backends.latex.prose import loosen, symbol_name
+from closedform.emit.backends.latex.prose import breakable, loosen, symbol_name
 
 a, b, c = sp.symbols("a b c")
 
@@ -46,3 +46,13 @@ def test_an_entry_of_a_vector_of_a_leg_has_one_line_of_indices() -> None:
     assert symbol_name("r_i1") == "r_{i1}"
     assert symbol_name("v_ik3") == "v_{ik3}"
     assert symbol_name("sigma_leg1") == r"\sigma_{\mathrm{leg}_{1}}"
+
+
+def test_a_formula_is_broken_between_its_equations_and_not_in_brackets() -> None:
+    """A column of the claims had ``sin(x +`` at the end of a line."""
+    two = r"y = \sin (x + \gamma) + a, \ \gamma = \frac{a + b}{(c + d)}"
+    assert breakable(two) == (
+        r"y = \sin (x + \nobreak \gamma) + a,$ $\displaystyle \gamma = \frac{a + b}{(c + d)}"
+    )
+    cases = r"(a, \ b) = \begin{cases} (c - d), \ e \\[15pt] f \end{cases}"
+    assert breakable(cases) == cases

@@ -146,7 +146,7 @@ def test_branches_are_shown_at_a_target_that_tells_them_apart() -> None:
     ("name", "written"),
     [
         ("theta2R", r"$\theta_{2}^{R}$"), ("l1", "$l_{1}$"), ("loff", r"$l_{\mathrm{off}}$"),
-        ("rho1", r"$\rho_{1}$"), ("tilt_x", r"$\mathrm{tilt}_{x}$"),
+        ("rho1", r"$\rho_{1}$"), ("tilt_x", r"$\tau_{x}$"), ("word_x", r"$\mathrm{word}_{x}$"),
         ("x", "$x$"), ("al", "$a_{l}$"), ("c1", r"$\ell_{1}$"),
     ],
 )  # fmt: skip

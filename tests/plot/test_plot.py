@@ -415,3 +415,28 @@ def test_the_axis_of_a_slide_points_to_where_it_grows(at: float) -> None:
     robot = import_module("closedform.generated.numpy.orthoglide")
     for k, (_, along) in enumerate(plot.joint_axes(robot, [at] * 3).values()):
         assert along == pytest.approx(np.eye(3)[k])
+
+
+@pytest.mark.parametrize(
+    ("name", "rails"),
+    [
+        ("slider_crank", ["x"]),
+        ("linear_delta", ["rho1", "rho2", "rho3"]),
+        ("three_prs", ["rho1", "rho2", "rho3"]),
+        ("rpr_planar", []),  # its legs turn
+        ("scara", []),  # an arm carries its slide
+    ],
+)
+def test_a_slide_along_a_fixed_line_is_a_block_on_a_rail(name: str, rails: list[str]) -> None:
+    assert Robot.of(module(name)).rails == rails
+
+
+def test_a_block_is_around_the_point_that_slides() -> None:
+    """It was a sleeve about the middle of the line, which no body of a slider has."""
+    r = Robot.of(module("linear_delta"))
+    ax = plot.mechanism(r.module, labels=False)
+    place = dict(zip(r.module.SKELETON.points, r.points(r.posture())[0], strict=True))
+    blocks = [line for line in ax.lines if line.get_linewidth() > 4 * 2.6]
+    middles = [np.mean(line.get_data_3d(), axis=1) for line in blocks]
+    for point in ("B1", "B2", "B3"):
+        assert any(np.allclose(place[point], m) for m in middles)

@@ -109,8 +109,9 @@ export class View {
         c.lineJoin = "round";
     }
 
-    line(points, { colour, width = 2, dash = [], alpha = 1 }) {
+    line(points, { colour, width = 2, dash = [], alpha = 1, cap = "round" }) {
         const c = this.context;
+        c.lineCap = cap;
         c.strokeStyle = colour;
         c.lineWidth = width;
         c.globalAlpha = alpha;
@@ -122,8 +123,21 @@ export class View {
             else c.moveTo(x, y);
         });
         c.stroke();
+        c.lineCap = "round";
         c.setLineDash([]);
         c.globalAlpha = 1;
+    }
+
+    /** A rail from one point past another, and a block on it there. */
+    block([a, b], { colour, ground, paper, width, alpha = 1 }) {
+        const gap = b.map((v, k) => v - a[k]);
+        const unit = this.radius / (Math.hypot(...gap) || 1);
+        const at = (s) => b.map((v, k) => v + s * unit * gap[k]);
+        this.line([a, at(0.15)], { colour: ground, width: 2.2 });
+        for (const [half, wide, shade] of [[0.06, 4.6, colour], [0.05, 3.6, paper]]) {
+            const style = { colour: shade, width: wide * width, alpha, cap: "butt" };
+            this.line([at(-half), at(half)], style);
+        }
     }
 
     /** Many short lines of one look. */
@@ -239,7 +253,7 @@ const words = (name) => name.replaceAll("_", " ").replace(/(?<=[a-z]{2})(?=\d)/,
  */
 export function drawPosture(view, { skeleton, info }, points, style) {
     const { colour, ground, paper, width = 4, alpha = 1, dash = [], bare = false } = style;
-    const faint = info.faint ?? [];
+    const [faint, rails] = [info.faint ?? [], info.rails ?? []];
     const place = (name) => points[skeleton.points.indexOf(name)];
     const links = Object.entries(skeleton.links).map(([name, path]) => {
         const own = info.about ? arcs(path.map(place), place(info.about)) : path.map(place);
@@ -247,6 +261,9 @@ export function drawPosture(view, { skeleton, info }, points, style) {
         return { name, path, own, depth };
     });
     links.sort((a, b) => a.depth - b.depth);
+    for (const name of bare ? [] : rails) {
+        view.block(skeleton.joints[name].points.map(place), { colour, ground, paper, width, alpha });
+    }
     for (const { name, path, own } of links) {
         if (name === "ground" || path.every((p) => skeleton.ground.includes(p))) {
             if (!bare) view.line(own, { colour: ground, width: 2.2 });
@@ -254,9 +271,11 @@ export function drawPosture(view, { skeleton, info }, points, style) {
             view.line(own, { colour, width: width / 2, dash: [6, 4], alpha: 0.8 * alpha });
         } else view.line(own, { colour, width, alpha, dash });
     }
-    for (const joint of Object.values(skeleton.joints)) {
+    for (const [name, joint] of Object.entries(skeleton.joints)) {
         const [a, b] = joint.points.map(place);
-        if (joint.kind === "prismatic" && b) {
+        if (rails.includes(name)) {
+            if (!bare) view.dot(b, { colour, fill: paper, radius: width - 0.5, alpha });
+        } else if (joint.kind === "prismatic" && b) {
             const at = (f) => a.map((v, k) => v + f * (b[k] - v));
             view.line([a, b], { colour, width: 0.7 * width, alpha, dash });
             if (bare) continue;

@@ -9,7 +9,7 @@ from typing import Any
 
 from closedform.emit.backends.latex import bibliography, lemmas
 from closedform.emit.backends.latex.article import index_of, indexed
-from closedform.emit.backends.latex.prose import escape, mixed
+from closedform.emit.backends.latex.prose import escape, mixed, quoted
 from closedform.emit.errata import MEANINGS, Entry, PaperErrata, Part, gathered
 from closedform.model.claims import VERDICTS
 from closedform.model.derivation import Derivation
@@ -115,6 +115,6 @@ def _entry(entry: Entry, chapters: Sequence[Chapter]) -> dict[str, Any]:
         "number": entry.number,
         "title": mixed(entry.erratum.title),
         "label": f"erratum:{shown.name}:{key}",
-        "where": escape("; ".join(dict.fromkeys(c.label for c in entry.claims))),
+        "where": quoted("; ".join(dict.fromkeys(c.label for c in entry.claims))),
         "gravity": entry.gravity.value,
     }

@@ -169,12 +169,36 @@ def mixed(text: str, *, led: bool = False) -> str:
             stiff = True
         formula = INDEX_WORD.sub(r"_{\\mathrm{\1}}", formula)
         formula = ROWS.sub(_roomy, formula if stiff else loosen(formula))
+        formula = formula if stiff else breakable(formula)
         formula = rf"$\displaystyle {formula}$"
         formula = rf"\fit{{{formula}}}" if stiff else formula
         if r"\begin{aligned}" in part and (led or parts[i - 1].strip()):
             formula = rf"\newline {formula}"
         parts[i] = formula if i % 2 else quoted(part)
     return "".join(parts)
+
+
+PIECE = re.compile(
+    r"(?P<group>\\begin\{\w+\}|\\left\W|\{)|(?P<end>\\end\{\w+\}|\\right\W|\})"
+    r"|(?P<bracket>[(\[])|(?P<closed>[)\]])|(?P<comma>,\s?\\ )|(?P<sign>(?<= )[-+] )|\\.|.",
+    re.DOTALL,
+)
+"""The parts of a formula that say where TeX may break it; it never breaks a group."""
+
+
+def breakable(formula: str) -> str:
+    """A formula that TeX may break between its equations, but not in brackets."""
+    done, groups, brackets = "", 0, 0
+    for found in PIECE.finditer(formula):
+        kind, piece = found.lastgroup, found[0]
+        groups += (kind == "group") - (kind == "end")
+        brackets += ((kind == "bracket") - (kind == "closed")) * (not groups)
+        if kind == "comma" and not groups and not brackets:
+            piece = r",$ $\displaystyle "
+        if kind == "sign" and not groups and brackets:
+            piece += r"\nobreak "
+        done += piece
+    return done
 
 
 def quoted(text: str) -> str:

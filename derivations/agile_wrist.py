@@ -79,7 +79,7 @@ d.write("gap", r"\Delta", "determinant of A in every assembly mode")
 d.loop = stated = d.step(
     "The loop",
     "The last axis v of each leg is an axis of the hand, and a column of R.  It is at right angles "
-    "to the middle axis w, which the driven joint places.",
+    "to the middle axis w, which the driven joint places, so the scalar product of both is zero.",
     {
         **{rf"\mathbf w_{k + 1}": w[k] for k in range(3)},
         **{rf"\mathbf v_{k + 1}": V[:, k] for k in range(3)},
@@ -99,11 +99,11 @@ d.assembly_modes = modes.labels
 found = axes_in_three_planes(f, q, V, (*loop, *rigid), sigma)
 d.step(
     "Forward: three axes in three planes",
-    "The three axes v are at right angles to each other, and each is in the plane of u and p of "
-    "its leg, where p is the cross product of u and w.  Eight orientations satisfy this.  In four "
-    "of them every v is u or -u.  They do not depend on the joints: every joint is free, and the "
-    "legs turn while the hand stands still.  These four are left out.  The other four are the "
-    "assembly modes.  They exist for all values of the joints.",
+    "The three axes v are at right angles to each other.  Each is at right angles to the w of its "
+    "leg, so it is in the plane of u and p, where p is the cross product of u and w.  Eight "
+    "orientations satisfy this.  In four of them every v is u or -u.  They do not depend on the "
+    "joints: every joint is free, and the legs turn while the hand stands still.  These four are "
+    "left out.  The other four are the assembly modes.  They exist for all values of the joints.",
     {},
     uses=[stated],
     solves={"fk": ()},

@@ -150,7 +150,9 @@ d.step(
     "triangle.  The turn eta at the elbow follows from its sides, and so does the angle alpha "
     "between the upper arm and the line r.  theta3 is eta less the constant angle between the "
     "forearm and its frame.  up: the elbow is above the line from the shoulder to the wrist; down: "
-    "below.",
+    "below.  X is negative if the arm turns its back to the wrist.  The elbow that is above then "
+    "has the other sign of eta, so this sign is the product of those of the shoulder and of the "
+    "elbow.",
     {
         "f": fore,
         "r": sqrt(real("X") ** 2 + pz**2),

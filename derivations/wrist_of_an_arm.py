@@ -12,19 +12,23 @@ def wrist_step(
     """Add the step that splits the rotation of the ``pose`` into those of arm and wrist."""
     theta4, theta5, theta6 = wrist
     turned_back = {theta4: theta4 + pi, theta5: -theta5, theta6: theta6 + pi}
+    about_y = -theta5 if R36[2, 0] == sp.sin(theta5) * sp.cos(theta6) else theta5
+    turns = rotation("z", theta4) * rotation("y", about_y) * rotation("z", theta6)
     d.step(
         "Inverse: the wrist",
-        "The rotation of the wrist is R_03^T R, and its third column gives theta4 and theta5.  "
-        "The branches with noflip in their names have sin(theta5) >= 0.  In those with flip, "
-        "theta5 has the opposite sign, and theta4 and theta6 are turned by pi.  If sin(theta5) = "
-        "0, only theta4 + theta6 or theta4 - theta6 is determined, and we return theta4 = 0.",
+        f"The rotation of the wrist is R_03^T R.  It turns about z, y and z, by theta4, {about_y} "
+        "and theta6: its third column gives theta4 and theta5, and its third row theta6.  The "
+        "branches with noflip in their names have sin(theta5) >= 0.  In those with flip, theta5 "
+        "has the opposite sign, and theta4 and theta6 are turned by pi.  If sin(theta5) = 0, only "
+        "theta4 + theta6 or theta4 - theta6 is determined, and we return theta4 = 0.",
         {"R_{03}": R03, "R_{36}": R36},
         proves=(
-            "The rotation of the pose is R_03 R_36, and R_36 is the same if theta4 and theta6 are "
-            "turned by pi and theta5 changes its sign."
+            "The rotation of the pose is R_03 R_36.  R_36 is the product of the three turns, and "
+            "it is the same if theta4 and theta6 are turned by pi and theta5 changes its sign."
         ),
         equal=[
             (pose[:3, :3], R03 * R36),
+            (R36, turns),
             (R36.subs(turned_back, simultaneous=True), R36),
         ],
         solves={"ik": wrist},

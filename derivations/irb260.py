@@ -182,8 +182,9 @@ pose = simplest(moves[0] * arm * moves[4] * home)
 free = sp.prod([*moves, home])
 by_screws = d.step(
     "Pose by the product of exponentials",
-    "With the virtual constraint, the three parallel axes only translate the wrist.  The other two "
-    "axes turn the hand about z.",
+    "The pose is the product of the motions about the axes, from joint 1 to joint 5, and of the "
+    "pose at home.  With the virtual constraint, the three parallel axes only translate the "
+    "wrist.  The other two axes turn the hand about z.",
     {
         r"g_{st}(0)": home,
         r"e^{\hat\xi_2\theta_2} e^{\hat\xi_3\theta_3} e^{\hat\xi_4\theta_4}": arm,

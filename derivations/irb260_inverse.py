@@ -106,8 +106,9 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
         "Inverse: the elbow and the shoulder",
         "The wrist is u ahead of the shoulder and h above it.  The two arms and the line of "
         "length L between these joints form a triangle.  S, A, B and C are the factors of Heron's "
-        "formula for its area.  In it the angle of the elbow is theta3 + 90 degrees, so "
-        "elbow_up (sigma_elbow = 1) means cos(theta3) >= 0, as at home, and elbow_down means "
+        "formula for its area; the roots of their products give the tangents of half its angles.  "
+        "The turn at the elbow is theta3 + 90 degrees, and alpha is the angle at the shoulder.  "
+        "So elbow_up (sigma_elbow = 1) means cos(theta3) >= 0, as at home, and elbow_down means "
         "cos(theta3) <= 0.  If the arms are equal and the wrist is on the shoulder, theta2 is "
         "free; we return 0.",
         {

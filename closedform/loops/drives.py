@@ -54,10 +54,12 @@ def parallelogram_drive(
     M = sp.Matrix(rows).jacobian(angles)
     for q, (before, link) in through.items():
         _state(d, q, before, link, turned[q])
+    coupled = ", ".join(f"{q} = {turned[q]} - {turned[through[q][0]]}" for q in through)
+    back = ", ".join(f"{turned[q]} = {through[q][0]} + {q}" for q in through)
     d.step(
         "Motors",
-        "M converts angles of the motors to angles of the joints.  The other motors turn their "
-        "joints directly.",
+        f"The motor of a parallelogram turns by the sum of two joints: {back}.  The other motors "
+        "turn their joints directly.  M converts angles of the motors to angles of the joints.",
         {
             rf"M = \partial({', '.join(map(sp.latex, joints))}) / \partial m": M,
             "M^{-1}": M.inv(),
@@ -66,8 +68,6 @@ def parallelogram_drive(
         equal=[(M * angles, sp.Matrix(rows))],
     )
     d.explain({"M": "derivative of the joints with respect to the motors"})
-    coupled = ", ".join(f"{q} = {turned[q]} - {turned[through[q][0]]}" for q in through)
-    back = ", ".join(f"{turned[q]} = {through[q][0]} + {q}" for q in through)
     for name, summary, given, found in (
         ("joints_from_motors", f"Joint angles from motor angles: {coupled}.", angles, M * angles),
         (

@@ -21,7 +21,7 @@ CHABLAT_WENGER_ANGELES = Paper(
            "figures.  A misread index or fraction could affect eq. (4), the condition after eq. "
            "(6), the eigenvalues, eq. (8) and the angles that follow it.  The wrong indices of "
            "section 3.4 appear in all its formulas, so the scan is not their cause.  The indices "
-           "in section 3.2 may be misread: the text has the sum of the lengths L1 + L1.",
+           "in section 3.2 may be misread: the text has the sum of the lengths $L_1 + L_1$.",
     out_of_scope=(
         ("HAL", "### Abstract", "the cover page of the archive, title and authors"),
         ("(similar to the one studied", "Roth [1])", KNOWN),

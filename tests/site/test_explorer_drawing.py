@@ -57,6 +57,30 @@ def test_links_of_a_spherical_mechanism_are_arcs_as_in_the_figures(tab, site, na
         assert abs(np.cross(way[0], way[-1]) @ middle) < 1e-9
 
 
+BLOCKS = """() => {
+    const { view, draw } = document.querySelector(".explorer").explorer;
+    const found = [];
+    view.line = (points, { cap }) => cap === "butt" && found.push(points);
+    document.querySelector(".explorer").explorer.draw();
+    delete view.line;
+    return found;
+}"""
+
+
+@pytest.mark.parametrize(("name", "sliders"), [("slider_crank", ("B2",)), ("rpr_planar", ())])
+def test_what_slides_on_a_fixed_line_is_a_block(tab, site, name, sliders):
+    """It was a sleeve about the middle of the line; the legs of rpr_planar still have one."""
+    robot = importlib.import_module(f"closedform.generated.numpy.{name}")
+    explorer(tab, site, name)
+    state = tab.evaluate(STATE)
+    points = robot.skeleton(np.array(state["q"]))[state["mode"]]
+    places = [points[robot.SKELETON.points.index(p)] for p in sliders]
+    middles = [np.mean(block, axis=0) for block in tab.evaluate(BLOCKS)]
+    assert len(middles) == 2 * len(places)  # an outline is drawn by two lines
+    for place in places:
+        assert np.allclose(middles, place)
+
+
 def test_controls_show_symbols_and_units(tab, site):
     explorer(tab, site, "srs_arm")
     tab.locator("summary", has_text="Dimensions").click()

@@ -56,3 +56,5 @@ def test_a_formula_is_broken_between_its_equations_and_not_in_brackets() -> None
     )
     cases = r"(a, \ b) = \begin{cases} (c - d), \ e \\[15pt] f \end{cases}"
     assert breakable(cases) == cases
+    long = rf"({' + '.join(['a_1 x_1'] * 9)}) + (b + c)"
+    assert breakable(long) == long.replace("(b + c)", r"(b + \nobreak c)")

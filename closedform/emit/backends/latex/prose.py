@@ -186,19 +186,29 @@ PIECE = re.compile(
 """The parts of a formula that say where TeX may break it; it never breaks a group."""
 
 
+SIGNED = ("+ ", "- ")
+LONG = 60
+"""Brackets with more characters may be broken."""
+
+
 def breakable(formula: str) -> str:
-    """A formula that TeX may break between its equations, but not in brackets."""
-    done, groups, brackets = "", 0, 0
-    for found in PIECE.finditer(formula):
-        kind, piece = found.lastgroup, found[0]
+    """A formula that TeX may break between its equations, but not in short brackets."""
+    pieces = [(found.lastgroup, found[0]) for found in PIECE.finditer(formula)]
+    groups, done = 0, list[str]()
+    opened: list[int] = []
+    for kind, piece in pieces:
         groups += (kind == "group") - (kind == "end")
-        brackets += ((kind == "bracket") - (kind == "closed")) * (not groups)
-        if kind == "comma" and not groups and not brackets:
+        if kind == "bracket" and not groups:
+            opened.append(len(done))
+        elif kind == "closed" and not groups and opened:
+            start = opened.pop()
+            inside = done[start:]
+            if len("".join(inside)) <= LONG:
+                done[start:] = [p + r"\nobreak " if p in SIGNED else p for p in inside]
+        elif kind == "comma" and not groups and not opened:
             piece = r",$ $\displaystyle "
-        if kind == "sign" and not groups and brackets:
-            piece += r"\nobreak "
-        done += piece
-    return done
+        done.append(piece)
+    return "".join(done)
 
 
 def quoted(text: str) -> str:

@@ -13,10 +13,10 @@
  *   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
  *   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
  *   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
- *   ik: 641 compare and select, 516 add, 29 atan2, 164 divide, 685 multiply, 1 reduce to a turn, 3
+ *   ik: 701 compare and select, 547 add, 29 atan2, 177 divide, 751 multiply, 1 reduce to a turn, 3
  *     sincos, 54 sqrt
- *   ik where nothing vanishes: 261 compare and select, 163 add, 16 atan2, 34 divide, 150 multiply,
- *     1 reduce to a turn, 3 sincos, 16 sqrt
+ *   ik where nothing vanishes: 253 compare and select, 174 add, 16 atan2, 43 divide, 170 multiply,
+ *     1 reduce to a turn, 3 sincos, 25 sqrt
  *   wrist_length: 21 compare and select, 6 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -276,8 +276,9 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params,
  *   sum of L1 sin(alpha) and f sin(beta) (straight) or their difference (folded); alpha and
  *   beta are half the differences of the arms' angles, and sines of equal size are returned.
  * - SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): rounded
- *   joints do not determine the tip to 1e-12 there; or if a half difference is at a right angle
- *   and rounding of the target decides whether the tips can be so far apart.
+ *   joints do not determine the tip to 1e-12 there; or if a half difference is at a right
+ *   angle, or the waist is tangent, and rounding of the target decides whether the arms reach
+ *   it.
  * - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
  *   yaw and roll follow from displacements of the tips divided by d, so rounding errors are
  *   divided by d too.

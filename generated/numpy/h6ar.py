@@ -12,10 +12,10 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
-#   ik: 641 compare and select, 516 add, 29 atan2, 164 divide, 685 multiply, 1 reduce to a turn, 3
+#   ik: 701 compare and select, 547 add, 29 atan2, 177 divide, 751 multiply, 1 reduce to a turn, 3
 #     sincos, 54 sqrt
-#   ik where nothing vanishes: 261 compare and select, 163 add, 16 atan2, 34 divide, 150 multiply,
-#     1 reduce to a turn, 3 sincos, 16 sqrt
+#   ik where nothing vanishes: 253 compare and select, 174 add, 16 atan2, 43 divide, 170 multiply,
+#     1 reduce to a turn, 3 sincos, 25 sqrt
 #   wrist_length: 21 compare and select, 6 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -1521,21 +1521,22 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
     t14 = L1 + fore
     t15 = L2 + a3
-    lengths = L1 + d1 + d + loff + lp + t4 + t15
+    lengths = t15 + (L1 + d1) + (d + loff + (lp + t4))
     t_phi = s_phi / c_phi
     del s_phi
     higher = d * t_phi
     t16 = np.abs(t_phi * higher)
     t17 = np.abs(t_psi * ahead)
-    stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING
     t18 = al * (t4 + t16 + t17)
     t19 = al * 8.673617379884035e-19 + gs * 8.673617379884035e-19
     t20 = t19 + t16 * 8.673617379884035e-19 + t17 * 8.673617379884035e-19
     del t19
     t21 = t20 + 512.0 * wrist + np.sqrt(t18) * 3.0517578125e-05
     del t20
-    far_apart = t16 * 0.001953125 + t17 * 0.001953125 + _runtime.select(stretched, t18 / t21, 0.0)
-    del stretched, t16, t17, t18, t21
+    by_wrist = t18 / t21
+    del t18, t21
+    far_apart = t16 * 0.001953125 + t17 * 0.001953125 + by_wrist
+    del t16, t17
     slack = lengths * 0.25 + far_apart
     t22 = h * slack
     tangent = 4.0 * root * t14 - t22 * 0.00390625 <= _runtime.VANISHING * t22
@@ -1715,1354 +1716,1486 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del whole_alpha
     slope_aside_alpha = L1 * t86
     t87 = np.abs(slope_aside_alpha)
-    t88 = 1.0 / slack
-    t89 = 1.4142135623730951 * np.sqrt(slack)
-    t90 = t88 * (L1 + np.sqrt(L1) * t89 / 2000000.0)
-    heavy_1_alpha = _runtime.select(spent_alpha, t90, 1.0)
-    gain_1_alpha = _runtime.select(spent_alpha, t87 / heavy_1_alpha, 0.0)
-    t91 = gain_1_alpha * gain_1_alpha
-    t92 = play * play
-    t93 = fore_size * fore_size * t92
-    del fore_size
-    t94 = tangent & (16.0 * t55 <= np.abs(t10))
-    t95 = L1 * 9.5367431640625e-07
+    t88 = 1.4142135623730951 * np.sqrt(slack)
+    t89 = np.sqrt(L1) * t88
+    t90 = tangent & (16.0 * t55 <= np.abs(t10))
+    t91 = L1 * 9.5367431640625e-07
     tilt = L_2W * c_relative - a_3W * s_relative
-    t96 = np.abs(tilt)
-    t97 = t94 & (t95 <= t96)
-    t98 = 1.0 / L1
-    aside_rate = _runtime.select(t97, -(t98 * (stheta2A * tilt)), 0.0)
-    fore_rate = _runtime.select(t97, ctheta2A, 1.0)
+    t92 = np.abs(tilt)
+    t93 = t90 & (t91 <= t92)
+    stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING
+    t94 = np.logical_not(stretched)
+    del stretched
+    wider = _runtime.select(t93 & t94, 128.0, 1.0)
+    t95 = 1.0 / (slack * (wider * wider))
+    t96 = (L1 + t89 * wider / 2000000.0) * t95
+    heavy_1_alpha = _runtime.select(spent_alpha, t96, 1.0)
+    gain_1_alpha = _runtime.select(spent_alpha, t87 / heavy_1_alpha, 0.0)
+    t97 = gain_1_alpha * gain_1_alpha
+    t98 = play * play
+    t99 = fore_size * fore_size * t98
+    del fore_size
+    t100 = 1.0 / L1
+    aside_rate = _runtime.select(t93, -(t100 * (stheta2A * tilt)), 0.0)
+    fore_rate = _runtime.select(t93, ctheta2A, 1.0)
     del ctheta2A
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
     del c_relative, s_relative
-    t99 = t86 * drawn
+    t101 = t86 * drawn
     del t86
-    t100 = _runtime.sign(-t79) * (p_1 * v_1 - v_2 * t78)
+    t102 = _runtime.sign(-t79) * (p_1 * v_1 - v_2 * t78)
     del t79
-    slope_alpha = slope_aside_alpha * aside_rate - fore_rate * (t99 - t100)
-    del t100
-    t101 = np.abs(slope_alpha)
-    t102 = slack * 8.673617379884035e-19 + np.sqrt(t10 * t10 + t58)
+    slope_alpha = slope_aside_alpha * aside_rate - fore_rate * (t101 - t102)
+    del t102
+    t103 = np.abs(slope_alpha)
+    t104 = slack * 8.673617379884035e-19 + np.sqrt(t10 * t10 + t58)
     del t58
-    t103 = 1.0 / t102
-    t104 = t55 * t103
+    t105 = 1.0 / t104
+    t106 = t55 * t105
     del t55
-    t105 = t96 * _runtime.select(t97, t104, 1.0)
-    del t96
-    t106 = fore_rate * drawn
-    t107 = aside_rate + fore_rate - t98 * t106
-    t108 = L1 * (t107 * t107) + fore * (fore_rate * fore_rate)
-    del t107
-    t109 = _runtime.select(t97, t103, 0.0) * (tilt * tilt)
-    t110 = t105 + t89 * np.sqrt(t108 + t109) / 2000000.0
-    del t108
-    t111 = t88 * t110
+    t107 = t92 * _runtime.select(t93, t106, 1.0)
+    del t92
+    t108 = t88 * wider
+    del wider
+    t109 = fore_rate * drawn
+    t110 = aside_rate + fore_rate - t100 * t109
+    t111 = L1 * (t110 * t110) + fore * (fore_rate * fore_rate)
     del t110
-    heavy_0_alpha = _runtime.select(spent_alpha, t111, 1.0)
-    gain_0_alpha = _runtime.select(spent_alpha, t101 / heavy_0_alpha, 0.0)
-    t112 = t91 / (t91 + t93 + gain_0_alpha * gain_0_alpha)
-    del t91
-    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t81 < 0.0, t112, 0.0), 0.0)
-    del t112
-    t113 = _runtime.sign(slope_aside_alpha)
-    t114 = t87 + t84 * heavy_1_alpha * 5.960464477539063e-08
+    t112 = _runtime.select(t93, t105, 0.0) * (tilt * tilt)
+    t113 = np.sqrt(t111 + t112)
+    del t111
+    t114 = t95 * (t107 + t108 * t113 / 2000000.0)
+    heavy_0_alpha = _runtime.select(spent_alpha, t114, 1.0)
+    gain_0_alpha = _runtime.select(spent_alpha, t103 / heavy_0_alpha, 0.0)
+    t115 = t97 / (t97 + t99 + gain_0_alpha * gain_0_alpha)
+    del t97
+    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t81 < 0.0, t115, 0.0), 0.0)
+    del t115
+    t116 = _runtime.sign(slope_aside_alpha)
+    t117 = t87 + t84 * heavy_1_alpha * 5.960464477539063e-08
     del heavy_1_alpha
-    aside_alpha = _runtime.select(spent_alpha, t81 * share_alpha * t113 / t114, 0.0)
-    del t114
+    aside_alpha = _runtime.select(spent_alpha, t81 * share_alpha * t116 / t117, 0.0)
+    del t117
     lack_alpha = t81 * (1.0 - share_alpha)
     del share_alpha
-    t115 = t101 + t84 * heavy_0_alpha * 5.960464477539063e-08
-    del t101
-    t116 = 1.0 / t115
-    del t115
-    t117 = heavy_0_alpha * lack_alpha * t116 <= 9.094947017729282e-13
+    t118 = t103 + t84 * heavy_0_alpha * 5.960464477539063e-08
+    t119 = 1.0 / t118
+    del t118
+    t120 = heavy_0_alpha * lack_alpha * t119 <= 9.094947017729282e-13
     del heavy_0_alpha
-    t118 = lack_alpha * t116
-    del lack_alpha, t116
-    t119 = _runtime.select(t117 & (0.0 < t118), t118, 0.0)
-    del t117, t118
-    turn_alpha = _runtime.select(spent_alpha, _runtime.sign(slope_alpha) * t119, 0.0)
-    del slope_alpha, t119
-    t120 = fore_rate * turn_alpha
-    t121 = aside_alpha + aside_rate * turn_alpha + t120 - t98 * (t106 * turn_alpha)
+    t121 = lack_alpha * t119
+    del lack_alpha, t119
+    t122 = _runtime.select(t120 & (0.0 < t121), t121, 0.0)
+    del t120, t121
+    turn_alpha = _runtime.select(spent_alpha, _runtime.sign(slope_alpha) * t122, 0.0)
+    del slope_alpha, t122
+    t123 = fore_rate * turn_alpha
+    t124 = aside_alpha + aside_rate * turn_alpha + t123 - t100 * (t109 * turn_alpha)
     del aside_alpha
-    lean_alpha = _runtime.select(spent_alpha, t121, 0.0)
-    del t121
-    t122 = np.sqrt(1.0 + lean_alpha * lean_alpha)
-    t123 = 1.0 / t122
-    p_1_alpha = _runtime.select(spent_alpha, p_1 * t123 - t78 * lean_alpha * t123, p_1)
+    lean_alpha = _runtime.select(spent_alpha, t124, 0.0)
+    del t124
+    t125 = np.sqrt(1.0 + lean_alpha * lean_alpha)
+    t126 = 1.0 / t125
+    p_1_alpha = _runtime.select(spent_alpha, p_1 * t126 - t78 * lean_alpha * t126, p_1)
     part_beta = L1 * p_1_alpha
-    fore_turn_alpha = _runtime.select(spent_alpha, t120, 0.0)
-    del t120
-    t124 = np.sqrt(1.0 + fore_turn_alpha * fore_turn_alpha)
-    t125 = 1.0 / (t122 * t124)
-    del t122, t124
-    t126 = t125 + t125 * (lean_alpha * fore_turn_alpha)
-    t127 = fore_turn_alpha * t125 - lean_alpha * t125
-    del t125
-    v_1_alpha = _runtime.select(spent_alpha, v_1 * t126 - v_2 * t127, v_1)
+    fore_turn_alpha = _runtime.select(spent_alpha, t123, 0.0)
+    del t123
+    t127 = np.sqrt(1.0 + fore_turn_alpha * fore_turn_alpha)
+    t128 = 1.0 / (t125 * t127)
+    del t125, t127
+    t129 = t128 + t128 * (lean_alpha * fore_turn_alpha)
+    t130 = fore_turn_alpha * t128 - lean_alpha * t128
+    del t128
+    v_1_alpha = _runtime.select(spent_alpha, v_1 * t129 - v_2 * t130, v_1)
     whole_beta = L1 * v_1_alpha
-    t128 = np.abs(part_beta) - np.abs(whole_beta)
-    t129 = np.maximum(t128 * 9.094947017729282e-13, -t128)
-    t130 = L1 * play
-    t131 = _runtime.VANISHING * t130
-    spent_beta = t129 <= t131
-    del t129
-    t132 = _runtime.select(spent_alpha, t123 * (p_1 * lean_alpha) + t78 * t123, t78)
-    del p_1, t123, t78
-    t133 = t132 * _runtime.sign(part_beta)
+    t131 = np.abs(part_beta) - np.abs(whole_beta)
+    t132 = np.maximum(t131 * 9.094947017729282e-13, -t131)
+    t133 = L1 * play
+    t134 = _runtime.VANISHING * t133
+    spent_beta = t132 <= t134
+    del t132
+    t135 = _runtime.select(spent_alpha, t126 * (p_1 * lean_alpha) + t78 * t126, t78)
+    del p_1, t126, t78
+    t136 = t135 * _runtime.sign(part_beta)
     del part_beta
-    v_2_alpha = _runtime.select(spent_alpha, v_1 * t127 + v_2 * t126, v_2)
-    del t126, t127
-    t134 = v_2_alpha * _runtime.sign(whole_beta)
+    v_2_alpha = _runtime.select(spent_alpha, v_1 * t130 + v_2 * t129, v_2)
+    del t129, t130
+    t137 = v_2_alpha * _runtime.sign(whole_beta)
     del whole_beta
-    slope_aside_beta = L1 * (t133 + t134)
-    t135 = np.abs(slope_aside_beta)
-    heavy_1_beta = _runtime.select(spent_beta, t90, 1.0)
-    gain_1_beta = _runtime.select(spent_beta, t135 / heavy_1_beta, 0.0)
-    t136 = gain_1_beta * gain_1_beta
-    t137 = L1 * L1 * t92
-    del t92
-    t138 = L1 - drawn
-    slope_beta = aside_rate * slope_aside_beta - fore_rate * (drawn * t134 - t133 * t138)
-    del t133, t134
-    t139 = np.abs(slope_beta)
-    heavy_0_beta = _runtime.select(spent_beta, t111, 1.0)
-    del t111
-    gain_0_beta = _runtime.select(spent_beta, t139 / heavy_0_beta, 0.0)
-    t140 = t136 / (t136 + t137 + gain_0_beta * gain_0_beta)
-    del t136
-    share_beta = _runtime.select(spent_beta, _runtime.select(-t128 < 0.0, t140, 0.0), 0.0)
-    del t140
-    t141 = t128 * share_beta * _runtime.sign(slope_aside_beta)
-    del slope_aside_beta
-    t142 = t135 + t130 * heavy_1_beta * 5.960464477539063e-08
-    del heavy_1_beta, t135
-    aside_beta = _runtime.select(spent_beta, t141 / t142, 0.0)
-    del t141, t142
-    lack_beta = t128 * (1.0 - share_beta)
-    del share_beta
-    t143 = t139 + t130 * heavy_0_beta * 5.960464477539063e-08
+    slope_aside_beta = L1 * (t136 + t137)
+    t138 = np.abs(slope_aside_beta)
+    heavy_1_beta = _runtime.select(spent_beta, t96, 1.0)
+    gain_1_beta = _runtime.select(spent_beta, t138 / heavy_1_beta, 0.0)
+    t139 = gain_1_beta * gain_1_beta
+    t140 = L1 * L1 * t98
+    del t98
+    t141 = L1 - drawn
+    slope_beta = aside_rate * slope_aside_beta - fore_rate * (drawn * t137 - t136 * t141)
+    del t136, t137
+    t142 = np.abs(slope_beta)
+    heavy_0_beta = _runtime.select(spent_beta, t114, 1.0)
+    del t114
+    gain_0_beta = _runtime.select(spent_beta, t142 / heavy_0_beta, 0.0)
+    t143 = t139 / (t139 + t140 + gain_0_beta * gain_0_beta)
     del t139
-    t144 = 1.0 / t143
+    share_beta = _runtime.select(spent_beta, _runtime.select(-t131 < 0.0, t143, 0.0), 0.0)
     del t143
-    t145 = heavy_0_beta * lack_beta * t144 <= 9.094947017729282e-13
+    t144 = t131 * share_beta * _runtime.sign(slope_aside_beta)
+    del slope_aside_beta
+    t145 = t138 + t133 * heavy_1_beta * 5.960464477539063e-08
+    del heavy_1_beta
+    aside_beta = _runtime.select(spent_beta, t144 / t145, 0.0)
+    del t144, t145
+    lack_beta = t131 * (1.0 - share_beta)
+    del share_beta
+    t146 = t142 + t133 * heavy_0_beta * 5.960464477539063e-08
+    t147 = 1.0 / t146
+    del t146
+    t148 = heavy_0_beta * lack_beta * t147 <= 9.094947017729282e-13
     del heavy_0_beta
-    t146 = lack_beta * t144
-    del lack_beta, t144
-    t147 = _runtime.select(t145 & (0.0 < t146), t146, 0.0)
-    del t145, t146
-    turn_beta = _runtime.select(spent_beta, _runtime.sign(slope_beta) * t147, 0.0)
-    del slope_beta, t147
-    t148 = fore_rate * turn_beta
+    t149 = lack_beta * t147
+    del lack_beta, t147
+    t150 = _runtime.select(t148 & (0.0 < t149), t149, 0.0)
+    del t148, t149
+    turn_beta = _runtime.select(spent_beta, _runtime.sign(slope_beta) * t150, 0.0)
+    del slope_beta, t150
+    t151 = fore_rate * turn_beta
     del fore_rate
-    t149 = aside_beta + aside_rate * turn_beta + t148 - t98 * (t106 * turn_beta)
-    del aside_beta, aside_rate, t106
-    lean_beta = _runtime.select(spent_beta, t149, 0.0)
-    del t149
-    t150 = np.sqrt(1.0 + lean_beta * lean_beta)
-    t151 = 1.0 / t150
-    t152 = _runtime.select(spent_beta, p_1_alpha * lean_beta * t151 + t132 * t151, t132)
-    fore_turn_beta = _runtime.select(spent_beta, t148, 0.0)
-    del t148
-    t153 = np.sqrt(1.0 + fore_turn_beta * fore_turn_beta)
-    t154 = 1.0 / (t150 * t153)
-    del t150, t153
-    t155 = fore_turn_beta * t154 - lean_beta * t154
-    t156 = t154 + t154 * (lean_beta * fore_turn_beta)
-    del t154
-    v_2_beta = _runtime.select(spent_beta, v_1_alpha * t155 + v_2_alpha * t156, v_2_alpha)
-    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t156 - v_2_alpha * t155, v_1_alpha)
-    del t155, t156, v_1_alpha, v_2_alpha
+    t152 = aside_beta + aside_rate * turn_beta + t151 - t100 * (t109 * turn_beta)
+    del aside_beta, aside_rate, t109
+    lean_beta = _runtime.select(spent_beta, t152, 0.0)
+    del t152
+    t153 = np.sqrt(1.0 + lean_beta * lean_beta)
+    t154 = 1.0 / t153
+    t155 = _runtime.select(spent_beta, p_1_alpha * lean_beta * t154 + t135 * t154, t135)
+    fore_turn_beta = _runtime.select(spent_beta, t151, 0.0)
+    del t151
+    t156 = np.sqrt(1.0 + fore_turn_beta * fore_turn_beta)
+    t157 = 1.0 / (t153 * t156)
+    del t153, t156
+    t158 = fore_turn_beta * t157 - lean_beta * t157
+    t159 = t157 + t157 * (lean_beta * fore_turn_beta)
+    del t157
+    v_2_beta = _runtime.select(spent_beta, v_1_alpha * t158 + v_2_alpha * t159, v_2_alpha)
+    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t159 - v_2_alpha * t158, v_1_alpha)
+    del t158, t159, v_1_alpha, v_2_alpha
     sigma_uv = _runtime.sign(-(L1 * v_1_beta))
-    t157 = v_1_beta * sigma_uv
-    t158 = np.abs(v_2_beta)
-    parallel = -t157 <= _runtime.VANISHING * (64.0 * t158)
-    whole_y = _runtime.select(parallel, L1 + t158, -t157)
-    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t151 - t151 * (t132 * lean_beta), p_1_alpha)
-    del p_1_alpha, t132, t151
-    t159 = sigma_uv * p_1_beta
+    t160 = v_1_beta * sigma_uv
+    t161 = np.abs(v_2_beta)
+    parallel = -t160 <= _runtime.VANISHING * (64.0 * t161)
+    whole_y = _runtime.select(parallel, L1 + t161, -t160)
+    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t154 - t154 * (t135 * lean_beta), p_1_alpha)
+    del p_1_alpha, t135, t154
+    t162 = sigma_uv * p_1_beta
     del sigma_uv
-    t160 = _runtime.select(parallel, t152 * _runtime.sign(v_2_beta), t159)
-    t161 = whole_y + t160
-    t162 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
-    below_beta_0 = np.maximum(t161, t162)
-    t163 = whole_y - t160
-    above_beta_0 = np.maximum(t163, t162)
-    t164 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
+    t163 = _runtime.select(parallel, t155 * _runtime.sign(v_2_beta), t162)
+    t164 = whole_y + t163
+    t165 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
+    below_beta_0 = np.maximum(t164, t165)
+    t166 = whole_y - t163
+    above_beta_0 = np.maximum(t166, t165)
+    t167 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
     del above_beta_0, below_beta_0
-    t165 = t152 - v_2_beta * t164
-    del t164
-    left_along = L1 - np.abs(t165)
-    t166 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
-    t167 = _runtime.VANISHING * play
-    spent_along = t166 <= t167
-    del t166
-    t168 = spent_along | spent_alpha | spent_beta
-    t169 = 1.0 / (t102 * t102)
-    del t102
-    t170 = _runtime.select(t97, -(t10 * tilt * t169), 0.0)
-    waist_turn = _runtime.select(t168, (turn_alpha + turn_beta) * t170, 0.0)
+    t168 = t155 - v_2_beta * t167
+    del t167
+    left_along = L1 - np.abs(t168)
+    t169 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t170 = _runtime.VANISHING * play
+    spent_along = t169 <= t170
+    del t169
+    t171 = spent_along | spent_alpha | spent_beta
+    t172 = 1.0 / (t104 * t104)
+    del t104
+    t173 = _runtime.select(t93, -(t10 * tilt * t172), 0.0)
+    waist_turn = _runtime.select(t171, (turn_alpha + turn_beta) * t173, 0.0)
     del turn_alpha, turn_beta
     nowhere = h <= _runtime.VANISHING * lengths
-    del h, lengths
-    t171 = np.arctan2(x, y)
-    t172 = _runtime.select(tangent, np.arctan2(t54, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
+    del h
+    t174 = np.arctan2(x, y)
+    t175 = _runtime.select(tangent, np.arctan2(t54, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
     del above, below, root, t54
-    t173 = _runtime.select(nowhere, 0.0, t171 - t172)
-    t174 = _runtime.wrap(np.arctan2(waist_turn, 1.0) - t173)
+    t176 = _runtime.select(nowhere, 0.0, t174 - t175)
+    t177 = _runtime.wrap(np.arctan2(waist_turn, 1.0) - t176)
     del waist_turn
-    t175 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t176 = t175 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t175
-    t177 = t176 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
-    del t176
-    t178 = t177 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    del t177
-    t179 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t180 = _runtime.select(0.0 < L1 * d * t15, 0.0, 1.0)
+    t178 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t179 = t178 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t178
+    t180 = t179 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
+    del t179
+    t181 = t180 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
+    del t180
+    t182 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t183 = _runtime.select(0.0 < L1 * d * t15, 0.0, 1.0)
     del t15
-    t181 = t178 & t179 & (np.abs(t180) <= _runtime.ROTATION)
-    del t178, t179, t180
-    invalid = np.logical_not(t181)
-    del t181
-    t182 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
+    t184 = t181 & t182 & (np.abs(t183) <= _runtime.ROTATION)
+    del t181, t182, t183
+    invalid = np.logical_not(t184)
+    del t184
+    t185 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
     del c_psi, s_psi
-    t183 = -(_runtime.FEASIBILITY * (t4 * t182))
-    del t182, t4
-    t184 = (-_runtime.FEASIBILITY <= c_phi) & (t183 <= t5)
+    t186 = -(_runtime.FEASIBILITY * (t4 * t185))
+    del t185, t4
+    t187 = (-_runtime.FEASIBILITY <= c_phi) & (t186 <= t5)
     del c_phi, t5
-    t185 = -(_runtime.FEASIBILITY * slack)
-    t186 = t184 & (t183 <= t6) & (t185 <= t12) & (t185 <= t11)
-    del t11, t12, t183, t184, t185, t6
-    t187 = _runtime.FEASIBILITY * ((L1 * 2.0 + t57) * slack)
+    t188 = -(_runtime.FEASIBILITY * slack)
+    t189 = t187 & (t186 <= t6) & (t188 <= t12) & (t188 <= t11)
+    del t11, t12, t186, t187, t188, t6
+    t190 = _runtime.FEASIBILITY * ((L1 * 2.0 + t57) * slack)
     del t57
-    t188 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t189 = _runtime.FEASIBILITY * ((t188 + 2.0 * np.abs(t49)) * slack)
-    del slack, t188, t49
-    t190 = t186 & (-t187 <= t60) & (-t189 <= t59)
-    del t186, t187, t189, t59, t60
-    t191 = _runtime.select(spent_alpha, gain_1_alpha + gain_0_alpha, 0.0)
+    t191 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t192 = _runtime.FEASIBILITY * ((t191 + 2.0 * np.abs(t49)) * slack)
+    del t191, t49
+    t193 = t189 & (-t190 <= t60) & (-t192 <= t59)
+    del t189, t190, t192, t59, t60
+    t194 = _runtime.select(spent_alpha, gain_1_alpha + gain_0_alpha, 0.0)
     del gain_0_alpha, gain_1_alpha
-    t192 = -(_runtime.FEASIBILITY * (t84 + t191)) <= -t81
-    del t191, t81
-    t193 = _runtime.select(spent_beta, gain_1_beta + gain_0_beta, 0.0)
-    del gain_0_beta, gain_1_beta
-    t194 = -(_runtime.FEASIBILITY * (t130 + t193)) <= -t128
-    del t128, t193
-    t195 = _runtime.select(tangent & (spent_alpha | spent_beta), 64.0, 1.0)
-    del spent_alpha, spent_beta
-    t196 = -(_runtime.FEASIBILITY * (play * t195))
-    t197 = t190 & t192 & t194 & (t196 <= t159 - t157) & (t196 <= -(t157 + t159))
-    del t159, t192, t194
-    t198 = 32.0 * play
-    t199 = t195 * t198
+    leniency = _runtime.select(tangent & t94, 16384.0, 1.0)
+    t195 = (t84 + t194) * _runtime.select(spent_alpha, leniency, 1.0)
+    del t194
+    t196 = t193 & (-(_runtime.FEASIBILITY * t195) <= -t81)
     del t195
-    t200 = L1 / 1000000000.0
-    t201 = _runtime.select(spent_along, t158 / (t200 - t157), 0.0)
-    del t158
-    t202 = -(_runtime.FEASIBILITY * (t199 * (1.0 + t201)))
-    del t201
-    t203 = t197 & (t196 <= t161) & (t196 <= t163) & (t202 <= left_along)
-    del t161, t163, t197, t202
-    t204 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
+    t197 = _runtime.select(spent_beta, gain_1_beta + gain_0_beta, 0.0)
+    del gain_0_beta, gain_1_beta
+    t198 = (t133 + t197) * _runtime.select(spent_beta, leniency, 1.0)
+    del t197
+    t199 = t196 & (-(_runtime.FEASIBILITY * t198) <= -t131)
+    del t196, t198
+    t200 = _runtime.select(spent_alpha | spent_beta, leniency, 1.0)
+    t201 = -(_runtime.FEASIBILITY * (play * t200))
+    t202 = t199 & (t201 <= t162 - t160) & (t201 <= -(t160 + t162))
+    del t162, t199
+    t203 = 32.0 * play
+    t204 = t200 * t203
+    del t200
+    t205 = L1 / 1000000000.0
+    t206 = _runtime.select(spent_along, t161 / (t205 - t160), 0.0)
+    del t161
+    t207 = -(_runtime.FEASIBILITY * (t204 * (1.0 + t206)))
+    del t206
+    t208 = t202 & (t201 <= t164) & (t201 <= t166) & (t207 <= left_along)
+    del t164, t166, t202, t207
+    t209 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
     del left_along
-    t205 = t204 / (t157 * t157 + v_2_beta * v_2_beta) * _runtime.sign(-t165)
-    del t157, t165, t204
-    t206 = _runtime.select(spent_along, t160 + whole_y * t205, t160)
-    del spent_along, t160, t205
-    t207 = whole_y + t206
-    t208 = whole_y - t206
-    del t206, whole_y
-    t209 = -(_runtime.FEASIBILITY * t199)
-    del t199
-    below_beta = np.maximum(t207, t162)
-    above_beta = np.maximum(t208, t162)
-    t210 = 1.0 / (below_beta + above_beta)
-    t211 = (below_beta - above_beta) * t210
-    t212 = t152 - v_2_beta * t211
-    del t152, v_2_beta
-    t213 = L1 + t212
-    t214 = t203 & (t196 <= t207) & (t196 <= t208) & (t209 <= t213)
-    del t196, t203, t207, t208
-    t215 = L1 - t212
-    unreachable = np.logical_not(t214 & (t209 <= t215))
-    del t209, t214
-    t216 = _runtime.poison(invalid | unreachable)
-    t217 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
-    t218 = np.arctan2(lean_alpha + lean_beta, 1.0 - lean_alpha * lean_beta)
+    t210 = t209 / (t160 * t160 + v_2_beta * v_2_beta) * _runtime.sign(-t168)
+    del t160, t168, t209
+    t211 = _runtime.select(spent_along, t163 + whole_y * t210, t163)
+    del spent_along, t163, t210
+    t212 = whole_y + t211
+    t213 = whole_y - t211
+    del t211, whole_y
+    t214 = -(_runtime.FEASIBILITY * t204)
+    del t204
+    below_beta = np.maximum(t212, t165)
+    above_beta = np.maximum(t213, t165)
+    t215 = 1.0 / (below_beta + above_beta)
+    t216 = (below_beta - above_beta) * t215
+    t217 = t155 - v_2_beta * t216
+    del t155, v_2_beta
+    t218 = L1 + t217
+    t219 = t208 & (t201 <= t212) & (t201 <= t213) & (t214 <= t218)
+    del t201, t208, t212, t213
+    t220 = L1 - t217
+    unreachable = np.logical_not(t219 & (t214 <= t220))
+    del t214, t219
+    t221 = _runtime.poison(invalid | unreachable)
+    t222 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
+    t223 = np.arctan2(lean_alpha + lean_beta, 1.0 - lean_alpha * lean_beta)
     del lean_alpha, lean_beta
-    t219 = t217 + t218
-    del t217
-    below_alpha = np.maximum(t213, t162)
-    del t213
-    above_alpha = np.maximum(t215, t162)
-    del t215
-    t220 = 1.0 / (below_alpha + above_alpha)
-    t221 = (below_alpha - above_alpha) * t220
-    t222 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t224 = t222 + t223
+    del t222
+    below_alpha = np.maximum(t218, t165)
+    del t218
+    above_alpha = np.maximum(t220, t165)
+    del t220
+    t225 = 1.0 / (below_alpha + above_alpha)
+    t226 = (below_alpha - above_alpha) * t225
+    t227 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
     del above_alpha, below_alpha
-    t223 = np.arctan2(t221, t220 * t222)
-    del t220, t222
-    t224 = np.arctan2(s_lag, c_lag)
+    t228 = np.arctan2(t226, t225 * t227)
+    del t225, t227
+    t229 = np.arctan2(s_lag, c_lag)
     del c_lag, s_lag
-    t225 = _runtime.select(short, 0.0, np.arctan2(t63, t72))
+    t230 = _runtime.select(short, 0.0, np.arctan2(t63, t72))
     del t63, t72
-    t226 = t224 - t225
-    t227 = np.arctan2(fore_turn_alpha + fore_turn_beta, 1.0 - fore_turn_alpha * fore_turn_beta)
+    t231 = t229 - t230
+    t232 = np.arctan2(fore_turn_alpha + fore_turn_beta, 1.0 - fore_turn_alpha * fore_turn_beta)
     del fore_turn_alpha, fore_turn_beta
-    t228 = t226 - (t218 - t227)
-    del t218, t227
-    t229 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    t233 = t231 - (t223 - t232)
+    del t223, t232
+    t234 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
     del above_beta, below_beta
-    t230 = t223 - np.arctan2(t211, t210 * t229)
-    del t210, t229
-    t231 = _runtime.wrap(principal_pitch)
+    t235 = t228 - np.arctan2(t216, t215 * t234)
+    del t215, t234
+    t236 = _runtime.wrap(principal_pitch)
     del principal_pitch
     out_front_elbow_down = t62 + t65
     del t62, t65
     up_front_elbow_down = t66 - t67
     del t66, t67
-    t232 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
-    t233 = 1.0 / np.sqrt(t232)
-    del t232
-    t234 = out_front_elbow_down * t233
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t234)
-    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t233)
-    del t233
-    t235 = higher * stheta2A_front_elbow_down
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t235
+    t237 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
+    t238 = 1.0 / np.sqrt(t237)
+    del t237
+    t239 = out_front_elbow_down * t238
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t239)
+    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t238)
+    del t238
+    t240 = higher * stheta2A_front_elbow_down
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t240
     s_relative_front_elbow_down = t73 + t74
     del t73, t74
     c_relative_front_elbow_down = t75 - t76
     del t75, t76
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    t236 = ahead * stheta2A_front_elbow_down
-    t237 = t236 - higher * ctheta2A_front_elbow_down
+    t241 = ahead * stheta2A_front_elbow_down
+    t242 = t241 - higher * ctheta2A_front_elbow_down
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
-    t238 = p_1_front_elbow_down * v_2_front_elbow_down + t237 * v_1_front_elbow_down
+    t243 = p_1_front_elbow_down * v_2_front_elbow_down + t242 * v_1_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t239 = np.abs(whole_alpha_front_elbow_down)
-    t240 = np.abs(t238) - t239
-    t241 = np.maximum(t240 * 9.094947017729282e-13, -t240)
-    spent_alpha_front_elbow_down = t241 <= t85
-    del t241
-    t242 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
+    t244 = np.abs(whole_alpha_front_elbow_down)
+    t245 = np.abs(t243) - t244
+    t246 = np.maximum(t245 * 9.094947017729282e-13, -t245)
+    spent_alpha_front_elbow_down = t246 <= t85
+    del t246
+    t247 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
-    slope_aside_alpha_front_elbow_down = L1 * t242
-    t243 = np.abs(slope_aside_alpha_front_elbow_down)
-    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t90, 1.0)
-    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t243 / heavy_1_alpha_front_elbow_down, 0.0)
-    t244 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
+    slope_aside_alpha_front_elbow_down = L1 * t247
+    t248 = np.abs(slope_aside_alpha_front_elbow_down)
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
-    t245 = np.abs(tilt_front_elbow_down)
-    t246 = t94 & (t95 <= t245)
-    del t94, t95
-    t247 = stheta2A_front_elbow_down * tilt_front_elbow_down
-    aside_rate_front_elbow_down = _runtime.select(t246, -(t98 * t247), 0.0)
-    del t247
-    t248 = slope_aside_alpha_front_elbow_down * aside_rate_front_elbow_down
-    fore_rate_front_elbow_down = _runtime.select(t246, ctheta2A_front_elbow_down, 1.0)
+    t249 = np.abs(tilt_front_elbow_down)
+    t250 = t90 & (t91 <= t249)
+    del t90, t91
+    wider_front_elbow_down = _runtime.select(t250 & t94, 128.0, 1.0)
+    del t94
+    t251 = L1 + t89 * wider_front_elbow_down / 2000000.0
+    t252 = wider_front_elbow_down * wider_front_elbow_down
+    t253 = 1.0 / (slack * t252)
+    del t252
+    t254 = t251 * t253
+    del t251
+    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t254, 1.0)
+    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t248 / heavy_1_alpha_front_elbow_down, 0.0)
+    t255 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
+    t256 = stheta2A_front_elbow_down * tilt_front_elbow_down
+    aside_rate_front_elbow_down = _runtime.select(t250, -(t100 * t256), 0.0)
+    del t256
+    t257 = slope_aside_alpha_front_elbow_down * aside_rate_front_elbow_down
+    fore_rate_front_elbow_down = _runtime.select(t250, ctheta2A_front_elbow_down, 1.0)
     del ctheta2A_front_elbow_down
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
     del L_2W, a_3W, c_relative_front_elbow_down, s_relative_front_elbow_down
-    t249 = t242 * drawn_front_elbow_down
-    del t242
-    t250 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t237
-    t251 = fore_rate_front_elbow_down * (t249 - _runtime.sign(-t238) * t250)
-    del t238, t250
-    slope_alpha_front_elbow_down = t248 - t251
-    del t248, t251
-    t252 = np.abs(slope_alpha_front_elbow_down)
-    t253 = t245 * _runtime.select(t246, t104, 1.0)
-    del t104, t245
-    t254 = aside_rate_front_elbow_down + fore_rate_front_elbow_down
-    t255 = fore_rate_front_elbow_down * drawn_front_elbow_down
-    t256 = t254 - t98 * t255
-    del t254
-    t257 = fore_rate_front_elbow_down * fore_rate_front_elbow_down
-    t258 = tilt_front_elbow_down * tilt_front_elbow_down
-    t259 = _runtime.select(t246, t103, 0.0) * t258
-    del t103, t258
-    t260 = np.sqrt(L1 * (t256 * t256) + fore * t257 + t259)
-    del t256, t257
-    t261 = t88 * (t253 + t89 * t260 / 2000000.0)
-    del t260
-    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t261, 1.0)
-    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t252 / heavy_0_alpha_front_elbow_down, 0.0)
-    t262 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
-    t263 = _runtime.select(-t240 < 0.0, t244 / (t93 + t244 + t262), 0.0)
-    del t244, t262
-    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t263, 0.0)
-    del t263
-    t264 = _runtime.sign(slope_aside_alpha_front_elbow_down)
-    t265 = t84 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
+    t258 = t247 * drawn_front_elbow_down
+    del t247
+    t259 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t242
+    t260 = fore_rate_front_elbow_down * (t258 - _runtime.sign(-t243) * t259)
+    del t243, t259
+    slope_alpha_front_elbow_down = t257 - t260
+    del t257, t260
+    t261 = np.abs(slope_alpha_front_elbow_down)
+    t262 = t249 * _runtime.select(t250, t106, 1.0)
+    del t106, t249
+    t263 = t88 * wider_front_elbow_down
+    del wider_front_elbow_down
+    t264 = aside_rate_front_elbow_down + fore_rate_front_elbow_down
+    t265 = fore_rate_front_elbow_down * drawn_front_elbow_down
+    t266 = t264 - t100 * t265
+    del t264
+    t267 = fore_rate_front_elbow_down * fore_rate_front_elbow_down
+    t268 = tilt_front_elbow_down * tilt_front_elbow_down
+    t269 = _runtime.select(t250, t105, 0.0) * t268
+    del t105, t268
+    t270 = np.sqrt(L1 * (t266 * t266) + fore * t267 + t269)
+    del t266, t267
+    t271 = t253 * (t262 + t263 * t270 / 2000000.0)
+    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t271, 1.0)
+    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t261 / heavy_0_alpha_front_elbow_down, 0.0)
+    t272 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
+    t273 = _runtime.select(-t245 < 0.0, t255 / (t99 + t255 + t272), 0.0)
+    del t255, t272
+    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t273, 0.0)
+    del t273
+    t274 = _runtime.sign(slope_aside_alpha_front_elbow_down)
+    t275 = t84 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
     del heavy_1_alpha_front_elbow_down
-    t266 = t240 * share_alpha_front_elbow_down * t264 / (t243 + t265)
-    del t265
-    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t266, 0.0)
-    del t266
-    lack_alpha_front_elbow_down = t240 * (1.0 - share_alpha_front_elbow_down)
-    del share_alpha_front_elbow_down
-    t267 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
-    t268 = t84 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
-    del heavy_0_alpha_front_elbow_down
-    t269 = 1.0 / (t252 + t268)
-    del t252, t268
-    t270 = lack_alpha_front_elbow_down * t269
-    del lack_alpha_front_elbow_down
-    t271 = (t267 * t269 <= 9.094947017729282e-13) & (0.0 < t270)
-    del t267, t269
-    t272 = _runtime.sign(slope_alpha_front_elbow_down) * _runtime.select(t271, t270, 0.0)
-    del slope_alpha_front_elbow_down, t270, t271
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t272, 0.0)
-    del t272
-    t273 = aside_rate_front_elbow_down * turn_alpha_front_elbow_down
-    t274 = fore_rate_front_elbow_down * turn_alpha_front_elbow_down
-    t275 = aside_alpha_front_elbow_down + t273 + t274 - t98 * (t255 * turn_alpha_front_elbow_down)
-    del aside_alpha_front_elbow_down, t273
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t275, 0.0)
+    t276 = t245 * share_alpha_front_elbow_down * t274 / (t248 + t275)
     del t275
-    t276 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t277 = np.sqrt(1.0 + t276)
+    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t276, 0.0)
     del t276
-    t278 = 1.0 / t277
-    t279 = p_1_front_elbow_down * t278 - t237 * lean_alpha_front_elbow_down * t278
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t279, p_1_front_elbow_down)
-    del t279
-    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    fore_turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t274, 0.0)
-    del t274
-    t280 = fore_turn_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
-    t281 = 1.0 / (t277 * np.sqrt(1.0 + t280))
-    del t277, t280
-    t282 = lean_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
-    t283 = t281 + t281 * t282
+    lack_alpha_front_elbow_down = t245 * (1.0 - share_alpha_front_elbow_down)
+    del share_alpha_front_elbow_down
+    t277 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
+    t278 = t84 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
+    del heavy_0_alpha_front_elbow_down
+    t279 = 1.0 / (t261 + t278)
+    del t278
+    t280 = lack_alpha_front_elbow_down * t279
+    del lack_alpha_front_elbow_down
+    t281 = (t277 * t279 <= 9.094947017729282e-13) & (0.0 < t280)
+    del t277, t279
+    t282 = _runtime.sign(slope_alpha_front_elbow_down) * _runtime.select(t281, t280, 0.0)
+    del slope_alpha_front_elbow_down, t280, t281
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t282, 0.0)
     del t282
-    t284 = fore_turn_alpha_front_elbow_down * t281 - lean_alpha_front_elbow_down * t281
-    del t281
-    t285 = v_1_front_elbow_down * t283 - v_2_front_elbow_down * t284
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t285, v_1_front_elbow_down)
+    t283 = aside_rate_front_elbow_down * turn_alpha_front_elbow_down
+    t284 = fore_rate_front_elbow_down * turn_alpha_front_elbow_down
+    t285 = aside_alpha_front_elbow_down + t283 + t284 - t100 * (t265 * turn_alpha_front_elbow_down)
+    del aside_alpha_front_elbow_down, t283
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t285, 0.0)
     del t285
-    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t286 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
-    t287 = np.maximum(t286 * 9.094947017729282e-13, -t286)
-    spent_beta_front_elbow_down = t287 <= t131
-    del t287
-    t288 = p_1_front_elbow_down * lean_alpha_front_elbow_down
-    del p_1_front_elbow_down
-    t289 = _runtime.select(spent_alpha_front_elbow_down, t278 * t288 + t237 * t278, t237)
-    del t237, t278, t288
-    t290 = t289 * _runtime.sign(part_beta_front_elbow_down)
-    del part_beta_front_elbow_down
-    t291 = v_1_front_elbow_down * t284 + v_2_front_elbow_down * t283
-    del t283, t284
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t291, v_2_front_elbow_down)
+    t286 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t287 = np.sqrt(1.0 + t286)
+    del t286
+    t288 = 1.0 / t287
+    t289 = p_1_front_elbow_down * t288 - t242 * lean_alpha_front_elbow_down * t288
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t289, p_1_front_elbow_down)
+    del t289
+    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
+    fore_turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t284, 0.0)
+    del t284
+    t290 = fore_turn_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
+    t291 = 1.0 / (t287 * np.sqrt(1.0 + t290))
+    del t287, t290
+    t292 = lean_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
+    t293 = t291 + t291 * t292
+    del t292
+    t294 = fore_turn_alpha_front_elbow_down * t291 - lean_alpha_front_elbow_down * t291
     del t291
-    t292 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
+    t295 = v_1_front_elbow_down * t293 - v_2_front_elbow_down * t294
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t295, v_1_front_elbow_down)
+    del t295
+    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
+    t296 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
+    t297 = np.maximum(t296 * 9.094947017729282e-13, -t296)
+    spent_beta_front_elbow_down = t297 <= t134
+    del t297
+    t298 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    del p_1_front_elbow_down
+    t299 = _runtime.select(spent_alpha_front_elbow_down, t288 * t298 + t242 * t288, t242)
+    del t242, t288, t298
+    t300 = t299 * _runtime.sign(part_beta_front_elbow_down)
+    del part_beta_front_elbow_down
+    t301 = v_1_front_elbow_down * t294 + v_2_front_elbow_down * t293
+    del t293, t294
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t301, v_2_front_elbow_down)
+    del t301
+    t302 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
     del whole_beta_front_elbow_down
-    slope_aside_beta_front_elbow_down = L1 * (t290 + t292)
-    t293 = np.abs(slope_aside_beta_front_elbow_down)
-    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t90, 1.0)
-    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t293 / heavy_1_beta_front_elbow_down, 0.0)
-    t294 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
-    t295 = aside_rate_front_elbow_down * slope_aside_beta_front_elbow_down
-    t296 = L1 - drawn_front_elbow_down
-    t297 = fore_rate_front_elbow_down * (drawn_front_elbow_down * t292 - t290 * t296)
-    del t290, t292
-    slope_beta_front_elbow_down = t295 - t297
-    del t295, t297
-    t298 = np.abs(slope_beta_front_elbow_down)
-    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t261, 1.0)
-    del t261
-    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t298 / heavy_0_beta_front_elbow_down, 0.0)
-    t299 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
-    t300 = _runtime.select(-t286 < 0.0, t294 / (t137 + t294 + t299), 0.0)
-    del t294, t299
-    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t300, 0.0)
-    del t300
-    t301 = _runtime.sign(slope_aside_beta_front_elbow_down)
+    slope_aside_beta_front_elbow_down = L1 * (t300 + t302)
+    t303 = np.abs(slope_aside_beta_front_elbow_down)
+    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t254, 1.0)
+    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t303 / heavy_1_beta_front_elbow_down, 0.0)
+    t304 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
+    t305 = aside_rate_front_elbow_down * slope_aside_beta_front_elbow_down
+    t306 = L1 - drawn_front_elbow_down
+    t307 = fore_rate_front_elbow_down * (drawn_front_elbow_down * t302 - t300 * t306)
+    del t300, t302
+    slope_beta_front_elbow_down = t305 - t307
+    del t305, t307
+    t308 = np.abs(slope_beta_front_elbow_down)
+    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t271, 1.0)
+    del t271
+    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t308 / heavy_0_beta_front_elbow_down, 0.0)
+    t309 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
+    t310 = _runtime.select(-t296 < 0.0, t304 / (t140 + t304 + t309), 0.0)
+    del t304, t309
+    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t310, 0.0)
+    del t310
+    t311 = _runtime.sign(slope_aside_beta_front_elbow_down)
     del slope_aside_beta_front_elbow_down
-    t302 = t130 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
+    t312 = t133 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_1_beta_front_elbow_down
-    t303 = t286 * share_beta_front_elbow_down * t301 / (t293 + t302)
-    del t293, t301, t302
-    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t303, 0.0)
-    del t303
-    lack_beta_front_elbow_down = t286 * (1.0 - share_beta_front_elbow_down)
-    del share_beta_front_elbow_down
-    t304 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
-    t305 = t130 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
-    del heavy_0_beta_front_elbow_down
-    t306 = 1.0 / (t298 + t305)
-    del t298, t305
-    t307 = lack_beta_front_elbow_down * t306
-    del lack_beta_front_elbow_down
-    t308 = (t304 * t306 <= 9.094947017729282e-13) & (0.0 < t307)
-    del t304, t306
-    t309 = _runtime.sign(slope_beta_front_elbow_down) * _runtime.select(t308, t307, 0.0)
-    del slope_beta_front_elbow_down, t307, t308
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t309, 0.0)
-    del t309
-    t310 = aside_rate_front_elbow_down * turn_beta_front_elbow_down
-    del aside_rate_front_elbow_down
-    t311 = fore_rate_front_elbow_down * turn_beta_front_elbow_down
-    del fore_rate_front_elbow_down
-    t312 = aside_beta_front_elbow_down + t310 + t311 - t98 * (t255 * turn_beta_front_elbow_down)
-    del aside_beta_front_elbow_down, t255, t310
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t312, 0.0)
-    del t312
-    t313 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
-    t314 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
-    t315 = np.sqrt(1.0 + t314)
-    del t314
-    t316 = 1.0 / t315
-    t317 = _runtime.select(spent_beta_front_elbow_down, t313 * t316 + t289 * t316, t289)
+    t313 = t296 * share_beta_front_elbow_down * t311 / (t303 + t312)
+    del t311, t312
+    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t313, 0.0)
     del t313
-    fore_turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t311, 0.0)
-    del t311
-    t318 = fore_turn_beta_front_elbow_down * fore_turn_beta_front_elbow_down
-    t319 = 1.0 / (t315 * np.sqrt(1.0 + t318))
-    del t315, t318
-    t320 = fore_turn_beta_front_elbow_down * t319 - lean_beta_front_elbow_down * t319
-    t321 = lean_beta_front_elbow_down * fore_turn_beta_front_elbow_down
-    t322 = t319 + t319 * t321
-    del t319, t321
-    t323 = v_1_alpha_front_elbow_down * t320 + v_2_alpha_front_elbow_down * t322
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t323, v_2_alpha_front_elbow_down)
+    lack_beta_front_elbow_down = t296 * (1.0 - share_beta_front_elbow_down)
+    del share_beta_front_elbow_down
+    t314 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
+    t315 = t133 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
+    del heavy_0_beta_front_elbow_down
+    t316 = 1.0 / (t308 + t315)
+    del t315
+    t317 = lack_beta_front_elbow_down * t316
+    del lack_beta_front_elbow_down
+    t318 = (t314 * t316 <= 9.094947017729282e-13) & (0.0 < t317)
+    del t314, t316
+    t319 = _runtime.sign(slope_beta_front_elbow_down) * _runtime.select(t318, t317, 0.0)
+    del slope_beta_front_elbow_down, t317, t318
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t319, 0.0)
+    del t319
+    t320 = aside_rate_front_elbow_down * turn_beta_front_elbow_down
+    del aside_rate_front_elbow_down
+    t321 = fore_rate_front_elbow_down * turn_beta_front_elbow_down
+    del fore_rate_front_elbow_down
+    t322 = aside_beta_front_elbow_down + t320 + t321 - t100 * (t265 * turn_beta_front_elbow_down)
+    del aside_beta_front_elbow_down, t265, t320
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t322, 0.0)
+    del t322
+    t323 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t324 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
+    t325 = np.sqrt(1.0 + t324)
+    del t324
+    t326 = 1.0 / t325
+    t327 = _runtime.select(spent_beta_front_elbow_down, t323 * t326 + t299 * t326, t299)
     del t323
-    t324 = v_1_alpha_front_elbow_down * t322 - v_2_alpha_front_elbow_down * t320
-    del t320, t322, v_2_alpha_front_elbow_down
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t324, v_1_alpha_front_elbow_down)
-    del t324, v_1_alpha_front_elbow_down
+    fore_turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t321, 0.0)
+    del t321
+    t328 = fore_turn_beta_front_elbow_down * fore_turn_beta_front_elbow_down
+    t329 = 1.0 / (t325 * np.sqrt(1.0 + t328))
+    del t325, t328
+    t330 = fore_turn_beta_front_elbow_down * t329 - lean_beta_front_elbow_down * t329
+    t331 = lean_beta_front_elbow_down * fore_turn_beta_front_elbow_down
+    t332 = t329 + t329 * t331
+    del t329, t331
+    t333 = v_1_alpha_front_elbow_down * t330 + v_2_alpha_front_elbow_down * t332
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t333, v_2_alpha_front_elbow_down)
+    del t333
+    t334 = v_1_alpha_front_elbow_down * t332 - v_2_alpha_front_elbow_down * t330
+    del t330, t332, v_2_alpha_front_elbow_down
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t334, v_1_alpha_front_elbow_down)
+    del t334, v_1_alpha_front_elbow_down
     sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
-    t325 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
-    t326 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t325 <= _runtime.VANISHING * (64.0 * t326)
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t326, -t325)
-    t327 = t317 * _runtime.sign(v_2_beta_front_elbow_down)
-    t328 = p_1_alpha_front_elbow_down * t316 - t316 * (t289 * lean_beta_front_elbow_down)
-    del t289, t316
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t328, p_1_alpha_front_elbow_down)
-    del p_1_alpha_front_elbow_down, t328
-    t329 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t335 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    t336 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t335 <= _runtime.VANISHING * (64.0 * t336)
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t336, -t335)
+    t337 = t327 * _runtime.sign(v_2_beta_front_elbow_down)
+    t338 = p_1_alpha_front_elbow_down * t326 - t326 * (t299 * lean_beta_front_elbow_down)
+    del t299, t326
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t338, p_1_alpha_front_elbow_down)
+    del p_1_alpha_front_elbow_down, t338
+    t339 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
     del sigma_uv_front_elbow_down
-    t330 = _runtime.select(parallel_front_elbow_down, t327, t329)
-    del t327
-    t331 = whole_y_front_elbow_down + t330
-    below_beta_0_front_elbow_down = np.maximum(t331, t162)
-    t332 = whole_y_front_elbow_down - t330
-    above_beta_0_front_elbow_down = np.maximum(t332, t162)
-    t333 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    t340 = _runtime.select(parallel_front_elbow_down, t337, t339)
+    del t337
+    t341 = whole_y_front_elbow_down + t340
+    below_beta_0_front_elbow_down = np.maximum(t341, t165)
+    t342 = whole_y_front_elbow_down - t340
+    above_beta_0_front_elbow_down = np.maximum(t342, t165)
+    t343 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t334 = v_2_beta_front_elbow_down * (t333 / total_beta_0_front_elbow_down)
-    del t333, total_beta_0_front_elbow_down
-    t335 = t317 - t334
-    del t334
-    left_along_front_elbow_down = L1 - np.abs(t335)
-    t336 = left_along_front_elbow_down * 9.094947017729282e-13
-    t337 = np.maximum(-t336, left_along_front_elbow_down)
-    del t336
-    spent_along_front_elbow_down = t337 <= t167
-    del t337
-    t338 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
-    t339 = t338 | spent_beta_front_elbow_down
-    del t338
-    t340 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
-    del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
-    t341 = _runtime.select(t246, -(t169 * (t10 * tilt_front_elbow_down)), 0.0)
-    del t10, t169
-    t342 = np.arctan2(_runtime.select(t339, t340 * t341, 0.0), 1.0)
-    del t340
-    t343 = gain_1_alpha_front_elbow_down + gain_0_alpha_front_elbow_down
-    del gain_0_alpha_front_elbow_down, gain_1_alpha_front_elbow_down
-    t344 = _runtime.select(spent_alpha_front_elbow_down, t343, 0.0)
-    del t343
-    t345 = -(_runtime.FEASIBILITY * (t84 + t344)) <= -t240
-    del t240, t344
-    t346 = gain_1_beta_front_elbow_down + gain_0_beta_front_elbow_down
-    del gain_0_beta_front_elbow_down, gain_1_beta_front_elbow_down
-    t347 = _runtime.select(spent_beta_front_elbow_down, t346, 0.0)
+    t344 = v_2_beta_front_elbow_down * (t343 / total_beta_0_front_elbow_down)
+    del t343, total_beta_0_front_elbow_down
+    t345 = t327 - t344
+    del t344
+    left_along_front_elbow_down = L1 - np.abs(t345)
+    t346 = left_along_front_elbow_down * 9.094947017729282e-13
+    t347 = np.maximum(-t346, left_along_front_elbow_down)
     del t346
-    t348 = -(_runtime.FEASIBILITY * (t130 + t347)) <= -t286
-    del t286, t347
-    t349 = spent_alpha_front_elbow_down | spent_beta_front_elbow_down
-    del spent_alpha_front_elbow_down, spent_beta_front_elbow_down
-    t350 = _runtime.select(tangent & t349, 64.0, 1.0)
-    del t349
-    t351 = -(_runtime.FEASIBILITY * (play * t350))
-    t352 = t190 & t345 & t348 & (t351 <= t329 - t325) & (t351 <= -(t325 + t329))
-    del t329, t345, t348
-    t353 = t198 * t350
+    spent_along_front_elbow_down = t347 <= t170
+    del t347
+    t348 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
+    t349 = t348 | spent_beta_front_elbow_down
+    del t348
+    t350 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
+    t351 = _runtime.select(t250, -(t172 * (t10 * tilt_front_elbow_down)), 0.0)
+    del t10, t172
+    t352 = np.arctan2(_runtime.select(t349, t350 * t351, 0.0), 1.0)
     del t350
-    t354 = _runtime.select(spent_along_front_elbow_down, t326 / (t200 - t325), 0.0)
-    del t326
-    t355 = -(_runtime.FEASIBILITY * (t353 * (1.0 + t354)))
-    del t354
-    t356 = t352 & (t351 <= t331) & (t351 <= t332) & (t355 <= left_along_front_elbow_down)
-    del t331, t332, t352, t355
-    t357 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
-    del left_along_front_elbow_down
-    t358 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t359 = v_2_beta_front_elbow_down * t357 / (t325 * t325 + t358)
-    del t325, t357, t358
-    t360 = whole_y_front_elbow_down * (t359 * _runtime.sign(-t335))
-    del t335, t359
-    t361 = _runtime.select(spent_along_front_elbow_down, t330 + t360, t330)
-    del spent_along_front_elbow_down, t330, t360
-    t362 = whole_y_front_elbow_down + t361
-    t363 = whole_y_front_elbow_down - t361
-    del t361, whole_y_front_elbow_down
-    t364 = -(_runtime.FEASIBILITY * t353)
+    t353 = gain_1_alpha_front_elbow_down + gain_0_alpha_front_elbow_down
+    del gain_0_alpha_front_elbow_down, gain_1_alpha_front_elbow_down
+    t354 = _runtime.select(spent_alpha_front_elbow_down, t353, 0.0)
     del t353
-    below_beta_front_elbow_down = np.maximum(t362, t162)
-    above_beta_front_elbow_down = np.maximum(t363, t162)
-    t365 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t355 = _runtime.select(spent_alpha_front_elbow_down, leniency, 1.0)
+    t356 = -(_runtime.FEASIBILITY * ((t84 + t354) * t355))
+    del t354, t355
+    t357 = gain_1_beta_front_elbow_down + gain_0_beta_front_elbow_down
+    del gain_0_beta_front_elbow_down, gain_1_beta_front_elbow_down
+    t358 = _runtime.select(spent_beta_front_elbow_down, t357, 0.0)
+    del t357
+    t359 = _runtime.select(spent_beta_front_elbow_down, leniency, 1.0)
+    t360 = _runtime.FEASIBILITY * ((t133 + t358) * t359)
+    del t358, t359
+    t361 = spent_alpha_front_elbow_down | spent_beta_front_elbow_down
+    t362 = _runtime.select(t361, leniency, 1.0)
+    del t361
+    t363 = -(_runtime.FEASIBILITY * (play * t362))
+    t364 = t193 & (t356 <= -t245) & (-t360 <= -t296) & (t363 <= t339 - t335)
+    del t356, t360
+    t365 = t364 & (t363 <= -(t335 + t339)) & (t363 <= t341)
+    del t339, t341, t364
+    t366 = t203 * t362
+    del t362
+    t367 = _runtime.select(spent_along_front_elbow_down, t336 / (t205 - t335), 0.0)
+    del t336
+    t368 = -(_runtime.FEASIBILITY * (t366 * (1.0 + t367)))
+    del t367
+    t369 = t365 & (t363 <= t342) & (t368 <= left_along_front_elbow_down)
+    del t342, t365, t368
+    t370 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
+    del left_along_front_elbow_down
+    t371 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t372 = v_2_beta_front_elbow_down * t370 / (t335 * t335 + t371)
+    del t335, t370, t371
+    t373 = whole_y_front_elbow_down * (t372 * _runtime.sign(-t345))
+    del t345, t372
+    t374 = _runtime.select(spent_along_front_elbow_down, t340 + t373, t340)
+    del spent_along_front_elbow_down, t340, t373
+    t375 = whole_y_front_elbow_down + t374
+    t376 = whole_y_front_elbow_down - t374
+    del t374, whole_y_front_elbow_down
+    t377 = -(_runtime.FEASIBILITY * t366)
+    del t366
+    below_beta_front_elbow_down = np.maximum(t375, t165)
+    above_beta_front_elbow_down = np.maximum(t376, t165)
+    t378 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t366 = 1.0 / total_beta_front_elbow_down
+    t379 = 1.0 / total_beta_front_elbow_down
     del total_beta_front_elbow_down
-    t367 = t365 * t366
-    del t365
-    t368 = t317 - v_2_beta_front_elbow_down * t367
-    del t317, v_2_beta_front_elbow_down
-    t369 = L1 + t368
-    t370 = t356 & (t351 <= t362) & (t351 <= t363) & (t364 <= t369)
-    del t351, t356, t362, t363
-    t371 = L1 - t368
-    unreachable_2 = np.logical_not(t370 & (t364 <= t371))
-    del t364, t370
-    t372 = _runtime.poison(invalid | unreachable_2)
-    t373 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
-    t374 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
-    t375 = lean_alpha_front_elbow_down * lean_beta_front_elbow_down
-    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t376 = np.arctan2(t374, 1.0 - t375)
-    del t374, t375
-    t377 = _runtime.select(folded, 0.0, t373) + t376
-    del t373
-    below_alpha_front_elbow_down = np.maximum(t369, t162)
-    del t369
-    above_alpha_front_elbow_down = np.maximum(t371, t162)
-    del t371
-    t378 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t379 = 1.0 / total_alpha_front_elbow_down
-    del total_alpha_front_elbow_down
     t380 = t378 * t379
     del t378
-    t381 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t381 = t327 - v_2_beta_front_elbow_down * t380
+    del t327, v_2_beta_front_elbow_down
+    t382 = L1 + t381
+    t383 = t369 & (t363 <= t375) & (t363 <= t376) & (t377 <= t382)
+    del t363, t369, t375, t376
+    t384 = L1 - t381
+    unreachable_2 = np.logical_not(t383 & (t377 <= t384))
+    del t377, t383
+    t385 = _runtime.poison(invalid | unreachable_2)
+    t386 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
+    t387 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    t388 = lean_alpha_front_elbow_down * lean_beta_front_elbow_down
+    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
+    t389 = np.arctan2(t387, 1.0 - t388)
+    del t387, t388
+    t390 = _runtime.select(folded, 0.0, t386) + t389
+    del t386
+    below_alpha_front_elbow_down = np.maximum(t382, t165)
+    del t382
+    above_alpha_front_elbow_down = np.maximum(t384, t165)
+    del t384
+    t391 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
+    t392 = 1.0 / total_alpha_front_elbow_down
+    del total_alpha_front_elbow_down
+    t393 = t391 * t392
+    del t391
+    t394 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t382 = np.arctan2(t380, t379 * t381)
-    del t379, t381
-    t383 = t224 + t225
-    del t224, t225
-    t384 = fore_turn_alpha_front_elbow_down + fore_turn_beta_front_elbow_down
-    t385 = fore_turn_alpha_front_elbow_down * fore_turn_beta_front_elbow_down
+    t395 = np.arctan2(t393, t392 * t394)
+    del t392, t394
+    t396 = t229 + t230
+    del t229, t230
+    t397 = fore_turn_alpha_front_elbow_down + fore_turn_beta_front_elbow_down
+    t398 = fore_turn_alpha_front_elbow_down * fore_turn_beta_front_elbow_down
     del fore_turn_alpha_front_elbow_down, fore_turn_beta_front_elbow_down
-    t386 = t383 - (t376 - np.arctan2(t384, 1.0 - t385))
-    del t376, t384, t385
-    t387 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t399 = t396 - (t389 - np.arctan2(t397, 1.0 - t398))
+    del t389, t397, t398
+    t400 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t388 = t382 - np.arctan2(t367, t366 * t387)
-    del t366, t387
+    t401 = t395 - np.arctan2(t380, t379 * t400)
+    del t379, t400
     ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t69)
     del t69
     p_1_rear_elbow_up = t70 + ahead * ctheta2A_rear_elbow_up
     del t70
-    t389 = t77 - higher * ctheta2A_rear_elbow_up
+    t402 = t77 - higher * ctheta2A_rear_elbow_up
     del t77
-    t390 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t389
-    margin_alpha_rear_elbow_up = t239 - np.abs(t390)
-    del t239
-    t391 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t392 = np.maximum(-t391, margin_alpha_rear_elbow_up)
-    del t391
-    spent_alpha_rear_elbow_up = t392 <= t85
-    del t392
-    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t90, 1.0)
-    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t243 / heavy_1_alpha_rear_elbow_up, 0.0)
-    t393 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
-    aside_rate_rear_elbow_up = _runtime.select(t246, -(t98 * (stheta2A * tilt_front_elbow_down)), 0.0)
-    del stheta2A, tilt_front_elbow_down
-    t394 = slope_aside_alpha_front_elbow_down * aside_rate_rear_elbow_up
-    del slope_aside_alpha_front_elbow_down
-    fore_rate_rear_elbow_up = _runtime.select(t246, ctheta2A_rear_elbow_up, 1.0)
-    del ctheta2A_rear_elbow_up, t246
-    t395 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t389
-    t396 = fore_rate_rear_elbow_up * (t249 - _runtime.sign(-t390) * t395)
-    del t249, t390, t395
-    slope_alpha_rear_elbow_up = t394 - t396
-    del t394, t396
-    t397 = np.abs(slope_alpha_rear_elbow_up)
-    t398 = aside_rate_rear_elbow_up + fore_rate_rear_elbow_up
-    t399 = drawn_front_elbow_down * fore_rate_rear_elbow_up
-    t400 = t398 - t98 * t399
-    del t398
-    t401 = fore_rate_rear_elbow_up * fore_rate_rear_elbow_up
-    t402 = np.sqrt(t259 + L1 * (t400 * t400) + fore * t401)
-    del t259, t400, t401
-    t403 = t88 * (t253 + t89 * t402 / 2000000.0)
-    del t253, t402
-    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t403, 1.0)
-    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t397 / heavy_0_alpha_rear_elbow_up, 0.0)
-    t404 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
-    t405 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t393 / (t93 + t393 + t404), 0.0)
-    del t393, t404
-    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t405, 0.0)
+    t403 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t402
+    margin_alpha_rear_elbow_up = t244 - np.abs(t403)
+    del t244
+    t404 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t405 = np.maximum(-t404, margin_alpha_rear_elbow_up)
+    del t404
+    spent_alpha_rear_elbow_up = t405 <= t85
     del t405
-    t406 = t264 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
-    del t264
-    t407 = t84 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
-    del heavy_1_alpha_rear_elbow_up
-    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t406 / (t243 + t407)), 0.0)
-    del t243, t406, t407
-    t408 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
-    del share_alpha_rear_elbow_up
-    t409 = t84 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
-    t410 = 1.0 / (t397 + t409)
-    del t397, t409
-    t411 = -(heavy_0_alpha_rear_elbow_up * t408 * t410) <= 9.094947017729282e-13
-    del heavy_0_alpha_rear_elbow_up
-    t412 = -(t408 * t410)
-    del t408, t410
-    t413 = _runtime.select(t411 & (0.0 < t412), t412, 0.0)
-    del t411, t412
-    t414 = _runtime.sign(slope_alpha_rear_elbow_up) * t413
-    del slope_alpha_rear_elbow_up, t413
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t414, 0.0)
-    del t414
-    t415 = aside_rate_rear_elbow_up * turn_alpha_rear_elbow_up
-    t416 = fore_rate_rear_elbow_up * turn_alpha_rear_elbow_up
-    t417 = aside_alpha_rear_elbow_up + t415 + t416 - t98 * (t399 * turn_alpha_rear_elbow_up)
-    del aside_alpha_rear_elbow_up, t415
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t417, 0.0)
-    del t417
-    t418 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t419 = np.sqrt(1.0 + t418)
+    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t254, 1.0)
+    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t248 / heavy_1_alpha_rear_elbow_up, 0.0)
+    t406 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
+    aside_rate_rear_elbow_up = _runtime.select(t250, -(t100 * (stheta2A * tilt_front_elbow_down)), 0.0)
+    del stheta2A, tilt_front_elbow_down
+    t407 = slope_aside_alpha_front_elbow_down * aside_rate_rear_elbow_up
+    del slope_aside_alpha_front_elbow_down
+    fore_rate_rear_elbow_up = _runtime.select(t250, ctheta2A_rear_elbow_up, 1.0)
+    del ctheta2A_rear_elbow_up, t250
+    t408 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t402
+    t409 = fore_rate_rear_elbow_up * (t258 - _runtime.sign(-t403) * t408)
+    del t258, t403, t408
+    slope_alpha_rear_elbow_up = t407 - t409
+    del t407, t409
+    t410 = np.abs(slope_alpha_rear_elbow_up)
+    t411 = aside_rate_rear_elbow_up + fore_rate_rear_elbow_up
+    t412 = drawn_front_elbow_down * fore_rate_rear_elbow_up
+    t413 = t411 - t100 * t412
+    del t411
+    t414 = fore_rate_rear_elbow_up * fore_rate_rear_elbow_up
+    t415 = np.sqrt(t269 + L1 * (t413 * t413) + fore * t414)
+    del t269, t413, t414
+    t416 = t253 * (t262 + t263 * t415 / 2000000.0)
+    del t253, t263
+    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t416, 1.0)
+    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t410 / heavy_0_alpha_rear_elbow_up, 0.0)
+    t417 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
+    t418 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t406 / (t99 + t406 + t417), 0.0)
+    del t406, t417
+    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t418, 0.0)
     del t418
-    t420 = 1.0 / t419
-    t421 = p_1_rear_elbow_up * t420 - t389 * lean_alpha_rear_elbow_up * t420
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t421, p_1_rear_elbow_up)
-    del t421
-    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    fore_turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t416, 0.0)
-    del t416
-    t422 = fore_turn_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
-    t423 = 1.0 / (t419 * np.sqrt(1.0 + t422))
-    del t419, t422
-    t424 = lean_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
-    t425 = t423 + t423 * t424
-    del t424
-    t426 = fore_turn_alpha_rear_elbow_up * t423 - lean_alpha_rear_elbow_up * t423
-    del t423
-    t427 = v_1_front_elbow_down * t425 - v_2_front_elbow_down * t426
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t427, v_1_front_elbow_down)
+    t419 = t274 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
+    del t274
+    t420 = t84 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
+    del heavy_1_alpha_rear_elbow_up
+    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t419 / (t248 + t420)), 0.0)
+    del t419, t420
+    t421 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
+    del share_alpha_rear_elbow_up
+    t422 = t84 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
+    t423 = 1.0 / (t410 + t422)
+    del t422
+    t424 = -(heavy_0_alpha_rear_elbow_up * t421 * t423) <= 9.094947017729282e-13
+    del heavy_0_alpha_rear_elbow_up
+    t425 = -(t421 * t423)
+    del t421, t423
+    t426 = _runtime.select(t424 & (0.0 < t425), t425, 0.0)
+    del t424, t425
+    t427 = _runtime.sign(slope_alpha_rear_elbow_up) * t426
+    del slope_alpha_rear_elbow_up, t426
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t427, 0.0)
     del t427
-    whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t428 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
-    t429 = np.maximum(t428 * 9.094947017729282e-13, -t428)
-    spent_beta_rear_elbow_up = t429 <= t131
+    t428 = aside_rate_rear_elbow_up * turn_alpha_rear_elbow_up
+    t429 = fore_rate_rear_elbow_up * turn_alpha_rear_elbow_up
+    t430 = aside_alpha_rear_elbow_up + t428 + t429 - t100 * (t412 * turn_alpha_rear_elbow_up)
+    del aside_alpha_rear_elbow_up, t428
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t430, 0.0)
+    del t430
+    t431 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t432 = np.sqrt(1.0 + t431)
+    del t431
+    t433 = 1.0 / t432
+    t434 = p_1_rear_elbow_up * t433 - t402 * lean_alpha_rear_elbow_up * t433
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t434, p_1_rear_elbow_up)
+    del t434
+    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
+    fore_turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t429, 0.0)
     del t429
-    t430 = t420 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
+    t435 = fore_turn_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
+    t436 = 1.0 / (t432 * np.sqrt(1.0 + t435))
+    del t432, t435
+    t437 = lean_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
+    t438 = t436 + t436 * t437
+    del t437
+    t439 = fore_turn_alpha_rear_elbow_up * t436 - lean_alpha_rear_elbow_up * t436
+    del t436
+    t440 = v_1_front_elbow_down * t438 - v_2_front_elbow_down * t439
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t440, v_1_front_elbow_down)
+    del t440
+    whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
+    t441 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    t442 = np.maximum(t441 * 9.094947017729282e-13, -t441)
+    spent_beta_rear_elbow_up = t442 <= t134
+    del t442
+    t443 = t433 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
     del p_1_rear_elbow_up
-    t431 = _runtime.select(spent_alpha_rear_elbow_up, t430 + t389 * t420, t389)
-    del t389, t420, t430
-    t432 = t431 * _runtime.sign(part_beta_rear_elbow_up)
+    t444 = _runtime.select(spent_alpha_rear_elbow_up, t443 + t402 * t433, t402)
+    del t402, t433, t443
+    t445 = t444 * _runtime.sign(part_beta_rear_elbow_up)
     del part_beta_rear_elbow_up
-    t433 = v_1_front_elbow_down * t426 + v_2_front_elbow_down * t425
-    del t425, t426, v_1_front_elbow_down
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t433, v_2_front_elbow_down)
-    del t433, v_2_front_elbow_down
-    t434 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
+    t446 = v_1_front_elbow_down * t439 + v_2_front_elbow_down * t438
+    del t438, t439, v_1_front_elbow_down
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t446, v_2_front_elbow_down)
+    del t446, v_2_front_elbow_down
+    t447 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
     del whole_beta_rear_elbow_up
-    slope_aside_beta_rear_elbow_up = L1 * (t432 + t434)
-    t435 = np.abs(slope_aside_beta_rear_elbow_up)
-    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t90, 1.0)
-    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t435 / heavy_1_beta_rear_elbow_up, 0.0)
-    t436 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
-    t437 = aside_rate_rear_elbow_up * slope_aside_beta_rear_elbow_up
-    t438 = fore_rate_rear_elbow_up * (drawn_front_elbow_down * t434 - t296 * t432)
-    del drawn_front_elbow_down, t296, t432, t434
-    slope_beta_rear_elbow_up = t437 - t438
-    del t437, t438
-    t439 = np.abs(slope_beta_rear_elbow_up)
-    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t403, 1.0)
-    del t403
-    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t439 / heavy_0_beta_rear_elbow_up, 0.0)
-    t440 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
-    t441 = _runtime.select(-t428 < 0.0, t436 / (t137 + t436 + t440), 0.0)
-    del t436, t440
-    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t441, 0.0)
-    del t441
-    t442 = _runtime.sign(slope_aside_beta_rear_elbow_up)
-    del slope_aside_beta_rear_elbow_up
-    t443 = t130 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
-    del heavy_1_beta_rear_elbow_up
-    t444 = t428 * share_beta_rear_elbow_up * t442 / (t435 + t443)
-    del t435, t442, t443
-    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t444, 0.0)
-    del t444
-    lack_beta_rear_elbow_up = t428 * (1.0 - share_beta_rear_elbow_up)
-    del share_beta_rear_elbow_up
-    t445 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
-    t446 = t130 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
-    del heavy_0_beta_rear_elbow_up
-    t447 = 1.0 / (t439 + t446)
-    del t439, t446
-    t448 = lack_beta_rear_elbow_up * t447
-    del lack_beta_rear_elbow_up
-    t449 = (t445 * t447 <= 9.094947017729282e-13) & (0.0 < t448)
-    del t445, t447
-    t450 = _runtime.sign(slope_beta_rear_elbow_up) * _runtime.select(t449, t448, 0.0)
-    del slope_beta_rear_elbow_up, t448, t449
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t450, 0.0)
-    del t450
-    t451 = aside_rate_rear_elbow_up * turn_beta_rear_elbow_up
-    del aside_rate_rear_elbow_up
-    t452 = fore_rate_rear_elbow_up * turn_beta_rear_elbow_up
-    del fore_rate_rear_elbow_up
-    t453 = aside_beta_rear_elbow_up + t451 + t452 - t98 * (t399 * turn_beta_rear_elbow_up)
-    del aside_beta_rear_elbow_up, t399, t451
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t453, 0.0)
-    del t453
-    t454 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
-    t455 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t456 = np.sqrt(1.0 + t455)
-    del t455
-    t457 = 1.0 / t456
-    t458 = _runtime.select(spent_beta_rear_elbow_up, t454 * t457 + t431 * t457, t431)
+    slope_aside_beta_rear_elbow_up = L1 * (t445 + t447)
+    t448 = np.abs(slope_aside_beta_rear_elbow_up)
+    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t254, 1.0)
+    del t254
+    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t448 / heavy_1_beta_rear_elbow_up, 0.0)
+    t449 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
+    t450 = aside_rate_rear_elbow_up * slope_aside_beta_rear_elbow_up
+    t451 = fore_rate_rear_elbow_up * (drawn_front_elbow_down * t447 - t306 * t445)
+    del drawn_front_elbow_down, t306, t445, t447
+    slope_beta_rear_elbow_up = t450 - t451
+    del t450, t451
+    t452 = np.abs(slope_beta_rear_elbow_up)
+    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t416, 1.0)
+    del t416
+    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t452 / heavy_0_beta_rear_elbow_up, 0.0)
+    t453 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
+    t454 = _runtime.select(-t441 < 0.0, t449 / (t140 + t449 + t453), 0.0)
+    del t449, t453
+    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t454, 0.0)
     del t454
-    fore_turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t452, 0.0)
-    del t452
-    t459 = fore_turn_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
-    t460 = 1.0 / (t456 * np.sqrt(1.0 + t459))
-    del t456, t459
-    t461 = fore_turn_beta_rear_elbow_up * t460 - lean_beta_rear_elbow_up * t460
-    t462 = lean_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
-    t463 = t460 + t460 * t462
-    del t460, t462
-    t464 = v_1_alpha_rear_elbow_up * t461 + v_2_alpha_rear_elbow_up * t463
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t464, v_2_alpha_rear_elbow_up)
-    del t464
-    t465 = v_1_alpha_rear_elbow_up * t463 - v_2_alpha_rear_elbow_up * t461
-    del t461, t463, v_2_alpha_rear_elbow_up
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t465, v_1_alpha_rear_elbow_up)
-    del t465, v_1_alpha_rear_elbow_up
+    t455 = _runtime.sign(slope_aside_beta_rear_elbow_up)
+    del slope_aside_beta_rear_elbow_up
+    t456 = t133 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
+    del heavy_1_beta_rear_elbow_up
+    t457 = t441 * share_beta_rear_elbow_up * t455 / (t448 + t456)
+    del t455, t456
+    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t457, 0.0)
+    del t457
+    lack_beta_rear_elbow_up = t441 * (1.0 - share_beta_rear_elbow_up)
+    del share_beta_rear_elbow_up
+    t458 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
+    t459 = t133 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
+    del heavy_0_beta_rear_elbow_up
+    t460 = 1.0 / (t452 + t459)
+    del t459
+    t461 = lack_beta_rear_elbow_up * t460
+    del lack_beta_rear_elbow_up
+    t462 = (t458 * t460 <= 9.094947017729282e-13) & (0.0 < t461)
+    del t458, t460
+    t463 = _runtime.sign(slope_beta_rear_elbow_up) * _runtime.select(t462, t461, 0.0)
+    del slope_beta_rear_elbow_up, t461, t462
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t463, 0.0)
+    del t463
+    t464 = aside_rate_rear_elbow_up * turn_beta_rear_elbow_up
+    del aside_rate_rear_elbow_up
+    t465 = fore_rate_rear_elbow_up * turn_beta_rear_elbow_up
+    del fore_rate_rear_elbow_up
+    t466 = aside_beta_rear_elbow_up + t464 + t465 - t100 * (t412 * turn_beta_rear_elbow_up)
+    del aside_beta_rear_elbow_up, t412, t464
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t466, 0.0)
+    del t466
+    t467 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t468 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t469 = np.sqrt(1.0 + t468)
+    del t468
+    t470 = 1.0 / t469
+    t471 = _runtime.select(spent_beta_rear_elbow_up, t467 * t470 + t444 * t470, t444)
+    del t467
+    fore_turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t465, 0.0)
+    del t465
+    t472 = fore_turn_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    t473 = 1.0 / (t469 * np.sqrt(1.0 + t472))
+    del t469, t472
+    t474 = fore_turn_beta_rear_elbow_up * t473 - lean_beta_rear_elbow_up * t473
+    t475 = lean_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    t476 = t473 + t473 * t475
+    del t473, t475
+    t477 = v_1_alpha_rear_elbow_up * t474 + v_2_alpha_rear_elbow_up * t476
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t477, v_2_alpha_rear_elbow_up)
+    del t477
+    t478 = v_1_alpha_rear_elbow_up * t476 - v_2_alpha_rear_elbow_up * t474
+    del t474, t476, v_2_alpha_rear_elbow_up
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t478, v_1_alpha_rear_elbow_up)
+    del t478, v_1_alpha_rear_elbow_up
     sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
-    t466 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    t467 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t466 <= _runtime.VANISHING * (64.0 * t467)
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t467, -t466)
-    t468 = p_1_alpha_rear_elbow_up * t457 - t457 * (t431 * lean_beta_rear_elbow_up)
-    del t431, t457
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t468, p_1_alpha_rear_elbow_up)
-    del p_1_alpha_rear_elbow_up, t468
-    t469 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t479 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    t480 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t479 <= _runtime.VANISHING * (64.0 * t480)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t480, -t479)
+    t481 = p_1_alpha_rear_elbow_up * t470 - t470 * (t444 * lean_beta_rear_elbow_up)
+    del t444, t470
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t481, p_1_alpha_rear_elbow_up)
+    del p_1_alpha_rear_elbow_up, t481
+    t482 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
     del sigma_uv_rear_elbow_up
-    t470 = _runtime.select(parallel_rear_elbow_up, t458 * _runtime.sign(v_2_beta_rear_elbow_up), t469)
-    t471 = whole_y_rear_elbow_up + t470
-    below_beta_0_rear_elbow_up = np.maximum(t471, t162)
-    t472 = whole_y_rear_elbow_up - t470
-    above_beta_0_rear_elbow_up = np.maximum(t472, t162)
-    t473 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    t483 = _runtime.select(parallel_rear_elbow_up, t471 * _runtime.sign(v_2_beta_rear_elbow_up), t482)
+    t484 = whole_y_rear_elbow_up + t483
+    below_beta_0_rear_elbow_up = np.maximum(t484, t165)
+    t485 = whole_y_rear_elbow_up - t483
+    above_beta_0_rear_elbow_up = np.maximum(t485, t165)
+    t486 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t474 = v_2_beta_rear_elbow_up * (t473 / total_beta_0_rear_elbow_up)
-    del t473, total_beta_0_rear_elbow_up
-    t475 = t458 - t474
-    del t474
-    left_along_rear_elbow_up = L1 - np.abs(t475)
-    t476 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t476, left_along_rear_elbow_up) <= t167
-    del t476
-    t477 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
-    t478 = t477 | spent_beta_rear_elbow_up
-    del t477
-    t479 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
-    del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
-    t480 = np.arctan2(_runtime.select(t478, t341 * t479, 0.0), 1.0)
-    del t341, t479
-    t481 = _runtime.select(nowhere, 0.0, t171 + t172)
-    del t171, t172
-    t482 = gain_1_alpha_rear_elbow_up + gain_0_alpha_rear_elbow_up
-    del gain_0_alpha_rear_elbow_up, gain_1_alpha_rear_elbow_up
-    t483 = _runtime.select(spent_alpha_rear_elbow_up, t482, 0.0)
-    del t482
-    t484 = -(_runtime.FEASIBILITY * (t84 + t483)) <= margin_alpha_rear_elbow_up
-    del margin_alpha_rear_elbow_up, t483
-    t485 = gain_1_beta_rear_elbow_up + gain_0_beta_rear_elbow_up
-    del gain_0_beta_rear_elbow_up, gain_1_beta_rear_elbow_up
-    t486 = _runtime.select(spent_beta_rear_elbow_up, t485, 0.0)
-    del t485
-    t487 = -(_runtime.FEASIBILITY * (t130 + t486)) <= -t428
-    del t428, t486
-    t488 = spent_alpha_rear_elbow_up | spent_beta_rear_elbow_up
-    del spent_alpha_rear_elbow_up, spent_beta_rear_elbow_up
-    t489 = _runtime.select(tangent & t488, 64.0, 1.0)
-    del t488
-    t490 = -(_runtime.FEASIBILITY * (play * t489))
-    t491 = t190 & t484 & t487 & (t490 <= t469 - t466) & (t490 <= -(t466 + t469))
-    del t469, t484, t487
-    t492 = t198 * t489
+    t487 = v_2_beta_rear_elbow_up * (t486 / total_beta_0_rear_elbow_up)
+    del t486, total_beta_0_rear_elbow_up
+    t488 = t471 - t487
+    del t487
+    left_along_rear_elbow_up = L1 - np.abs(t488)
+    t489 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t489, left_along_rear_elbow_up) <= t170
     del t489
-    t493 = _runtime.select(spent_along_rear_elbow_up, t467 / (t200 - t466), 0.0)
-    del t467
-    t494 = -(_runtime.FEASIBILITY * (t492 * (1.0 + t493)))
-    del t493
-    t495 = t491 & (t490 <= t471) & (t490 <= t472) & (t494 <= left_along_rear_elbow_up)
-    del t471, t472, t491, t494
-    t496 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
-    del left_along_rear_elbow_up
-    t497 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t498 = v_2_beta_rear_elbow_up * t496 / (t466 * t466 + t497)
-    del t466, t496, t497
-    t499 = whole_y_rear_elbow_up * (t498 * _runtime.sign(-t475))
-    del t475, t498
-    t500 = _runtime.select(spent_along_rear_elbow_up, t470 + t499, t470)
-    del spent_along_rear_elbow_up, t470, t499
-    t501 = whole_y_rear_elbow_up + t500
-    t502 = whole_y_rear_elbow_up - t500
-    del t500, whole_y_rear_elbow_up
-    t503 = -(_runtime.FEASIBILITY * t492)
-    del t492
-    below_beta_rear_elbow_up = np.maximum(t501, t162)
-    above_beta_rear_elbow_up = np.maximum(t502, t162)
-    t504 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
-    total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t505 = 1.0 / total_beta_rear_elbow_up
-    del total_beta_rear_elbow_up
-    t506 = t504 * t505
+    t490 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
+    t491 = t490 | spent_beta_rear_elbow_up
+    del t490
+    t492 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
+    t493 = np.arctan2(_runtime.select(t491, t351 * t492, 0.0), 1.0)
+    del t351, t492
+    t494 = _runtime.select(nowhere, 0.0, t174 + t175)
+    del t174, t175
+    t495 = gain_1_alpha_rear_elbow_up + gain_0_alpha_rear_elbow_up
+    del gain_0_alpha_rear_elbow_up, gain_1_alpha_rear_elbow_up
+    t496 = _runtime.select(spent_alpha_rear_elbow_up, t495, 0.0)
+    del t495
+    t497 = _runtime.select(spent_alpha_rear_elbow_up, leniency, 1.0)
+    t498 = -(_runtime.FEASIBILITY * ((t84 + t496) * t497))
+    del t496, t497
+    t499 = gain_1_beta_rear_elbow_up + gain_0_beta_rear_elbow_up
+    del gain_0_beta_rear_elbow_up, gain_1_beta_rear_elbow_up
+    t500 = _runtime.select(spent_beta_rear_elbow_up, t499, 0.0)
+    del t499
+    t501 = _runtime.select(spent_beta_rear_elbow_up, leniency, 1.0)
+    t502 = _runtime.FEASIBILITY * ((t133 + t500) * t501)
+    del t500, t501
+    t503 = t193 & (t498 <= margin_alpha_rear_elbow_up) & (-t502 <= -t441)
+    del t498, t502
+    t504 = spent_alpha_rear_elbow_up | spent_beta_rear_elbow_up
+    t505 = _runtime.select(t504, leniency, 1.0)
     del t504
-    t507 = t458 - v_2_beta_rear_elbow_up * t506
-    del t458, v_2_beta_rear_elbow_up
-    t508 = L1 + t507
-    t509 = t495 & (t490 <= t501) & (t490 <= t502) & (t503 <= t508)
-    del t490, t495, t501, t502
-    t510 = L1 - t507
-    unreachable_3 = np.logical_not(t509 & (t503 <= t510))
-    del t503, t509
-    t511 = _runtime.poison(invalid | unreachable_3)
-    t512 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
-    del out_2, up
-    t513 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
-    t514 = lean_alpha_rear_elbow_up * lean_beta_rear_elbow_up
-    del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t515 = np.arctan2(t513, 1.0 - t514)
-    del t513, t514
-    t516 = t512 + t515
-    del t512
-    below_alpha_rear_elbow_up = np.maximum(t508, t162)
+    t506 = -(_runtime.FEASIBILITY * (play * t505))
+    t507 = t503 & (t506 <= t482 - t479) & (t506 <= -(t479 + t482))
+    del t482, t503
+    t508 = t203 * t505
+    del t505
+    t509 = _runtime.select(spent_along_rear_elbow_up, t480 / (t205 - t479), 0.0)
+    del t480
+    t510 = -(_runtime.FEASIBILITY * (t508 * (1.0 + t509)))
+    del t509
+    t511 = t507 & (t506 <= t484) & (t506 <= t485) & (t510 <= left_along_rear_elbow_up)
+    del t484, t485, t507, t510
+    t512 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
+    del left_along_rear_elbow_up
+    t513 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t514 = v_2_beta_rear_elbow_up * t512 / (t479 * t479 + t513)
+    del t479, t512, t513
+    t515 = whole_y_rear_elbow_up * (t514 * _runtime.sign(-t488))
+    del t488, t514
+    t516 = _runtime.select(spent_along_rear_elbow_up, t483 + t515, t483)
+    del spent_along_rear_elbow_up, t483, t515
+    t517 = whole_y_rear_elbow_up + t516
+    t518 = whole_y_rear_elbow_up - t516
+    del t516, whole_y_rear_elbow_up
+    t519 = -(_runtime.FEASIBILITY * t508)
     del t508
-    above_alpha_rear_elbow_up = np.maximum(t510, t162)
-    del t510
-    t517 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t518 = 1.0 / total_alpha_rear_elbow_up
-    del total_alpha_rear_elbow_up
-    t519 = t517 * t518
-    del t517
-    t520 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
-    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t521 = np.arctan2(t519, t518 * t520)
-    del t518, t520
-    t522 = fore_turn_alpha_rear_elbow_up + fore_turn_beta_rear_elbow_up
-    t523 = fore_turn_alpha_rear_elbow_up * fore_turn_beta_rear_elbow_up
-    del fore_turn_alpha_rear_elbow_up, fore_turn_beta_rear_elbow_up
-    t524 = t383 - (t515 - np.arctan2(t522, 1.0 - t523))
-    del t383, t515, t522, t523
-    t525 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t526 = t521 - np.arctan2(t506, t505 * t525)
-    del t505, t525
-    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t234)
-    del t234
-    p_1_rear_elbow_down = t235 + ahead * ctheta2A_rear_elbow_down
-    del ahead, t235
-    t527 = t236 - higher * ctheta2A_rear_elbow_down
-    del higher, t236
-    t528 = v_2 * p_1_rear_elbow_down + v_1 * t527
-    margin_alpha_rear_elbow_down = t80 - np.abs(t528)
-    del t80
-    t529 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t530 = np.maximum(-t529, margin_alpha_rear_elbow_down)
-    del t529
-    spent_alpha_rear_elbow_down = t530 <= t85
-    del t530, t85
-    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t90, 1.0)
-    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t87 / heavy_1_alpha_rear_elbow_down, 0.0)
-    t531 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
-    aside_rate_rear_elbow_down = _runtime.select(t97, -(t98 * (tilt * stheta2A_front_elbow_down)), 0.0)
-    del stheta2A_front_elbow_down, tilt
-    t532 = slope_aside_alpha * aside_rate_rear_elbow_down
-    del slope_aside_alpha
-    fore_rate_rear_elbow_down = _runtime.select(t97, ctheta2A_rear_elbow_down, 1.0)
-    del ctheta2A_rear_elbow_down, t97
-    t533 = _runtime.sign(-t528) * (v_1 * p_1_rear_elbow_down - v_2 * t527)
+    below_beta_rear_elbow_up = np.maximum(t517, t165)
+    above_beta_rear_elbow_up = np.maximum(t518, t165)
+    t520 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
+    t521 = 1.0 / total_beta_rear_elbow_up
+    del total_beta_rear_elbow_up
+    t522 = t520 * t521
+    del t520
+    t523 = t471 - v_2_beta_rear_elbow_up * t522
+    del t471, v_2_beta_rear_elbow_up
+    t524 = L1 + t523
+    t525 = t511 & (t506 <= t517) & (t506 <= t518) & (t519 <= t524)
+    del t506, t511, t517, t518
+    t526 = L1 - t523
+    unreachable_3 = np.logical_not(t525 & (t519 <= t526))
+    del t519, t525
+    t527 = _runtime.poison(invalid | unreachable_3)
+    t528 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
+    del out_2, up
+    t529 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    t530 = lean_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
+    t531 = np.arctan2(t529, 1.0 - t530)
+    del t529, t530
+    t532 = t528 + t531
     del t528
-    slope_alpha_rear_elbow_down = t532 - fore_rate_rear_elbow_down * (t99 - t533)
-    del t532, t533, t99
-    t534 = np.abs(slope_alpha_rear_elbow_down)
-    t535 = aside_rate_rear_elbow_down + fore_rate_rear_elbow_down
-    t536 = drawn * fore_rate_rear_elbow_down
-    t537 = t535 - t98 * t536
-    del t535
-    t538 = fore_rate_rear_elbow_down * fore_rate_rear_elbow_down
-    t539 = np.sqrt(t109 + L1 * (t537 * t537) + fore * t538)
-    del fore, t109, t537, t538
-    t540 = t88 * (t105 + t89 * t539 / 2000000.0)
-    del t105, t539, t88, t89
-    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t540, 1.0)
-    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t534 / heavy_0_alpha_rear_elbow_down, 0.0)
-    t541 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
-    t542 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t531 / (t93 + t531 + t541), 0.0)
-    del t531, t541, t93
-    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t542, 0.0)
-    del t542
-    t543 = t113 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
-    del t113
-    t544 = t84 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
-    del heavy_1_alpha_rear_elbow_down
-    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t543 / (t87 + t544)), 0.0)
-    del t543, t544, t87
-    t545 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
-    del share_alpha_rear_elbow_down
-    t546 = t84 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
-    t547 = 1.0 / (t534 + t546)
-    del t534, t546
-    t548 = -(heavy_0_alpha_rear_elbow_down * t545 * t547)
-    del heavy_0_alpha_rear_elbow_down
-    t549 = -(t545 * t547)
-    del t545, t547
-    t550 = (t548 <= 9.094947017729282e-13) & (0.0 < t549)
-    del t548
-    t551 = _runtime.sign(slope_alpha_rear_elbow_down) * _runtime.select(t550, t549, 0.0)
-    del slope_alpha_rear_elbow_down, t549, t550
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t551, 0.0)
+    below_alpha_rear_elbow_up = np.maximum(t524, t165)
+    del t524
+    above_alpha_rear_elbow_up = np.maximum(t526, t165)
+    del t526
+    t533 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
+    t534 = 1.0 / total_alpha_rear_elbow_up
+    del total_alpha_rear_elbow_up
+    t535 = t533 * t534
+    del t533
+    t536 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
+    t537 = np.arctan2(t535, t534 * t536)
+    del t534, t536
+    t538 = fore_turn_alpha_rear_elbow_up + fore_turn_beta_rear_elbow_up
+    t539 = fore_turn_alpha_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    del fore_turn_alpha_rear_elbow_up, fore_turn_beta_rear_elbow_up
+    t540 = t396 - (t531 - np.arctan2(t538, 1.0 - t539))
+    del t396, t531, t538, t539
+    t541 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
+    t542 = t537 - np.arctan2(t522, t521 * t541)
+    del t521, t541
+    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t239)
+    del t239
+    p_1_rear_elbow_down = t240 + ahead * ctheta2A_rear_elbow_down
+    del ahead, t240
+    t543 = t241 - higher * ctheta2A_rear_elbow_down
+    del higher, t241
+    t544 = v_2 * p_1_rear_elbow_down + v_1 * t543
+    margin_alpha_rear_elbow_down = t80 - np.abs(t544)
+    del t80
+    t545 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t546 = np.maximum(-t545, margin_alpha_rear_elbow_down)
+    del t545
+    spent_alpha_rear_elbow_down = t546 <= t85
+    del t546, t85
+    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t96, 1.0)
+    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t87 / heavy_1_alpha_rear_elbow_down, 0.0)
+    t547 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
+    aside_rate_rear_elbow_down = _runtime.select(t93, -(t100 * (tilt * stheta2A_front_elbow_down)), 0.0)
+    del stheta2A_front_elbow_down, tilt
+    t548 = slope_aside_alpha * aside_rate_rear_elbow_down
+    del slope_aside_alpha
+    fore_rate_rear_elbow_down = _runtime.select(t93, ctheta2A_rear_elbow_down, 1.0)
+    del ctheta2A_rear_elbow_down, t93
+    t549 = _runtime.sign(-t544) * (v_1 * p_1_rear_elbow_down - v_2 * t543)
+    del t544
+    slope_alpha_rear_elbow_down = t548 - fore_rate_rear_elbow_down * (t101 - t549)
+    del t101, t548, t549
+    t550 = np.abs(slope_alpha_rear_elbow_down)
+    t551 = aside_rate_rear_elbow_down + fore_rate_rear_elbow_down
+    t552 = drawn * fore_rate_rear_elbow_down
+    t553 = t551 - t100 * t552
     del t551
-    t552 = aside_rate_rear_elbow_down * turn_alpha_rear_elbow_down
-    t553 = fore_rate_rear_elbow_down * turn_alpha_rear_elbow_down
-    t554 = aside_alpha_rear_elbow_down + t552 + t553 - t98 * (t536 * turn_alpha_rear_elbow_down)
-    del aside_alpha_rear_elbow_down, t552
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t554, 0.0)
-    del t554
-    t555 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t556 = np.sqrt(1.0 + t555)
-    del t555
-    t557 = 1.0 / t556
-    t558 = p_1_rear_elbow_down * t557 - t527 * lean_alpha_rear_elbow_down * t557
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t558, p_1_rear_elbow_down)
+    t554 = fore_rate_rear_elbow_down * fore_rate_rear_elbow_down
+    t555 = np.sqrt(t112 + L1 * (t553 * t553) + fore * t554)
+    del fore, t112, t553, t554
+    t556 = t95 * (t107 + t108 * t555 / 2000000.0)
+    del t108, t95
+    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t556, 1.0)
+    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t550 / heavy_0_alpha_rear_elbow_down, 0.0)
+    t557 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
+    t558 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t547 / (t99 + t547 + t557), 0.0)
+    del t547, t557, t99
+    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t558, 0.0)
     del t558
+    t559 = t116 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
+    del t116
+    t560 = t84 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_rear_elbow_down
+    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t559 / (t87 + t560)), 0.0)
+    del t559, t560
+    t561 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
+    del share_alpha_rear_elbow_down
+    t562 = t84 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
+    t563 = 1.0 / (t550 + t562)
+    del t562
+    t564 = -(heavy_0_alpha_rear_elbow_down * t561 * t563)
+    del heavy_0_alpha_rear_elbow_down
+    t565 = -(t561 * t563)
+    del t561, t563
+    t566 = (t564 <= 9.094947017729282e-13) & (0.0 < t565)
+    del t564
+    t567 = _runtime.sign(slope_alpha_rear_elbow_down) * _runtime.select(t566, t565, 0.0)
+    del slope_alpha_rear_elbow_down, t565, t566
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t567, 0.0)
+    del t567
+    t568 = aside_rate_rear_elbow_down * turn_alpha_rear_elbow_down
+    t569 = fore_rate_rear_elbow_down * turn_alpha_rear_elbow_down
+    t570 = aside_alpha_rear_elbow_down + t568 + t569 - t100 * (t552 * turn_alpha_rear_elbow_down)
+    del aside_alpha_rear_elbow_down, t568
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t570, 0.0)
+    del t570
+    t571 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t572 = np.sqrt(1.0 + t571)
+    del t571
+    t573 = 1.0 / t572
+    t574 = p_1_rear_elbow_down * t573 - t543 * lean_alpha_rear_elbow_down * t573
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t574, p_1_rear_elbow_down)
+    del t574
     part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    fore_turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t553, 0.0)
-    del t553
-    t559 = fore_turn_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
-    t560 = 1.0 / (t556 * np.sqrt(1.0 + t559))
-    del t556, t559
-    t561 = lean_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
-    t562 = t560 + t560 * t561
-    del t561
-    t563 = fore_turn_alpha_rear_elbow_down * t560 - lean_alpha_rear_elbow_down * t560
-    del t560
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t562 - v_2 * t563, v_1)
-    whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t564 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
-    t565 = np.maximum(t564 * 9.094947017729282e-13, -t564)
-    spent_beta_rear_elbow_down = t565 <= t131
-    del t131, t565
-    t566 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
-    del p_1_rear_elbow_down
-    t567 = _runtime.select(spent_alpha_rear_elbow_down, t557 * t566 + t527 * t557, t527)
-    del t527, t557, t566
-    t568 = t567 * _runtime.sign(part_beta_rear_elbow_down)
-    del part_beta_rear_elbow_down
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t563 + v_2 * t562, v_2)
-    del t562, t563, v_1, v_2
-    t569 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
-    del whole_beta_rear_elbow_down
-    slope_aside_beta_rear_elbow_down = L1 * (t568 + t569)
-    t570 = np.abs(slope_aside_beta_rear_elbow_down)
-    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t90, 1.0)
-    del t90
-    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t570 / heavy_1_beta_rear_elbow_down, 0.0)
-    t571 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
-    t572 = aside_rate_rear_elbow_down * slope_aside_beta_rear_elbow_down
-    t573 = fore_rate_rear_elbow_down * (drawn * t569 - t138 * t568)
-    del drawn, t138, t568, t569
-    slope_beta_rear_elbow_down = t572 - t573
-    del t572, t573
-    t574 = np.abs(slope_beta_rear_elbow_down)
-    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t540, 1.0)
-    del t540
-    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t574 / heavy_0_beta_rear_elbow_down, 0.0)
-    t575 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
-    t576 = _runtime.select(-t564 < 0.0, t571 / (t137 + t571 + t575), 0.0)
-    del t137, t571, t575
-    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t576, 0.0)
+    fore_turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t569, 0.0)
+    del t569
+    t575 = fore_turn_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
+    t576 = 1.0 / (t572 * np.sqrt(1.0 + t575))
+    del t572, t575
+    t577 = lean_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
+    t578 = t576 + t576 * t577
+    del t577
+    t579 = fore_turn_alpha_rear_elbow_down * t576 - lean_alpha_rear_elbow_down * t576
     del t576
-    t577 = _runtime.sign(slope_aside_beta_rear_elbow_down)
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t578 - v_2 * t579, v_1)
+    whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
+    t580 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    t581 = np.maximum(t580 * 9.094947017729282e-13, -t580)
+    spent_beta_rear_elbow_down = t581 <= t134
+    del t134, t581
+    t582 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    del p_1_rear_elbow_down
+    t583 = _runtime.select(spent_alpha_rear_elbow_down, t573 * t582 + t543 * t573, t543)
+    del t543, t573, t582
+    t584 = t583 * _runtime.sign(part_beta_rear_elbow_down)
+    del part_beta_rear_elbow_down
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t579 + v_2 * t578, v_2)
+    del t578, t579, v_1, v_2
+    t585 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
+    del whole_beta_rear_elbow_down
+    slope_aside_beta_rear_elbow_down = L1 * (t584 + t585)
+    t586 = np.abs(slope_aside_beta_rear_elbow_down)
+    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t96, 1.0)
+    del t96
+    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t586 / heavy_1_beta_rear_elbow_down, 0.0)
+    t587 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
+    t588 = aside_rate_rear_elbow_down * slope_aside_beta_rear_elbow_down
+    t589 = fore_rate_rear_elbow_down * (drawn * t585 - t141 * t584)
+    del drawn, t141, t584, t585
+    slope_beta_rear_elbow_down = t588 - t589
+    del t588, t589
+    t590 = np.abs(slope_beta_rear_elbow_down)
+    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t556, 1.0)
+    del t556
+    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t590 / heavy_0_beta_rear_elbow_down, 0.0)
+    t591 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
+    t592 = _runtime.select(-t580 < 0.0, t587 / (t140 + t587 + t591), 0.0)
+    del t140, t587, t591
+    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t592, 0.0)
+    del t592
+    t593 = _runtime.sign(slope_aside_beta_rear_elbow_down)
     del slope_aside_beta_rear_elbow_down
-    t578 = t130 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
+    t594 = t133 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
     del heavy_1_beta_rear_elbow_down
-    t579 = t564 * share_beta_rear_elbow_down * t577 / (t570 + t578)
-    del t570, t577, t578
-    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t579, 0.0)
-    del t579
-    lack_beta_rear_elbow_down = t564 * (1.0 - share_beta_rear_elbow_down)
+    t595 = t580 * share_beta_rear_elbow_down * t593 / (t586 + t594)
+    del t593, t594
+    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t595, 0.0)
+    del t595
+    lack_beta_rear_elbow_down = t580 * (1.0 - share_beta_rear_elbow_down)
     del share_beta_rear_elbow_down
-    t580 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
-    t581 = t130 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
+    t596 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
+    t597 = t133 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
     del heavy_0_beta_rear_elbow_down
-    t582 = 1.0 / (t574 + t581)
-    del t574, t581
-    t583 = lack_beta_rear_elbow_down * t582
+    t598 = 1.0 / (t590 + t597)
+    del t597
+    t599 = lack_beta_rear_elbow_down * t598
     del lack_beta_rear_elbow_down
-    t584 = (t580 * t582 <= 9.094947017729282e-13) & (0.0 < t583)
-    del t580, t582
-    t585 = _runtime.sign(slope_beta_rear_elbow_down) * _runtime.select(t584, t583, 0.0)
-    del slope_beta_rear_elbow_down, t583, t584
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t585, 0.0)
-    del t585
-    t586 = aside_rate_rear_elbow_down * turn_beta_rear_elbow_down
+    t600 = (t596 * t598 <= 9.094947017729282e-13) & (0.0 < t599)
+    del t596, t598
+    t601 = _runtime.sign(slope_beta_rear_elbow_down) * _runtime.select(t600, t599, 0.0)
+    del slope_beta_rear_elbow_down, t599, t600
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t601, 0.0)
+    del t601
+    t602 = aside_rate_rear_elbow_down * turn_beta_rear_elbow_down
     del aside_rate_rear_elbow_down
-    t587 = fore_rate_rear_elbow_down * turn_beta_rear_elbow_down
+    t603 = fore_rate_rear_elbow_down * turn_beta_rear_elbow_down
     del fore_rate_rear_elbow_down
-    t588 = aside_beta_rear_elbow_down + t586 + t587 - t98 * (t536 * turn_beta_rear_elbow_down)
-    del aside_beta_rear_elbow_down, t536, t586, t98
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t588, 0.0)
-    del t588
-    t589 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
-    t590 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t591 = np.sqrt(1.0 + t590)
-    del t590
-    t592 = 1.0 / t591
-    t593 = _runtime.select(spent_beta_rear_elbow_down, t589 * t592 + t567 * t592, t567)
-    del t589
-    fore_turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t587, 0.0)
-    del t587
-    t594 = fore_turn_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
-    t595 = 1.0 / (t591 * np.sqrt(1.0 + t594))
-    del t591, t594
-    t596 = fore_turn_beta_rear_elbow_down * t595 - lean_beta_rear_elbow_down * t595
-    t597 = lean_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
-    t598 = t595 + t595 * t597
-    del t595, t597
-    t599 = v_1_alpha_rear_elbow_down * t596 + v_2_alpha_rear_elbow_down * t598
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t599, v_2_alpha_rear_elbow_down)
-    del t599
-    t600 = v_1_alpha_rear_elbow_down * t598 - v_2_alpha_rear_elbow_down * t596
-    del t596, t598, v_2_alpha_rear_elbow_down
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t600, v_1_alpha_rear_elbow_down)
-    del t600, v_1_alpha_rear_elbow_down
-    sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
-    t601 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
-    t602 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t601 <= _runtime.VANISHING * (64.0 * t602)
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t602, -t601)
-    t603 = t593 * _runtime.sign(v_2_beta_rear_elbow_down)
-    t604 = p_1_alpha_rear_elbow_down * t592 - t592 * (t567 * lean_beta_rear_elbow_down)
-    del t567, t592
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t604, p_1_alpha_rear_elbow_down)
-    del p_1_alpha_rear_elbow_down, t604
-    t605 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
-    del sigma_uv_rear_elbow_down
-    t606 = _runtime.select(parallel_rear_elbow_down, t603, t605)
+    t604 = aside_beta_rear_elbow_down + t602 + t603 - t100 * (t552 * turn_beta_rear_elbow_down)
+    del aside_beta_rear_elbow_down, t100, t552, t602
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t604, 0.0)
+    del t604
+    t605 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t606 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t607 = np.sqrt(1.0 + t606)
+    del t606
+    t608 = 1.0 / t607
+    t609 = _runtime.select(spent_beta_rear_elbow_down, t605 * t608 + t583 * t608, t583)
+    del t605
+    fore_turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t603, 0.0)
     del t603
-    t607 = whole_y_rear_elbow_down + t606
-    below_beta_0_rear_elbow_down = np.maximum(t607, t162)
-    t608 = whole_y_rear_elbow_down - t606
-    above_beta_0_rear_elbow_down = np.maximum(t608, t162)
-    t609 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t610 = fore_turn_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t611 = 1.0 / (t607 * np.sqrt(1.0 + t610))
+    del t607, t610
+    t612 = fore_turn_beta_rear_elbow_down * t611 - lean_beta_rear_elbow_down * t611
+    t613 = lean_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t614 = t611 + t611 * t613
+    del t611, t613
+    t615 = v_1_alpha_rear_elbow_down * t612 + v_2_alpha_rear_elbow_down * t614
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t615, v_2_alpha_rear_elbow_down)
+    del t615
+    t616 = v_1_alpha_rear_elbow_down * t614 - v_2_alpha_rear_elbow_down * t612
+    del t612, t614, v_2_alpha_rear_elbow_down
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t616, v_1_alpha_rear_elbow_down)
+    del t616, v_1_alpha_rear_elbow_down
+    sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
+    t617 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t618 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t617 <= _runtime.VANISHING * (64.0 * t618)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t618, -t617)
+    t619 = t609 * _runtime.sign(v_2_beta_rear_elbow_down)
+    t620 = p_1_alpha_rear_elbow_down * t608 - t608 * (t583 * lean_beta_rear_elbow_down)
+    del t583, t608
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t620, p_1_alpha_rear_elbow_down)
+    del p_1_alpha_rear_elbow_down, t620
+    t621 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    del sigma_uv_rear_elbow_down
+    t622 = _runtime.select(parallel_rear_elbow_down, t619, t621)
+    del t619
+    t623 = whole_y_rear_elbow_down + t622
+    below_beta_0_rear_elbow_down = np.maximum(t623, t165)
+    t624 = whole_y_rear_elbow_down - t622
+    above_beta_0_rear_elbow_down = np.maximum(t624, t165)
+    t625 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t610 = v_2_beta_rear_elbow_down * (t609 / total_beta_0_rear_elbow_down)
-    del t609, total_beta_0_rear_elbow_down
-    t611 = t593 - t610
-    del t610
-    left_along_rear_elbow_down = L1 - np.abs(t611)
-    t612 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t613 = np.maximum(-t612, left_along_rear_elbow_down)
-    del t612
-    spent_along_rear_elbow_down = t613 <= t167
-    del t167, t613
-    t614 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
-    t615 = t614 | spent_beta_rear_elbow_down
-    del t614
-    t616 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
-    del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
-    t617 = np.arctan2(_runtime.select(t615, t170 * t616, 0.0), 1.0)
-    del t170, t616
-    t618 = gain_1_alpha_rear_elbow_down + gain_0_alpha_rear_elbow_down
-    del gain_0_alpha_rear_elbow_down, gain_1_alpha_rear_elbow_down
-    t619 = _runtime.select(spent_alpha_rear_elbow_down, t618, 0.0)
-    del t618
-    t620 = -(_runtime.FEASIBILITY * (t84 + t619)) <= margin_alpha_rear_elbow_down
-    del margin_alpha_rear_elbow_down, t619, t84
-    t621 = gain_1_beta_rear_elbow_down + gain_0_beta_rear_elbow_down
-    del gain_0_beta_rear_elbow_down, gain_1_beta_rear_elbow_down
-    t622 = _runtime.select(spent_beta_rear_elbow_down, t621, 0.0)
-    del t621
-    t623 = -(_runtime.FEASIBILITY * (t130 + t622)) <= -t564
-    del t130, t564, t622
-    t624 = spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down
-    del spent_alpha_rear_elbow_down, spent_beta_rear_elbow_down
-    t625 = _runtime.select(tangent & t624, 64.0, 1.0)
-    del t624, tangent
-    t626 = -(_runtime.FEASIBILITY * (play * t625))
-    del play
-    t627 = t190 & t620 & t623 & (t626 <= t605 - t601) & (t626 <= -(t601 + t605))
-    del t190, t605, t620, t623
-    t628 = t198 * t625
-    del t198, t625
-    t629 = _runtime.select(spent_along_rear_elbow_down, t602 / (t200 - t601), 0.0)
-    del t200, t602
-    t630 = -(_runtime.FEASIBILITY * (t628 * (1.0 + t629)))
-    del t629
-    t631 = t627 & (t626 <= t607) & (t626 <= t608) & (t630 <= left_along_rear_elbow_down)
-    del t607, t608, t627, t630
-    t632 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
-    del left_along_rear_elbow_down
-    t633 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t634 = v_2_beta_rear_elbow_down * t632 / (t601 * t601 + t633)
-    del t601, t632, t633
-    t635 = whole_y_rear_elbow_down * (t634 * _runtime.sign(-t611))
-    del t611, t634
-    t636 = _runtime.select(spent_along_rear_elbow_down, t606 + t635, t606)
-    del spent_along_rear_elbow_down, t606, t635
-    t637 = whole_y_rear_elbow_down + t636
-    t638 = whole_y_rear_elbow_down - t636
-    del t636, whole_y_rear_elbow_down
-    t639 = -(_runtime.FEASIBILITY * t628)
+    t626 = v_2_beta_rear_elbow_down * (t625 / total_beta_0_rear_elbow_down)
+    del t625, total_beta_0_rear_elbow_down
+    t627 = t609 - t626
+    del t626
+    left_along_rear_elbow_down = L1 - np.abs(t627)
+    t628 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t629 = np.maximum(-t628, left_along_rear_elbow_down)
     del t628
-    below_beta_rear_elbow_down = np.maximum(t637, t162)
-    above_beta_rear_elbow_down = np.maximum(t638, t162)
-    t640 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
-    total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t641 = 1.0 / total_beta_rear_elbow_down
-    del total_beta_rear_elbow_down
-    t642 = t640 * t641
-    del t640
-    t643 = t593 - v_2_beta_rear_elbow_down * t642
-    del t593, v_2_beta_rear_elbow_down
-    t644 = L1 + t643
-    t645 = t631 & (t626 <= t637) & (t626 <= t638) & (t639 <= t644)
-    del t626, t631, t637, t638
-    t646 = L1 - t643
-    unreachable_4 = np.logical_not(t645 & (t639 <= t646))
-    del t639, t645
-    t647 = _runtime.poison(invalid | unreachable_4)
-    t648 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
-    del out_front_elbow_down, up_front_elbow_down
-    t649 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
-    t650 = lean_alpha_rear_elbow_down * lean_beta_rear_elbow_down
-    del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t651 = np.arctan2(t649, 1.0 - t650)
-    del t649, t650
-    t652 = _runtime.select(folded, 0.0, t648) + t651
+    spent_along_rear_elbow_down = t629 <= t170
+    del t170, t629
+    t630 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
+    t631 = t630 | spent_beta_rear_elbow_down
+    del t630
+    t632 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
+    t633 = np.arctan2(_runtime.select(t631, t173 * t632, 0.0), 1.0)
+    del t173, t632
+    t634 = gain_1_alpha_rear_elbow_down + gain_0_alpha_rear_elbow_down
+    del gain_0_alpha_rear_elbow_down, gain_1_alpha_rear_elbow_down
+    t635 = _runtime.select(spent_alpha_rear_elbow_down, t634, 0.0)
+    del t634
+    t636 = _runtime.select(spent_alpha_rear_elbow_down, leniency, 1.0)
+    t637 = -(_runtime.FEASIBILITY * ((t84 + t635) * t636))
+    del t635, t636
+    t638 = t193 & (t637 <= margin_alpha_rear_elbow_down)
+    del t193, t637
+    t639 = gain_1_beta_rear_elbow_down + gain_0_beta_rear_elbow_down
+    del gain_0_beta_rear_elbow_down, gain_1_beta_rear_elbow_down
+    t640 = _runtime.select(spent_beta_rear_elbow_down, t639, 0.0)
+    del t639
+    t641 = _runtime.select(spent_beta_rear_elbow_down, leniency, 1.0)
+    t642 = _runtime.FEASIBILITY * ((t133 + t640) * t641)
+    del t640, t641
+    t643 = spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down
+    t644 = _runtime.select(t643, leniency, 1.0)
+    del leniency, t643
+    t645 = -(_runtime.FEASIBILITY * (play * t644))
+    del play
+    t646 = t638 & (-t642 <= -t580) & (t645 <= t621 - t617)
+    del t638, t642
+    t647 = t646 & (t645 <= -(t617 + t621)) & (t645 <= t623)
+    del t621, t623, t646
+    t648 = t203 * t644
+    del t203, t644
+    t649 = _runtime.select(spent_along_rear_elbow_down, t618 / (t205 - t617), 0.0)
+    del t205, t618
+    t650 = -(_runtime.FEASIBILITY * (t648 * (1.0 + t649)))
+    del t649
+    t651 = t647 & (t645 <= t624) & (t650 <= left_along_rear_elbow_down)
+    del t624, t647, t650
+    t652 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
+    del left_along_rear_elbow_down
+    t653 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t654 = v_2_beta_rear_elbow_down * t652 / (t617 * t617 + t653)
+    del t617, t652, t653
+    t655 = whole_y_rear_elbow_down * (t654 * _runtime.sign(-t627))
+    del t627, t654
+    t656 = _runtime.select(spent_along_rear_elbow_down, t622 + t655, t622)
+    del spent_along_rear_elbow_down, t622, t655
+    t657 = whole_y_rear_elbow_down + t656
+    t658 = whole_y_rear_elbow_down - t656
+    del t656, whole_y_rear_elbow_down
+    t659 = -(_runtime.FEASIBILITY * t648)
     del t648
-    below_alpha_rear_elbow_down = np.maximum(t644, t162)
-    del t644
-    above_alpha_rear_elbow_down = np.maximum(t646, t162)
-    del t162, t646
-    t653 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t657, t165)
+    above_beta_rear_elbow_down = np.maximum(t658, t165)
+    t660 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
+    t661 = 1.0 / total_beta_rear_elbow_down
+    del total_beta_rear_elbow_down
+    t662 = t660 * t661
+    del t660
+    t663 = t609 - v_2_beta_rear_elbow_down * t662
+    del t609, v_2_beta_rear_elbow_down
+    t664 = L1 + t663
+    t665 = t651 & (t645 <= t657) & (t645 <= t658) & (t659 <= t664)
+    del t645, t651, t657, t658
+    t666 = L1 - t663
+    unreachable_4 = np.logical_not(t665 & (t659 <= t666))
+    del t659, t665
+    t667 = _runtime.poison(invalid | unreachable_4)
+    t668 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
+    del out_front_elbow_down, up_front_elbow_down
+    t669 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    t670 = lean_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
+    t671 = np.arctan2(t669, 1.0 - t670)
+    del t669, t670
+    t672 = _runtime.select(folded, 0.0, t668) + t671
+    del t668
+    below_alpha_rear_elbow_down = np.maximum(t664, t165)
+    del t664
+    above_alpha_rear_elbow_down = np.maximum(t666, t165)
+    del t165, t666
+    t673 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t654 = 1.0 / total_alpha_rear_elbow_down
+    t674 = 1.0 / total_alpha_rear_elbow_down
     del total_alpha_rear_elbow_down
-    t655 = t653 * t654
-    del t653
-    t656 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t675 = t673 * t674
+    del t673
+    t676 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t657 = np.arctan2(t655, t654 * t656)
-    del t654, t656
-    t658 = fore_turn_alpha_rear_elbow_down + fore_turn_beta_rear_elbow_down
-    t659 = fore_turn_alpha_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t677 = np.arctan2(t675, t674 * t676)
+    del t674, t676
+    t678 = fore_turn_alpha_rear_elbow_down + fore_turn_beta_rear_elbow_down
+    t679 = fore_turn_alpha_rear_elbow_down * fore_turn_beta_rear_elbow_down
     del fore_turn_alpha_rear_elbow_down, fore_turn_beta_rear_elbow_down
-    t660 = t226 - (t651 - np.arctan2(t658, 1.0 - t659))
-    del t226, t651, t658, t659
-    t661 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t680 = t231 - (t671 - np.arctan2(t678, 1.0 - t679))
+    del t231, t671, t678, t679
+    t681 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t662 = t657 - np.arctan2(t642, t641 * t661)
-    del t641, t661
-    t663 = (wrist <= al * _runtime.DETERMINED) | nowhere
+    t682 = t677 - np.arctan2(t662, t661 * t681)
+    del t661, t681
+    t683 = (wrist <= al * _runtime.DETERMINED) | nowhere
     del nowhere
-    t664 = t663 | folded | short
-    del folded, short, t663
-    t665 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
-    t666 = t665 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
-    del t665
-    t667 = t666 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
-    del t666
-    t668 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
+    t684 = t683 | folded | short
+    del folded, short, t683
+    t685 = 1.0 / (L1 + t89 / 2000000.0)
+    del t89
+    t686 = slack * t87 * t685
+    del t87
+    t687 = 1.0 / (t107 + t88 * t113 / 2000000.0)
+    del t113
+    t688 = _runtime.select(spent_alpha, t686 + slack * t103 * t687, 0.0)
+    del t103
+    usual_alpha = t84 + t688
+    del t688
+    t689 = _runtime.select(spent_alpha, -(1099511627776.0 * t81), 0.0)
+    del spent_alpha, t81
+    t690 = usual_alpha + t689 <= _runtime.DETERMINED * usual_alpha
+    del t689, usual_alpha
+    t691 = t685 * (slack * t138) + t687 * (slack * t142)
+    del t138, t142, t687
+    usual_beta = t133 + _runtime.select(spent_beta, t691, 0.0)
+    del t691
+    t692 = _runtime.select(spent_beta, -(1099511627776.0 * t131), 0.0)
+    del spent_beta, t131
+    t693 = usual_beta + t692 <= _runtime.DETERMINED * usual_beta
+    del t692, usual_beta
+    t694 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
+    t695 = t694 + al * 0.015625 + d * 0.015625 + d1 * 0.015625
+    del t694
+    t696 = t695 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
+    del t695
+    t697 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
     del t_phi, t_psi
-    t669 = t667 * wrist * t668 / al
-    del t667, t668, wrist
-    t670 = np.abs(p_1_beta + v_1_beta * t211) + np.abs(t212 - L1 * t221)
-    del p_1_beta, t211, t212, t221, v_1_beta
-    t671 = 1125899906842624.0 * _runtime.select(t168, t670, 0.0)
-    del t670
-    t672 = _runtime.select(t168, t669, 1.0) <= _runtime.DETERMINED * t671
-    del t168, t671
-    t673 = _runtime.status(invalid, unreachable, t664 | parallel | t672)
-    del parallel, t672, unreachable
-    t674 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t367
-    del p_1_beta_front_elbow_down, t367, v_1_beta_front_elbow_down
-    missed_front_elbow_down = _runtime.select(t339, np.abs(t674) + np.abs(t368 - L1 * t380), 0.0)
-    del t368, t380, t674
-    t675 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
+    t698 = np.minimum(np.maximum(d, t696) * t697, wrist * lengths / al)
+    del t696, t697, wrist
+    t699 = np.abs(p_1_beta + v_1_beta * t216) + np.abs(t217 - L1 * t226)
+    del p_1_beta, t216, t217, t226, v_1_beta
+    t700 = 1125899906842624.0 * _runtime.select(t171, t699, 0.0)
+    del t699
+    t701 = _runtime.select(t171, t698, 1.0) <= _runtime.DETERMINED * t700
+    del t700
+    t702 = lengths - 4.0 * by_wrist
+    del by_wrist
+    t703 = _runtime.select(t171 | tangent, t702, lengths)
+    del t171
+    t704 = _runtime.DETERMINED * lengths
+    t705 = t684 | t690 | t693 | parallel | t701 | (t703 <= t704)
+    del parallel, t690, t693, t701, t703
+    t706 = t685 * (slack * t248)
+    del t248
+    t707 = 1.0 / (t262 + t88 * t270 / 2000000.0)
+    del t270
+    t708 = _runtime.select(spent_alpha_front_elbow_down, t706 + slack * t261 * t707, 0.0)
+    del t261
+    usual_alpha_front_elbow_down = t84 + t708
+    del t708
+    t709 = _runtime.select(spent_alpha_front_elbow_down, -(1099511627776.0 * t245), 0.0)
+    del spent_alpha_front_elbow_down, t245
+    t710 = _runtime.DETERMINED * usual_alpha_front_elbow_down
+    t711 = t684 | (usual_alpha_front_elbow_down + t709 <= t710)
+    del t709, t710, usual_alpha_front_elbow_down
+    t712 = t685 * (slack * t303) + t707 * (slack * t308)
+    del t303, t308, t707
+    t713 = _runtime.select(spent_beta_front_elbow_down, t712, 0.0)
+    del t712
+    usual_beta_front_elbow_down = t133 + t713
+    del t713
+    t714 = _runtime.select(spent_beta_front_elbow_down, -(1099511627776.0 * t296), 0.0)
+    del spent_beta_front_elbow_down, t296
+    t715 = _runtime.DETERMINED * usual_beta_front_elbow_down
+    t716 = t711 | (usual_beta_front_elbow_down + t714 <= t715)
+    del t711, t714, t715, usual_beta_front_elbow_down
+    t717 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t380
+    del p_1_beta_front_elbow_down, t380, v_1_beta_front_elbow_down
+    missed_front_elbow_down = _runtime.select(t349, np.abs(t717) + np.abs(t381 - L1 * t393), 0.0)
+    del t381, t393, t717
+    t718 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
     del missed_front_elbow_down
-    t676 = t664 | parallel_front_elbow_down | (_runtime.select(t339, t669, 1.0) <= t675)
-    del parallel_front_elbow_down, t339, t675
-    t677 = _runtime.status(invalid, unreachable_2, t676)
-    del t676, unreachable_2
-    t678 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t506
-    del p_1_beta_rear_elbow_up, t506, v_1_beta_rear_elbow_up
-    missed_rear_elbow_up = _runtime.select(t478, np.abs(t678) + np.abs(t507 - L1 * t519), 0.0)
-    del t507, t519, t678
-    t679 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
+    t719 = t716 | parallel_front_elbow_down | (_runtime.select(t349, t698, 1.0) <= t718)
+    del parallel_front_elbow_down, t716, t718
+    t720 = _runtime.select(t349 | tangent, t702, lengths)
+    del t349
+    t721 = _runtime.status(invalid, unreachable_2, t719 | (t720 <= t704))
+    del t719, t720, unreachable_2
+    t722 = 1.0 / (t262 + t88 * t415 / 2000000.0)
+    del t262, t415
+    t723 = _runtime.select(spent_alpha_rear_elbow_up, t706 + slack * t410 * t722, 0.0)
+    del t410, t706
+    usual_alpha_rear_elbow_up = t84 + t723
+    del t723
+    t724 = _runtime.select(spent_alpha_rear_elbow_up, 1099511627776.0 * margin_alpha_rear_elbow_up, 0.0)
+    del margin_alpha_rear_elbow_up, spent_alpha_rear_elbow_up
+    t725 = _runtime.DETERMINED * usual_alpha_rear_elbow_up
+    t726 = t684 | (usual_alpha_rear_elbow_up + t724 <= t725)
+    del t724, t725, usual_alpha_rear_elbow_up
+    t727 = t685 * (slack * t448) + t722 * (slack * t452)
+    del t448, t452, t722
+    t728 = _runtime.select(spent_beta_rear_elbow_up, t727, 0.0)
+    del t727
+    usual_beta_rear_elbow_up = t133 + t728
+    del t728
+    t729 = _runtime.select(spent_beta_rear_elbow_up, -(1099511627776.0 * t441), 0.0)
+    del spent_beta_rear_elbow_up, t441
+    t730 = _runtime.DETERMINED * usual_beta_rear_elbow_up
+    t731 = t726 | (usual_beta_rear_elbow_up + t729 <= t730)
+    del t726, t729, t730, usual_beta_rear_elbow_up
+    t732 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t522
+    del p_1_beta_rear_elbow_up, t522, v_1_beta_rear_elbow_up
+    missed_rear_elbow_up = _runtime.select(t491, np.abs(t732) + np.abs(t523 - L1 * t535), 0.0)
+    del t523, t535, t732
+    t733 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
     del missed_rear_elbow_up
-    t680 = t664 | parallel_rear_elbow_up | (_runtime.select(t478, t669, 1.0) <= t679)
-    del parallel_rear_elbow_up, t478, t679
-    t681 = _runtime.status(invalid, unreachable_3, t680)
-    del t680, unreachable_3
-    t682 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t642
-    del p_1_beta_rear_elbow_down, t642, v_1_beta_rear_elbow_down
-    missed_rear_elbow_down = _runtime.select(t615, np.abs(t682) + np.abs(t643 - L1 * t655), 0.0)
-    del t643, t655, t682
-    t683 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
+    t734 = t731 | parallel_rear_elbow_up | (_runtime.select(t491, t698, 1.0) <= t733)
+    del parallel_rear_elbow_up, t731, t733
+    t735 = _runtime.select(t491 | tangent, t702, lengths)
+    del t491
+    t736 = _runtime.status(invalid, unreachable_3, t734 | (t735 <= t704))
+    del t734, t735, unreachable_3
+    t737 = 1.0 / (t107 + t88 * t555 / 2000000.0)
+    del t107, t555, t88
+    t738 = _runtime.select(spent_alpha_rear_elbow_down, t686 + slack * t550 * t737, 0.0)
+    del t550, t686
+    usual_alpha_rear_elbow_down = t84 + t738
+    del t738, t84
+    t739 = 1099511627776.0 * margin_alpha_rear_elbow_down
+    del margin_alpha_rear_elbow_down
+    t740 = _runtime.select(spent_alpha_rear_elbow_down, t739, 0.0)
+    del spent_alpha_rear_elbow_down, t739
+    t741 = _runtime.DETERMINED * usual_alpha_rear_elbow_down
+    t742 = t684 | (usual_alpha_rear_elbow_down + t740 <= t741)
+    del t684, t740, t741, usual_alpha_rear_elbow_down
+    t743 = t685 * (slack * t586) + t737 * (slack * t590)
+    del slack, t586, t590, t685, t737
+    t744 = _runtime.select(spent_beta_rear_elbow_down, t743, 0.0)
+    del t743
+    usual_beta_rear_elbow_down = t133 + t744
+    del t133, t744
+    t745 = _runtime.select(spent_beta_rear_elbow_down, -(1099511627776.0 * t580), 0.0)
+    del spent_beta_rear_elbow_down, t580
+    t746 = _runtime.DETERMINED * usual_beta_rear_elbow_down
+    t747 = t742 | (usual_beta_rear_elbow_down + t745 <= t746)
+    del t742, t745, t746, usual_beta_rear_elbow_down
+    t748 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t662
+    del p_1_beta_rear_elbow_down, t662, v_1_beta_rear_elbow_down
+    missed_rear_elbow_down = _runtime.select(t631, np.abs(t748) + np.abs(t663 - L1 * t675), 0.0)
+    del t663, t675, t748
+    t749 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
     del missed_rear_elbow_down
-    t684 = t664 | parallel_rear_elbow_down | (_runtime.select(t615, t669, 1.0) <= t683)
-    del parallel_rear_elbow_down, t615, t664, t669, t683
-    t685 = _runtime.status(invalid, unreachable_4, t684)
-    del invalid, t684, unreachable_4
+    t750 = t747 | parallel_rear_elbow_down | (_runtime.select(t631, t698, 1.0) <= t749)
+    del parallel_rear_elbow_down, t698, t747, t749
+    t751 = _runtime.select(t631 | tangent, t702, lengths)
+    del lengths, t631, t702, tangent
+    t752 = _runtime.status(invalid, unreachable_4, t750 | (t751 <= t704))
+    del t704, t750, t751, unreachable_4
     return (
-        t174 + t216,
-        _runtime.wrap(t219 - t223) + t216,
-        _runtime.wrap(t228 + t230) + t216,
-        _runtime.wrap(t219 + t223) + t216,
-        _runtime.wrap(t228 - t230) + t216,
-        t231 + t216,
-        _runtime.wrap(t342 - t173) + t372,
-        _runtime.wrap(t377 - t382) + t372,
-        _runtime.wrap(t386 + t388) + t372,
-        _runtime.wrap(t377 + t382) + t372,
-        _runtime.wrap(t386 - t388) + t372,
-        t231 + t372,
-        _runtime.wrap(t480 - t481) + t511,
-        _runtime.wrap(t516 - t521) + t511,
-        _runtime.wrap(t524 + t526) + t511,
-        _runtime.wrap(t516 + t521) + t511,
-        _runtime.wrap(t524 - t526) + t511,
-        t231 + t511,
-        _runtime.wrap(t617 - t481) + t647,
-        _runtime.wrap(t652 - t657) + t647,
-        _runtime.wrap(t660 + t662) + t647,
-        _runtime.wrap(t652 + t657) + t647,
-        _runtime.wrap(t660 - t662) + t647,
-        t231 + t647,
-        t673,
-        t677,
-        t681,
-        t685,
+        t177 + t221,
+        _runtime.wrap(t224 - t228) + t221,
+        _runtime.wrap(t233 + t235) + t221,
+        _runtime.wrap(t224 + t228) + t221,
+        _runtime.wrap(t233 - t235) + t221,
+        t236 + t221,
+        _runtime.wrap(t352 - t176) + t385,
+        _runtime.wrap(t390 - t395) + t385,
+        _runtime.wrap(t399 + t401) + t385,
+        _runtime.wrap(t390 + t395) + t385,
+        _runtime.wrap(t399 - t401) + t385,
+        t236 + t385,
+        _runtime.wrap(t493 - t494) + t527,
+        _runtime.wrap(t532 - t537) + t527,
+        _runtime.wrap(t540 + t542) + t527,
+        _runtime.wrap(t532 + t537) + t527,
+        _runtime.wrap(t540 - t542) + t527,
+        t236 + t527,
+        _runtime.wrap(t633 - t494) + t667,
+        _runtime.wrap(t672 - t677) + t667,
+        _runtime.wrap(t680 + t682) + t667,
+        _runtime.wrap(t672 + t677) + t667,
+        _runtime.wrap(t680 - t682) + t667,
+        t236 + t667,
+        _runtime.status(invalid, unreachable, t705),
+        t721,
+        t736,
+        t752,
     )
 
 
@@ -3113,466 +3246,474 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t22
     t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t3)
     del t3
-    lengths = L1 + d1 + d + loff + lp + t2 + t19
-    del t19, t2
     t_phi = s_phi / c_phi
     higher = d * t_phi
+    t25 = np.abs(t_phi * higher)
+    del t_phi
     t_psi = s_psi * t6
     del s_psi, t6
     ahead = d * t_psi
-    far_apart = np.abs(t_phi * higher) * 0.001953125 + np.abs(t_psi * ahead) * 0.001953125
-    del t_phi, t_psi
-    slack = lengths * 0.25 + far_apart
-    t25 = -(_runtime.FEASIBILITY * slack)
-    t26 = t24 & (t23 <= t4) & (t25 <= t11) & (t25 <= t10)
-    del t10, t11, t23, t24, t25, t4
+    t26 = np.abs(t_psi * ahead)
+    del t_psi
+    t27 = al * (t2 + t25 + t26)
+    t28 = al * 8.673617379884035e-19 + gs * 8.673617379884035e-19
+    t29 = t28 + t25 * 8.673617379884035e-19 + t26 * 8.673617379884035e-19
+    del t28
+    t30 = t29 + 512.0 * wrist + np.sqrt(t27) * 3.0517578125e-05
+    del t29
+    far_apart = t25 * 0.001953125 + t26 * 0.001953125 + t27 / t30
+    del t25, t26, t27, t30
+    lengths = L1 + d1 + d + loff + lp + t2 + t19
+    del t19, t2
+    slack = far_apart + lengths * 0.25
+    t31 = -(_runtime.FEASIBILITY * slack)
+    t32 = t24 & (t23 <= t4) & (t31 <= t11) & (t31 <= t10)
+    del t10, t11, t23, t24, t31, t4
     L_2W = L2 + c_psi * t7
     del c_psi, t7
     a_3W = a3 + c_phi * t1 + s_phi * t8
     del c_phi, s_phi, t1, t8
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t27 = 2.0 * fore
-    t28 = _runtime.FEASIBILITY * ((L1 * 2.0 + t27) * slack)
-    t29 = L1 + fore
-    t30 = t29 * t29
-    t31 = z - d1
-    square = t31 * t31 + root * root
-    t32 = t30 - square
-    t33 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t34 = L1 - fore
-    t35 = _runtime.FEASIBILITY * ((t33 + 2.0 * np.abs(t34)) * slack)
-    del t33
-    t36 = square - t34 * t34
+    t33 = 2.0 * fore
+    t34 = _runtime.FEASIBILITY * ((L1 * 2.0 + t33) * slack)
+    t35 = L1 + fore
+    t36 = t35 * t35
+    t37 = z - d1
+    square = t37 * t37 + root * root
+    t38 = t36 - square
+    t39 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t40 = L1 - fore
+    t41 = _runtime.FEASIBILITY * ((t39 + 2.0 * np.abs(t40)) * slack)
+    del t39
+    t42 = square - t40 * t40
     del square
-    t37 = t26 & (-t28 <= t32) & (-t35 <= t36)
-    del t26, t28, t35
-    t38 = d * 0.25 + np.abs(higher) * 0.25 + np.abs(ahead) * 0.25
-    play = t38 + lengths * 0.00048828125 + far_apart
-    del far_apart, t38
+    t43 = t32 & (-t34 <= t38) & (-t41 <= t42)
+    del t32, t34, t41
+    t44 = d * 0.25 + np.abs(higher) * 0.25 + np.abs(ahead) * 0.25
+    play = t44 + far_apart + lengths * 0.00048828125
+    del far_apart, t44
     play_alpha = np.sqrt(L2 * L2 + a3 * a3) * play
-    t39 = -(_runtime.FEASIBILITY * play_alpha)
-    t40 = 1.0 / fore
-    c_lag = a_3W * t40
-    M = np.maximum(t36, 0.0)
-    del t36
-    N = np.maximum(t32, 0.0)
-    del t32
-    t41 = 1.0 / (M + N)
-    t42 = M - N
-    c_bend = t41 * t42
-    t43 = c_lag * c_bend
-    s_lag = L_2W * t40
-    del t40
-    t44 = 2.0 * np.sqrt(M * N)
+    t45 = -(_runtime.FEASIBILITY * play_alpha)
+    t46 = 1.0 / fore
+    c_lag = a_3W * t46
+    M = np.maximum(t42, 0.0)
+    del t42
+    N = np.maximum(t38, 0.0)
+    del t38
+    t47 = 1.0 / (M + N)
+    t48 = M - N
+    c_bend = t47 * t48
+    t49 = c_lag * c_bend
+    s_lag = L_2W * t46
+    del t46
+    t50 = 2.0 * np.sqrt(M * N)
     del N
-    s_bend_front_elbow_down = t41 * t44
-    t45 = s_lag * s_bend_front_elbow_down
-    c_relative = t43 + t45
-    t46 = s_lag * c_bend
+    s_bend_front_elbow_down = t47 * t50
+    t51 = s_lag * s_bend_front_elbow_down
+    c_relative = t49 + t51
+    t52 = s_lag * c_bend
     del c_bend, s_lag
-    t47 = c_lag * s_bend_front_elbow_down
+    t53 = c_lag * s_bend_front_elbow_down
     del c_lag
-    s_relative = t46 - t47
+    s_relative = t52 - t53
     v_1 = L2 * c_relative - a3 * s_relative
     whole_alpha = L1 * v_1
-    t48 = np.abs(whole_alpha)
-    t49 = fore * s_bend_front_elbow_down
+    t54 = np.abs(whole_alpha)
+    t55 = fore * s_bend_front_elbow_down
     del s_bend_front_elbow_down
-    t50 = root * t49
-    ahead_1 = t34 + t27 * M * t41
-    del M, t27, t34, t41
-    t51 = t31 * ahead_1
-    up = t50 + t51
-    t52 = t31 * t49
-    del t49
-    t53 = root * ahead_1
-    del ahead_1
-    out_rear_elbow_up = t52 - t53
-    t54 = out_rear_elbow_up * out_rear_elbow_up + up * up
-    t55 = 1.0 / np.sqrt(t54)
-    del t54
-    stheta2A = up * t55
-    t56 = ahead * stheta2A
-    t57 = out_rear_elbow_up * t55
+    t56 = root * t55
+    ahead_1 = t40 + t33 * M * t47
+    del M, t33, t40, t47
+    t57 = t37 * ahead_1
+    up = t56 + t57
+    t58 = t37 * t55
     del t55
-    t58 = higher * t57
-    t59 = t56 + t58
+    t59 = root * ahead_1
+    del ahead_1
+    out_rear_elbow_up = t58 - t59
+    t60 = out_rear_elbow_up * out_rear_elbow_up + up * up
+    t61 = 1.0 / np.sqrt(t60)
+    del t60
+    stheta2A = up * t61
+    t62 = ahead * stheta2A
+    t63 = out_rear_elbow_up * t61
+    del t61
+    t64 = higher * t63
+    t65 = t62 + t64
     v_2 = L2 * s_relative + a3 * c_relative
     del c_relative, s_relative
-    t60 = ahead * t57
-    del t57
-    t61 = higher * stheta2A
+    t66 = ahead * t63
+    del t63
+    t67 = higher * stheta2A
     del stheta2A
-    t62 = t60 - t61
-    margin_alpha = t48 - np.abs(v_1 * t59 - v_2 * t62)
+    t68 = t66 - t67
+    margin_alpha = t54 - np.abs(v_1 * t65 - v_2 * t68)
     play_beta = L1 * play
-    t63 = -(_runtime.FEASIBILITY * play_beta)
-    margin_beta = t48 - np.abs(-(L1 * t62))
-    t64 = t37 & (t39 <= margin_alpha) & (t63 <= margin_beta)
-    t65 = -(_runtime.FEASIBILITY * play)
+    t69 = -(_runtime.FEASIBILITY * play_beta)
+    margin_beta = t54 - np.abs(-(L1 * t68))
+    t70 = t43 & (t45 <= margin_alpha) & (t69 <= margin_beta)
+    t71 = -(_runtime.FEASIBILITY * play)
     sigma_uv = _runtime.sign(-whole_alpha)
     del whole_alpha
-    t66 = v_1 * sigma_uv
-    part_y = sigma_uv * t62
-    del t62
-    t67 = -(t66 + part_y)
-    t68 = t65 <= t67
-    t69 = part_y - t66
+    t72 = v_1 * sigma_uv
+    part_y = sigma_uv * t68
+    del t68
+    t73 = -(t72 + part_y)
+    t74 = t71 <= t73
+    t75 = part_y - t72
     del part_y
-    t70 = t65 <= t69
-    t71 = -(_runtime.FEASIBILITY * (32.0 * play))
-    t72 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
-    below_beta_0 = np.maximum(t67, t72)
-    del t67
-    above_beta_0 = np.maximum(t69, t72)
-    del t69
-    t73 = below_beta_0 - above_beta_0
-    t74 = t59 - v_2 * (t73 / (below_beta_0 + above_beta_0))
-    del t59
-    left_along = L1 - np.abs(t74)
-    t75 = t64 & t68 & t70 & t68 & t70 & (t71 <= left_along)
-    del t64
-    t76 = L1 + t74
-    t77 = L1 - t74
-    del t74
-    t78 = t75 & t68 & t70 & (t71 <= t76) & (t71 <= t77)
-    del t68, t70, t75
-    unreachable = np.logical_not(t78)
-    del t78
-    t79 = _runtime.poison(invalid | unreachable)
-    t80 = np.arctan2(up, -out_rear_elbow_up)
-    below_alpha = np.maximum(t76, t72)
-    del t76
-    above_alpha = np.maximum(t77, t72)
-    del t77
-    t81 = np.arctan2(below_alpha - above_alpha, 2.0 * np.sqrt(below_alpha * above_alpha))
-    del above_alpha, below_alpha
-    t82 = np.arctan2(t73, 2.0 * np.sqrt(below_beta_0 * above_beta_0))
-    del above_beta_0, below_beta_0, t73
-    t83 = t81 - t82
-    del t82
-    t84 = np.arctan2(t44, t42)
-    del t42, t44
-    t85 = np.arctan2(L_2W, a_3W)
+    t76 = t71 <= t75
+    t77 = -(_runtime.FEASIBILITY * (32.0 * play))
+    t78 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
+    below_beta_0 = np.maximum(t73, t78)
+    del t73
+    above_beta_0 = np.maximum(t75, t78)
+    del t75
+    t79 = 1.0 / (below_beta_0 + above_beta_0)
+    t80 = (below_beta_0 - above_beta_0) * t79
+    t81 = t65 - v_2 * t80
+    del t65
+    left_along = L1 - np.abs(t81)
+    t82 = t70 & t74 & t76 & t74 & t76 & (t77 <= left_along)
+    del t70
+    t83 = L1 + t81
+    t84 = L1 - t81
+    del t81
+    t85 = t82 & t74 & t76 & (t77 <= t83) & (t77 <= t84)
+    del t74, t76, t82
+    unreachable = np.logical_not(t85)
+    del t85
+    t86 = _runtime.poison(invalid | unreachable)
+    t87 = np.arctan2(up, -out_rear_elbow_up)
+    below_alpha = np.maximum(t83, t78)
+    del t83
+    above_alpha = np.maximum(t84, t78)
+    del t84
+    t88 = 1.0 / (below_alpha + above_alpha)
+    t89 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t90 = np.arctan2((below_alpha - above_alpha) * t88, t88 * t89)
+    del above_alpha, below_alpha, t88, t89
+    t91 = 2.0 * np.sqrt(above_beta_0) * np.sqrt(below_beta_0)
+    del above_beta_0, below_beta_0
+    t92 = t90 - np.arctan2(t80, t79 * t91)
+    del t79, t80, t91
+    t93 = np.arctan2(t50, t48)
+    del t48, t50
+    t94 = np.arctan2(L_2W, a_3W)
     del L_2W, a_3W
-    t86 = t84 - t85
-    t87 = _runtime.wrap(principal_pitch)
+    t95 = t93 - t94
+    t96 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    c_relative_front_elbow_down = t43 - t45
-    del t43, t45
-    s_relative_front_elbow_down = t46 + t47
-    del t46, t47
+    c_relative_front_elbow_down = t49 - t51
+    del t49, t51
+    s_relative_front_elbow_down = t52 + t53
+    del t52, t53
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t88 = np.abs(whole_alpha_front_elbow_down)
+    t97 = np.abs(whole_alpha_front_elbow_down)
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
     del c_relative_front_elbow_down, s_relative_front_elbow_down
-    out_front_elbow_down = t52 + t53
-    del t52, t53
-    t89 = t50 - t51
-    del t50, t51
-    t90 = out_front_elbow_down * out_front_elbow_down + t89 * t89
-    t91 = 1.0 / np.sqrt(t90)
-    del t90
-    ctheta2A_front_elbow_down = out_front_elbow_down * t91
-    t92 = ahead * ctheta2A_front_elbow_down
-    t93 = t89 * t91
-    del t91
-    t94 = higher * t93
-    p_1_front_elbow_down = t92 - t94
-    t95 = ahead * t93
-    del ahead, t93
-    t96 = higher * ctheta2A_front_elbow_down
+    out_front_elbow_down = t58 + t59
+    del t58, t59
+    t98 = t56 - t57
+    del t56, t57
+    t99 = out_front_elbow_down * out_front_elbow_down + t98 * t98
+    t100 = 1.0 / np.sqrt(t99)
+    del t99
+    ctheta2A_front_elbow_down = out_front_elbow_down * t100
+    t101 = ahead * ctheta2A_front_elbow_down
+    t102 = t98 * t100
+    del t100
+    t103 = higher * t102
+    p_1_front_elbow_down = t101 - t103
+    t104 = ahead * t102
+    del ahead, t102
+    t105 = higher * ctheta2A_front_elbow_down
     del ctheta2A_front_elbow_down, higher
-    t97 = t95 + t96
-    t98 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t97
-    margin_alpha_front_elbow_down = t88 - np.abs(t98)
-    del t98
-    margin_beta_front_elbow_down = t88 - np.abs(L1 * p_1_front_elbow_down)
-    t99 = t37 & (t39 <= margin_alpha_front_elbow_down) & (t63 <= margin_beta_front_elbow_down)
+    t106 = t104 + t105
+    t107 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t106
+    margin_alpha_front_elbow_down = t97 - np.abs(t107)
+    del t107
+    margin_beta_front_elbow_down = t97 - np.abs(L1 * p_1_front_elbow_down)
+    t108 = t43 & (t45 <= margin_alpha_front_elbow_down) & (t69 <= margin_beta_front_elbow_down)
     sigma_uv_front_elbow_down = _runtime.sign(-whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
-    t100 = sigma_uv_front_elbow_down * p_1_front_elbow_down
+    t109 = sigma_uv_front_elbow_down * p_1_front_elbow_down
     del p_1_front_elbow_down
-    t101 = v_1_front_elbow_down * sigma_uv_front_elbow_down
-    t102 = t100 - t101
-    t103 = t65 <= t102
-    t104 = -(t101 + t100)
-    del t100
-    t105 = t65 <= t104
-    below_beta_0_front_elbow_down = np.maximum(t102, t72)
-    del t102
-    above_beta_0_front_elbow_down = np.maximum(t104, t72)
-    del t104
-    t106 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
-    total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
-    t107 = v_2_front_elbow_down * (t106 / total_beta_0_front_elbow_down)
-    del total_beta_0_front_elbow_down
-    along_u_front_elbow_down = t97 + t107
-    del t107, t97
-    left_along_front_elbow_down = L1 - np.abs(-along_u_front_elbow_down)
-    t108 = t99 & t103 & t105 & t103 & t105 & (t71 <= left_along_front_elbow_down)
-    del t99
-    t109 = L1 - along_u_front_elbow_down
-    t110 = L1 + along_u_front_elbow_down
-    del along_u_front_elbow_down
-    t111 = t108 & t103 & t105 & (t71 <= t109) & (t71 <= t110)
-    del t103, t105, t108
-    unreachable_2 = np.logical_not(t111)
-    del t111
-    t112 = _runtime.poison(invalid | unreachable_2)
-    t113 = np.arctan2(-t89, out_front_elbow_down)
-    below_alpha_front_elbow_down = np.maximum(t109, t72)
+    t110 = v_1_front_elbow_down * sigma_uv_front_elbow_down
+    t111 = t109 - t110
+    t112 = t71 <= t111
+    t113 = -(t110 + t109)
     del t109
-    above_alpha_front_elbow_down = np.maximum(t110, t72)
-    del t110
-    t114 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    t115 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
+    t114 = t71 <= t113
+    below_beta_0_front_elbow_down = np.maximum(t111, t78)
+    del t111
+    above_beta_0_front_elbow_down = np.maximum(t113, t78)
+    del t113
+    t115 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
+    t116 = 1.0 / total_beta_0_front_elbow_down
+    del total_beta_0_front_elbow_down
+    t117 = t115 * t116
+    del t115
+    along_u_front_elbow_down = t106 + v_2_front_elbow_down * t117
+    del t106
+    left_along_front_elbow_down = L1 - np.abs(-along_u_front_elbow_down)
+    t118 = t108 & t112 & t114 & t112 & t114 & (t77 <= left_along_front_elbow_down)
+    del t108
+    t119 = L1 - along_u_front_elbow_down
+    t120 = L1 + along_u_front_elbow_down
+    del along_u_front_elbow_down
+    t121 = t118 & t112 & t114 & (t77 <= t119) & (t77 <= t120)
+    del t112, t114, t118
+    unreachable_2 = np.logical_not(t121)
+    del t121
+    t122 = _runtime.poison(invalid | unreachable_2)
+    t123 = np.arctan2(-t98, out_front_elbow_down)
+    below_alpha_front_elbow_down = np.maximum(t119, t78)
+    del t119
+    above_alpha_front_elbow_down = np.maximum(t120, t78)
+    del t120
+    t124 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
+    t125 = 1.0 / total_alpha_front_elbow_down
+    del total_alpha_front_elbow_down
+    t126 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t116 = np.arctan2(t114, 2.0 * np.sqrt(t115))
-    del t114, t115
-    t117 = t84 + t85
-    del t84, t85
-    t118 = below_beta_0_front_elbow_down * above_beta_0_front_elbow_down
+    t127 = np.arctan2(t124 * t125, t125 * t126)
+    del t124, t125, t126
+    t128 = t93 + t94
+    del t93, t94
+    t129 = 2.0 * np.sqrt(above_beta_0_front_elbow_down) * np.sqrt(below_beta_0_front_elbow_down)
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t119 = t116 - np.arctan2(t106, 2.0 * np.sqrt(t118))
-    del t106, t118
-    t120 = _runtime.wrap(-(t13 + t12))
+    t130 = t127 - np.arctan2(t117, t116 * t129)
+    del t116, t117, t129
+    t131 = _runtime.wrap(-(t13 + t12))
     del t12, t13
-    t121 = t60 + t61
-    del t60, t61
-    t122 = t56 - t58
-    del t56, t58
-    t123 = v_2_front_elbow_down * t121 + v_1_front_elbow_down * t122
+    t132 = t66 + t67
+    del t66, t67
+    t133 = t62 - t64
+    del t62, t64
+    t134 = v_2_front_elbow_down * t132 + v_1_front_elbow_down * t133
     del v_1_front_elbow_down
-    margin_alpha_rear_elbow_up = t88 - np.abs(t123)
-    del t123
-    margin_beta_rear_elbow_up = t88 - np.abs(L1 * t121)
-    del t88
-    t124 = t37 & (t39 <= margin_alpha_rear_elbow_up) & (t63 <= margin_beta_rear_elbow_up)
-    t125 = sigma_uv_front_elbow_down * t121
-    del sigma_uv_front_elbow_down, t121
-    t126 = t125 - t101
-    t127 = t65 <= t126
-    t128 = -(t101 + t125)
-    del t125
-    t129 = t65 <= t128
-    below_beta_0_rear_elbow_up = np.maximum(t126, t72)
-    del t126
-    above_beta_0_rear_elbow_up = np.maximum(t128, t72)
-    del t128
-    t130 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
-    total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
-    t131 = v_2_front_elbow_down * (t130 / total_beta_0_rear_elbow_up)
-    del total_beta_0_rear_elbow_up
-    t132 = t122 - t131
-    del t122, t131
-    left_along_rear_elbow_up = L1 - np.abs(t132)
-    t133 = t124 & t127 & t129 & t127 & t129 & (t71 <= left_along_rear_elbow_up)
-    del t124
-    t134 = L1 + t132
-    t135 = L1 - t132
-    del t132
-    t136 = t133 & t127 & t129 & (t71 <= t134) & (t71 <= t135)
-    del t127, t129, t133
-    unreachable_3 = np.logical_not(t136)
-    del t136
-    t137 = _runtime.poison(invalid | unreachable_3)
-    t138 = np.arctan2(up, out_rear_elbow_up)
-    del out_rear_elbow_up, up
-    below_alpha_rear_elbow_up = np.maximum(t134, t72)
+    margin_alpha_rear_elbow_up = t97 - np.abs(t134)
     del t134
-    above_alpha_rear_elbow_up = np.maximum(t135, t72)
+    margin_beta_rear_elbow_up = t97 - np.abs(L1 * t132)
+    del t97
+    t135 = t43 & (t45 <= margin_alpha_rear_elbow_up) & (t69 <= margin_beta_rear_elbow_up)
+    t136 = sigma_uv_front_elbow_down * t132
+    del sigma_uv_front_elbow_down, t132
+    t137 = t136 - t110
+    t138 = t71 <= t137
+    t139 = -(t110 + t136)
+    del t136
+    t140 = t71 <= t139
+    below_beta_0_rear_elbow_up = np.maximum(t137, t78)
+    del t137
+    above_beta_0_rear_elbow_up = np.maximum(t139, t78)
+    del t139
+    t141 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
+    t142 = 1.0 / total_beta_0_rear_elbow_up
+    del total_beta_0_rear_elbow_up
+    t143 = t141 * t142
+    del t141
+    t144 = t133 - v_2_front_elbow_down * t143
+    del t133
+    left_along_rear_elbow_up = L1 - np.abs(t144)
+    t145 = t135 & t138 & t140 & t138 & t140 & (t77 <= left_along_rear_elbow_up)
     del t135
-    t139 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    t140 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
-    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t141 = np.arctan2(t139, 2.0 * np.sqrt(t140))
-    del t139, t140
-    t142 = below_beta_0_rear_elbow_up * above_beta_0_rear_elbow_up
-    del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t143 = t141 - np.arctan2(t130, 2.0 * np.sqrt(t142))
-    del t130, t142
-    t144 = t92 + t94
-    del t92, t94
-    t145 = t95 - t96
-    del t95, t96
-    margin_alpha_rear_elbow_down = t48 - np.abs(-(v_2 * t144 + v_1 * t145))
-    del v_1
-    margin_beta_rear_elbow_down = t48 - np.abs(-(L1 * t144))
-    del t48
-    t146 = t37 & (t39 <= margin_alpha_rear_elbow_down) & (t63 <= margin_beta_rear_elbow_down)
-    del t37, t39, t63
-    part_y_rear_elbow_down = sigma_uv * t144
-    del sigma_uv, t144
-    t147 = -(t66 + part_y_rear_elbow_down)
-    t148 = t65 <= t147
-    t149 = part_y_rear_elbow_down - t66
-    del part_y_rear_elbow_down
-    t150 = t65 <= t149
-    del t65
-    below_beta_0_rear_elbow_down = np.maximum(t147, t72)
-    del t147
-    above_beta_0_rear_elbow_down = np.maximum(t149, t72)
-    del t149
-    t151 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
-    total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
-    along_u_rear_elbow_down = t145 + v_2 * (t151 / total_beta_0_rear_elbow_down)
-    del t145, total_beta_0_rear_elbow_down
-    left_along_rear_elbow_down = L1 - np.abs(-along_u_rear_elbow_down)
-    t152 = t146 & t148 & t150 & t148 & t150 & (t71 <= left_along_rear_elbow_down)
+    t146 = L1 + t144
+    t147 = L1 - t144
+    del t144
+    t148 = t145 & t138 & t140 & (t77 <= t146) & (t77 <= t147)
+    del t138, t140, t145
+    unreachable_3 = np.logical_not(t148)
+    del t148
+    t149 = _runtime.poison(invalid | unreachable_3)
+    t150 = np.arctan2(up, out_rear_elbow_up)
+    del out_rear_elbow_up, up
+    below_alpha_rear_elbow_up = np.maximum(t146, t78)
     del t146
-    t153 = L1 - along_u_rear_elbow_down
-    t154 = L1 + along_u_rear_elbow_down
+    above_alpha_rear_elbow_up = np.maximum(t147, t78)
+    del t147
+    t151 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
+    t152 = 1.0 / total_alpha_rear_elbow_up
+    del total_alpha_rear_elbow_up
+    t153 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
+    t154 = np.arctan2(t151 * t152, t152 * t153)
+    del t151, t152, t153
+    t155 = 2.0 * np.sqrt(above_beta_0_rear_elbow_up) * np.sqrt(below_beta_0_rear_elbow_up)
+    del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
+    t156 = t154 - np.arctan2(t143, t142 * t155)
+    del t142, t143, t155
+    t157 = t101 + t103
+    del t101, t103
+    t158 = t104 - t105
+    del t104, t105
+    margin_alpha_rear_elbow_down = t54 - np.abs(-(v_2 * t157 + v_1 * t158))
+    del v_1
+    margin_beta_rear_elbow_down = t54 - np.abs(-(L1 * t157))
+    del t54
+    t159 = t43 & (t45 <= margin_alpha_rear_elbow_down) & (t69 <= margin_beta_rear_elbow_down)
+    del t43, t45, t69
+    part_y_rear_elbow_down = sigma_uv * t157
+    del sigma_uv, t157
+    t160 = -(t72 + part_y_rear_elbow_down)
+    t161 = t71 <= t160
+    t162 = part_y_rear_elbow_down - t72
+    del part_y_rear_elbow_down
+    t163 = t71 <= t162
+    del t71
+    below_beta_0_rear_elbow_down = np.maximum(t160, t78)
+    del t160
+    above_beta_0_rear_elbow_down = np.maximum(t162, t78)
+    del t162
+    t164 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
+    t165 = 1.0 / total_beta_0_rear_elbow_down
+    del total_beta_0_rear_elbow_down
+    t166 = t164 * t165
+    del t164
+    along_u_rear_elbow_down = t158 + v_2 * t166
+    del t158
+    left_along_rear_elbow_down = L1 - np.abs(-along_u_rear_elbow_down)
+    t167 = t159 & t161 & t163 & t161 & t163 & (t77 <= left_along_rear_elbow_down)
+    del t159
+    t168 = L1 - along_u_rear_elbow_down
+    t169 = L1 + along_u_rear_elbow_down
     del along_u_rear_elbow_down
-    t155 = t152 & t148 & t150 & (t71 <= t153) & (t71 <= t154)
-    del t148, t150, t152, t71
-    unreachable_4 = np.logical_not(t155)
-    del t155
-    t156 = _runtime.poison(invalid | unreachable_4)
-    t157 = np.arctan2(-t89, -out_front_elbow_down)
-    del out_front_elbow_down, t89
-    below_alpha_rear_elbow_down = np.maximum(t153, t72)
-    del t153
-    above_alpha_rear_elbow_down = np.maximum(t154, t72)
-    del t154, t72
-    t158 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    t159 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
+    t170 = t167 & t161 & t163 & (t77 <= t168) & (t77 <= t169)
+    del t161, t163, t167, t77
+    unreachable_4 = np.logical_not(t170)
+    del t170
+    t171 = _runtime.poison(invalid | unreachable_4)
+    t172 = np.arctan2(-t98, -out_front_elbow_down)
+    del out_front_elbow_down, t98
+    below_alpha_rear_elbow_down = np.maximum(t168, t78)
+    del t168
+    above_alpha_rear_elbow_down = np.maximum(t169, t78)
+    del t169, t78
+    t173 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
+    t174 = 1.0 / total_alpha_rear_elbow_down
+    del total_alpha_rear_elbow_down
+    t175 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t160 = np.arctan2(t158, 2.0 * np.sqrt(t159))
-    del t158, t159
-    t161 = below_beta_0_rear_elbow_down * above_beta_0_rear_elbow_down
+    t176 = np.arctan2(t173 * t174, t174 * t175)
+    del t173, t174, t175
+    t177 = 2.0 * np.sqrt(above_beta_0_rear_elbow_down) * np.sqrt(below_beta_0_rear_elbow_down)
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t162 = t160 - np.arctan2(t151, 2.0 * np.sqrt(t161))
-    del t151, t161
-    t163 = (wrist <= al * _runtime.DETERMINED) | (1.0 <= 0.0)
-    t164 = _runtime.status(invalid, unreachable_2, t163)
+    t178 = t176 - np.arctan2(t166, t165 * t177)
+    del t165, t166, t177
+    t179 = play_alpha <= _runtime.DETERMINED * play_alpha
+    t180 = (wrist <= al * _runtime.DETERMINED) | t179 | (play_beta <= _runtime.DETERMINED * play_beta)
+    del t179, wrist
+    t181 = t180 | (1.0 <= 0.0) | (lengths <= _runtime.DETERMINED * lengths)
+    del t180
+    t182 = _runtime.status(invalid, unreachable_2, t181)
     del unreachable_2
-    t165 = _runtime.status(invalid, unreachable_3, t163)
+    t183 = _runtime.status(invalid, unreachable_3, t181)
     del unreachable_3
-    t166 = _runtime.status(invalid, unreachable_4, t163)
+    t184 = _runtime.status(invalid, unreachable_4, t181)
     del unreachable_4
-    stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING
-    del wrist
-    t167 = h * slack
+    t185 = h * slack
     del slack
-    tangent = 4.0 * root * t29 - t167 * 0.00390625 <= _runtime.VANISHING * t167
-    del t167
-    t168 = stretched | tangent | (h <= _runtime.VANISHING * lengths)
-    del h, lengths, stretched
-    t169 = t168 | (L1 * fore <= _runtime.VANISHING * t30)
-    del t168, t30
-    t170 = _runtime.VANISHING * t29
-    del t29
-    t171 = t169 | (np.abs(t31) + np.abs(root) <= t170) | (fore <= t170)
-    del fore, root, t169, t170, t31
-    t172 = np.maximum(-(margin_alpha * 9.094947017729282e-13), margin_alpha)
+    tangent = 4.0 * root * t35 - t185 * 0.00390625 <= _runtime.VANISHING * t185
+    del t185
+    t186 = tangent | (h <= _runtime.VANISHING * lengths)
+    del h, lengths, tangent
+    t187 = t186 | (L1 * fore <= _runtime.VANISHING * t36)
+    del t186, t36
+    t188 = _runtime.VANISHING * t35
+    del t35
+    t189 = t187 | (np.abs(t37) + np.abs(root) <= t188) | (fore <= t188)
+    del fore, root, t187, t188, t37
+    t190 = np.maximum(-(margin_alpha * 9.094947017729282e-13), margin_alpha)
     del margin_alpha
-    t173 = _runtime.VANISHING * play_alpha
+    t191 = _runtime.VANISHING * play_alpha
     del play_alpha
-    spent_alpha = t172 <= t173
-    del t172
-    t174 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
+    t192 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
     del margin_beta
-    t175 = _runtime.VANISHING * play_beta
+    t193 = _runtime.VANISHING * play_beta
     del play_beta
-    spent_beta = t174 <= t175
-    del t174
-    parallel = -t66 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
-    del t66, v_2
-    t176 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    parallel = -t72 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
+    del t72, v_2
+    t194 = t189 | (t190 <= t191) | (t192 <= t193) | parallel
+    del parallel, t189, t190, t192
+    t195 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
     del left_along
-    t177 = _runtime.VANISHING * play
+    t196 = _runtime.VANISHING * play
     del play
-    t178 = t171 | spent_alpha | spent_beta | parallel | (t176 <= t177)
-    del parallel, t171, t176
-    t179 = t178 | (tangent & (spent_alpha | spent_beta))
-    del spent_alpha, spent_beta, t178
-    t180 = margin_alpha_front_elbow_down * 9.094947017729282e-13
-    t181 = np.maximum(-t180, margin_alpha_front_elbow_down)
-    del margin_alpha_front_elbow_down, t180
-    spent_alpha_front_elbow_down = t181 <= t173
-    del t181
-    t182 = margin_beta_front_elbow_down * 9.094947017729282e-13
-    t183 = np.maximum(-t182, margin_beta_front_elbow_down)
-    del margin_beta_front_elbow_down, t182
-    spent_beta_front_elbow_down = t183 <= t175
-    del t183
-    t184 = t179 | spent_alpha_front_elbow_down | spent_beta_front_elbow_down
-    del t179
-    t185 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
+    t197 = margin_alpha_front_elbow_down * 9.094947017729282e-13
+    t198 = np.maximum(-t197, margin_alpha_front_elbow_down)
+    del margin_alpha_front_elbow_down, t197
+    t199 = margin_beta_front_elbow_down * 9.094947017729282e-13
+    t200 = np.maximum(-t199, margin_beta_front_elbow_down)
+    del margin_beta_front_elbow_down, t199
+    t201 = t194 | (t195 <= t196) | (t198 <= t191) | (t200 <= t193)
+    del t194, t195, t198, t200
+    t202 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
     del v_2_front_elbow_down
-    t186 = left_along_front_elbow_down * 9.094947017729282e-13
-    t187 = np.maximum(-t186, left_along_front_elbow_down)
-    del left_along_front_elbow_down, t186
-    t188 = spent_alpha_front_elbow_down | spent_beta_front_elbow_down
-    del spent_alpha_front_elbow_down, spent_beta_front_elbow_down
-    t189 = t184 | (-t101 <= t185) | (t187 <= t177) | (tangent & t188)
-    del t101, t184, t185, t187, t188
-    t190 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t191 = np.maximum(-t190, margin_alpha_rear_elbow_up)
-    del margin_alpha_rear_elbow_up, t190
-    spent_alpha_rear_elbow_up = t191 <= t173
-    del t191
-    t192 = margin_beta_rear_elbow_up * 9.094947017729282e-13
-    spent_beta_rear_elbow_up = np.maximum(-t192, margin_beta_rear_elbow_up) <= t175
-    del margin_beta_rear_elbow_up, t192
-    t193 = t189 | spent_alpha_rear_elbow_up | spent_beta_rear_elbow_up
-    del t189
-    t194 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t194, left_along_rear_elbow_up) <= t177
-    del left_along_rear_elbow_up, t194
-    t195 = spent_alpha_rear_elbow_up | spent_beta_rear_elbow_up
-    del spent_alpha_rear_elbow_up, spent_beta_rear_elbow_up
-    t196 = t193 | spent_along_rear_elbow_up | (tangent & t195)
-    del spent_along_rear_elbow_up, t193, t195
-    t197 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t198 = np.maximum(-t197, margin_alpha_rear_elbow_down)
-    del margin_alpha_rear_elbow_down, t197
-    spent_alpha_rear_elbow_down = t198 <= t173
-    del t173, t198
-    t199 = margin_beta_rear_elbow_down * 9.094947017729282e-13
-    t200 = np.maximum(-t199, margin_beta_rear_elbow_down)
-    del margin_beta_rear_elbow_down, t199
-    spent_beta_rear_elbow_down = t200 <= t175
-    del t175, t200
-    t201 = t196 | spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down
-    del t196
-    t202 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t203 = np.maximum(-t202, left_along_rear_elbow_down)
-    del left_along_rear_elbow_down, t202
-    t204 = spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down
-    del spent_alpha_rear_elbow_down, spent_beta_rear_elbow_down
+    t203 = left_along_front_elbow_down * 9.094947017729282e-13
+    t204 = np.maximum(-t203, left_along_front_elbow_down)
+    del left_along_front_elbow_down, t203
+    t205 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t206 = np.maximum(-t205, margin_alpha_rear_elbow_up)
+    del margin_alpha_rear_elbow_up, t205
+    t207 = t201 | (-t110 <= t202) | (t204 <= t196) | (t206 <= t191)
+    del t110, t201, t202, t204, t206
+    t208 = margin_beta_rear_elbow_up * 9.094947017729282e-13
+    spent_beta_rear_elbow_up = np.maximum(-t208, margin_beta_rear_elbow_up) <= t193
+    del margin_beta_rear_elbow_up, t208
+    t209 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t209, left_along_rear_elbow_up) <= t196
+    del left_along_rear_elbow_up, t209
+    t210 = t207 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up
+    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t207
+    t211 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t212 = np.maximum(-t211, margin_alpha_rear_elbow_down)
+    del margin_alpha_rear_elbow_down, t211
+    t213 = margin_beta_rear_elbow_down * 9.094947017729282e-13
+    t214 = np.maximum(-t213, margin_beta_rear_elbow_down)
+    del margin_beta_rear_elbow_down, t213
+    t215 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t216 = np.maximum(-t215, left_along_rear_elbow_down)
+    del left_along_rear_elbow_down, t215
+    t217 = t210 | (t212 <= t191) | (t214 <= t193) | (t216 <= t196)
+    del t191, t193, t196, t210, t212, t214, t216
     return (
-        t14 + t79,
-        _runtime.wrap(t80 - t81) + t79,
-        _runtime.wrap(t83 - t86) + t79,
-        _runtime.wrap(t80 + t81) + t79,
-        _runtime.wrap(-(t86 + t83)) + t79,
-        t87 + t79,
-        t14 + t112,
-        _runtime.wrap(t113 - t116) + t112,
-        _runtime.wrap(t117 + t119) + t112,
-        _runtime.wrap(t113 + t116) + t112,
-        _runtime.wrap(t117 - t119) + t112,
-        t87 + t112,
-        t120 + t137,
-        _runtime.wrap(t138 - t141) + t137,
-        _runtime.wrap(t117 + t143) + t137,
-        _runtime.wrap(t138 + t141) + t137,
-        _runtime.wrap(t117 - t143) + t137,
-        t87 + t137,
-        t120 + t156,
-        _runtime.wrap(t157 - t160) + t156,
-        _runtime.wrap(t162 - t86) + t156,
-        _runtime.wrap(t157 + t160) + t156,
-        _runtime.wrap(-(t86 + t162)) + t156,
-        t87 + t156,
-        _runtime.status(invalid, unreachable, t163),
-        t164,
-        t165,
-        t166,
-        t201 | (t203 <= t177) | (tangent & t204),
+        t14 + t86,
+        _runtime.wrap(t87 - t90) + t86,
+        _runtime.wrap(t92 - t95) + t86,
+        _runtime.wrap(t87 + t90) + t86,
+        _runtime.wrap(-(t95 + t92)) + t86,
+        t96 + t86,
+        t14 + t122,
+        _runtime.wrap(t123 - t127) + t122,
+        _runtime.wrap(t128 + t130) + t122,
+        _runtime.wrap(t123 + t127) + t122,
+        _runtime.wrap(t128 - t130) + t122,
+        t96 + t122,
+        t131 + t149,
+        _runtime.wrap(t150 - t154) + t149,
+        _runtime.wrap(t128 + t156) + t149,
+        _runtime.wrap(t150 + t154) + t149,
+        _runtime.wrap(t128 - t156) + t149,
+        t96 + t149,
+        t131 + t171,
+        _runtime.wrap(t172 - t176) + t171,
+        _runtime.wrap(t178 - t95) + t171,
+        _runtime.wrap(t172 + t176) + t171,
+        _runtime.wrap(-(t95 + t178)) + t171,
+        t96 + t171,
+        _runtime.status(invalid, unreachable, t181),
+        t182,
+        t183,
+        t184,
+        t217,
     )
 
 
@@ -3633,7 +3774,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       beta are half the differences of the arms' angles, and sines of equal size are returned.
     - SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): rounded
       joints do not determine the tip to 1e-12 there; or if a half difference is at a right
-      angle and rounding of the target decides whether the tips can be so far apart.
+      angle, or the waist is tangent, and rounding of the target decides whether the arms reach
+      it.
     - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
       yaw and roll follow from displacements of the tips divided by d, so rounding errors are
       divided by d too.

@@ -132,7 +132,7 @@ class FreeTurn:
             self.program.determined(
                 usual + choose(spent, 2**40 * margin, 0),
                 usual,
-                f"the tolerance of the tip is used up: {meaning}",
+                f"no small turn keeps sin({name}) at most 1",
             )
         share = gains[1] ** 2 / (gains[0] ** 2 + gains[1] ** 2 + scale**2)
         share = let(f"share_{name}", choose(spent, sp.Piecewise((share, margin < 0), (0, True)), 0))

@@ -365,7 +365,7 @@ def report_short_wrist(program: Program, m: Dimensions, at_limit: sp.Basic) -> N
     program.determined(
         choose(at_limit, lengths - 4 * by_wrist, lengths),
         lengths,
-        "the wrist is short, and rounding decides what is within reach",
+        "the waist is tangent, or a sine at its limit, while the wrist is short",
     )
 
 

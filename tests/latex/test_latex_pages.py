@@ -538,3 +538,18 @@ def test_an_inverse_that_always_answers_says_so() -> None:
         "boundary.",
         "planar_2r": "",
     }
+
+
+def test_bookmarks_are_plain_text() -> None:
+    """A formula in a heading has a plain version, which a viewer shows beside the page."""
+    heading = re.compile(r"\\(?:sub)*section\{(.*\$.*)\}$", re.M)
+    found = [
+        h
+        for path in ROOT.glob("generated/latex/*.tex")
+        for h in heading.findall(path.read_text("utf-8"))
+    ]
+    assert found
+    for text in found:
+        shown, plain = re.fullmatch(r"\\texorpdfstring\{(.*)\}\{(.*)\}", text).groups()
+        assert "$" in shown
+        assert not re.search(r"\$|\\(?!_|&|%|textasciicircum)", plain), plain

@@ -162,7 +162,7 @@ class Cases:
         rest: list[str] = []
         first, scale = statement.name, self.algorithm.full(statement.scale)
         value = None if first else self.algorithm.full(statement.value)  # which can be long
-        if scale == 0 or (value and value.has(sp.Piecewise)):
+        if scale in (0, value) or (value and value.has(sp.Piecewise)):  # all is in the flags
             return Case(f"within rounding of the case that {meaning}", "", answer, "singular")
         if value:
             if operations(value) > LONGEST:

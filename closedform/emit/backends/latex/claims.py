@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from closedform.emit import terminal
 from closedform.emit.backends.latex.equations import reference
 from closedform.emit.backends.latex.formulas import flat
 from closedform.emit.backends.latex.prose import GREEK, Prose, escape, mixed, quoted
@@ -49,12 +50,19 @@ class Claims:
         return {
             "key": entry.erratum.key,
             "title": self.text(entry.erratum.title),
+            "heading": self._heading(entry.erratum.title),
             "gravity": entry.gravity.value.capitalize(),
             "verdict": ", ".join(entry.verdicts),
             "why": self.text(entry.erratum.why),
             "use": self.text(entry.erratum.use),
             "claims": [self.claim(c) for c in entry.claims],
         }
+
+    def _heading(self, title: str) -> str:
+        """A title with a plain version for the bookmarks, which show no formulas."""
+        shown, plain = self.text(title), escape(terminal.mixed(title, pretty=False))
+        plain = plain.replace(r"$\times$", "x").replace("$", "")
+        return shown if shown == plain else rf"\texorpdfstring{{{shown}}}{{{plain}}}"
 
     def rows(self) -> list[dict[str, Any]]:
         """The rows of the table; ``heading`` is the section of the paper, given once."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from closedform.algebra.trace import terms_of
@@ -19,15 +20,22 @@ class TooLargeError(ValueError):
     """A basis with its combinations is too expensive."""
 
 
-def logged_basis(
-    field: Field, system: Sequence[Polynomial]
-) -> tuple[list[Any], list[int], list[Monomial]]:
-    """A Groebner basis of a system, by Buchberger's algorithm.
+@dataclass(frozen=True)
+class Logged:
+    """A Groebner basis, and how it follows from its system."""
 
-    The elements are numbered: first those of the system, then one for each step.  A step consists
-    of a multiplier without unknowns, the new element, and the combination of earlier elements that
-    equals their product.  The second result lists the elements of the basis, the third their
-    leading monomials.
+    steps: list[Any]
+    """A multiplier without unknowns, the new element, and the combination of earlier elements that
+    equals their product."""
+    basis: list[int]
+    """The numbers of its elements: first come those of the system, then one for each step."""
+    elements: list[Polynomial]
+    leads: list[Monomial]
+    """The leading monomials of the elements."""
+
+
+def logged_basis(field: Field, system: Sequence[Polynomial]) -> Logged:
+    """A Groebner basis of a system, by Buchberger's algorithm.
 
     Raises :class:`TooLargeError` if the computation is too expensive.
     """
@@ -44,7 +52,8 @@ def logged_basis(
         )
     ]
     steps, basis = buchberger.written(minimal)
-    return steps, basis, [found[i][0] for i in minimal]
+    elements = [buchberger.elements[i] for i in minimal]
+    return Logged(steps, basis, elements, [found[i][0] for i in minimal])
 
 
 class _Buchberger:

@@ -30,7 +30,16 @@ from closedform.algebra.expressions import (
 )
 from closedform.algebra.tower import Tower
 from closedform.algebra.trace import factors_of, terms_of
-from closedform.verify import FORMAT, Field, Refused, inverted_in, matrix_of, staircase, system_of
+from closedform.verify import (
+    FORMAT,
+    Field,
+    Polynomial,
+    Refused,
+    inverted_in,
+    matrix_of,
+    staircase,
+    system_of,
+)
 
 Expr: TypeAlias = Any  # SymPy's annotations are partial
 
@@ -51,6 +60,18 @@ class System:
     """Unknown angles, as combinations of the angles whose sines and cosines are unknown."""
     unknowns: Sequence[sp.Symbol]
     """Unknowns that are not angles."""
+
+
+@dataclass(frozen=True)
+class Counted:
+    """A certified number of solutions, and the Groebner basis that gives it."""
+
+    number: int
+    """That of the certificate."""
+    count: int | None
+    """None if there are infinitely many."""
+    field: Field
+    basis: Sequence[Polynomial]
 
 
 class Record:
@@ -129,8 +150,8 @@ class Record:
             return [self.node(about), terms_of(rest[0]), factors_of(rest[1])]
         return [self.node(about), *(map(factors_of, rest) if kind == "value" else rest)]
 
-    def count(self, system: System) -> int | None:
-        """Certify the number of solutions of a system; returns the number of the certificate."""
+    def count(self, system: System) -> Counted | None:
+        """Certify the number of solutions of a system; None if no certificate can be written."""
         self.proofs += 1
         try:
             content = self._system(system)
@@ -139,17 +160,15 @@ class Record:
             self.missing[f"counts of solutions ({reason})"] += 1
             return None
         try:
-            steps, basis, leads = logged_basis(field, polynomials)
+            found = logged_basis(field, polynomials)
         except TooLargeError:
             self.missing["counts of solutions whose basis is too large"] += 1
             return None
-        return self._add(
-            kind="count",
-            **content,
-            steps=steps,
-            basis=basis,
-            count=staircase(leads, len(field.unknowns)),
+        count = staircase(found.leads, len(field.unknowns))
+        number = self._add(
+            kind="count", **content, steps=found.steps, basis=found.basis, count=count
         )
+        return Counted(number, count, field, found.elements)
 
     def inverse(
         self, function: str, branches: int, counts: Sequence[tuple[int | None, int]], each: int

@@ -22,7 +22,7 @@ from sympy.polys.groebnertools import groebner
 from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing
 
-from closedform.algebra.certificates import System, open_record
+from closedform.algebra.certificates import Counted, System, open_record
 from closedform.algebra.expressions import TRIGONOMETRIC
 
 Expr: TypeAlias = Any  # SymPy's annotations are partial
@@ -70,6 +70,8 @@ def count_solutions(
 
     An unknown that occurs in a sine or cosine is an angle, counted modulo a full turn. Every other
     symbol is a parameter. Raises `InfinitelyManyError` if there are infinitely many solutions.
+    While certificates are recorded, the basis of the certificate is counted, if SymPy agrees for
+    random parameters. Otherwise SymPy computes a basis for symbolic ones.
 
     Parameters
     ----------
@@ -92,7 +94,7 @@ def count_solutions(
     equations, saturate, given = list(equations), list(saturate), target_substitution or {}
     system = _System(equations, unknowns, given, saturate)
     draw = random.Random(seed)
-    record, written = open_record(), None
+    record, certified = open_record(), None
     if method == "generic":
         if record:
             stated = {
@@ -100,7 +102,10 @@ def count_solutions(
             }
             given = {**given, **system.merged(stated - {*given, *unknowns})}
             problem = System(equations, saturate, given, system.angles, system.plain)
-            written = record.count(problem)
+            certified = record.count(problem)
+        if certified and certified.count and certified.count == _count_at_a_point(system, draw):
+            distinct = _are_distinct(*_certified_at_a_point(certified, draw))
+            return SolutionCount(certified.count, distinct, "generic", (), certified.number)
         total, distinct = 1, True
         for variables, polynomials in system.blocks():
             free = {s for p in polynomials for s in p.free_symbols} - set(variables)
@@ -110,9 +115,10 @@ def count_solutions(
             monomials = _standard_monomials(basis, ring)
             alone = _are_distinct(_specialised(basis, parameters, draw), monomials)
             total, distinct = total * len(monomials), distinct and alone
-        if record and written is not None and record.certificates[written]["count"] != total:
+        if certified and certified.count != total:
             raise RuntimeError(f"{total} solutions are counted, but their certificate differs")
-        return SolutionCount(total, distinct, "generic", certificate=written)
+        number = certified.number if certified else None
+        return SolutionCount(total, distinct, "generic", (), number)
 
     ring = PolyRing(system.variables, QQ, grevlex)
     points, counts, distinct = [], set(), True
@@ -365,6 +371,47 @@ def _specialised(
             ]
         except ZeroDivisionError:
             continue
+
+
+def _count_at_a_point(system: _System, draw: random.Random) -> int | None:
+    """The number of solutions for random parameters, by SymPy: another route to a certificate."""
+    point, total = {p: _random_rational(draw) for p in system.parameters}, 1
+    for variables, polynomials in system.blocks():
+        ring = PolyRing(variables, QQ, grevlex)
+        try:
+            basis = groebner([_element(ring, p.subs(point)) for p in polynomials], ring)
+            total *= len(_standard_monomials(basis, ring))
+        except (InfinitelyManyError, NotRationalError):
+            return None
+    return total
+
+
+def _certified_at_a_point(
+    certified: Counted, draw: random.Random
+) -> tuple[list[PolyElement], list[Monomial]]:
+    """A certified basis with numbers for its parameters, where no leading coefficient vanishes.
+
+    There it is a basis too.  The second result are the monomials that no leading one divides.
+    """
+    field = certified.field
+    last = len(field.kinds) - 1
+    unknown = [last - i for i in reversed(field.unknowns)]  # the checker counts from the least one
+    ring = PolyRing([f"x{k}" for k in range(len(unknown))], QQ, grevlex)
+    leads = [field.leading(p)[0][::-1] for p in certified.basis]
+    while True:
+        point = [QQ(draw.randint(-99, 99), draw.randint(1, 20)) for _ in field.kinds]
+        basis = []
+        for p in certified.basis:
+            terms: dict[Monomial, Any] = {}
+            for powers, a in p.terms():
+                value = QQ(int(a.p), int(a.q))
+                for j, n in enumerate(powers):
+                    value *= point[j] ** int(n) if n and j not in unknown else 1
+                monomial = tuple([int(powers[j]) for j in unknown])
+                terms[monomial] = terms.get(monomial, QQ(0)) + value
+            basis.append(ring.from_dict(terms))
+        if all(g != 0 and lead == g.LM for g, lead in zip(basis, leads, strict=True)):
+            return basis, _standard_monomials(basis, ring)
 
 
 def _random_rational(draw: random.Random) -> Expr:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 import sympy as sp
 from sympy import cos, sin
 
+from closedform.algebra.certificates import Record, recording
 from closedform.algebra.normal_form import is_zero
 from closedform.algebra.solutions import (
     InfinitelyManyError,
@@ -118,3 +121,30 @@ def test_parametrised_rotation_is_a_rotation() -> None:
     R = rotation_parametrisation()
     assert is_zero(R.T * R - sp.eye(3)) and is_zero(R.det() - 1)
     assert len(R.free_symbols) == 3
+
+
+@pytest.mark.parametrize(
+    ("equations", "unknowns", "count", "distinct"),
+    [
+        (PLANAR_2R, [t1, t2], 2, True),
+        ([x**2 - 2 * l1 * x + l1**2], [x], 2, False),
+        ([x**2 - l1, y**3 - l2 * x], [x, y], 6, True),
+        ([l1 * sin(t1) + l2 * cos(t1) - l3, (y - l1) ** 2], [t1, y], 4, False),
+    ],
+)
+def test_a_certified_count_is_the_same(equations, unknowns, count: int, distinct: bool) -> None:
+    """Its basis tells, with numbers for the parameters, whether solutions coincide."""
+    alone = count_solutions(equations, unknowns)
+    with recording() as record:
+        found = count_solutions(equations, unknowns)
+    assert record.certificates[found.certificate]["count"] == count
+    assert (found.count, found.distinct) == (alone.count, alone.distinct) == (count, distinct)
+
+
+def test_a_certificate_that_differs_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    counted = Record.count
+    monkeypatch.setattr(
+        Record, "count", lambda self, system: replace(counted(self, system), count=3)
+    )
+    with recording(), pytest.raises(RuntimeError, match="2 solutions are counted, but their"):
+        count_solutions(PLANAR_2R, [t1, t2])

@@ -143,9 +143,11 @@ class Robot:
     def poses(self, n: int, seed: int = 0) -> Array:
         """Random poses near the base, for a hand without a forward map."""
         rng = np.random.default_rng(seed)
-        place, turn = rng.uniform(-1, 1, (2, n, 3))
         task = self.module.TASK
-        if set(task) & set(POSITION):
+        matrix = next((name[0] for name in task if name[1:] == "11"), "")
+        size = 3 if matrix else len(task)
+        place, turn = rng.uniform(-1, 1, (2, n, max(size, 3)))[..., :size]
+        if not matrix:
             lengths = np.array([name in POSITION for name in task])
             raised = np.array([name == "z" for name in task])
             return np.asarray(np.where(lengths, (place / 4 + 0.35 * raised) * self.size, turn))
@@ -157,7 +159,7 @@ class Robot:
         found[:, :3, :3] = np.linalg.solve(half.transpose(0, 2, 1), half)  # Cayley
         found[:, :3, 3] = place * np.array([0.1, 0.1, 0.25]) * self.size
         found[:, 2, 3] += 0.35 * self.size
-        return found
+        return found[:, :3, :3] if matrix == "R" else found
 
     def posture(self) -> Array:
         """A posture that can be assembled and is far from singular, the same on every run."""
@@ -225,6 +227,8 @@ class Robot:
     def rails(self) -> list[str]:
         """The slides along a line that is fixed on the ground; others lengthen or turn a link."""
         skeleton, q = self.module.SKELETON, self.draw(20)
+        if not any(joint.kind == "prismatic" for joint in skeleton.joints.values()):
+            return []
         given = [] if self.has_forward_map else [self.poses(20)]
         drawn = np.asarray(self.call("skeleton", *given, q)).reshape(-1, len(skeleton.points), 3)
         place = dict(zip(skeleton.points, np.moveaxis(drawn, 1, 0), strict=True))

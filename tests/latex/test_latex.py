@@ -250,7 +250,7 @@ def test_errors_stand_before_the_claims_with_all_that_was_found() -> None:
     text = article("awkward")
     section = text[text.index(r"\section{Errata}") : text.index(r"\section{Claims of the paper}")]
     for part in (
-        r"\subsection{100 \% of $\displaystyle x_1$ \& more\_}",
+        r"\subsection{\texorpdfstring{100 \% of $\displaystyle x_1$ \& more\_}{100 \% of x\_1 \& ",
         r"Changes a result or a design",
         r"Since $\displaystyle a < b$.",
         r"\textbf{eq. (2)} (p. 3\_4): $x_{1}$ is one",

@@ -550,6 +550,5 @@ def test_bookmarks_are_plain_text() -> None:
     ]
     assert found
     for text in found:
-        shown, plain = re.fullmatch(r"\\texorpdfstring\{(.*)\}\{(.*)\}", text).groups()
-        assert "$" in shown
+        plain = re.fullmatch(r"\\texorpdfstring\{.*\}\{(.*)\}", text)[1]
         assert not re.search(r"\$|\\(?!_|&|%|textasciicircum)", plain), plain

@@ -149,6 +149,8 @@ def test_it_is_drawn_and_tracked_as_any_mechanism(robot: ModuleType) -> None:
     q, status = robot.ik(x)
     k = int(np.flatnonzero(status != UNREACHABLE)[0])
     assert plot.mechanism(robot, q[k], x=x) is not None
+    assert plot.branches(robot) is not None
+    assert plot.workspace(robot, resolution=40) is not None
     plt.close("all")
     assert np.allclose(Robot(robot).nearest(x, q[k] + 1e-3).q, q[k])
 

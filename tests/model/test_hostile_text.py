@@ -508,7 +508,8 @@ def test_macros_of_headers_are_no_names(flags: list[str], tmp_path: Path) -> Non
     )
     command = [compiler(), *flags, "-dM", "-E", str(tmp_path / "a.c")]
     run = subprocess.run(command, capture_output=True, text=True, check=True)
-    macros = re.findall(r"^#define ([A-Za-z]\w*) ", run.stdout, re.M)
+    macros = {*re.findall(r"^#define ([A-Za-z]\w*) ", run.stdout, re.M)}
+    macros -= {"always_inline"}  # of the quick compiler of the tests
     assert len(macros) > 40
     for macro in macros:
         with pytest.raises(ValueError):

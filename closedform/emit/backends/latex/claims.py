@@ -60,9 +60,9 @@ class Claims:
 
     def _heading(self, title: str) -> str:
         """A title with a plain version for the bookmarks, which show no formulas."""
-        shown, plain = self.text(title), escape(terminal.mixed(title, pretty=False))
+        plain = escape(terminal.mixed(title, pretty=False))
         plain = plain.replace(r"$\times$", "x").replace("$", "")
-        return shown if shown == plain else rf"\texorpdfstring{{{shown}}}{{{plain}}}"
+        return rf"\texorpdfstring{{{self.text(title)}}}{{{plain}}}"
 
     def rows(self) -> list[dict[str, Any]]:
         """The rows of the table; ``heading`` is the section of the paper, given once."""

@@ -88,7 +88,8 @@ class Quantities:
 
         ``names`` are the symbols of the function, of which more may be assumed.
         """
-        meanings = (self.former, *([self.narrow] if names else []), self.known, self.entries)
+        # an algorithm computes the coordinates itself
+        meanings = (self.former, *([self.narrow] if names else [self.entries]), self.known)
         every = {left: k for meaning in meanings for left, k in meaning.items()}
         found = {left: k for left, k in every.items() if left not in without}
         pairs = [k for m in meanings for left, k in m.items() if left not in without]

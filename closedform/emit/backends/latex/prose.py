@@ -299,7 +299,7 @@ class Prose:
         self.parts_of_branches = {part for label in labels for part in label.split("_")} - names
         """The words of the names of branches."""
         letters = {n for n in drawn if re.fullmatch("[A-Z]", n)}
-        some = "".join(sorted(letters)) or "?"
+        some = "".join(sorted(letters)) or "\0"  # a text has no NUL
         self.lines = re.compile(rf"[{some}]{{2,}}")
         """Lines and triangles through points that have letters: ``AC``, ``BDP``."""
         self.lettered = re.compile(rf"(?<![\w$\\{{^_-])[{some}]+(?![\w'}}])")

@@ -5,6 +5,7 @@ from closedform.derivations.claims.h6ar import state
 from closedform.derivations.h6ar_free_turn import (
     as_published,
     free_turn,
+    report_short_wrist,
     turn_step,
     turned_by,
     with_waist,
@@ -45,7 +46,6 @@ from closedform.derivations.h6ar_mechanism import (
     product,
     psi,
     reach,
-    report_short_wrist,
     solve_mid_plane,
     straight,
     target,

@@ -231,6 +231,16 @@ def with_waist(free: FreeTurn, upper: Pair, outward: sp.Expr) -> tuple[FreeTurn,
     return free, choose(tangent, L_theta * free.tilt / far**2, 0)
 
 
+def report_short_wrist(program: Program, m: Dimensions, at_limit: sp.Basic) -> None:
+    """Report SINGULAR at a limit where a short wrist lets an answer miss more than is promised."""
+    by_wrist, lengths = real("by_wrist", nonnegative=True), sum(m)
+    program.determined(
+        choose(at_limit, lengths - 4 * by_wrist, lengths),
+        lengths,
+        "the waist is tangent, or a sine at its limit, while the wrist is short",
+    )
+
+
 def turn_step(d: Derivation, m: Dimensions) -> None:
     """Add the step of the derivation that explains the free turn."""
     tilt, drawn = bent_whole(m, pair(theta23A - theta2A))

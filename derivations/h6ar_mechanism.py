@@ -359,16 +359,6 @@ def allowances(
     return reached, beside
 
 
-def report_short_wrist(program: Program, m: Dimensions, at_limit: sp.Basic) -> None:
-    """Report SINGULAR at a limit where a short wrist lets an answer miss more than is promised."""
-    by_wrist, lengths = real("by_wrist", nonnegative=True), sum(m)
-    program.determined(
-        choose(at_limit, lengths - 4 * by_wrist, lengths),
-        lengths,
-        "the waist is tangent, or a sine at its limit, while the wrist is short",
-    )
-
-
 def distances_across_gap(
     program: Program,
     m: Dimensions,

@@ -57,12 +57,10 @@ class Swing:
 
 
 @dataclass(frozen=True)
-class Place:
-    """A body with the known point ``near`` that slides keep from turning to the body ``like``."""
+class _One:
+    """A group of one body."""
 
     body: str
-    like: str
-    near: str
 
     @property
     def bodies(self) -> tuple[str, ...]:
@@ -70,29 +68,27 @@ class Place:
 
 
 @dataclass(frozen=True)
-class Hold:
+class Place(_One):
+    """A body with the known point ``near`` that slides keep from turning to the body ``like``."""
+
+    like: str
+    near: str
+
+
+@dataclass(frozen=True)
+class Hold(_One):
     """A body that is held at known points, or at one and by slides on known bodies."""
 
-    body: str
     points: tuple[str, ...]
     slides: tuple[int, ...] = ()
 
-    @property
-    def bodies(self) -> tuple[str, ...]:
-        return (self.body,)
-
 
 @dataclass(frozen=True)
-class EitherWay:
+class EitherWay(_One):
     """A body with the known point ``near``, parallel to the body ``like`` but for half a turn."""
 
-    body: str
     like: str
     near: str
-
-    @property
-    def bodies(self) -> tuple[str, ...]:
-        return (self.body,)
 
 
 Group = Meet | Swing | Place | Hold | EitherWay

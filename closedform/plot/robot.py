@@ -227,16 +227,19 @@ class Robot:
     def rails(self) -> list[str]:
         """The slides along a line that is fixed on the ground; others lengthen or turn a link."""
         skeleton, q = self.module.SKELETON, self.draw(20)
-        if not any(joint.kind == "prismatic" for joint in skeleton.joints.values()):
+        slides = {
+            name: joint.points
+            for name, joint in skeleton.joints.items()
+            if joint.kind == "prismatic" and joint.points[0] in skeleton.ground
+        }
+        if not slides:
             return []
         given = [] if self.has_forward_map else [self.poses(20)]
         drawn = np.asarray(self.call("skeleton", *given, q)).reshape(-1, len(skeleton.points), 3)
         place = dict(zip(skeleton.points, np.moveaxis(drawn, 1, 0), strict=True))
         found = []
-        for name, joint in skeleton.joints.items():
-            if joint.kind != "prismatic" or joint.points[0] not in skeleton.ground:
-                continue
-            gaps = place[joint.points[1]] - place[joint.points[0]]
+        for name, (start, end) in slides.items():
+            gaps = place[end] - place[start]
             gaps = gaps[np.isfinite(gaps).all(-1)]
             if len(gaps) and np.linalg.matrix_rank(gaps, tol=STILL * self.size) < 2:
                 found.append(name)

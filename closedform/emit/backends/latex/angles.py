@@ -247,9 +247,26 @@ class _InAngles:
     def _choose(self, unknown: sp.Symbol, solution: sp.Expr, usual: sp.Expr) -> None:
         """Note the flags of free joints that put other names than the usual ones in an angle."""
         for flag in self.freeing:
-            there = self._angle(solution, flag)
-            if not there.is_number and there != self._angle(usual, flag):
+            there = self._names_in(solution, flag)
+            if there and there != self._names_in(usual, flag):
                 self.chosen.setdefault(flag, []).append(unknown)
+
+    def _names_in(self, value: sp.Expr, flag: sp.Symbol) -> set[sp.Symbol]:
+        """The names that remain in a value where a flag holds."""
+        flags = self.usual | {flag: sp.true}
+        pending, seen, left = [value], set[sp.Symbol](), set[sp.Symbol]()
+        while pending:
+            found = substitute(substitute(pending.pop(), self.names), flags).free_symbols - seen
+            inner = {n for n in found if self._is_inner(n)}
+            pending += (self.raw[n] for n in inner)
+            left |= found - inner
+            seen |= found
+        return left
+
+    def _is_inner(self, name: sp.Symbol) -> bool:
+        """Whether a name is a sine or a cosine of an angle to come, or only serves them."""
+        paired = any(name in pair for pair in self.pairs)
+        return name in self.raw and (name in self.hidden or (paired and name not in self.names))
 
     def _sums(self) -> None:
         """State the results that are sums of angles, as soon as these are known."""
@@ -311,13 +328,10 @@ class _InAngles:
     def _plain(self, value: sp.Expr, flag: sp.Symbol | None = None) -> sp.Expr:
         """A value without the names of sines and cosines, and what only serves them."""
         flags = self.usual | ({flag: sp.true} if flag else {})
-        paired = {n for pair in self.pairs for n in pair}
         for _ in range(len(self.raw) + 1):
             value = substitute(substitute(value, self.names), flags)
             inner = {
-                n: substitute(self.raw[n], flags)
-                for n in value.free_symbols & self.raw.keys()
-                if n in self.hidden or (n in paired and n not in self.names)
+                n: substitute(self.raw[n], flags) for n in value.free_symbols if self._is_inner(n)
             }
             if not inner:
                 break

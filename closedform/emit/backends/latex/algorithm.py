@@ -379,6 +379,8 @@ class Algorithm:
                 parts = list(self._statement(statement))
             if statement in told:  # with its conditions
                 parts = [part for part in parts if part[0] == "let"]
+            if not parts and symbol in self.values.keys() - self.needed:
+                continue  # nothing that is printed depends on it
             used = {s for e in self._expressions(statement) for s in e.free_symbols}
             if isinstance(statement, Let | Bound) and used & branched:
                 branched.add(statement.symbol)

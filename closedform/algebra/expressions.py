@@ -82,6 +82,8 @@ class Derivatives:
         if e.is_Mul:
             rates = [(k, rate) for k, rate in enumerate(map(self.of, e.args)) if rate != 0]
             return sp.Add(*(sp.Mul(rate, *e.args[:k], *e.args[k + 1 :]) for k, rate in rates))
+        if e.is_Pow and e.exp.is_Rational:
+            return e.exp * e.base ** (e.exp - 1) * self.of(e.base)
         if isinstance(e, sp.sin):
             return sp.cos(e.args[0]) * self.of(e.args[0])
         if isinstance(e, sp.cos):

@@ -481,10 +481,11 @@ class Chain:
                 needed |= {s for e in values if e is not None for s in e.free_symbols}
                 kept.insert(0, statement)
         self.program.body[:] = kept
+        left = set(kept)
         self.links[:] = [
             replace(
                 link,
-                body=tuple(s for s in link.body if s in kept),
+                body=tuple(s for s in link.body if s in left),
                 means={s: e for s, e in link.means.items() if s in needed or s.is_number},
             )
             for link in self.links

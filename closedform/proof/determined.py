@@ -10,6 +10,7 @@ import sympy as sp
 
 from closedform.algebra import certificates
 from closedform.algebra.balls import Evaluator, pivot_rows
+from closedform.algebra.expressions import Derivatives
 from closedform.model.inverse import Inverse
 from closedform.proof.posture import Posture
 
@@ -76,9 +77,9 @@ def _linear_rows(
     equations: Sequence[Expr], columns: Sequence[Expr], known: Mapping[Expr, Expr]
 ) -> tuple[list[list[Expr]], bool]:
     """The coefficients of the linear equations, and whether there are nonlinear ones."""
-    rows, nonlinear = [], False
+    rows, nonlinear, along = [], False, [Derivatives(x) for x in columns]
     for e in equations:
-        slopes = [e.diff(x) if e.has(x) else sp.S.Zero for x in columns]
+        slopes = [rate.of(e) for rate in along]
         if any(slope.has(*columns) for slope in slopes):
             nonlinear = True
         else:

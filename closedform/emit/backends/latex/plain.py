@@ -285,6 +285,8 @@ def _absolute(value: sp.Expr) -> Any:
         (first, condition), (second, _) = e.args
         return bool(condition == (first >= 0) and second == -first)
 
+    if not value.has(sp.Piecewise):
+        return value
     value = value.replace(is_absolute, lambda e: sp.Abs(e.args[0][0], evaluate=False))
     return value.replace(sp.Mul, _times_its_sign)
 

@@ -212,14 +212,10 @@ class Fraction:
     def __init__(self, field: Field, num: Polynomial, den: Polynomial):
         self.field, num, den = field, field.reduced(num), field.reduced(den)
         require(den != 0, "a denominator is identically zero")
-        if not den.is_one():
-            common = num.gcd(den) * den.leading_coefficient()
-            num, den = (num, den) if common.is_one() else (num / common, den / common)
-        self.num, self.den = num, den
+        common = den if den.is_one() else num.gcd(den) * den.leading_coefficient()
+        self.num, self.den = (num, den) if common.is_one() else (num / common, den / common)
 
     def __add__(self, other: Fraction) -> Fraction:
-        if self.den == other.den:
-            return Fraction(self.field, self.num + other.num, self.den)
         common = self.den.gcd(other.den)
         left, right = self.den / common, other.den / common
         return Fraction(self.field, self.num * right + other.num * left, self.den * right)

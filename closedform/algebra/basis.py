@@ -10,8 +10,9 @@ from typing import Any, TypeAlias
 from closedform.algebra.trace import terms_of
 from closedform.verify import Field, Lead, Monomial, Polynomial, divides, shifted
 
-LIMIT = 1_000_000
-"""At most this many terms are reduced for a basis, which takes some seconds."""
+LIMIT = 250_000
+"""At most this many terms are reduced for a basis, which takes a second.  Those that are found in
+the mechanisms of this repository need at most 60,000."""
 
 Combination: TypeAlias = "dict[int, Polynomial]"
 

@@ -479,6 +479,11 @@ for sine in ("alpha", "beta"):
     corrected = free.correction(sine, margin, slopes, size, "a sine is at most 1")
     spent = corrected.spent
     turn = p.let(f"turn_{sine}", choose(spent, corrected.linear_turn(), 0))
+    p.determined(
+        choose(spent, 1 - corrected.strain(turn), 1),
+        1,
+        f"no small turn keeps sin({sine}) at most 1",
+    )
     upper_turn = p.let(f"lean_{sine}", choose(spent, free.upper_turn(turn, corrected.aside), 0))
     fore_turn = p.let(f"fore_turn_{sine}", choose(spent, free.fore * turn, 0))
     back, on = turned_by(upper_turn), turned_by(fore_turn)

@@ -22,6 +22,8 @@ from closedform import Derivation, Program, choose, real, sign_of, used_up
 
 WIDER = 2**7
 """The root of how many tolerances a turn may take at a tangent waist, where three events meet."""
+EVENTS = 2**2
+"""By how many tolerances real arms may be beyond a limit elsewhere, where errors add."""
 
 
 class Correction(NamedTuple):
@@ -38,7 +40,13 @@ class Correction(NamedTuple):
     missing: sp.Symbol
     slope: sp.Symbol
     tip_rate: sp.Symbol
+    usual_rates: Sequence[sp.Symbol]
     floor: sp.Expr
+
+    def strain(self, turn: sp.Expr) -> sp.Expr:
+        """How far a free turn and the one aside move the tip, in units of the usual tolerance."""
+        free, aside = self.usual_rates
+        return 2**40 * (free * sp.Abs(turn) + aside * sp.Abs(self.aside))
 
     def linear_turn(self) -> sp.Expr:
         """The free turn if the area is linear in it."""
@@ -114,26 +122,20 @@ class FreeTurn:
             root = sqrt(self.slack * square / 2) / 10**6
             return (by + wider * root) / (wider**2 * self.slack)
 
-        tip_rates = [
-            let(f"heavy_{k}_{name}", choose(spent, rate(*way, self.wider), 1))
-            for k, way in enumerate(ways)
-        ]
+        kinds = {"heavy": self.wider} | ({} if self.wider == 1 else {"usual": sp.S.One})
+        tip_rates, *usual = (
+            [
+                let(f"{kind}_{k}_{name}", choose(spent, rate(*way, wider), 1))
+                for k, way in enumerate(ways)
+            ]
+            for kind, wider in kinds.items()
+        )
         gains = [
             let(f"gain_{k}_{name}", choose(spent, sp.Abs(s) / e, 0))
             for k, (s, e) in enumerate(zip(slopes, tip_rates, strict=True))
         ]
         play = let(f"play_{name}", scale + choose(spent, sum(gains), 0))
         self.program.bound(f"kept_{name}", margin, choose(spent, self.leniency, 1) * play, meaning)
-        if self.wider != 1:
-            usual = sum(
-                sp.Abs(s) / rate(*way, sp.S.One) for s, way in zip(slopes, ways, strict=True)
-            )
-            usual = let(f"usual_{name}", scale + choose(spent, usual, 0))
-            self.program.determined(
-                usual + choose(spent, 2**40 * margin, 0),
-                usual,
-                f"no small turn keeps sin({name}) at most 1",
-            )
         share = gains[1] ** 2 / (gains[0] ** 2 + gains[1] ** 2 + scale**2)
         share = let(f"share_{name}", choose(spent, sp.Piecewise((share, margin < 0), (0, True)), 0))
         floors = [scale * e / 2**24 for e in tip_rates]
@@ -145,6 +147,7 @@ class FreeTurn:
             missing=let(f"lack_{name}", margin * (share - 1)),
             slope=slopes[0],
             tip_rate=tip_rates[0],
+            usual_rates=usual[0] if usual else tip_rates,
             floor=floors[0],
         )
 
@@ -226,7 +229,7 @@ def with_waist(free: FreeTurn, upper: Pair, outward: sp.Expr) -> tuple[FreeTurn,
         left=let("left_rate", choose(tangent, sp.Abs(outward) / far, 1)),
         curve=let("left_curve", choose(tangent, 1 / far, 0)),
         wider=let("wider", choose(sp.And(tangent, not_stretched), WIDER, 1)),
-        leniency=let("leniency", choose(lenient, WIDER**2, 1)),
+        leniency=let("leniency", choose(lenient, WIDER**2, EVENTS)),
     )
     return free, choose(tangent, L_theta * free.tilt / far**2, 0)
 

@@ -57,11 +57,14 @@ def test_a_tangent_waist_and_arms_a_right_angle_apart_are_not_lost(published) ->
 
 
 def test_three_events_with_dissimilar_lengths_are_not_lost(published) -> None:
-    """Rounding moves the tip more the shorter the wrist is; what misses more is SINGULAR."""
-    lengths = draw_lengths(np.random.default_rng(71), robot("h6ar"), 60_000)
+    """Rounding moves the tip more the shorter the wrist is; what misses more is SINGULAR.
+
+    Turns that keep the arms within reach move the tip too.
+    """
+    lengths = draw_lengths(np.random.default_rng(107), robot("h6ar"), 60_000)
     params = published.Parameters(*lengths.T)
     with np.errstate(all="ignore"):
-        x = published.fk(with_tangent_waist(published, len(lengths), 71, params), params)
+        x = published.fk(with_tangent_waist(published, len(lengths), 107, params), params)
     rows = np.isfinite(x).all(-1)
     x, lengths = x[rows], lengths[rows]
     assert len(x) > 15_000

@@ -44,7 +44,8 @@ class LinksAndObliqueWrist(Links):
         """The pair of the turn, changed by no more than rounding, with the rest within reach.
 
         Steps fail where a small turn reverses the direction of the axis.  There the wrist is nearly
-        aligned, and its middle turn changes the axis as if its axes were at right angles.
+        aligned, and its middle turn changes the axis as if its axes were at right angles.  If the
+        turn decides whether it can be aligned, it turns to where the offset has a known direction.
         """
         start = _Wrist(self, turn)
         best = start.improved(turn.name)
@@ -53,6 +54,11 @@ class LinksAndObliqueWrist(Links):
             near = self._aligned(start).nearest(turn.renamed(turn.pair, name))
             detour = start.moved(turn.renamed(near, f"{name}_0"))
             best = best.better_of(detour, f"{name}b")
+        if start.aligns_by_turn:
+            for side, name in ((1, f"{turn.name}_l"), (-1, f"{turn.name}_r")):
+                pair = start.directed(sp.Integer(side), name)
+                detour = start.moved(turn.renamed(pair, f"{name}_to"))
+                best = best.better_of(detour, f"{name}b")
         return best.turn.pair
 
     def _aligned(self, at: _Wrist) -> LinksAndWrist:
@@ -107,7 +113,10 @@ class _Wrist:
         """How far the rest is out of reach; the middle joint changes by the root of a tilt."""
         let, size = self.turn.let, self.turn.chain.size
         steeper = let("steeper", sp.Max(0, self.tilt.miss - 2 * ROUNDING * size))
-        return let("missed", sp.sqrt(size * steeper) + self.reach.miss)
+        turned = sp.sqrt(size * steeper)
+        if self.aligns_by_turn:
+            turned = sp.Piecewise((steeper, self._near), (turned, True))
+        return let("missed", turned + self.reach.miss)
 
     def along(
         self, name: str, value: Callable[[Pair], sp.Matrix]
@@ -148,10 +157,57 @@ class _Wrist:
         level = turn.let("level", other * w[2])
         square = (1 - other) * (1 + other)
         reach = turn.let("tilting", sp.sqrt(w[0] ** 2 + w[1] ** 2) * sp.sqrt(sp.Max(0, square)))
-        zero = sp.S.Zero
-        point = (turn.let("tilted", size * (z - level)), zero)
+        zero, tilted = sp.S.Zero, z - level
+        if self.aligns_by_turn:
+            (sine, cosine), _ = self._apart
+            spread = -dz / sp.Max(self._onward_across, LAST)
+            tilted, dz, reach = (
+                sp.Piecewise((near, self._near), (far, True))
+                for near, far in ((sine, tilted), (cosine * spread, dz), (self.across, reach))
+            )
+        point = (turn.let("tilted", size * tilted), zero)
         rate = (turn.let("dtilted", size * dz), zero)
         return Within(point, rate, rate[0] ** 2, zero, turn.let("most", size * reach))
+
+    @property
+    def aligns_by_turn(self) -> bool:
+        """Whether the turn changes the angle between the first two axes of the wrist.
+
+        Then it decides whether the outer axes can coincide.
+        """
+        return not self.onward[1].is_zero_matrix
+
+    @cached_property
+    def _onward_across(self) -> sp.Symbol:
+        """The sine between the first two axes of the wrist."""
+        B, _ = self.onward
+        return self.turn.let("onward_across", sp.sqrt(B[2, 0] ** 2 + B[2, 1] ** 2))
+
+    @cached_property
+    def _near(self) -> sp.Basic:
+        """Whether the outer axes are nearly in line, and the smallest angle between them.
+
+        The angle is at least the difference of those of neighbouring axes.  Cosines of small angles
+        do not say so, but sines do.
+        """
+        w = self.goal.last
+        return sp.And(4 * self.across <= sp.sqrt(w[0] ** 2 + w[1] ** 2), self._apart[1] > 0)
+
+    @cached_property
+    def _apart(self) -> tuple[tuple[sp.Expr, sp.Expr], sp.Expr]:
+        """Sine and cosine of the least angle between the outer axes, or to where they are opposite.
+
+        And the cosine, without its sign.
+        """
+        let, w, B = self.turn.let, self.goal.last, self.onward[0]
+        (*_, az), _ = self.axis
+        side = let("in_line", sign_of(az))
+        s, c, sine, cosine = self._onward_across, B[2, 2], sp.sqrt(w[0] ** 2 + w[1] ** 2), w[2]
+        apart = (
+            let("apart_s", s * cosine - side * c * sine),
+            let("apart_c", c * cosine + side * s * sine),
+        )
+        return apart, side * apart[1]
 
     def closer(self) -> Pair:
         """The smallest turn to within reach of the links, if the middle joint follows it.
@@ -163,14 +219,18 @@ class _Wrist:
         return self.turn.by_half(self.turn.let("part", half * (middle.part - middle.curve * half)))
 
     @cached_property
+    def _ends(self) -> list[tuple[list[sp.Expr], list[sp.Expr]]]:
+        """The point q and the offset, with their rates."""
+        return [self.along(n, e) for n, e in (("q", self.goal.q), ("o", self.goal.offset))]
+
+    @cached_property
     def reach(self) -> Within:
         """The end of the links, where the wrist has the tilt that is nearest to the wanted one.
 
         Its rate is that along the curve of the turn and the middle joint.
         """
         let, goal = self.turn.let, self.goal
-        (qx, qy, *_), (dqx, dqy, *_) = self.along("q", goal.q)
-        (ox, oy, *_), (dox, doy, *_) = self.along("o", goal.offset)
+        ((qx, qy, *_), (dqx, dqy, *_)), ((ox, oy, *_), (dox, doy, *_)) = self._ends
         (us, uc), spin = self._lift
         ex, ey = let("ex", uc * ox - us * oy), let("ey", us * ox + uc * oy)
         part = self._middle.part
@@ -179,12 +239,16 @@ class _Wrist:
         least, most = let("fold", sp.Abs(goal.l1 - goal.l2)), let("full", goal.l1 + goal.l2)
         bend = let("bends", dx**2 + dy**2)
         x, y = let("x", qx - ex), let("y", qy - ey)
-        if not self.can_be_aligned:
+        if not (self.can_be_aligned or self.aligns_by_turn):
             return Within((x, y), (dx, dy), bend, least, most)
         # rounding may turn an aligned wrist and its offset anywhere
         loose = self.across <= sp.Rational(1, 2**46)
         offset = let("length", sp.sqrt(ox**2 + oy**2))
         apart = let("apart", sp.Max(0, least - offset, offset - most))
+        if self.aligns_by_turn:
+            # or a little, if it is nearly aligned
+            spare = let("spare", offset * sp.Rational(1, 2**47) / sp.Max(self.across, LAST))
+            least, most = sp.Max(0, least - spare), most + spare
         x, y, dx, dy, low, high = (
             let(f"{n}_any", sp.Piecewise((free, loose), (held, True)))
             for n, free, held in (
@@ -197,6 +261,33 @@ class _Wrist:
             )
         )
         return Within((x, y), (dx, dy), let("bends_any", dx**2 + dy**2), low, high)
+
+    def directed(self, side: sp.Expr, name: str) -> Pair:
+        """Turned so that the wrist can turn the offset to where the links reach.
+
+        The angle between the last two axes is constant.  If the first turn of the wrist is known,
+        this is an equation that is linear in the pair.
+        """
+        turn, goal = self.turn.renamed(self.turn.pair, name), self.goal
+        let, size = turn.let, turn.chain.size
+        ((qx, qy, *_), _), ((ox, oy, *_), _) = self._ends
+        (ax, ay, az), _ = self.axis
+        B, dB = self.onward
+        (x, y), least, most = self.reach.point, sp.Abs(goal.l1 - goal.l2), goal.l1 + goal.l2
+        wanted = let("reached", sp.Max(least, sp.Min(sp.sqrt(x**2 + y**2), most)))
+        r, e = let("r", sp.sqrt(qx**2 + qy**2)), let("e", sp.sqrt(ox**2 + oy**2))
+        u, _ = Offset((qx, qy), r, e).leaving(turn.chain, wanted, side, f"to_{turn.name}")
+        us, uc = let("us", u.s), let("uc", u.c)
+        length = sp.Max(e, LAST * size)
+        s, c = (
+            let("lift_s", (ox * us - oy * uc) / length),
+            let("lift_c", (ox * uc + oy * us) / length),
+        )
+        last = sp.Matrix([let("px", c * ax + s * ay), let("py", c * ay - s * ax), az])
+        missed = let("beside", B[:, 2].dot(last) - goal.last[2])
+        rate = let("rate", dB[:, 2].dot(last))
+        small = 2 * sp.Abs(missed) <= sp.Abs(rate)
+        return turn.by_half(let("half", sp.Piecewise((-missed / (2 * rate), small), (0, True))))
 
     @cached_property
     def can_be_aligned(self) -> bool:
@@ -253,6 +344,17 @@ class _Wrist:
             opposite = let("opposite", size - sense * az)
             near = let("near", (ax**2 + ay**2) / (1 + size) + opposite)
             margins = (near, 2 * h - near)[::sense]
+        elif self.aligns_by_turn:
+            (sine, _), cosine = self._apart
+            least = sp.Abs(sine)
+            near = let(
+                "near", (self.across - least) * (self.across + least) / (sp.Abs(az) + cosine)
+            )
+            below, above = sp.And(self._near, az > 0), sp.And(self._near, az < 0)
+            margins = (
+                sp.Piecewise((near, below), (2 * h - near, above), (margins[0], True)),
+                sp.Piecewise((near, above), (2 * h - near, below), (margins[1], True)),
+            )
         below, above = (
             let(f"{n}_most", sp.Max(0, sp.Min(margin, 2 * h)))
             for n, margin in zip(("below", "above"), margins, strict=True)

@@ -107,6 +107,11 @@ def test_no_posture_is_lost_where_a_joint_between_lets_the_last_axis_be_as_the_f
     bases = [q for q in found if q is not None][: 2 * BASES]
     assert len(bases) == 2 * BASES
     check(robot, around(np.array(bases), rng))
+    q = rng.uniform(-np.pi, np.pi, (2000, 6))
+    q[:, 3:5] = rng.choice((-1, 1), (2000, 2)) * np.pi / 2
+    q[::2, 1] = 0  # a straight elbow
+    away = rng.choice((0, 1e-15, 1e-12, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4), (2000, 1))
+    check(robot, q + away * rng.choice((-1, 0, 1), q.shape))
 
 
 def test_no_posture_is_lost_where_an_elbow_with_an_offset_is_stretched_and_axis_6_is_passed(

@@ -179,6 +179,11 @@ class WristMaker(Maker):
             pair = self._turn(middle, (a, b, c), past, scale="1", choice=FLIP)
         of = "" if sense > 0 else "-"
         self.around((first, middle, last), between, pair, lambda e: f"{x}: {of}{e}")
+        if onward:  # the outer axes may be nearly in line, where a cosine says little of the tilt
+            self.add(f"ik.program.match({self.aside}, ik.size, 'the wrist tilts as far')")
+
+    aside = "ik.size*(sqrt(axis[0]**2 + axis[1]**2) - sqrt(M[0, 2]**2 + M[1, 2]**2))"
+    """By how much the last axis of a wrist seems to be farther aside than the target has it."""
 
     def around(
         self,

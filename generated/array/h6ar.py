@@ -12,7 +12,7 @@
 #   jacobian: 108 add, 67 compare and select, 40 divide, 168 multiply, 6 sincos, 4 sqrt
 #   determinant: 39 compare and select, 39 add, 9 divide, 71 multiply, 5 sincos, 4 sqrt
 #   singularities: 43 compare and select, 39 add, 8 divide, 60 multiply, 5 sincos, 4 sqrt
-#   ik: 1972 compare and select, 870 add, 29 atan2, 301 divide, 1273 multiply, 1 reduce to a turn,
+#   ik: 1996 compare and select, 862 add, 29 atan2, 297 divide, 1266 multiply, 1 reduce to a turn,
 #     3 sincos, 92 sqrt
 #   wrist_length: 24 compare and select, 5 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
@@ -1552,7 +1552,7 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     heavy_0_alpha = ops.select(spent_alpha, t134, 1.0)
     gain_0_alpha = ops.select(spent_alpha, t123 / heavy_0_alpha, 0.0)
     t135 = ops.select(spent_alpha, gain_1_alpha + gain_0_alpha, 0.0)
-    leniency = ops.select(tangent & t115, 16384.0, 1.0)
+    leniency = ops.select(tangent & t115, 16384.0, 4.0)
     t136 = (t83 + t135) * ops.select(spent_alpha, leniency, 1.0)
     t137 = L1 * play
     t138 = -t104 < 0.0
@@ -3320,101 +3320,111 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t1467 = ops.select(failed_4, ops.nan, ops.wrap(t1460 - t1464))
     t1468 = (wrist <= al * ops.determined) | nowhere | folded
     t1469 = t1468 | short
-    t1470 = 1.0 / (L1 + t110 / 2000000.0)
-    t1471 = slack * t108 * t1470
-    t1472 = 1.0 / (t127 + t109 * t133 / 2000000.0)
-    t1473 = ops.select(spent_alpha, t1471 + slack * t123 * t1472, 0.0)
-    usual_alpha = t83 + t1473
-    t1474 = ops.select(spent_alpha, -(1099511627776.0 * t104), 0.0)
-    t1475 = usual_alpha + t1474 <= ops.determined * usual_alpha
-    t1476 = t1470 * (slack * t166) + t1472 * (slack * t168)
-    usual_beta = t137 + ops.select(spent_beta, t1476, 0.0)
-    t1477 = ops.select(spent_beta, -(1099511627776.0 * t159), 0.0)
-    t1478 = usual_beta + t1477 <= ops.determined * usual_beta
-    t1479 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
-    t1480 = t1479 + al * 0.015625 + d * 0.015625 + d1 * 0.015625
-    t1481 = t1480 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
-    t1482 = ops.max(d, t1481) * (1.0 + ops.min(t_phi * t_phi, t_psi * t_psi))
-    t1483 = ops.min(t1482, wrist * lengths / al)
+    t1470 = 1.0 / slack
+    t1471 = t1470 * (t127 + t109 * t133 / 2000000.0)
+    t1472 = 1099511627776.0 * ops.select(spent_alpha, t1471, 1.0)
+    t1473 = t1470 * (L1 + t110 / 2000000.0)
+    t1474 = 1099511627776.0 * ops.select(spent_alpha, t1473, 1.0)
+    t1475 = 1.0 - t1472 * ops.abs(turn_alpha) - t1474 * ops.abs(aside_alpha)
+    t1476 = ops.select(spent_alpha, t1475, 1.0) <= ops.determined
+    t1477 = 1099511627776.0 * ops.select(spent_beta, t1471, 1.0)
+    t1478 = 1099511627776.0 * ops.select(spent_beta, t1473, 1.0)
+    t1479 = 1.0 - t1477 * ops.abs(turn_beta) - t1478 * ops.abs(aside_beta)
+    t1480 = ops.select(spent_beta, t1479, 1.0) <= ops.determined
+    t1481 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
+    t1482 = t1481 + al * 0.015625 + d * 0.015625 + d1 * 0.015625
+    t1483 = t1482 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
+    t1484 = ops.max(d, t1483) * (1.0 + ops.min(t_phi * t_phi, t_psi * t_psi))
+    t1485 = ops.min(t1484, wrist * lengths / al)
     below_alpha_2 = ops.max(t224, t206)
     above_alpha_2 = ops.max(t226, t206)
-    t1484 = (below_alpha_2 - above_alpha_2) * (1.0 / (below_alpha_2 + above_alpha_2))
-    t1485 = ops.abs(p_1_beta + v_1_beta * t222) + ops.abs(t223 - L1 * t1484)
-    t1486 = 1125899906842624.0 * ops.select(t227, t1485, 0.0)
-    t1487 = ops.select(t227, t1483, 1.0) <= ops.determined * t1486
-    t1488 = lengths - 4.0 * by_wrist
-    t1489 = ops.determined * lengths
-    t1490 = ops.select(t227 | tangent, t1488, lengths) <= t1489
-    t1491 = t1469 | t1475 | t1478 | parallel | t1487 | t1490
-    t1492 = t1470 * (slack * t240)
-    t1493 = 1.0 / (t254 + t109 * t262 / 2000000.0)
-    t1494 = ops.select(spent_alpha_front_elbow_down, t1492 + slack * t253 * t1493, 0.0)
-    usual_alpha_front_elbow_down = t83 + t1494
-    t1495 = ops.select(spent_alpha_front_elbow_down, -(1099511627776.0 * t237), 0.0)
-    t1496 = ops.determined * usual_alpha_front_elbow_down
-    t1497 = usual_alpha_front_elbow_down + t1495 <= t1496
-    t1498 = t1470 * (slack * t302) + t1493 * (slack * t306)
-    t1499 = ops.select(spent_beta_front_elbow_down, t1498, 0.0)
-    usual_beta_front_elbow_down = t137 + t1499
-    t1500 = ops.select(spent_beta_front_elbow_down, -(1099511627776.0 * t294), 0.0)
-    t1501 = usual_beta_front_elbow_down + t1500 <= ops.determined * usual_beta_front_elbow_down
-    t1502 = t1469 | t1497 | t1501 | parallel_front_elbow_down
-    t1503 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t369
+    t1486 = (below_alpha_2 - above_alpha_2) * (1.0 / (below_alpha_2 + above_alpha_2))
+    t1487 = ops.abs(p_1_beta + v_1_beta * t222) + ops.abs(t223 - L1 * t1486)
+    t1488 = 1125899906842624.0 * ops.select(t227, t1487, 0.0)
+    t1489 = ops.select(t227, t1485, 1.0) <= ops.determined * t1488
+    t1490 = lengths - 4.0 * by_wrist
+    t1491 = ops.determined * lengths
+    t1492 = ops.select(t227 | tangent, t1490, lengths) <= t1491
+    t1493 = t1469 | t1476 | t1480 | parallel | t1489 | t1492
+    t1494 = t1470 * (t254 + t109 * t262 / 2000000.0)
+    usual_0_alpha_front_elbow_down = ops.select(spent_alpha_front_elbow_down, t1494, 1.0)
+    t1495 = 1099511627776.0 * usual_0_alpha_front_elbow_down
+    t1496 = 1.0 - t1495 * ops.abs(turn_alpha_front_elbow_down)
+    usual_1_alpha_front_elbow_down = ops.select(spent_alpha_front_elbow_down, t1473, 1.0)
+    t1497 = 1099511627776.0 * usual_1_alpha_front_elbow_down
+    t1498 = t1497 * ops.abs(aside_alpha_front_elbow_down)
+    t1499 = ops.select(spent_alpha_front_elbow_down, t1496 - t1498, 1.0)
+    usual_0_beta_front_elbow_down = ops.select(spent_beta_front_elbow_down, t1494, 1.0)
+    t1500 = 1099511627776.0 * usual_0_beta_front_elbow_down
+    t1501 = 1.0 - t1500 * ops.abs(turn_beta_front_elbow_down)
+    usual_1_beta_front_elbow_down = ops.select(spent_beta_front_elbow_down, t1473, 1.0)
+    t1502 = 1099511627776.0 * usual_1_beta_front_elbow_down
+    t1503 = t1501 - t1502 * ops.abs(aside_beta_front_elbow_down)
+    t1504 = ops.select(spent_beta_front_elbow_down, t1503, 1.0)
+    t1505 = t1469 | (t1499 <= ops.determined) | (t1504 <= ops.determined)
+    t1506 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t369
     below_alpha_front_elbow_down_2 = ops.max(t371, t206)
     above_alpha_front_elbow_down_2 = ops.max(t373, t206)
-    t1504 = below_alpha_front_elbow_down_2 - above_alpha_front_elbow_down_2
+    t1507 = below_alpha_front_elbow_down_2 - above_alpha_front_elbow_down_2
     total_alpha_front_elbow_down_2 = below_alpha_front_elbow_down_2 + above_alpha_front_elbow_down_2
-    t1505 = t1504 * (1.0 / total_alpha_front_elbow_down_2)
-    missed_front_elbow_down = ops.select(t703, ops.abs(t1503) + ops.abs(t370 - L1 * t1505), 0.0)
-    t1506 = ops.determined * (1125899906842624.0 * missed_front_elbow_down)
-    t1507 = t1502 | (ops.select(t703, t1483, 1.0) <= t1506)
-    t1508 = ops.select(t703 | tangent, t1488, lengths) <= t1489
-    t1509 = ops.status(invalid, unreachable_2, t1507 | t1508)
-    t1510 = 1.0 / (t254 + t109 * t388 / 2000000.0)
-    t1511 = ops.select(spent_alpha_rear_elbow_up, t1492 + slack * t383 * t1510, 0.0)
-    usual_alpha_rear_elbow_up = t83 + t1511
-    t1512 = ops.select(spent_alpha_rear_elbow_up, 1099511627776.0 * margin_alpha_rear_elbow_up, 0.0)
-    t1513 = usual_alpha_rear_elbow_up + t1512 <= ops.determined * usual_alpha_rear_elbow_up
-    t1514 = t1470 * (slack * t428) + t1510 * (slack * t431)
-    t1515 = ops.select(spent_beta_rear_elbow_up, t1514, 0.0)
-    usual_beta_rear_elbow_up = t137 + t1515
-    t1516 = ops.select(spent_beta_rear_elbow_up, -(1099511627776.0 * t420), 0.0)
-    t1517 = usual_beta_rear_elbow_up + t1516 <= ops.determined * usual_beta_rear_elbow_up
-    t1518 = t1469 | t1513 | t1517 | parallel_rear_elbow_up
-    t1519 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t493
+    t1508 = t1507 * (1.0 / total_alpha_front_elbow_down_2)
+    missed_front_elbow_down = ops.select(t703, ops.abs(t1506) + ops.abs(t370 - L1 * t1508), 0.0)
+    t1509 = ops.determined * (1125899906842624.0 * missed_front_elbow_down)
+    t1510 = t1505 | parallel_front_elbow_down | (ops.select(t703, t1485, 1.0) <= t1509)
+    t1511 = ops.select(t703 | tangent, t1490, lengths) <= t1491
+    t1512 = ops.status(invalid, unreachable_2, t1510 | t1511)
+    t1513 = t1470 * (t254 + t109 * t388 / 2000000.0)
+    usual_0_alpha_rear_elbow_up = ops.select(spent_alpha_rear_elbow_up, t1513, 1.0)
+    t1514 = 1099511627776.0 * usual_0_alpha_rear_elbow_up
+    t1515 = 1.0 - t1514 * ops.abs(turn_alpha_rear_elbow_up)
+    usual_1_alpha_rear_elbow_up = ops.select(spent_alpha_rear_elbow_up, t1473, 1.0)
+    t1516 = 1099511627776.0 * usual_1_alpha_rear_elbow_up
+    t1517 = t1515 - t1516 * ops.abs(aside_alpha_rear_elbow_up)
+    t1518 = ops.select(spent_alpha_rear_elbow_up, t1517, 1.0)
+    usual_0_beta_rear_elbow_up = ops.select(spent_beta_rear_elbow_up, t1513, 1.0)
+    t1519 = 1099511627776.0 * usual_0_beta_rear_elbow_up * ops.abs(turn_beta_rear_elbow_up)
+    usual_1_beta_rear_elbow_up = ops.select(spent_beta_rear_elbow_up, t1473, 1.0)
+    t1520 = 1099511627776.0 * usual_1_beta_rear_elbow_up * ops.abs(aside_beta_rear_elbow_up)
+    t1521 = ops.select(spent_beta_rear_elbow_up, 1.0 - t1519 - t1520, 1.0)
+    t1522 = t1469 | (t1518 <= ops.determined) | (t1521 <= ops.determined)
+    t1523 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t493
     below_alpha_rear_elbow_up_2 = ops.max(t495, t206)
     above_alpha_rear_elbow_up_2 = ops.max(t497, t206)
-    t1520 = below_alpha_rear_elbow_up_2 - above_alpha_rear_elbow_up_2
+    t1524 = below_alpha_rear_elbow_up_2 - above_alpha_rear_elbow_up_2
     total_alpha_rear_elbow_up_2 = below_alpha_rear_elbow_up_2 + above_alpha_rear_elbow_up_2
-    t1521 = L1 * (t1520 * (1.0 / total_alpha_rear_elbow_up_2))
-    missed_rear_elbow_up = ops.select(t670, ops.abs(t1519) + ops.abs(t494 - t1521), 0.0)
-    t1522 = ops.determined * (1125899906842624.0 * missed_rear_elbow_up)
-    t1523 = t1518 | (ops.select(t670, t1483, 1.0) <= t1522)
-    t1524 = ops.select(t670 | tangent, t1488, lengths) <= t1489
-    t1525 = ops.status(invalid, unreachable_3, t1523 | t1524)
-    t1526 = 1.0 / (t127 + t109 * t510 / 2000000.0)
-    t1527 = ops.select(spent_alpha_rear_elbow_down, t1471 + slack * t505 * t1526, 0.0)
-    usual_alpha_rear_elbow_down = t83 + t1527
-    t1528 = 1099511627776.0 * margin_alpha_rear_elbow_down
-    t1529 = ops.select(spent_alpha_rear_elbow_down, t1528, 0.0)
-    t1530 = usual_alpha_rear_elbow_down + t1529 <= ops.determined * usual_alpha_rear_elbow_down
-    t1531 = t1470 * (slack * t548) + t1526 * (slack * t551)
-    t1532 = ops.select(spent_beta_rear_elbow_down, t1531, 0.0)
-    usual_beta_rear_elbow_down = t137 + t1532
-    t1533 = ops.select(spent_beta_rear_elbow_down, -(1099511627776.0 * t541), 0.0)
-    t1534 = usual_beta_rear_elbow_down + t1533 <= ops.determined * usual_beta_rear_elbow_down
-    t1535 = t1469 | t1530 | t1534 | parallel_rear_elbow_down
-    t1536 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t614
+    t1525 = L1 * (t1524 * (1.0 / total_alpha_rear_elbow_up_2))
+    missed_rear_elbow_up = ops.select(t670, ops.abs(t1523) + ops.abs(t494 - t1525), 0.0)
+    t1526 = ops.determined * (1125899906842624.0 * missed_rear_elbow_up)
+    t1527 = t1522 | parallel_rear_elbow_up | (ops.select(t670, t1485, 1.0) <= t1526)
+    t1528 = ops.select(t670 | tangent, t1490, lengths) <= t1491
+    t1529 = ops.status(invalid, unreachable_3, t1527 | t1528)
+    t1530 = t1470 * (t127 + t109 * t510 / 2000000.0)
+    usual_0_alpha_rear_elbow_down = ops.select(spent_alpha_rear_elbow_down, t1530, 1.0)
+    t1531 = 1099511627776.0 * usual_0_alpha_rear_elbow_down
+    t1532 = 1.0 - t1531 * ops.abs(turn_alpha_rear_elbow_down)
+    usual_1_alpha_rear_elbow_down = ops.select(spent_alpha_rear_elbow_down, t1473, 1.0)
+    t1533 = 1099511627776.0 * usual_1_alpha_rear_elbow_down
+    t1534 = t1532 - t1533 * ops.abs(aside_alpha_rear_elbow_down)
+    t1535 = ops.select(spent_alpha_rear_elbow_down, t1534, 1.0)
+    usual_0_beta_rear_elbow_down = ops.select(spent_beta_rear_elbow_down, t1530, 1.0)
+    t1536 = 1099511627776.0 * usual_0_beta_rear_elbow_down
+    t1537 = 1.0 - t1536 * ops.abs(turn_beta_rear_elbow_down)
+    usual_1_beta_rear_elbow_down = ops.select(spent_beta_rear_elbow_down, t1473, 1.0)
+    t1538 = 1099511627776.0 * usual_1_beta_rear_elbow_down
+    t1539 = t1537 - t1538 * ops.abs(aside_beta_rear_elbow_down)
+    t1540 = ops.select(spent_beta_rear_elbow_down, t1539, 1.0)
+    t1541 = t1469 | (t1535 <= ops.determined) | (t1540 <= ops.determined)
+    t1542 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t614
     below_alpha_rear_elbow_down_2 = ops.max(t616, t206)
     above_alpha_rear_elbow_down_2 = ops.max(t618, t206)
-    t1537 = below_alpha_rear_elbow_down_2 - above_alpha_rear_elbow_down_2
+    t1543 = below_alpha_rear_elbow_down_2 - above_alpha_rear_elbow_down_2
     total_alpha_rear_elbow_down_2 = below_alpha_rear_elbow_down_2 + above_alpha_rear_elbow_down_2
-    t1538 = t1537 * (1.0 / total_alpha_rear_elbow_down_2)
-    missed_rear_elbow_down = ops.select(t628, ops.abs(t1536) + ops.abs(t615 - L1 * t1538), 0.0)
-    t1539 = ops.determined * (1125899906842624.0 * missed_rear_elbow_down)
-    t1540 = t1535 | (ops.select(t628, t1483, 1.0) <= t1539)
-    t1541 = ops.select(t628 | tangent, t1488, lengths) <= t1489
-    t1542 = ops.status(invalid, unreachable_4, t1540 | t1541)
+    t1544 = t1543 * (1.0 / total_alpha_rear_elbow_down_2)
+    missed_rear_elbow_down = ops.select(t628, ops.abs(t1542) + ops.abs(t615 - L1 * t1544), 0.0)
+    t1545 = ops.determined * (1125899906842624.0 * missed_rear_elbow_down)
+    t1546 = t1541 | parallel_rear_elbow_down | (ops.select(t628, t1485, 1.0) <= t1545)
+    t1547 = ops.select(t628 | tangent, t1490, lengths) <= t1491
+    t1548 = ops.status(invalid, unreachable_4, t1546 | t1547)
     return (
         t986,
         t1032,
@@ -3440,10 +3450,10 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         t1466,
         t1467,
         ops.select(failed_4, ops.nan, t1046),
-        ops.status(invalid, unreachable, t1491),
-        t1509,
-        t1525,
-        t1542,
+        ops.status(invalid, unreachable, t1493),
+        t1512,
+        t1529,
+        t1548,
     )
 
 

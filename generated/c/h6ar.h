@@ -13,9 +13,9 @@
  *   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
  *   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
  *   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
- *   ik: 701 compare and select, 547 add, 29 atan2, 177 divide, 751 multiply, 1 reduce to a turn, 3
+ *   ik: 725 compare and select, 539 add, 29 atan2, 173 divide, 744 multiply, 1 reduce to a turn, 3
  *     sincos, 54 sqrt
- *   ik where nothing vanishes: 253 compare and select, 174 add, 16 atan2, 43 divide, 170 multiply,
+ *   ik where nothing vanishes: 252 compare and select, 174 add, 16 atan2, 43 divide, 168 multiply,
  *     1 reduce to a turn, 3 sincos, 25 sqrt
  *   wrist_length: 21 compare and select, 6 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add

@@ -12,9 +12,9 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
-#   ik: 701 compare and select, 547 add, 29 atan2, 177 divide, 751 multiply, 1 reduce to a turn, 3
+#   ik: 725 compare and select, 539 add, 29 atan2, 173 divide, 744 multiply, 1 reduce to a turn, 3
 #     sincos, 54 sqrt
-#   ik where nothing vanishes: 253 compare and select, 174 add, 16 atan2, 43 divide, 170 multiply,
+#   ik where nothing vanishes: 252 compare and select, 174 add, 16 atan2, 43 divide, 168 multiply,
 #     1 reduce to a turn, 3 sincos, 25 sqrt
 #   wrist_length: 21 compare and select, 6 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
@@ -1779,6 +1779,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     lack_alpha = t81 * (1.0 - share_alpha)
     del share_alpha
     t118 = t103 + t84 * heavy_0_alpha * 5.960464477539063e-08
+    del t103
     t119 = 1.0 / t118
     del t118
     t120 = heavy_0_alpha * lack_alpha * t119 <= 9.094947017729282e-13
@@ -1791,7 +1792,6 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del slope_alpha, t122
     t123 = fore_rate * turn_alpha
     t124 = aside_alpha + aside_rate * turn_alpha + t123 - t100 * (t109 * turn_alpha)
-    del aside_alpha
     lean_alpha = _runtime.select(spent_alpha, t124, 0.0)
     del t124
     t125 = np.sqrt(1.0 + lean_alpha * lean_alpha)
@@ -1843,12 +1843,13 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t144 = t131 * share_beta * _runtime.sign(slope_aside_beta)
     del slope_aside_beta
     t145 = t138 + t133 * heavy_1_beta * 5.960464477539063e-08
-    del heavy_1_beta
+    del heavy_1_beta, t138
     aside_beta = _runtime.select(spent_beta, t144 / t145, 0.0)
     del t144, t145
     lack_beta = t131 * (1.0 - share_beta)
     del share_beta
     t146 = t142 + t133 * heavy_0_beta * 5.960464477539063e-08
+    del t142
     t147 = 1.0 / t146
     del t146
     t148 = heavy_0_beta * lack_beta * t147 <= 9.094947017729282e-13
@@ -1862,7 +1863,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t151 = fore_rate * turn_beta
     del fore_rate
     t152 = aside_beta + aside_rate * turn_beta + t151 - t100 * (t109 * turn_beta)
-    del aside_beta, aside_rate, t109
+    del aside_rate, t109
     lean_beta = _runtime.select(spent_beta, t152, 0.0)
     del t152
     t153 = np.sqrt(1.0 + lean_beta * lean_beta)
@@ -1908,7 +1909,6 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t104
     t173 = _runtime.select(t93, -(t10 * tilt * t172), 0.0)
     waist_turn = _runtime.select(t171, (turn_alpha + turn_beta) * t173, 0.0)
-    del turn_alpha, turn_beta
     nowhere = h <= _runtime.VANISHING * lengths
     del h
     t174 = np.arctan2(x, y)
@@ -1949,17 +1949,17 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t189, t190, t192, t59, t60
     t194 = _runtime.select(spent_alpha, gain_1_alpha + gain_0_alpha, 0.0)
     del gain_0_alpha, gain_1_alpha
-    leniency = _runtime.select(tangent & t94, 16384.0, 1.0)
+    leniency = _runtime.select(tangent & t94, 16384.0, 4.0)
     t195 = (t84 + t194) * _runtime.select(spent_alpha, leniency, 1.0)
     del t194
     t196 = t193 & (-(_runtime.FEASIBILITY * t195) <= -t81)
-    del t195
+    del t195, t81
     t197 = _runtime.select(spent_beta, gain_1_beta + gain_0_beta, 0.0)
     del gain_0_beta, gain_1_beta
     t198 = (t133 + t197) * _runtime.select(spent_beta, leniency, 1.0)
     del t197
     t199 = t196 & (-(_runtime.FEASIBILITY * t198) <= -t131)
-    del t196, t198
+    del t131, t196, t198
     t200 = _runtime.select(spent_alpha | spent_beta, leniency, 1.0)
     t201 = -(_runtime.FEASIBILITY * (play * t200))
     t202 = t199 & (t201 <= t162 - t160) & (t201 <= -(t160 + t162))
@@ -2126,7 +2126,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t278 = t84 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
     del heavy_0_alpha_front_elbow_down
     t279 = 1.0 / (t261 + t278)
-    del t278
+    del t261, t278
     t280 = lack_alpha_front_elbow_down * t279
     del lack_alpha_front_elbow_down
     t281 = (t277 * t279 <= 9.094947017729282e-13) & (0.0 < t280)
@@ -2138,7 +2138,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t283 = aside_rate_front_elbow_down * turn_alpha_front_elbow_down
     t284 = fore_rate_front_elbow_down * turn_alpha_front_elbow_down
     t285 = aside_alpha_front_elbow_down + t283 + t284 - t100 * (t265 * turn_alpha_front_elbow_down)
-    del aside_alpha_front_elbow_down, t283
+    del t283
     lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t285, 0.0)
     del t285
     t286 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
@@ -2204,7 +2204,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t312 = t133 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_1_beta_front_elbow_down
     t313 = t296 * share_beta_front_elbow_down * t311 / (t303 + t312)
-    del t311, t312
+    del t303, t311, t312
     aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t313, 0.0)
     del t313
     lack_beta_front_elbow_down = t296 * (1.0 - share_beta_front_elbow_down)
@@ -2213,7 +2213,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t315 = t133 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_0_beta_front_elbow_down
     t316 = 1.0 / (t308 + t315)
-    del t315
+    del t308, t315
     t317 = lack_beta_front_elbow_down * t316
     del lack_beta_front_elbow_down
     t318 = (t314 * t316 <= 9.094947017729282e-13) & (0.0 < t317)
@@ -2227,7 +2227,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t321 = fore_rate_front_elbow_down * turn_beta_front_elbow_down
     del fore_rate_front_elbow_down
     t322 = aside_beta_front_elbow_down + t320 + t321 - t100 * (t265 * turn_beta_front_elbow_down)
-    del aside_beta_front_elbow_down, t265, t320
+    del t265, t320
     lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t322, 0.0)
     del t322
     t323 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
@@ -2288,7 +2288,6 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t349 = t348 | spent_beta_front_elbow_down
     del t348
     t350 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
-    del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
     t351 = _runtime.select(t250, -(t172 * (t10 * tilt_front_elbow_down)), 0.0)
     del t10, t172
     t352 = np.arctan2(_runtime.select(t349, t350 * t351, 0.0), 1.0)
@@ -2312,7 +2311,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t361
     t363 = -(_runtime.FEASIBILITY * (play * t362))
     t364 = t193 & (t356 <= -t245) & (-t360 <= -t296) & (t363 <= t339 - t335)
-    del t356, t360
+    del t245, t296, t356, t360
     t365 = t364 & (t363 <= -(t335 + t339)) & (t363 <= t341)
     del t339, t341, t364
     t366 = t203 * t362
@@ -2437,12 +2436,12 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t420 = t84 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_up
     aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t419 / (t248 + t420)), 0.0)
-    del t419, t420
+    del t248, t419, t420
     t421 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
     del share_alpha_rear_elbow_up
     t422 = t84 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
     t423 = 1.0 / (t410 + t422)
-    del t422
+    del t410, t422
     t424 = -(heavy_0_alpha_rear_elbow_up * t421 * t423) <= 9.094947017729282e-13
     del heavy_0_alpha_rear_elbow_up
     t425 = -(t421 * t423)
@@ -2456,7 +2455,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t428 = aside_rate_rear_elbow_up * turn_alpha_rear_elbow_up
     t429 = fore_rate_rear_elbow_up * turn_alpha_rear_elbow_up
     t430 = aside_alpha_rear_elbow_up + t428 + t429 - t100 * (t412 * turn_alpha_rear_elbow_up)
-    del aside_alpha_rear_elbow_up, t428
+    del t428
     lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t430, 0.0)
     del t430
     t431 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
@@ -2522,7 +2521,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t456 = t133 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_beta_rear_elbow_up
     t457 = t441 * share_beta_rear_elbow_up * t455 / (t448 + t456)
-    del t455, t456
+    del t448, t455, t456
     aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t457, 0.0)
     del t457
     lack_beta_rear_elbow_up = t441 * (1.0 - share_beta_rear_elbow_up)
@@ -2531,7 +2530,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t459 = t133 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
     del heavy_0_beta_rear_elbow_up
     t460 = 1.0 / (t452 + t459)
-    del t459
+    del t452, t459
     t461 = lack_beta_rear_elbow_up * t460
     del lack_beta_rear_elbow_up
     t462 = (t458 * t460 <= 9.094947017729282e-13) & (0.0 < t461)
@@ -2545,7 +2544,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t465 = fore_rate_rear_elbow_up * turn_beta_rear_elbow_up
     del fore_rate_rear_elbow_up
     t466 = aside_beta_rear_elbow_up + t464 + t465 - t100 * (t412 * turn_beta_rear_elbow_up)
-    del aside_beta_rear_elbow_up, t412, t464
+    del t412, t464
     lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t466, 0.0)
     del t466
     t467 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
@@ -2602,7 +2601,6 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t491 = t490 | spent_beta_rear_elbow_up
     del t490
     t492 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
-    del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
     t493 = np.arctan2(_runtime.select(t491, t351 * t492, 0.0), 1.0)
     del t351, t492
     t494 = _runtime.select(nowhere, 0.0, t174 + t175)
@@ -2622,7 +2620,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t502 = _runtime.FEASIBILITY * ((t133 + t500) * t501)
     del t500, t501
     t503 = t193 & (t498 <= margin_alpha_rear_elbow_up) & (-t502 <= -t441)
-    del t498, t502
+    del margin_alpha_rear_elbow_up, t441, t498, t502
     t504 = spent_alpha_rear_elbow_up | spent_beta_rear_elbow_up
     t505 = _runtime.select(t504, leniency, 1.0)
     del t504
@@ -2749,12 +2747,12 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t560 = t84 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_down
     aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t559 / (t87 + t560)), 0.0)
-    del t559, t560
+    del t559, t560, t87
     t561 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
     del share_alpha_rear_elbow_down
     t562 = t84 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
     t563 = 1.0 / (t550 + t562)
-    del t562
+    del t550, t562
     t564 = -(heavy_0_alpha_rear_elbow_down * t561 * t563)
     del heavy_0_alpha_rear_elbow_down
     t565 = -(t561 * t563)
@@ -2768,7 +2766,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t568 = aside_rate_rear_elbow_down * turn_alpha_rear_elbow_down
     t569 = fore_rate_rear_elbow_down * turn_alpha_rear_elbow_down
     t570 = aside_alpha_rear_elbow_down + t568 + t569 - t100 * (t552 * turn_alpha_rear_elbow_down)
-    del aside_alpha_rear_elbow_down, t568
+    del t568
     lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t570, 0.0)
     del t570
     t571 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
@@ -2830,7 +2828,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t594 = t133 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
     del heavy_1_beta_rear_elbow_down
     t595 = t580 * share_beta_rear_elbow_down * t593 / (t586 + t594)
-    del t593, t594
+    del t586, t593, t594
     aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t595, 0.0)
     del t595
     lack_beta_rear_elbow_down = t580 * (1.0 - share_beta_rear_elbow_down)
@@ -2839,7 +2837,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t597 = t133 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
     del heavy_0_beta_rear_elbow_down
     t598 = 1.0 / (t590 + t597)
-    del t597
+    del t590, t597
     t599 = lack_beta_rear_elbow_down * t598
     del lack_beta_rear_elbow_down
     t600 = (t596 * t598 <= 9.094947017729282e-13) & (0.0 < t599)
@@ -2853,7 +2851,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t603 = fore_rate_rear_elbow_down * turn_beta_rear_elbow_down
     del fore_rate_rear_elbow_down
     t604 = aside_beta_rear_elbow_down + t602 + t603 - t100 * (t552 * turn_beta_rear_elbow_down)
-    del aside_beta_rear_elbow_down, t100, t552, t602
+    del t100, t552, t602
     lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t604, 0.0)
     del t604
     t605 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
@@ -2914,7 +2912,6 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t631 = t630 | spent_beta_rear_elbow_down
     del t630
     t632 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
-    del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
     t633 = np.arctan2(_runtime.select(t631, t173 * t632, 0.0), 1.0)
     del t173, t632
     t634 = gain_1_alpha_rear_elbow_down + gain_0_alpha_rear_elbow_down
@@ -2923,23 +2920,23 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t634
     t636 = _runtime.select(spent_alpha_rear_elbow_down, leniency, 1.0)
     t637 = -(_runtime.FEASIBILITY * ((t84 + t635) * t636))
-    del t635, t636
+    del t635, t636, t84
     t638 = t193 & (t637 <= margin_alpha_rear_elbow_down)
-    del t193, t637
+    del margin_alpha_rear_elbow_down, t193, t637
     t639 = gain_1_beta_rear_elbow_down + gain_0_beta_rear_elbow_down
     del gain_0_beta_rear_elbow_down, gain_1_beta_rear_elbow_down
     t640 = _runtime.select(spent_beta_rear_elbow_down, t639, 0.0)
     del t639
     t641 = _runtime.select(spent_beta_rear_elbow_down, leniency, 1.0)
     t642 = _runtime.FEASIBILITY * ((t133 + t640) * t641)
-    del t640, t641
+    del t133, t640, t641
     t643 = spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down
     t644 = _runtime.select(t643, leniency, 1.0)
     del leniency, t643
     t645 = -(_runtime.FEASIBILITY * (play * t644))
     del play
     t646 = t638 & (-t642 <= -t580) & (t645 <= t621 - t617)
-    del t638, t642
+    del t580, t638, t642
     t647 = t646 & (t645 <= -(t617 + t621)) & (t645 <= t623)
     del t621, t623, t646
     t648 = t203 * t644
@@ -3017,156 +3014,167 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del nowhere
     t684 = t683 | folded | short
     del folded, short, t683
-    t685 = 1.0 / (L1 + t89 / 2000000.0)
-    del t89
-    t686 = slack * t87 * t685
-    del t87
-    t687 = 1.0 / (t107 + t88 * t113 / 2000000.0)
+    t685 = 1.0 / slack
+    del slack
+    t686 = t685 * (t107 + t88 * t113 / 2000000.0)
     del t113
-    t688 = _runtime.select(spent_alpha, t686 + slack * t103 * t687, 0.0)
-    del t103
-    usual_alpha = t84 + t688
-    del t688
-    t689 = _runtime.select(spent_alpha, -(1099511627776.0 * t81), 0.0)
-    del spent_alpha, t81
-    t690 = usual_alpha + t689 <= _runtime.DETERMINED * usual_alpha
-    del t689, usual_alpha
-    t691 = t685 * (slack * t138) + t687 * (slack * t142)
-    del t138, t142, t687
-    usual_beta = t133 + _runtime.select(spent_beta, t691, 0.0)
-    del t691
-    t692 = _runtime.select(spent_beta, -(1099511627776.0 * t131), 0.0)
-    del spent_beta, t131
-    t693 = usual_beta + t692 <= _runtime.DETERMINED * usual_beta
-    del t692, usual_beta
-    t694 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
-    t695 = t694 + al * 0.015625 + d * 0.015625 + d1 * 0.015625
-    del t694
-    t696 = t695 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
-    del t695
-    t697 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
+    t687 = 1099511627776.0 * _runtime.select(spent_alpha, t686, 1.0)
+    t688 = t685 * (L1 + t89 / 2000000.0)
+    del t89
+    t689 = 1099511627776.0 * _runtime.select(spent_alpha, t688, 1.0)
+    t690 = 1.0 - t687 * np.abs(turn_alpha) - t689 * np.abs(aside_alpha)
+    del aside_alpha, t687, t689, turn_alpha
+    t691 = _runtime.select(spent_alpha, t690, 1.0) <= _runtime.DETERMINED
+    del spent_alpha, t690
+    t692 = 1099511627776.0 * _runtime.select(spent_beta, t686, 1.0)
+    del t686
+    t693 = 1099511627776.0 * _runtime.select(spent_beta, t688, 1.0)
+    t694 = 1.0 - t692 * np.abs(turn_beta) - t693 * np.abs(aside_beta)
+    del aside_beta, t692, t693, turn_beta
+    t695 = _runtime.select(spent_beta, t694, 1.0) <= _runtime.DETERMINED
+    del spent_beta, t694
+    t696 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
+    t697 = t696 + al * 0.015625 + d * 0.015625 + d1 * 0.015625
+    del t696
+    t698 = t697 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
+    del t697
+    t699 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
     del t_phi, t_psi
-    t698 = np.minimum(np.maximum(d, t696) * t697, wrist * lengths / al)
-    del t696, t697, wrist
-    t699 = np.abs(p_1_beta + v_1_beta * t216) + np.abs(t217 - L1 * t226)
+    t700 = np.minimum(np.maximum(d, t698) * t699, wrist * lengths / al)
+    del t698, t699, wrist
+    t701 = np.abs(p_1_beta + v_1_beta * t216) + np.abs(t217 - L1 * t226)
     del p_1_beta, t216, t217, t226, v_1_beta
-    t700 = 1125899906842624.0 * _runtime.select(t171, t699, 0.0)
-    del t699
-    t701 = _runtime.select(t171, t698, 1.0) <= _runtime.DETERMINED * t700
-    del t700
-    t702 = lengths - 4.0 * by_wrist
+    t702 = 1125899906842624.0 * _runtime.select(t171, t701, 0.0)
+    del t701
+    t703 = _runtime.select(t171, t700, 1.0) <= _runtime.DETERMINED * t702
+    del t702
+    t704 = lengths - 4.0 * by_wrist
     del by_wrist
-    t703 = _runtime.select(t171 | tangent, t702, lengths)
+    t705 = _runtime.select(t171 | tangent, t704, lengths)
     del t171
-    t704 = _runtime.DETERMINED * lengths
-    t705 = t684 | t690 | t693 | parallel | t701 | (t703 <= t704)
-    del parallel, t690, t693, t701, t703
-    t706 = t685 * (slack * t248)
-    del t248
-    t707 = 1.0 / (t262 + t88 * t270 / 2000000.0)
+    t706 = _runtime.DETERMINED * lengths
+    t707 = t684 | t691 | t695 | parallel | t703 | (t705 <= t706)
+    del parallel, t691, t695, t703, t705
+    t708 = t685 * (t262 + t88 * t270 / 2000000.0)
     del t270
-    t708 = _runtime.select(spent_alpha_front_elbow_down, t706 + slack * t261 * t707, 0.0)
-    del t261
-    usual_alpha_front_elbow_down = t84 + t708
+    usual_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t708, 1.0)
+    t709 = 1099511627776.0 * usual_0_alpha_front_elbow_down
+    del usual_0_alpha_front_elbow_down
+    t710 = 1.0 - t709 * np.abs(turn_alpha_front_elbow_down)
+    del t709, turn_alpha_front_elbow_down
+    usual_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t688, 1.0)
+    t711 = 1099511627776.0 * usual_1_alpha_front_elbow_down
+    del usual_1_alpha_front_elbow_down
+    t712 = t710 - t711 * np.abs(aside_alpha_front_elbow_down)
+    del aside_alpha_front_elbow_down, t710, t711
+    t713 = _runtime.select(spent_alpha_front_elbow_down, t712, 1.0)
+    del spent_alpha_front_elbow_down, t712
+    usual_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t708, 1.0)
     del t708
-    t709 = _runtime.select(spent_alpha_front_elbow_down, -(1099511627776.0 * t245), 0.0)
-    del spent_alpha_front_elbow_down, t245
-    t710 = _runtime.DETERMINED * usual_alpha_front_elbow_down
-    t711 = t684 | (usual_alpha_front_elbow_down + t709 <= t710)
-    del t709, t710, usual_alpha_front_elbow_down
-    t712 = t685 * (slack * t303) + t707 * (slack * t308)
-    del t303, t308, t707
-    t713 = _runtime.select(spent_beta_front_elbow_down, t712, 0.0)
-    del t712
-    usual_beta_front_elbow_down = t133 + t713
-    del t713
-    t714 = _runtime.select(spent_beta_front_elbow_down, -(1099511627776.0 * t296), 0.0)
-    del spent_beta_front_elbow_down, t296
-    t715 = _runtime.DETERMINED * usual_beta_front_elbow_down
-    t716 = t711 | (usual_beta_front_elbow_down + t714 <= t715)
-    del t711, t714, t715, usual_beta_front_elbow_down
-    t717 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t380
+    t714 = 1099511627776.0 * usual_0_beta_front_elbow_down
+    del usual_0_beta_front_elbow_down
+    t715 = 1.0 - t714 * np.abs(turn_beta_front_elbow_down)
+    del t714, turn_beta_front_elbow_down
+    usual_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t688, 1.0)
+    t716 = 1099511627776.0 * usual_1_beta_front_elbow_down
+    del usual_1_beta_front_elbow_down
+    t717 = t715 - t716 * np.abs(aside_beta_front_elbow_down)
+    del aside_beta_front_elbow_down, t715, t716
+    t718 = _runtime.select(spent_beta_front_elbow_down, t717, 1.0)
+    del spent_beta_front_elbow_down, t717
+    t719 = t684 | (t713 <= _runtime.DETERMINED) | (t718 <= _runtime.DETERMINED)
+    del t713, t718
+    t720 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t380
     del p_1_beta_front_elbow_down, t380, v_1_beta_front_elbow_down
-    missed_front_elbow_down = _runtime.select(t349, np.abs(t717) + np.abs(t381 - L1 * t393), 0.0)
-    del t381, t393, t717
-    t718 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
+    missed_front_elbow_down = _runtime.select(t349, np.abs(t720) + np.abs(t381 - L1 * t393), 0.0)
+    del t381, t393, t720
+    t721 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
     del missed_front_elbow_down
-    t719 = t716 | parallel_front_elbow_down | (_runtime.select(t349, t698, 1.0) <= t718)
-    del parallel_front_elbow_down, t716, t718
-    t720 = _runtime.select(t349 | tangent, t702, lengths)
+    t722 = t719 | parallel_front_elbow_down | (_runtime.select(t349, t700, 1.0) <= t721)
+    del parallel_front_elbow_down, t719, t721
+    t723 = _runtime.select(t349 | tangent, t704, lengths)
     del t349
-    t721 = _runtime.status(invalid, unreachable_2, t719 | (t720 <= t704))
-    del t719, t720, unreachable_2
-    t722 = 1.0 / (t262 + t88 * t415 / 2000000.0)
+    t724 = _runtime.status(invalid, unreachable_2, t722 | (t723 <= t706))
+    del t722, t723, unreachable_2
+    t725 = t685 * (t262 + t88 * t415 / 2000000.0)
     del t262, t415
-    t723 = _runtime.select(spent_alpha_rear_elbow_up, t706 + slack * t410 * t722, 0.0)
-    del t410, t706
-    usual_alpha_rear_elbow_up = t84 + t723
-    del t723
-    t724 = _runtime.select(spent_alpha_rear_elbow_up, 1099511627776.0 * margin_alpha_rear_elbow_up, 0.0)
-    del margin_alpha_rear_elbow_up, spent_alpha_rear_elbow_up
-    t725 = _runtime.DETERMINED * usual_alpha_rear_elbow_up
-    t726 = t684 | (usual_alpha_rear_elbow_up + t724 <= t725)
-    del t724, t725, usual_alpha_rear_elbow_up
-    t727 = t685 * (slack * t448) + t722 * (slack * t452)
-    del t448, t452, t722
-    t728 = _runtime.select(spent_beta_rear_elbow_up, t727, 0.0)
-    del t727
-    usual_beta_rear_elbow_up = t133 + t728
-    del t728
-    t729 = _runtime.select(spent_beta_rear_elbow_up, -(1099511627776.0 * t441), 0.0)
-    del spent_beta_rear_elbow_up, t441
-    t730 = _runtime.DETERMINED * usual_beta_rear_elbow_up
-    t731 = t726 | (usual_beta_rear_elbow_up + t729 <= t730)
-    del t726, t729, t730, usual_beta_rear_elbow_up
-    t732 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t522
+    usual_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t725, 1.0)
+    t726 = 1099511627776.0 * usual_0_alpha_rear_elbow_up
+    del usual_0_alpha_rear_elbow_up
+    t727 = 1.0 - t726 * np.abs(turn_alpha_rear_elbow_up)
+    del t726, turn_alpha_rear_elbow_up
+    usual_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t688, 1.0)
+    t728 = 1099511627776.0 * usual_1_alpha_rear_elbow_up
+    del usual_1_alpha_rear_elbow_up
+    t729 = t727 - t728 * np.abs(aside_alpha_rear_elbow_up)
+    del aside_alpha_rear_elbow_up, t727, t728
+    t730 = _runtime.select(spent_alpha_rear_elbow_up, t729, 1.0)
+    del spent_alpha_rear_elbow_up, t729
+    usual_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t725, 1.0)
+    del t725
+    t731 = 1099511627776.0 * usual_0_beta_rear_elbow_up * np.abs(turn_beta_rear_elbow_up)
+    del turn_beta_rear_elbow_up, usual_0_beta_rear_elbow_up
+    usual_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t688, 1.0)
+    t732 = 1099511627776.0 * usual_1_beta_rear_elbow_up * np.abs(aside_beta_rear_elbow_up)
+    del aside_beta_rear_elbow_up, usual_1_beta_rear_elbow_up
+    t733 = _runtime.select(spent_beta_rear_elbow_up, 1.0 - t731 - t732, 1.0)
+    del spent_beta_rear_elbow_up, t731, t732
+    t734 = t684 | (t730 <= _runtime.DETERMINED) | (t733 <= _runtime.DETERMINED)
+    del t730, t733
+    t735 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t522
     del p_1_beta_rear_elbow_up, t522, v_1_beta_rear_elbow_up
-    missed_rear_elbow_up = _runtime.select(t491, np.abs(t732) + np.abs(t523 - L1 * t535), 0.0)
-    del t523, t535, t732
-    t733 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
+    missed_rear_elbow_up = _runtime.select(t491, np.abs(t735) + np.abs(t523 - L1 * t535), 0.0)
+    del t523, t535, t735
+    t736 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
     del missed_rear_elbow_up
-    t734 = t731 | parallel_rear_elbow_up | (_runtime.select(t491, t698, 1.0) <= t733)
-    del parallel_rear_elbow_up, t731, t733
-    t735 = _runtime.select(t491 | tangent, t702, lengths)
+    t737 = t734 | parallel_rear_elbow_up | (_runtime.select(t491, t700, 1.0) <= t736)
+    del parallel_rear_elbow_up, t734, t736
+    t738 = _runtime.select(t491 | tangent, t704, lengths)
     del t491
-    t736 = _runtime.status(invalid, unreachable_3, t734 | (t735 <= t704))
-    del t734, t735, unreachable_3
-    t737 = 1.0 / (t107 + t88 * t555 / 2000000.0)
-    del t107, t555, t88
-    t738 = _runtime.select(spent_alpha_rear_elbow_down, t686 + slack * t550 * t737, 0.0)
-    del t550, t686
-    usual_alpha_rear_elbow_down = t84 + t738
-    del t738, t84
-    t739 = 1099511627776.0 * margin_alpha_rear_elbow_down
-    del margin_alpha_rear_elbow_down
-    t740 = _runtime.select(spent_alpha_rear_elbow_down, t739, 0.0)
-    del spent_alpha_rear_elbow_down, t739
-    t741 = _runtime.DETERMINED * usual_alpha_rear_elbow_down
-    t742 = t684 | (usual_alpha_rear_elbow_down + t740 <= t741)
-    del t684, t740, t741, usual_alpha_rear_elbow_down
-    t743 = t685 * (slack * t586) + t737 * (slack * t590)
-    del slack, t586, t590, t685, t737
-    t744 = _runtime.select(spent_beta_rear_elbow_down, t743, 0.0)
-    del t743
-    usual_beta_rear_elbow_down = t133 + t744
-    del t133, t744
-    t745 = _runtime.select(spent_beta_rear_elbow_down, -(1099511627776.0 * t580), 0.0)
-    del spent_beta_rear_elbow_down, t580
-    t746 = _runtime.DETERMINED * usual_beta_rear_elbow_down
-    t747 = t742 | (usual_beta_rear_elbow_down + t745 <= t746)
-    del t742, t745, t746, usual_beta_rear_elbow_down
-    t748 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t662
+    t739 = _runtime.status(invalid, unreachable_3, t737 | (t738 <= t706))
+    del t737, t738, unreachable_3
+    t740 = t685 * (t107 + t88 * t555 / 2000000.0)
+    del t107, t555, t685, t88
+    usual_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t740, 1.0)
+    t741 = 1099511627776.0 * usual_0_alpha_rear_elbow_down
+    del usual_0_alpha_rear_elbow_down
+    t742 = 1.0 - t741 * np.abs(turn_alpha_rear_elbow_down)
+    del t741, turn_alpha_rear_elbow_down
+    usual_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t688, 1.0)
+    t743 = 1099511627776.0 * usual_1_alpha_rear_elbow_down
+    del usual_1_alpha_rear_elbow_down
+    t744 = t742 - t743 * np.abs(aside_alpha_rear_elbow_down)
+    del aside_alpha_rear_elbow_down, t742, t743
+    t745 = _runtime.select(spent_alpha_rear_elbow_down, t744, 1.0)
+    del spent_alpha_rear_elbow_down, t744
+    usual_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t740, 1.0)
+    del t740
+    t746 = 1099511627776.0 * usual_0_beta_rear_elbow_down
+    del usual_0_beta_rear_elbow_down
+    t747 = 1.0 - t746 * np.abs(turn_beta_rear_elbow_down)
+    del t746, turn_beta_rear_elbow_down
+    usual_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t688, 1.0)
+    del t688
+    t748 = 1099511627776.0 * usual_1_beta_rear_elbow_down
+    del usual_1_beta_rear_elbow_down
+    t749 = t747 - t748 * np.abs(aside_beta_rear_elbow_down)
+    del aside_beta_rear_elbow_down, t747, t748
+    t750 = _runtime.select(spent_beta_rear_elbow_down, t749, 1.0)
+    del spent_beta_rear_elbow_down, t749
+    t751 = t684 | (t745 <= _runtime.DETERMINED) | (t750 <= _runtime.DETERMINED)
+    del t684, t745, t750
+    t752 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t662
     del p_1_beta_rear_elbow_down, t662, v_1_beta_rear_elbow_down
-    missed_rear_elbow_down = _runtime.select(t631, np.abs(t748) + np.abs(t663 - L1 * t675), 0.0)
-    del t663, t675, t748
-    t749 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
+    missed_rear_elbow_down = _runtime.select(t631, np.abs(t752) + np.abs(t663 - L1 * t675), 0.0)
+    del t663, t675, t752
+    t753 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
     del missed_rear_elbow_down
-    t750 = t747 | parallel_rear_elbow_down | (_runtime.select(t631, t698, 1.0) <= t749)
-    del parallel_rear_elbow_down, t698, t747, t749
-    t751 = _runtime.select(t631 | tangent, t702, lengths)
-    del lengths, t631, t702, tangent
-    t752 = _runtime.status(invalid, unreachable_4, t750 | (t751 <= t704))
-    del t704, t750, t751, unreachable_4
+    t754 = t751 | parallel_rear_elbow_down | (_runtime.select(t631, t700, 1.0) <= t753)
+    del parallel_rear_elbow_down, t700, t751, t753
+    t755 = _runtime.select(t631 | tangent, t704, lengths)
+    del lengths, t631, t704, tangent
+    t756 = _runtime.status(invalid, unreachable_4, t754 | (t755 <= t706))
+    del t706, t754, t755, unreachable_4
     return (
         t177 + t221,
         _runtime.wrap(t224 - t228) + t221,
@@ -3192,10 +3200,10 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         _runtime.wrap(t672 + t677) + t667,
         _runtime.wrap(t680 - t682) + t667,
         t236 + t667,
-        _runtime.status(invalid, unreachable, t705),
-        t721,
-        t736,
-        t752,
+        _runtime.status(invalid, unreachable, t707),
+        t724,
+        t739,
+        t756,
     )
 
 
@@ -3608,8 +3616,8 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
     t178 = t176 - np.arctan2(t166, t165 * t177)
     del t165, t166, t177
-    t179 = play_alpha <= _runtime.DETERMINED * play_alpha
-    t180 = (wrist <= al * _runtime.DETERMINED) | t179 | (play_beta <= _runtime.DETERMINED * play_beta)
+    t179 = 1.0 <= _runtime.DETERMINED
+    t180 = (wrist <= al * _runtime.DETERMINED) | t179 | t179
     del t179, wrist
     t181 = t180 | (1.0 <= 0.0) | (lengths <= _runtime.DETERMINED * lengths)
     del t180

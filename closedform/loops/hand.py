@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import random
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeVar
@@ -20,6 +21,9 @@ from closedform.model.derivation import Derivation
 from closedform.model.step import Step
 
 _Item = TypeVar("_Item")
+
+DIGITS = 50
+"""With which it is tried whether legs hold a hand."""
 
 
 @dataclass(frozen=True)
@@ -164,6 +168,21 @@ class Hand:
         legs = zip(self.legs, spans, strict=True)
         return [leg.normal if isinstance(leg, Flat) else span for leg, span in legs]
 
+    def check_holds(self) -> None:
+        """Refuse rods that hold the hand in no posture, because A is singular everywhere."""
+        rows = [(self.hand - c).T for c in self.centres]
+        if self.flat or not singular_everywhere(sp.Matrix.vstack(*rows)):
+            return
+        first, *others = self.centres
+        one = not any(sp.simplify(e) for c in others for e in c - first)
+        raise ShapeError(
+            f"{self.d.name}: the legs do not hold the hand; in every posture the near ends of the "
+            f"rods, minus their places on the hand, are in one {'point' if one else 'line'}, so "
+            f"the hand is free on a {'sphere' if one and len(others) == 2 else 'circle'}.  That is "
+            f"so if the legs are as far apart on the hand as on the ground: give one of them "
+            f"another place"
+        )
+
     def as_shown(self, numbered: Sequence[tuple[int, _Item]]) -> list[tuple[int | str, _Item]]:
         """The formulas of the legs, by their numbers; of alike legs, only those of leg i."""
         if self.alike:
@@ -235,6 +254,15 @@ class Hand:
 def rate_of(leg: Leg, rod: sp.Matrix) -> sp.Expr:
     """The entry of B of a leg, from the vector along its rod."""
     return leg.joint if isinstance(leg, Stretch) else rod.dot(leg.rate)
+
+
+def singular_everywhere(A: sp.Matrix, at: Mapping[sp.Basic, sp.Expr] | None = None) -> bool:
+    """Whether a matrix is singular at numbers that are drawn at random, beside those given."""
+    draw = random.Random(A.rows)
+    given = {s: sp.Rational(draw.randint(50, 999), 100) for s in sorted(A.free_symbols, key=str)}
+    placed = A.subs(given | dict(at or {})).evalf(DIGITS)
+    largest = sp.Mul(*(placed.row(i).norm() for i in range(A.rows)))
+    return bool(abs(placed.det()) <= largest / 10 ** (DIGITS // 2))
 
 
 def square(v: sp.Matrix) -> sp.Expr:

@@ -61,6 +61,7 @@ def bars_of(k: int, leg: Leg, far: str) -> list[Bars]:
 
 def check_held(m: Hand) -> None:
     """Refuse a hand that could turn, and a rod that would not keep it from turning."""
+    m.check_holds()
     name, n = m.d.name, len(m.hand)
     held = [leg for _, leg in m.held]
     check_directions(name, n, m.legs)

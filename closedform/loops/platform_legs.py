@@ -14,7 +14,7 @@ from closedform.algebra.shapes import ShapeError
 from closedform.algebra.solutions import count_solutions
 from closedform.lemmas.legs import Leg, Strut, cross_in_plane, vector
 from closedform.lemmas.rails import Rail
-from closedform.loops.hand import check_order, check_plain, square
+from closedform.loops.hand import check_order, check_plain, singular_everywhere, square
 from closedform.mechanics.frames import hat, pose_symbols, rotation
 from closedform.model.derivation import Derivation
 from closedform.model.functions import real
@@ -25,7 +25,6 @@ UPRIGHT = 4
 """The number of legs of a hand in space that turns about the z axis alone."""
 TASKS = {3: ("x", "y", "yaw"), UPRIGHT: ("x", "y", "z", "yaw")}
 """The coordinates of a hand that turns about one axis, by the number of its legs."""
-DIGITS = 50
 
 
 @dataclass(frozen=True)
@@ -205,15 +204,11 @@ def check_holds(m: Platform) -> None:
 
     This is tried with 50 digits at a posture and lengths that are drawn at random.
     """
-    draw = random.Random(len(m.legs))
-    A = sp.Matrix.vstack(*m.rows)
-    at = {s: sp.Rational(draw.randint(50, 999), 100) for s in sorted(A.free_symbols, key=str)}
+    draw, at = random.Random(len(m.legs)), {}
     if m.tilts:
         half = hat(sp.Matrix([sp.Rational(draw.randint(50, 999), 100) for _ in "xyz"]))
-        at |= dict(zip(m.rotation, (sp.eye(3) + half) * (sp.eye(3) - half).inv(), strict=True))
-    placed = A.subs(at).evalf(DIGITS)
-    largest = sp.Mul(*(placed.row(i).norm() for i in range(len(m.legs))))
-    if abs(placed.det()) < largest / 10 ** (DIGITS // 2):
+        at = dict(zip(m.rotation, (sp.eye(3) + half) * (sp.eye(3) - half).inv(), strict=True))
+    if singular_everywhere(sp.Matrix.vstack(*m.rows), at):
         raise ShapeError(
             f"{m.d.name}: the legs do not hold the hand; the matrix A is singular in every posture"
         )

@@ -254,3 +254,16 @@ def test_lengths_may_have_the_letters_of_the_vectors(letter: str, tmp_path: Path
     step = article.partition(r"\subsection{The universal joints}")[2].partition(r"\subsection")[0]
     assert rf"\mathbf {letter}" not in step
     assert letter == "n" or rf"\mathbf {VECTORS[letter]}" in step
+
+
+def test_legs_as_far_apart_on_the_hand_as_on_the_ground_hold_it_nowhere(tmp_path: Path) -> None:
+    equal = TSAI.replace('C1 = ["c", 0, 0]', 'C1 = ["b", 0, 0]')
+    equal = re.sub("c = {value.*\n", "", equal)
+    with pytest.raises(ShapeError, match="in one point, so the hand is free on a sphere"):
+        read_script(script_of("equal", equal, tmp_path))
+    in_line = [(real("b") * k, 0, 0) for k in (0, 1, 3)]
+    d = Derivation("winches", "Winches", Paper("winches", "Winches", ("A. Nonymous",)), "In line.")
+    d.parameter("b", value=1, unit="m", meaning="distance", source="an example")
+    legs = [Stretch(d.joint(f"q{k}", "prismatic"), at) for k, at in enumerate(in_line, 1)]
+    with pytest.raises(ShapeError, match="in one line, so the hand is free on a circle"):
+        parallel(d, (real("x"), real("y"), real("z")), legs)

@@ -111,6 +111,11 @@ class Values:
         """The largest length of each row."""
         return np.asarray(abs(rows[:, self._sized]).max(axis=1, initial=0.0))
 
+    def shortest(self, rows: Array) -> Array:
+        """The smallest length of each row that is not zero; infinite if there is none."""
+        sized = abs(rows[:, self._sized])
+        return np.asarray(np.where(sized > 0, sized, np.inf).min(axis=1, initial=np.inf))
+
     def existence(self, rows: Array, slack: float) -> Array:
         """For each entry: 1 where it exists, -1 where not, 0 within ``slack`` of the boundary."""
         least = np.stack([_least(b, rows, slack, -slack) for b in self._bounds], axis=1)

@@ -137,7 +137,11 @@ class _Errors:
             error = _ulps(self.computed[row, k], exact, scale, self.backend)
         if error > WELL_CONDITIONED and (self.values.beside_pose or self.values.in_modes):
             grown = float(self._amplified[row, k])
-            if self.backend.eps * grown >= natural or self._overflows(row):  # no digit is known
+            finite = math.isfinite(self.computed[row, k])
+            # of an infinite value no digit is known where its divisor may vanish
+            known = natural if finite else abs(to_float(exact))
+            lost = self._overflows(row) or (not finite and self._underflows(row))
+            if lost or self.backend.eps * grown >= known:
                 return None
             if self.values.beside_pose or self._near_pole(row):
                 error = _ulps(self.computed[row, k], exact, scale + grown, self.backend)
@@ -157,6 +161,11 @@ class _Errors:
         largest = self.backend.tolerances.sizes(HIGHEST_DEGREE)[1]
         longest = self.values.longest(self.rows[row : row + 1])[0]
         return bool(not self.values.scaled and longest > largest)
+
+    def _underflows(self, row: int) -> bool:
+        """Whether powers of lengths may vanish, and with them what a value is divided by."""
+        least = self.backend.tolerances.sizes(HIGHEST_DEGREE)[0]
+        return bool(self.values.shortest(self.rows[row : row + 1])[0] < least)
 
     def _near_pole(self, row: int) -> bool:
         """Whether assembly modes are so close that divisors nearly cancel, or hardly exist."""

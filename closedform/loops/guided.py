@@ -115,6 +115,8 @@ class Guided:
     @cached_property
     def exact(self) -> Placed:
         """The hand at a target, without names; where a turn is free it is undefined."""
+        if isinstance(self.guide, Hinges):
+            return self.posture
         p = Program()
         return self.guide.place(p, self.places).explicit(p)
 
@@ -303,9 +305,8 @@ def _velocity(m: Guided, loop: Step) -> None:
     volume = p.let("Delta", D.det())
     _state_velocity(m, loop)
     J = D.adjugate() * sp.diag(*driven) / volume
-    det, own = sp.Mul(*driven) / volume, []
-    if placed.fixed != 1:
-        own = [placed.fixed]
+    det = sp.Mul(*driven) / volume
+    own = [*placed.fixed]
     if slide := placed.slide:
         rows = stretched = [row * slide.inverse for row in rows]
         J, det, own = slide.rates * J, slide.volume * det, [slide.volume]
@@ -314,7 +315,7 @@ def _velocity(m: Guided, loop: Step) -> None:
     finite = "Not finite at a parallel singularity."
     where = "the hand is on the first axis of the passive leg"
     if isinstance(m.guide, Hinges):
-        where = "the hinges do not fix the place of the hand"
+        where = f"the hinges do not fix the {m.guide.fixes} of the hand"
     on_axis = [f"Not finite where {where}."] * bool(own)
     exported: list[tuple[str, str, dict[str, Any], Sequence[str]]] = [
         ("jacobian_parallel", "A of A*dx = B*dq.", {"A": sp.Matrix.vstack(*rows)}, on_axis),
@@ -519,6 +520,12 @@ def _draw(m: Guided) -> None:
     )
 
 
+def _least(fixed: Sequence[sp.Expr], matrix: str) -> str:
+    """What decides whether the hand is held, as a formula."""
+    found = [rf"|\det {matrix}|", r"|\Gamma|\,\Lambda", r"\tau\,\Lambda"][: 1 + len(fixed)]
+    return rf"\min({', '.join(found)})" if fixed else found[0]
+
+
 def _inverse(m: Guided, loop: Step) -> None:
     d, g, guide = m.d, m.d.program(), m.guide
     if isinstance(guide, Ball):
@@ -536,12 +543,12 @@ def _inverse(m: Guided, loop: Step) -> None:
     lever = spread if guide.turning == 2 else spread ** sp.Rational(3, 2)
     least = g.let("least", solved.lengths(m.legs) * lever, nonnegative=True)
     meet = "the rods do not hold the hand"
-    matrix, loose = "D" if placed.slide else "A", placed.fixed != 1
+    matrix, loose = "D" if placed.slide else "A", bool(placed.fixed)
     g.determined(
-        sp.Min(sp.Abs(volume), sp.Abs(placed.fixed) * least) if loose else sp.Abs(volume),
+        sp.Min(sp.Abs(volume), *(sp.Abs(e) * least for e in placed.fixed)),
         least,
         meet,
-        name=r"\min(|\det A|,\ |\Gamma|\,\Lambda)" if loose else rf"|\det {matrix}|",
+        name=_least(placed.fixed, matrix),
         scale_name=r"\Lambda",
         missed=solved.missed,
         size=solved.size,
@@ -554,8 +561,7 @@ def _inverse(m: Guided, loop: Step) -> None:
         f"SINGULAR if the determinant of {matrix} is less than 2^-10 of Lambda, the product of the "
         f"lengths of the rods and the {power} distance of their far ends from the "
         f"{'point of the hand' if isinstance(guide, Hinges) else 'pivot'}."
-        + "  It is SINGULAR too if Gamma, which divides what the hinges fix, is less than 2^-10."
-        * loose
+        + (guide.too if isinstance(guide, Hinges) and loose else "")
         + f"  {MISSED}",
         {},
         uses=[loop],
@@ -577,6 +583,7 @@ def _inverse(m: Guided, loop: Step) -> None:
                 if placed.slide
                 else []
             ),
+            *([guide.left_out] if isinstance(guide, Hinges) and guide.left_out else []),
             *(["INVALID: the matrix is not a proper rotation."] if guide.turning == 3 else []),
             f"fk is not derived: the forward problem is an equation of degree {guide.degree}.",
         ],

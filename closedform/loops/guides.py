@@ -77,8 +77,8 @@ class Placed:
     """How the coordinates move the point of the hand; empty if all turn about the pivot."""
     levers: tuple[sp.Matrix, ...] = ()
     """The ends of the legs from the point of the hand, beside moves."""
-    fixed: sp.Expr = sp.S.One
-    """What vanishes where nothing fixes the place of the hand."""
+    fixed: tuple[sp.Expr, ...] = ()
+    """What vanishes where nothing fixes the place or the twist of the hand, without a unit."""
 
     def explicit(self, p: Program) -> Placed:
         """The same without the names of a program."""
@@ -90,7 +90,7 @@ class Placed:
             arms=tuple(map(p.explicit, self.arms)),
             moves=tuple(map(p.explicit, self.moves)),
             levers=tuple(map(p.explicit, self.levers)),
-            fixed=p.explicit(self.fixed),
+            fixed=tuple(map(p.explicit, self.fixed)),
             slide=self.slide and self.slide.explicit(p),
         )
 
@@ -155,7 +155,7 @@ def arms_at(
     return tuple(found)
 
 
-def _polar(
+def polar(
     p: Program,
     unknowns: tuple[sp.Symbol, sp.Symbol],
     target: tuple[sp.Expr, sp.Expr],
@@ -237,10 +237,10 @@ class Guide:
         shift = sp.Matrix(self.inputs["x"]) - vector(self.pivot)
         seen = sp.Matrix.hstack(*self.joint.axes).T * shift
         X, Y, Z = (named_in(p, f"w_{k}", e) for k, e in enumerate(seen, 1))
-        first = _polar(p, (TURNS[0], RHO), (Z, -Y), "the hand is on the first axis", size)
+        first = polar(p, (TURNS[0], RHO), (Z, -Y), "the hand is on the first axis", size)
         names = {e: name for name, e in first.means.items()}
         rho = names[RHO]
-        second = _polar(p, (TURNS[1], LENGTH), (rho, X), "the hand is at the pivot", size)
+        second = polar(p, (TURNS[1], LENGTH), (rho, X), "the hand is at the pivot", size)
         names |= {e: name for name, e in second.means.items()}
         R, *axes = self.joint.turned(p, names)
         slide = Sliding.of(names[LENGTH], rho, axes)
@@ -354,4 +354,15 @@ class Ball:
         return self.place(Program(), places)
 
 
-__all__ = ["LENGTH", "TURNS", "Ball", "Gimbal", "Guide", "Placed", "Turning", "arms_at", "named"]
+__all__ = [
+    "LENGTH",
+    "TURNS",
+    "Ball",
+    "Gimbal",
+    "Guide",
+    "Placed",
+    "Turning",
+    "arms_at",
+    "named",
+    "polar",
+]

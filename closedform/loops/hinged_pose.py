@@ -9,7 +9,9 @@ import sympy as sp
 
 from closedform.lemmas.legs import vector
 from closedform.loops.guides import Placed
-from closedform.loops.hinges import Hinges, InPlane, StandingPlane, TurningPlane
+from closedform.loops.hinges import TILTED, Hinges, InPlane, StandingPlane, TurningPlane
+from closedform.loops.three_hinges import PSI, ThreeHinges
+from closedform.loops.tripod_legs import sum_of_cosines
 from closedform.mechanics.frames import homogeneous
 from closedform.model.derivation import Derivation
 from closedform.model.step import Step
@@ -36,9 +38,21 @@ HINGED = (
     "a given rotation this is linear in the position p of the hand, and gives {them}."
 )
 
+TWISTED = (
+    "The hand is twisted by psi about its own z axis, then turned by tilt_x about the x axis of "
+    "the base and by tilt_y about its y axis.  A hinge keeps leg k in a plane of the hand, whose "
+    "normal is its axis: it is at right angles to the vector from the base of the leg to its end "
+    "on the hand.  This gives three equations.  The sum of the axes, each times a weight, is zero. "
+    " So the sum of the equations with these weights does not contain p.  It is f*cos(psi) + "
+    "g*sin(psi) = 0, and gives the twist.  Then two of the equations are linear in the x and y of "
+    "p.  The other solution for the twist differs by half a turn and is left out."
+)
+
 
 def state_pose(d: Derivation, guide: Hinges, places: Sequence[sp.Matrix], at: Placed) -> Step:
     """The step on the pose of the hand, and the function that returns it."""
+    if isinstance(guide, ThreeHinges):
+        return _state_twisted(d, guide, places, at)
     p = d.program()
     placed = guide.place(p, places)
     plane = guide if isinstance(guide, InPlane) else None
@@ -81,12 +95,73 @@ def state_pose(d: Derivation, guide: Hinges, places: Sequence[sp.Matrix], at: Pl
     return step
 
 
+def _state_twisted(
+    d: Derivation, guide: ThreeHinges, places: Sequence[sp.Matrix], at: Placed
+) -> Step:
+    """The same if the twist of the hand follows from its tilts."""
+    p = d.program()
+    placed = guide.place(p, places)
+    f, g = (guide.balance(turned) for turned in (False, True))
+    pair = (sp.cos(PSI), sp.sin(PSI))
+    d.write("psi", r"\psi", "twist of the hand about its own z axis")
+    d.explain(
+        {
+            "f": "coefficient of cos(psi) in the equation of the twist",
+            "g": "coefficient of sin(psi) in the equation of the twist",
+            r"\delta": "amplitude of the equation of the twist",
+            "R": "rotation of the hand",
+            r"\mathbf p": "position of the point of the hand",
+        }
+    )
+    axes = [h.axis for _, h in guide.hinged]
+    off = [
+        (at.rotation * h.axis).dot(vector(guide.pivot) + at.arms[k] - h.leg.base)
+        for k, h in guide.hinged
+    ]
+    total = sum((w * m for w, m in zip(guide.weights, axes, strict=True)), sp.zeros(3, 1))
+    plain, apart = sum_of_cosines(TILTED[1:3])
+    step = d.step(
+        "Pose of the hand",
+        TWISTED,
+        {
+            r"R\,R_z(\psi)^{-1}": guide.tilted,
+            "f": f,
+            "g": g,
+            r"\delta": r"\sqrt{f^2 + g^2}",
+            r"\cos\psi": r"\frac{g}{\delta}",
+            r"\sin\psi": r"-\frac{f}{\delta}",
+            r"\mathbf p": vector(guide.pivot) + at.shift,
+        },
+        proves="The weighted axes add up to zero.  The legs of two hinges are in their planes, and "
+        "for the third the distance from its plane, times its weight, is minus f*cos(psi) + "
+        "g*sin(psi), up to the sign that makes the twist small.  Both forms of the sum of cosines "
+        "are equal.",
+        equal=[
+            (at.rotation.T * at.rotation, sp.eye(3)),
+            (total, sp.zeros(3, 1)),
+            (sp.Matrix(off[:2]), sp.zeros(2, 1)),
+            (guide.weights[2] * off[2], -guide.side * guide.rest(*pair)),
+            (guide.rest(*pair).diff(PSI), g * pair[0] - f * pair[1]),
+            (plain, apart),
+        ],
+    )
+    d.function(
+        "hand_pose",
+        "Pose of the hand: its twist and its sideways motion follow from the target.",
+        guide.inputs,
+        {"T": homogeneous(placed.rotation, vector(guide.pivot) + placed.shift)},
+        program=p,
+        notes=("Not finite where the hinges do not fix the place or the twist of the hand.",),
+    )
+    return step
+
+
 def motions(guide: Hinges, at: Placed) -> list[tuple[Any, Any]]:
     """That the hand moves as the rows of A have it."""
     found: list[tuple[Any, Any]] = []
     for x, axis, move in zip(guide.target, at.turns, at.moves, strict=True):
-        found.append((at.shift.diff(x), move))
-        found += [(lever.diff(x), axis.cross(lever)) for lever in at.levers]
+        found.append((guide.rate(at.shift, x), move))
+        found += [(guide.rate(lever, x), axis.cross(lever)) for lever in at.levers]
     return found
 
 

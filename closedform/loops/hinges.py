@@ -22,12 +22,10 @@ from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import named_in
 from closedform.mechanics.frames import rotation
 from closedform.model.functions import Program, choose, real
+from closedform.model.inverse import Link
 
 ALONG, DISTANCE = real("along"), real("distance")
 TILTED = tuple(map(real, ("z", "tilt_x", "tilt_y", "twist")))
-
-NOTHING = sp.Rational(1, 2**40)
-"""The scale below which nothing fixes a coordinate; near there it is large, but loses no digit."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +68,10 @@ class Frame:
     """From the pivot to the point of the hand, where the coordinates that hinges fix are zero."""
     moves: tuple[sp.Matrix, ...]
     """How each coordinate of the target moves the point, while the fixed ones stand still."""
+    fixed: tuple[sp.Expr, ...] = ()
+    """What vanishes where the hinges do not fix the rotation, without a unit."""
+    links: tuple[Link, ...] = ()
+    """How a turn that the hinges fix was found."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,14 @@ class Hinges(ABC):
     what: ClassVar[str]
     holds: ClassVar[str] = ""
     follow: ClassVar[str] = "the pose of the hand follows"
+    nothing: ClassVar[sp.Expr] = sp.Rational(1, 2**40)
+    """The scale below which nothing fixes a coordinate; near there it is large, but exact."""
+    fixes: ClassVar[str] = "place"
+    """What the hinges fix."""
+    divides: ClassVar[str] = "Gamma, which divides what the hinges fix,"
+    """What divides the coordinates that the hinges fix."""
+    left_out: ClassVar[str] = ""
+    """A note on postures that are left out."""
     motion: ClassVar[str] = (
         "A coordinate of the target turns the hand about an axis, or not at all, and moves its "
         "point by w.  So an entry of A is the part of w along r_i, the vector along rod i, and the "
@@ -103,8 +113,11 @@ class Hinges(ABC):
         """The coordinates that the hinges fix, with the directions in which they move the hand."""
 
     @abstractmethod
-    def frame(self, p: Program) -> Frame:
-        """The rotation of the hand and what moves it, in the names of a program."""
+    def frame(self, p: Program, *, guarded: bool = False) -> Frame:
+        """The rotation of the hand and what moves it, in the names of a program.
+
+        If it is ``guarded``, a turn that the hinges should fix is zero where it is free.
+        """
 
     @abstractmethod
     def with_legs(self, name: str, legs: Sequence[Leg | Hinged]) -> Hinges:
@@ -140,6 +153,11 @@ class Hinges(ABC):
         return ("hinges",) * self.loose
 
     @property
+    def too(self) -> str:
+        """A sentence on where the hinges do not fix the hand."""
+        return f"  It is SINGULAR too if {self.divides} is less than 2^-10."
+
+    @property
     def loose(self) -> bool:
         """Whether there are postures in which the hinges do not fix the coordinates."""
         return any(h.on_hand for _, h in self.hinged)
@@ -159,12 +177,18 @@ class Hinges(ABC):
 
         There the coordinates that the hinges should fix are taken as zero.
         """
-        at = self.frame(p)
+        return self.placed(p, places, self.frame(p, guarded=size is not None), size)
+
+    def placed(
+        self, p: Program, places: Sequence[sp.Matrix], at: Frame, size: sp.Expr | None = None
+    ) -> Placed:
+        """The same, from what the target says."""
         levers = arms_at(p, at.rotation, sp.zeros(3, 1), places, "e")
         given = at.shift
         ways = list(self.solved.values())
         pulls, rest = [], []
-        for k, h in self.hinged:
+        fixing = self.hinged[: len(ways)]
+        for k, h in fixing:
             near = h.leg.base - vector(self.pivot) - given
             if h.on_hand:
                 pull = named(p, f"m_{k + 1}", at.rotation * h.axis)
@@ -175,15 +199,20 @@ class Hinges(ABC):
             pulls.append(pull)
         if not self.hinged:
             return Placed(
-                at.rotation, at.axes, given, _ends(p, given, levers), moves=at.moves, levers=levers
+                at.rotation,
+                at.axes,
+                given,
+                self.ends(p, given, levers),
+                moves=at.moves,
+                levers=levers,
             )
         M = sp.Matrix([[pull.dot(way) for way in ways] for pull in pulls])
-        width = named_in(p, "fixed", sp.factor(M.det()))
+        width = named_in(p, "fixed", self.width(at, M))
         adjugate = M.adjugate()
         found = adjugate * sp.Matrix(rest) / width
         if size is not None and self.loose:
             meaning = "the hinges do not hold the hand"
-            free = p.vanishes("loose", sp.Abs(width), NOTHING, meaning)
+            free = p.vanishes("loose", sp.Abs(width), self.nothing, meaning)
             found = found.applyfunc(lambda e: choose(free, 0, e))
         u = [named_in(p, f"u_{k}", e) for k, e in enumerate(found, 1)]
         total = given + sum((e * way for e, way in zip(u, ways, strict=True)), sp.zeros(3, 1))
@@ -191,7 +220,7 @@ class Hinges(ABC):
         moves: list[sp.Matrix] = []
         for axis, move in zip(at.axes, at.moves, strict=True):
             rates = []
-            for (k, h), pull in zip(self.hinged, pulls, strict=True):
+            for (k, h), pull in zip(fixing, pulls, strict=True):
                 if h.on_hand:
                     across = axis.cross(pull).dot(vector(self.pivot) + shift - h.leg.base)
                 else:
@@ -207,23 +236,33 @@ class Hinges(ABC):
             rotation=at.rotation,
             turns=at.axes,
             shift=shift,
-            arms=_ends(p, shift, levers),
+            arms=self.ends(p, shift, levers),
             moves=tuple(moves),
             levers=levers,
-            fixed=width if self.loose else sp.S.One,
+            fixed=(*([width] if self.loose else []), *at.fixed),
+            links=at.links,
         )
 
+    def ends(
+        self, p: Program, shift: sp.Matrix, levers: Sequence[sp.Matrix]
+    ) -> tuple[sp.Matrix, ...]:
+        """The ends of the legs, from the pivot; a hinge may keep a coordinate at zero."""
+        found = []
+        for k, lever in enumerate(levers, 1):
+            entries = [
+                sp.S.Zero if sp.expand(p.explicit(e)) == 0 else named_in(p, f"f_{k}{i}", e)
+                for i, e in enumerate(shift + lever, 1)
+            ]
+            found.append(sp.Matrix(entries))
+        return tuple(found)
 
-def _ends(p: Program, shift: sp.Matrix, levers: Sequence[sp.Matrix]) -> tuple[sp.Matrix, ...]:
-    """The ends of the legs, from the pivot; a hinge may keep a coordinate at zero."""
-    found = []
-    for k, lever in enumerate(levers, 1):
-        entries = [
-            sp.S.Zero if sp.expand(p.explicit(e)) == 0 else named_in(p, f"f_{k}{i}", e)
-            for i, e in enumerate(shift + lever, 1)
-        ]
-        found.append(sp.Matrix(entries))
-    return tuple(found)
+    def width(self, at: Frame, M: sp.Matrix) -> sp.Expr:
+        """The determinant of the matrix from which the fixed coordinates follow."""
+        return sp.factor(M.det())
+
+    def rate(self, value: Any, x: sp.Symbol) -> Any:
+        """The derivative of what a posture says with respect to a coordinate of the target."""
+        return value.diff(x)
 
 
 @dataclass(frozen=True)
@@ -292,7 +331,7 @@ class TurningPlane(InPlane):
         _check_hinges(name, others, most=1)
         return replace(self, hinged=tuple(others), aside=aside.pop(), inside=tuple(inside))
 
-    def frame(self, p: Program) -> Frame:
+    def frame(self, p: Program, *, guarded: bool = False) -> Frame:
         a = vector(self.first)
         R, v, *_ = self.joint.turned(p, {})
         w = named(p, "w", a.cross(v))
@@ -361,7 +400,7 @@ class StandingPlane(InPlane):
                 )
         return replace(self, hinged=tuple(others), inside=tuple(inside))
 
-    def frame(self, p: Program) -> Frame:
+    def frame(self, p: Program, *, guarded: bool = False) -> Frame:
         a, b, ahead = self.joint.axes
         R, v, *_ = self.joint.turned(p, {})
         none, along = sp.zeros(3, 1), [] if self.hinged else [b]
@@ -414,7 +453,7 @@ class TwoHinges(Hinges):
                 raise ShapeError(f"{name}: the planes of the hinged legs meet in a horizontal line")
         return replace(self, hinged=tuple(hinged))
 
-    def frame(self, p: Program) -> Frame:
+    def frame(self, p: Program, *, guarded: bool = False) -> Frame:
         z, a, b, psi = TILTED
         x, y, up = (sp.eye(3).col(k) for k in range(3))
         tilted = rotation("y", b) * rotation("x", a)

@@ -67,6 +67,25 @@ class Placed:
         return sp.Matrix([leg.along.dot(far[:2, 0]), far[2]])
 
 
+def sum_of_cosines(tilts: Sequence[sp.Expr]) -> tuple[sp.Expr, sp.Expr]:
+    """The sum of the cosines of two tilts, as written and as it keeps its digits near zero."""
+    (sx, cx), (sy, cy) = ((sp.sin(t), sp.cos(t)) for t in tilts)
+    return cx + cy, (sy - sx) * (sy + sx) / (cx - cy)
+
+
+def named_cosines(p: Program, tilts: Sequence[sp.Expr], *sums: sp.Expr) -> tuple[sp.Expr, ...]:
+    """Sums of both tilts with a name for the sum of their cosines, where that is a factor."""
+    plain, apart = sum_of_cosines(tilts)
+    x, y = plain.args
+    found = tuple(e.coeff(x) if e.coeff(x) == e.coeff(y) else sp.S.Zero for e in sums)
+    if not any(found):
+        return sums
+    u = p.let("u", choose(x * y < -sp.Rational(1, 2), apart, plain))
+    return tuple(
+        sp.expand(e - factor * plain) + factor * u for e, factor in zip(sums, found, strict=True)
+    )
+
+
 @dataclass(frozen=True)
 class Tripod:
     """The legs of a tripod."""
@@ -143,21 +162,7 @@ class Tripod:
 
     def cosines(self) -> tuple[sp.Expr, sp.Expr]:
         """The sum of the cosines of the tilts, as written and as it keeps its digits near zero."""
-        (sx, cx), (sy, cy) = ((sp.sin(t), sp.cos(t)) for t in self.target[1:])
-        return cx + cy, (sy - sx) * (sy + sx) / (cx - cy)
-
-    def named_cosines(self, p: Program, *sums: sp.Expr) -> tuple[sp.Expr, ...]:
-        """Sums of both tilts with a name for the sum of their cosines, where that is a factor."""
-        plain, apart = self.cosines()
-        x, y = plain.args
-        found = tuple(e.coeff(x) if e.coeff(x) == e.coeff(y) else sp.S.Zero for e in sums)
-        if not any(found):
-            return sums
-        u = p.let("u", choose(x * y < -sp.Rational(1, 2), apart, plain))
-        return tuple(
-            sp.expand(e - factor * plain) + factor * u
-            for e, factor in zip(sums, found, strict=True)
-        )
+        return sum_of_cosines(self.target[1:])
 
     @cached_property
     def side(self) -> int:
@@ -186,7 +191,7 @@ class Tripod:
         side = sp.Integer(self.side)
         sums: tuple[sp.Expr, ...] = tuple(side * self.balance(turned) for turned in (False, True))
         if not plain:
-            sums = self.named_cosines(p, *sums)
+            sums = named_cosines(p, self.target[1:], *sums)
         f, g = (p.let(name, e) for name, e in zip("fg", sums, strict=True))
         delta = p.let("delta", sp.sqrt(f**2 + g**2), nonnegative=True)
         cosine, sine = g / delta, -f / delta
@@ -270,4 +275,4 @@ class Tripod:
         )
 
 
-__all__ = ["TASK", "Placed", "Tripod", "Upright"]
+__all__ = ["TASK", "Placed", "Tripod", "Upright", "named_cosines", "sum_of_cosines"]

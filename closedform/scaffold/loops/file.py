@@ -72,6 +72,7 @@ USED |= {
     "StandingPlane",
     "Stretch",
     "Strut",
+    "ThreeHinges",
     "TurningPlane",
     "TwoHinges",
     "Universal",

@@ -17,11 +17,6 @@ COUNTS = {0: "no", 1: "one", 2: "two", 3: "three", 4: "four", 5: "five"}
 FREE = 4
 """The degrees of freedom of a hand in a plane that turns, or on two hinged legs."""
 TRIPOD = 3
-REVERSE = (
-    ".  Three with hinges on the hand are the reverse of that: the forward problem has degree 16 "
-    "in general, too.  Describe the ground as the hand and the hand as the ground; hand_pose is "
-    "then the pose of the ground, seen from the hand"
-)
 
 
 def hinged(found: Legs, legs: Sequence[LoopLeg]) -> tuple[list[LoopLeg], GuideLine] | None:
@@ -41,8 +36,8 @@ def hinged(found: Legs, legs: Sequence[LoopLeg]) -> tuple[list[LoopLeg], GuideLi
         return None
     _check_balls(found, {name: ends[name] for name in on_hand})
     others = [*on_hand, *on_ground]
-    reverse = "" if inside or on_ground or len(on_hand) != TRIPOD else REVERSE
-    _check_count(found, (inside, others), len(legs), reverse)
+    three = len(on_hand) == TRIPOD and not (inside or on_ground)
+    _check_count(found, (inside, others), len(legs), three=three)
     calls = []
     for leg in legs:
         near, far = ends[leg.joint.name]
@@ -55,6 +50,10 @@ def hinged(found: Legs, legs: Sequence[LoopLeg]) -> tuple[list[LoopLeg], GuideLi
         assert joint.axis is not None
         call = f"Hinged({leg.call}, {where}={found.at(joint.axis)})"
         calls.append(replace(leg, call=call, words=f"{leg.words}, hinged at {joint.name}"))
+    if three:
+        _check_reverse(found, legs, ends)
+        words = "Hinges on the hand keep three legs in planes."
+        return calls, GuideLine("ThreeHinges()", KIND, words)
     if not inside:
         words = "Hinges keep two legs in planes."
         return calls, GuideLine("TwoHinges()", KIND, words)
@@ -115,7 +114,7 @@ def _on_ground(near: Joint, far: Joint) -> bool:
 
 
 def _check_count(
-    found: Legs, hinges: tuple[Mapping[str, object], Sequence[str]], driven: int, reverse: str
+    found: Legs, hinges: tuple[Mapping[str, object], Sequence[str]], driven: int, *, three: bool
 ) -> None:
     """Refuse legs that leave the hand more or fewer degrees of freedom than are driven."""
     inside, others = hinges
@@ -127,17 +126,19 @@ def _check_count(
         by = f"the hinge{'s' * (len(others) > 1)} of the leg{'s' * (len(others) > 1)} of "
         by, left, most = f"{by}{listed(others)}", max(6 - len(others), 0), 2
     by += f" leave{'s' * (len(inside) + len(others) == 1)}"
+    if three:
+        most = TRIPOD
     if len(others) > most or (not inside and len(others) < most):
         raise found.loop.error(
             f"{by} the hand {COUNTS[left]} degrees of freedom; this is supported for two "
             f"hinged legs, or one beside legs with universal joints that keep the hand in a plane, "
-            f"or three with hinges on the ground{reverse}"
+            f"or three that are all hinged on the ground, or all on the hand"
         )
     if driven != left:
         raise found.loop.error(
             f"{by} the hand {COUNTS[left]} degrees of freedom, so {COUNTS[left]} joints are "
             f"driven, not {driven}"
-            + ".  With three, all legs are hinged on the ground"
+            + ".  With three, all legs are hinged on the ground, or all on the hand"
             * (driven == TRIPOD and not inside)
         )
 
@@ -152,6 +153,33 @@ def _check_balls(found: Legs, on_hand: Mapping[str, tuple[Joint, Joint]]) -> Non
                 f"the ground, as that of a leg that stretches (SPR), or if the two are "
                 f"exchanged (a ball joint on the hand)"
             )
+
+
+def _check_reverse(
+    found: Legs, legs: Sequence[LoopLeg], ends: Mapping[str, tuple[Joint, Joint]]
+) -> None:
+    """Refuse planes of three legs hinged on the hand that do not meet in a line upright on it."""
+    axes = [ends[leg.joint.name][1].axis for leg in legs]
+    turns, off = [], sp.S.Zero
+    for k, (leg, axis) in enumerate(zip(legs, axes, strict=True)):
+        one, other = axes[(k + 1) % TRIPOD], axes[(k + 2) % TRIPOD]
+        assert axis is not None
+        assert one is not None
+        assert other is not None
+        turns.append(sp.simplify(one.cross(other)[2]))
+        off += turns[-1] * axis.dot(leg.place)
+        if axis[2] != 0 or not all(e.is_number for e in axis):
+            raise found.loop.error(
+                f"{ends[leg.joint.name][1].name} keeps the leg of {leg.joint.name} in a plane, "
+                f"which has to be upright on {found.turning}: its axis is horizontal there, in "
+                f"numbers"
+            )
+    if 0 in turns or sp.simplify(off) != 0:
+        raise found.loop.error(
+            f"the planes of the legs, which are normal to the axes of "
+            f"{listed([far.name for _, far in ends.values()])}, have to have three directions and "
+            f"to meet in a line of {found.turning}"
+        )
 
 
 def _check_plane(found: Legs, inside: Mapping[str, tuple[Joint, Joint]]) -> None:

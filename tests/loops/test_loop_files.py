@@ -68,6 +68,16 @@ def test_a_rod_in_space_is_not_held_by_axes_that_are_not_parallel(tmp_path: Path
     assert "coupled(" in script_of("balls", balls, tmp_path)
 
 
+def test_axes_that_meet_in_the_hand_are_told_of_a_spherical_mechanism(tmp_path: Path) -> None:
+    text = (TESTS / "held_out_loops/coaxial_wrist.toml").read_text("utf-8")
+    text = re.sub(r"\nball = .*", "", text)
+    text = text.replace('at = "B1", kind = "spherical"', 'at = "B1"')
+    for x, message in (("0", "would hold"), ("sin(gamma)", "meet in P, so this is a spherical")):
+        hinged = f'at = "C1", axis = ["{x}", 0, "cos(gamma)"]'
+        with pytest.raises(TableError, match=f"c1, c2 and c3 {message}"):
+            script_of("wrist", text.replace('at = "C1", kind = "spherical"', hinged), tmp_path)
+
+
 def test_a_script_tells_of_legs_that_are_alike_once(tmp_path: Path) -> None:
     text = (TESTS / "held_out_loops/gough.toml").read_text("utf-8")
     told = read_script(script_of("gough", text, tmp_path)).mechanism
@@ -202,3 +212,9 @@ def test_the_file_of_an_excavator_is_told_what_to_write_instead(tmp_path: Path) 
     boom = 'hand = "o"' + EXCAVATOR.removeprefix('hand = "P"').split("e = {between")[0]
     lines = [line for line in boom.splitlines() if not line.startswith(("stick", "t2", "p2"))]
     assert "coupled(" in script_of("boom", "\n".join(lines), tmp_path)
+
+
+def test_a_leg_more_than_a_hand_needs_is_redundant(tmp_path: Path) -> None:
+    text = (TESTS / "held_out_loops/y_star.toml").read_text("utf-8")
+    with pytest.raises(TableError, match=r"4 joints are driven, .* is redundant: leave it out"):
+        script_of("y_star", text.replace("copies = 3", "copies = 4"), tmp_path)

@@ -151,9 +151,15 @@ def _on_legs(found: Legs) -> _Way:
     if len(legs) != loop.dimensions:
         on_sphere = " beside its strut" if struts else ""
         rods = [f"; the parallelogram {rod} keeps it from turning" for rod in _held(loop)]
+        more = (
+            ".  One leg more than that is redundant: leave it out.  Its joint follows from the "
+            "position of the hand by the same formula as those of the others"
+        )
         raise loop.error(
             f"{len(driven)} joints are driven, but a hand that does not turn needs "
             f"{loop.dimensions - len(struts)}{on_sphere}{''.join(rods[:1])}"
+            + more
+            * (len(legs) == loop.dimensions + 1)
         )
     return _Way(legs, list(AXES[: loop.dimensions]))
 
@@ -173,10 +179,30 @@ def _check_ends(found: Legs, *, fixed: bool = False) -> None:
         return
     hinges = [j for j in loop.of(body) if j.kind == "revolute"]
     if held := [j.name for j in hinges if fixed or j.axis is not None]:
+        if _meet(found, hinges):
+            raise loop.error(
+                f"the axes of the driven joints and of {listed(held)} meet in {loop.hand}, so this "
+                f"is a spherical mechanism.  Join {body} to the ground by a spherical joint at "
+                f'{loop.hand}, and write kind = "spherical" at both ends of each rod instead of '
+                f"an axis; the distance of its ends is its length"
+            )
         raise loop.error(
             f"{listed(held)} would hold {body} by an axis; a leg may end on a hand that "
             f'turns in a spherical or a universal joint, as in kind = "spherical".  {BY_HAND}'
         )
+
+
+def _meet(found: Legs, hinges: Sequence[Joint]) -> bool:
+    """Whether the axes on the hand and those of the driven joints meet in the point of the hand."""
+    loop = found.loop
+    at = loop.bodies[found.turning]
+    driven = [j for j in found.driven() if j.kind == "revolute" and j.at == loop.hand]
+    return len(driven) == len(found.driven()) and all(
+        j.axis is not None
+        and j.at in at
+        and not any(map(sp.simplify, (at[j.at] - at[loop.hand]).cross(j.axis)))
+        for j in hinges
+    )
 
 
 def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLeg]) -> None:

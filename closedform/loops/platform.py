@@ -37,6 +37,7 @@ from closedform.mechanics.frames import hat, require_pose
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Program, real
+from closedform.model.names import listed
 from closedform.model.step import Step
 
 DEGREE_IN_SPACE = 40
@@ -129,20 +130,32 @@ def _close(m: Platform) -> Step:
     )
 
 
-def _forward(m: Platform, loop: Step) -> int:
-    """The degree of the forward problem, which has no closed form."""
+def _forward(m: Platform, loop: Step) -> str:
+    """The degree of the forward problem, for which no formula is derived."""
     if m.tilts:
-        degree = DEGREE_IN_SPACE
-        found = f"For points in general position it is {degree}, and it is never more."
+        degree, general = (
+            f"{DEGREE_IN_SPACE}",
+            f"For points in general position it is {DEGREE_IN_SPACE}",
+        )
+        found = f"{general}, and it is never more."
+        if len(m.meeting) > 1:
+            degree = f"at most {DEGREE_IN_SPACE}"
+            found = f"{general}; here legs end in the same point, and it may be less."
     else:
-        degree = counted_degree(m)
+        degree = f"{counted_degree(m)}"
         found = "It was counted with a Groebner basis, at lengths and joints drawn at random."
+    how = "They have to be solved together: no coordinate follows from a part of them."
+    if len(m.meeting) >= m.dimensions:
+        joints = listed([str(leg.joint) for leg in m.meeting])
+        how = (
+            f"The legs of {joints} end in the same point of the hand, which follows from their "
+            f"equations alone; the others then turn the hand about it."
+        )
     m.d.step(
         f"Forward: an equation of degree {degree}",
-        "If the joints are given, the equations of the loop determine the pose.  They have to be "
-        "solved together: no coordinate follows from a part of them.  The number of complex "
-        f"solutions is the degree of the equation that remains.  {found}  No formula is derived "
-        "for it.",
+        f"If the joints are given, the equations of the loop determine the pose.  {how}  The "
+        f"number of complex solutions is the degree of the equation that remains.  {found}  No "
+        "formula is derived for it.",
         {},
         uses=[loop],
     )
@@ -375,7 +388,7 @@ def _draw(m: Platform) -> None:
     )
 
 
-def _inverse(m: Platform, loop: Step, degree: int) -> None:
+def _inverse(m: Platform, loop: Step, degree: str) -> None:
     d, g = m.d, m.d.program()
     if m.tilts:
         require_pose(g, m.pose)

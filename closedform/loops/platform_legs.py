@@ -157,6 +157,15 @@ class Platform:
         away = [(place - centre)[:across, 0] for place in self.places]
         return sp.factor(sp.expand(sum(map(square, away)) / n))
 
+    @property
+    def meeting(self) -> list[Leg]:
+        """The most legs that end in the same point of the hand."""
+        groups = [
+            [leg for leg, e in zip(self.legs, self.places, strict=True) if e == place]
+            for place in self.places
+        ]
+        return max(groups, key=len)
+
     @cached_property
     def arms(self) -> list[sp.Matrix]:
         """The places, from the point that is the hand, in the frame of the base."""

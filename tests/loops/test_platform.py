@@ -413,3 +413,11 @@ def test_its_workspace_is_a_section_of_its_targets(stage: ModuleType) -> None:
     assert np.mean(np.ma.filled(shown, 0) != counted) < 0.02
     with pytest.raises(ValueError, match="the plane of stage must be two of x, y, not theta1"):
         plot.singularities(stage, ("theta1", "theta2"))
+
+
+def test_two_legs_that_meet_in_a_point_are_told_of() -> None:
+    d, joints = a_derivation(3, "prismatic")
+    ends = zip(joints, ((0, 0), (3, 0), (1, 4)), ((0, 0), (0, 0), (1, 0)), strict=True)
+    platform(d, [Stretch(q, b, on_hand=c) for q, b, c in ends])
+    step = next(s for s in d.steps if s.title == "Forward: an equation of degree 4")
+    assert "end in the same point of the hand, which follows from their equations" in step.reason

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, lru_cache
 from itertools import chain
 from typing import Any
 
@@ -220,7 +220,7 @@ class Printer(LatexPrinter):  # type: ignore[misc]
             short = text.startswith(r"\mathrm")
             order = re.sub(r"^\\mathrm\{\w\}", "", text) if short else self._print(base.args[0])
             return (3 if short else 5, 0, natural(order), (isinstance(base, sp.sin), str(power)))
-        return (4 if factor.is_Add or base.is_Add else 3, 1, natural(str(factor)), str(power))
+        return (4 if factor.is_Add or base.is_Add else 3, 1, _as_text(factor), str(power))
 
     # Functions
 
@@ -421,6 +421,12 @@ def _small(p: int, q: int) -> str:
 def natural(text: str) -> tuple[Any, ...]:
     """A key that puts a_2 before a_10."""
     return tuple((p.isdigit(), int(p) if p.isdigit() else 0, p) for p in re.split(r"(\d+)", text))
+
+
+@lru_cache(maxsize=10_000)
+def _as_text(expr: sp.Expr) -> tuple[Any, ...]:
+    """The key of an expression by its text; the same factors are ordered again and again."""
+    return natural(str(expr))
 
 
 FLAT = re.compile(r"\\frac\{((?:[^{}+-]|\{[^{}+-]*\})*)\}\{(\d+)\}")

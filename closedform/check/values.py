@@ -140,8 +140,7 @@ class _Errors:
             finite = math.isfinite(self.computed[row, k])
             # of an infinite value no digit is known where its divisor may vanish
             known = natural if finite else abs(to_float(exact))
-            loses = not self.values.scaled or not finite
-            lost = self._overflows(row) or (loses and self._underflows(row))
+            lost = self._overflows(row) or (not finite and self._underflows(row))
             if lost or self.backend.eps * grown >= known:
                 return None
             if self.values.beside_pose or self._near_pole(row):

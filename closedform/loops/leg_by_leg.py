@@ -129,10 +129,16 @@ class LegByLeg:
             record_lemma(d, "ik", s.link)
 
     def certify(
-        self, equations: Sequence[sp.Expr], images: str = "", *, before: Sequence[Link] = ()
+        self,
+        equations: Sequence[sp.Expr],
+        images: str = "",
+        *,
+        angles: Sequence[sp.Symbol] = (),
+        before: Sequence[Link] = (),
     ) -> None:
         """Record the equations that the joints satisfy; see :class:`Inverse` for ``images``.
 
+        ``angles`` are the coordinates of the target of which only the sine and cosine count.
         The links ``before`` those of the legs solve for joints that ``ik`` does not return.
         """
         for link in before:
@@ -143,6 +149,7 @@ class LegByLeg:
                 self.d.actuated,
                 (sp.S.Zero,) * len(equations),
                 tuple(equations),
+                angles=tuple(angles),
                 images=images,
                 links=(*before, *(s.link for s in self.found)),
                 passive=tuple(e for link in before for e in link.unknowns),

@@ -5,7 +5,8 @@ In space four legs may keep the hand upright; then it turns about the z axis alo
 :func:`platform` derives what has a closed form: the inverse with all working modes, the velocity
 and the singular sets.  The forward problem leads to an equation of degree 6 in a plane, 8 for a
 hand that is kept upright, or 40, and no ``fk`` is derived.  What depends on the posture is a
-function of the pose and of the joints.
+function of the pose and of the joints.  If two of three legs end in one point of the hand, there is
+``fk`` too, see :mod:`closedform.loops.meeting`.
 """
 
 from __future__ import annotations
@@ -29,6 +30,8 @@ from closedform.loops.leg_by_leg import (
     size_of,
 )
 from closedform.loops.letters import letters
+from closedform.loops.meeting import Meet, Posture, export_rates, forward
+from closedform.loops.modes import NO_MODE
 from closedform.loops.on_rails import on_rails
 from closedform.loops.platform_legs import UPRIGHT, Half, Platform, check_holds, counted_degree
 from closedform.loops.skeleton import Drawing, points_of
@@ -59,7 +62,7 @@ def platform(d: Derivation, legs: Sequence[Leg | Half], *, bars: int = 2) -> Non
     ``jacobian`` and ``determinant``, for four legs ``constraint``, and ``workspace_contains`` where
     the reach of the legs is limited.  On three rails in a plane, and on four
     :class:`~closedform.lemmas.planes.Plane` legs in space, there is also ``fk``, with two assembly
-    modes.
+    modes; if two of three legs end in one point of the hand, with four.
 
     Parameters
     ----------
@@ -87,6 +90,14 @@ def platform(d: Derivation, legs: Sequence[Leg | Half], *, bars: int = 2) -> Non
     m.d.loop = loop = _close(m)
     if upright:
         state_upright(m, loop)
+    if meet := Meet.of(m):
+        d.poles = d.singularities[-1:]
+        at = forward(meet, loop)
+        _velocity(m, loop)
+        export_rates(m, at)
+        _draw(m, at)
+        _inverse(m, loop)
+        return
     degree = _forward(m, loop)
     _velocity(m, loop)
     _export(m)
@@ -338,7 +349,7 @@ def determinant(p: Program, rows: Sequence[sp.Matrix]) -> sp.Expr:
     return sp.Add(*terms)
 
 
-def _draw(m: Platform) -> None:
+def _draw(m: Platform, at: Posture | None = None) -> None:
     """The skeleton: bases A, near ends B and far ends C of the rods, pins M, and P, the hand."""
     distinct = list({tuple(place): place for place in m.places}.values())
     first = [(distinct if m.halves else m.places).index(place) + 1 for place in m.places]
@@ -347,18 +358,23 @@ def _draw(m: Platform) -> None:
         for k, e in zip(first, m.places, strict=True)
     ]
     places = dict(zip(pins, m.places, strict=True)) | {"P": sp.zeros(m.dimensions, 1)}
-    points: dict[str, Sequence[Any]] = {"P": in_space(m.position)}
-    points |= {pin: in_space(m.position + m.rotation * e) for pin, e in places.items()}
+
+    def placed(position: sp.Matrix, rotation: sp.Matrix) -> dict[str, Sequence[Any]]:
+        """All points, from the pose of the hand."""
+        found: dict[str, Sequence[Any]] = {"P": in_space(position)}
+        found |= {pin: in_space(position + rotation * e) for pin, e in places.items()}
+        for (k, leg), pin, place, offset in zip(m.numbered, pins, m.places, m.offsets, strict=True):
+            end = f"C{k}" if m.halves else pin
+            found |= points_of(k, leg, end, position + rotation * place + offset)
+        return found
+
     corners = list(dict.fromkeys(pins))
     hand = (*corners, *corners[:1]) if len(corners) > 2 else tuple(corners)
     if m.halves:
         hand = hand if "P" in hand else (hand[0], "P", hand[1])
     drawn = Drawing()
-    for (k, leg), pin, arm, offset, equation in zip(
-        m.numbered, pins, m.arms, m.offsets, m.loop, strict=True
-    ):
+    for (k, leg), pin, offset, equation in zip(m.numbered, pins, m.offsets, m.loop, strict=True):
         end = f"C{k}" if m.halves else pin
-        points |= points_of(k, leg, end, m.position + arm + offset)
         drawn.add_leg(k, leg, end, equation)
         if end != pin:
             drawn.links[f"half{k}"] = (pin, end)
@@ -372,23 +388,27 @@ def _draw(m: Platform) -> None:
         if m.tilts:  # the length of the cosine and sine of one angle is known
             drawn.closing[pair] = sp.expand(square(m.rotation * gap) - square(gap))
     ground = tuple(f"A{k}" for k, _ in m.numbered)
+    points = placed(m.position, m.rotation)
     skeleton(
         m.d,
-        points,
+        placed(at.position, at.rotation) if at else points,
         links={"ground": (*ground, ground[0]), **drawn.links},
         joints=drawn.joints,
         hand="P",
         hand_at=in_space(m.position),
         ground=ground,
         lengths=drawn.lengths,
-        pose=m.target,
-        notes=(TOGETHER,),
+        pose=None if at else m.target,
+        program=at.program if at else None,
+        branches=at.modes if at else None,
+        notes=(NO_MODE if at else TOGETHER,),
         at_posture=[points],
         closing=drawn.closing,
     )
 
 
-def _inverse(m: Platform, loop: Step, degree: str) -> None:
+def _inverse(m: Platform, loop: Step, degree: str = "") -> None:
+    """The inverse; the ``degree`` is that of the forward problem, if ``fk`` is not derived."""
     d, g = m.d, m.d.program()
     if m.tilts:
         require_pose(g, m.pose)
@@ -401,18 +421,13 @@ def _inverse(m: Platform, loop: Step, degree: str) -> None:
     spans = [s.rod - arm for s, arm in zip(solved.found, arms, strict=True)]
     rows = _named_rows(m, g, arms, spans)
     volume = g.let("Delta", determinant(g, rows))
-    lever = g.let("lever", sp.sqrt(m.spread), nonnegative=True)
-    # six legs lose more digits in their determinant than in the pose that they determine
-    power, share = (3, "2^-20") if m.tilts else (1, "2^-10")
-    least = solved.lengths(m.legs) * lever**power
+    least, scale_name, said = _scale(m, g, solved, turns=not degree)
     g.determined(
         sp.Abs(volume),
-        least if power == 1 else least / 2**10,
+        least,
         m.meet,
         name=r"|\det A|",
-        scale_name=r"\lambda \prod_i |\mathbf r_i|"
-        if power == 1
-        else r"2^{-10} \lambda^3 \prod_i |\mathbf r_i|",
+        scale_name=scale_name,
         missed=solved.missed,
         size=solved.size,
     )
@@ -421,9 +436,7 @@ def _inverse(m: Platform, loop: Step, degree: str) -> None:
         f"Each leg is solved alone.  {known_sides(m.legs)}{solved.on_modes}"
         "Near a parallel singularity rounded "
         "joints do not determine the hand.  The status is SINGULAR if the determinant of A is "
-        f"less than {share} of the product of the lengths of the rods and"
-        f"{'' if power == 1 else ' the third power of'} lambda, the root mean square distance "
-        f"of the ends of the rods on the hand from their centre.  {MISSED}",
+        f"less than {said}.  {MISSED}",
         {},
         uses=[loop],
         solves={"ik": ()},
@@ -437,10 +450,38 @@ def _inverse(m: Platform, loop: Step, degree: str) -> None:
             "closes, but the joints do not determine the hand.",
             *(["INVALID: the matrix is not a pose."] if m.tilts else []),
             *([left_out(m)] if len(m.legs) == UPRIGHT else []),
-            f"fk is not derived: the forward problem is an equation of degree {degree}.",
+            *(
+                [f"fk is not derived: the forward problem is an equation of degree {degree}."]
+                if degree
+                else []
+            ),
         ],
     )
-    solved.certify(m.loop)
+    solved.certify(m.loop, "" if degree else "fk", angles=() if degree else m.pose[2:])
+
+
+def _scale(m: Platform, g: Program, solved: LegByLeg, *, turns: bool) -> tuple[sp.Expr, str, str]:
+    """The scale of the determinant of A, as an expression, as LaTeX, and in words.
+
+    If ``fk`` gives what the hand ``turns``, this counts in radians, otherwise at the ends of rods.
+    """
+    rods, product = solved.lengths(m.legs), r"\prod_i |\mathbf r_i|"
+    of = "of the product of the lengths of the rods and"
+    if turns:
+        return (
+            rods * solved.size,
+            rf"\Lambda {product}",
+            f"2^-10 {of} Lambda, the sum of all lengths",
+        )
+    lever = g.let("lever", sp.sqrt(m.spread), nonnegative=True)
+    spread = (
+        "lambda, the root mean square distance of the ends of the rods on the hand from their "
+        "centre"
+    )
+    if m.tilts:  # six legs lose more digits in their determinant than in the pose
+        scale = rods * lever**3 / 2**10
+        return scale, rf"2^{{-10}} \lambda^3 {product}", f"2^-20 {of} the third power of {spread}"
+    return rods * lever, rf"\lambda {product}", f"2^-10 {of} {spread}"
 
 
 __all__ = ["platform"]

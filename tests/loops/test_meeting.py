@@ -35,7 +35,8 @@ c3 = {between = ["rod3", "top"], at = "P"}
 MIXED = """
 from sympy import Rational
 from closedform import Crank, Derivation, Paper, Slide, Stretch, platform
-d = Derivation("meeting_mixed", "Mixed", Paper("toy", "Toys", ("A. Nonymous",)), "Three kinds of legs.")
+paper = Paper("toy", "Toys", ("A. Nonymous",))
+d = Derivation("meeting_mixed", "Mixed", paper, "Three kinds of legs.")
 r = d.parameter("r", value=2, unit="m", meaning="rod", source="an example")
 c = d.parameter("c", value=1, unit="m", meaning="hand", source="an example")
 q = d.joint("q1"), d.joint("q2", "prismatic"), d.joint("q3", "prismatic")

@@ -13,9 +13,9 @@ from closedform.lemmas.circles import two_circles
 from closedform.lemmas.legs import Naming
 from closedform.lemmas.missed import MOVED, SHARE
 from closedform.loops.conditioning import JACOBIAN, conditioning
-from closedform.loops.dyads_inverse import inverse, known_points, named
+from closedform.loops.dyads_inverse import inverse, known_points
 from closedform.loops.hand import in_space
-from closedform.loops.leg_by_leg import SIGN, Choice, record_lemma
+from closedform.loops.leg_by_leg import SIGN, Choice, named, record_lemma
 from closedform.loops.linkage import GROUND, Body, Linkage, Solved
 from closedform.loops.modes import NO_MODE, Exported, export
 from closedform.loops.parallel import NEAR

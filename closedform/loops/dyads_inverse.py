@@ -16,7 +16,7 @@ from closedform.lemmas.circles import two_circles
 from closedform.lemmas.legs import Naming, Solution, Stretch
 from closedform.loops.from_hand import export_inverse, turned
 from closedform.loops.hand import square
-from closedform.loops.leg_by_leg import MISSED, named_in, where_free
+from closedform.loops.leg_by_leg import MISSED, named, where_free
 from closedform.loops.linkage import GROUND, Linkage
 from closedform.mechanics.assur import Dyad, Held, Order, order
 from closedform.model.functions import Program, choose, real
@@ -32,11 +32,6 @@ def known_points(m: Linkage, p: Program, bodies: Sequence[str]) -> dict[str, sp.
             if point not in at:
                 at[point] = named(p, f"p{point}", m.on_turning(body, point))
     return at
-
-
-def named(p: Program, name: str, place: sp.Matrix) -> sp.Matrix:
-    """A point with its coordinates under names."""
-    return sp.Matrix([named_in(p, f"{name}_{i}", e) for i, e in zip("xy", place, strict=True)])
 
 
 def inverse(m: Linkage, loop: Step) -> None:
@@ -309,4 +304,4 @@ class _Reverse:
         )
 
 
-__all__ = ["inverse", "known_points", "named"]
+__all__ = ["inverse", "known_points"]

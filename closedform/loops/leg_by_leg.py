@@ -231,11 +231,17 @@ def named_in(p: Program, name: str, value: sp.Expr) -> sp.Symbol:
     return value if value.is_Symbol or value.is_number else p.let(name, value)
 
 
+def named(p: Program, name: str, place: sp.Matrix) -> sp.Matrix:
+    """A vector in a plane, with its coordinates under names."""
+    return sp.Matrix([named_in(p, f"{name}_{i}", e) for i, e in zip("xy", place, strict=True)])
+
+
 __all__ = [
     "MISSED",
     "SIGN",
     "Choice",
     "LegByLeg",
+    "named",
     "named_in",
     "record_lemma",
     "signs_of_modes",

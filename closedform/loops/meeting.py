@@ -18,6 +18,7 @@ from closedform.lemmas.sine_cosine import linear_pair
 from closedform.loops.hand import rate_of, square
 from closedform.loops.leg_by_leg import (
     SIGN,
+    named,
     named_in,
     record_lemma,
     signs_of_modes,
@@ -36,6 +37,7 @@ C = sp.Matrix([real("C_x"), real("C_y")])
 """The point of the hand in which two legs end."""
 D = sp.Matrix([real("D_x"), real("D_y")])
 """The end of the third leg."""
+ON_HAND = "all legs end in one point of the hand"
 NEAR = "Ill-conditioned near the parallel singularities, where two modes meet."
 
 
@@ -145,7 +147,14 @@ def forward(meet: Meet, loop: Step) -> Posture:
     means = {s: sp.sin(yaw), c: sp.cos(yaw)}
     case = Degenerate((free,), dict.fromkeys((across, along), sp.S.Zero), yaw, ON_HAND)
     links.append(
-        Link((yaw,), turn.equations, {}, turn, tuple(f.body[start:]), means, (case,)),
+        Link(
+            unknowns=(yaw,),
+            equations=turn.equations,
+            lemma=turn,
+            body=tuple(f.body[start:]),
+            means=means,
+            degenerate=(case,),
+        )
     )
     R = _turned(Pair(s, c))
     position = named(f, "p", at_c - R * meet.place)
@@ -178,15 +187,14 @@ def forward(meet: Meet, loop: Step) -> Posture:
         record_lemma(d, "fk", link)
     rods = {k: at_c - near[k] for k in meet.pair} | {meet.third: at_d - near[meet.third]}
     volume = meet.sign * first * second
-    return Posture(Program(list(f.body), f.taken), modes, position, R, rods, volume)
-
-
-ON_HAND = "all legs end in one point of the hand"
-
-
-def named(p: Program, name: str, place: sp.Matrix) -> sp.Matrix:
-    """A point with its coordinates under names."""
-    return sp.Matrix([named_in(p, f"{name}_{i}", e) for i, e in zip("xy", place, strict=True)])
+    return Posture(
+        program=Program(list(f.body), f.taken),
+        modes=modes,
+        position=position,
+        rotation=R,
+        rods=rods,
+        volume=volume,
+    )
 
 
 def _radius(p: Program, k: int, leg: Leg) -> sp.Expr:

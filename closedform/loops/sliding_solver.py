@@ -19,7 +19,7 @@ from closedform.lemmas.lines import (
 )
 from closedform.loops.from_hand import turned
 from closedform.loops.hand import square
-from closedform.loops.leg_by_leg import named_in
+from closedform.loops.leg_by_leg import named, named_in
 from closedform.loops.linkage import GROUND
 from closedform.loops.sliding import Frame, Sliding, SlidingLinkage, swing_name
 from closedform.mechanics.assur_slides import (
@@ -32,11 +32,6 @@ from closedform.mechanics.assur_slides import (
 )
 from closedform.model.functions import Program, real
 from closedform.model.inverse import Link
-
-
-def named(p: Program, name: str, place: sp.Matrix) -> sp.Matrix:
-    """A vector with its coordinates under names."""
-    return sp.Matrix([named_in(p, f"{name}_{i}", e) for i, e in zip("xy", place, strict=True)])
 
 
 @dataclass(frozen=True)
@@ -326,4 +321,4 @@ class Solver:
         return slide.way.dot(from_zero)
 
 
-__all__ = ["Block", "Solver", "World", "named"]
+__all__ = ["Block", "Solver", "World"]

@@ -14,6 +14,7 @@ from closedform.loops.three_hinges import PSI, ThreeHinges
 from closedform.loops.tripod_legs import sum_of_cosines
 from closedform.mechanics.frames import homogeneous
 from closedform.model.derivation import Derivation
+from closedform.model.functions import Program
 from closedform.model.step import Step
 
 IN_PLANE = (
@@ -84,14 +85,7 @@ def state_pose(d: Derivation, guide: Hinges, places: Sequence[sp.Matrix], at: Pl
         proves=proves.rstrip(),
         equal=equal,
     )
-    d.function(
-        "hand_pose",
-        "Pose of the hand, which the target determines.",
-        guide.inputs,
-        {"T": homogeneous(placed.rotation, vector(guide.pivot) + placed.shift)},
-        program=p,
-        notes=("Not finite where the hinges do not fix the place of the hand.",) * guide.loose,
-    )
+    _export(d, guide, p, placed, "Pose of the hand, which the target determines.")
     return step
 
 
@@ -145,15 +139,21 @@ def _state_twisted(
             (plain, apart),
         ],
     )
+    summary = "Pose of the hand: its twist and its sideways motion follow from the target."
+    _export(d, guide, p, placed, summary)
+    return step
+
+
+def _export(d: Derivation, guide: Hinges, p: Program, placed: Placed, summary: str) -> None:
     d.function(
         "hand_pose",
-        "Pose of the hand: its twist and its sideways motion follow from the target.",
+        summary,
         guide.inputs,
         {"T": homogeneous(placed.rotation, vector(guide.pivot) + placed.shift)},
         program=p,
-        notes=("Not finite where the hinges do not fix the place or the twist of the hand.",),
+        notes=(f"Not finite where the hinges do not fix the {guide.fixes} of the hand.",)
+        * guide.loose,
     )
-    return step
 
 
 def motions(guide: Hinges, at: Placed) -> list[tuple[Any, Any]]:

@@ -21,11 +21,10 @@ from closedform.loops.leg_by_leg import (
     named,
     named_in,
     record_lemma,
-    signs_of_modes,
     size_of,
 )
 from closedform.loops.modes import export
-from closedform.loops.platform_legs import Platform
+from closedform.loops.platform_legs import Platform, jacobians, matrices
 from closedform.model.functions import Branches, Program, branches, choose, real
 from closedform.model.inverse import Degenerate, Inverse, Link
 from closedform.model.pair import Pair
@@ -278,46 +277,8 @@ def export_rates(m: Platform, at: Posture) -> None:
         for (k, leg), rod in zip(m.numbered, rods, strict=True)
     ]
     volume, A = v.let("Delta", at.volume), sp.Matrix(rows)
-    # the quotient first: a cofactor times an entry of B may be too small for the type
-    shares = [v.let(f"share_{k}", b / volume) for k, b in enumerate(driven, 1)]
-    pole = ("Not finite at a parallel singularity.",)
-    export(
-        d,
-        v,
-        at.modes,
-        [
-            (
-                "jacobian_parallel",
-                "A of A*t = B*dq; a row is the vector along a rod and its moment about the hand.",
-                {"A": A},
-                (),
-            ),
-            (
-                "jacobian_serial",
-                "The diagonal of B of A*t = B*dq.",
-                {"B": driven},
-                signs_of_modes(m.legs),
-            ),
-            (
-                "jacobian",
-                "Derivative of x, y and yaw with respect to q: A^-1*B.",
-                {"J": A.adjugate() * sp.diag(*shares)},
-                pole,
-            ),
-            (
-                "determinant",
-                "Determinant of the Jacobian.",
-                {"det": sp.Mul(*driven) / volume},
-                pole,
-            ),
-            (
-                "singularities",
-                "The diagonal of B (serial) and the determinant of A (parallel).",
-                {"factors": [*driven, volume]},
-                (),
-            ),
-        ],
-    )
+    functions = [*matrices(m, A, driven, volume), *jacobians(m, v, A, driven, volume)]
+    export(d, v, at.modes, functions)
 
 
 __all__ = ["Meet", "Posture", "export_rates", "forward"]

@@ -26,14 +26,21 @@ from closedform.loops.leg_by_leg import (
     LegByLeg,
     known_sides,
     named_in,
-    signs_of_modes,
     size_of,
 )
 from closedform.loops.letters import letters
 from closedform.loops.meeting import Meet, Posture, export_rates, forward
 from closedform.loops.modes import NO_MODE
 from closedform.loops.on_rails import on_rails
-from closedform.loops.platform_legs import UPRIGHT, Half, Platform, check_holds, counted_degree
+from closedform.loops.platform_legs import (
+    UPRIGHT,
+    Half,
+    Platform,
+    check_holds,
+    counted_degree,
+    jacobians,
+    matrices,
+)
 from closedform.loops.skeleton import Drawing, points_of
 from closedform.loops.upright import check_upright, constraint, left_out, state_upright
 from closedform.mechanics.frames import hat, require_pose
@@ -235,47 +242,18 @@ def _export(m: Platform) -> None:
     ]
     volume = p.let("Delta", determinant(p, placed))
     A = sp.Matrix.vstack(*placed)
-    serial = "Not finite at a serial singularity."
-    functions: list[tuple[str, str, dict[str, Any], tuple[str, ...]]] = [
-        (
-            "jacobian_parallel",
-            "A of A*t = B*dq; a row is the vector along a rod and its moment about the hand.",
-            {"A": A},
-            (),
-        ),
-        (
-            "jacobian_serial",
-            "The diagonal of B of A*t = B*dq.",
-            {"B": driven},
-            signs_of_modes(m.legs),
-        ),
-        (
-            "jacobian_inverse",
-            "B^-1*A: joint rates per velocity and angular velocity of the hand.",
-            {"K": sp.Matrix.vstack(*(row / b for row, b in zip(placed, driven, strict=True)))},
-            (serial,),
-        ),
-        (
-            "singularities",
-            "The diagonal of B (serial) and the determinant of A (parallel).",
-            {"factors": [*driven, volume]},
-            (),
-        ),
-    ]
+    inverse = (
+        "jacobian_inverse",
+        "B^-1*A: joint rates per velocity and angular velocity of the hand.",
+        {"K": sp.Matrix.vstack(*(row / b for row, b in zip(placed, driven, strict=True)))},
+        ("Not finite at a serial singularity.",),
+    )
+    *both, singular = matrices(m, A, driven, volume)
+    functions = [*both, inverse, singular]
     if len(m.legs) == UPRIGHT:
         functions.append(constraint(m, rods))
     if not m.tilts:
-        pole = ("Not finite at a parallel singularity.",)
-        *names, last = m.d.task
-        task = f"{', '.join(names)} and {last}"
-        # the quotient first: a cofactor times an entry of B may be too small for the type
-        shares = [p.let(f"share_{k}", b / volume) for k, b in enumerate(driven, 1)]
-        J = A.adjugate() * sp.diag(*shares)
-        det = sp.Mul(*driven) / volume
-        functions += [
-            ("jacobian", f"Derivative of {task} with respect to q: A^-1*B.", {"J": J}, pole),
-            ("determinant", "Determinant of the Jacobian.", {"det": det}, pole),
-        ]
+        functions += jacobians(m, p, A, driven, volume)
     for name, summary, outputs, notes in functions:
         d.function(
             name,

@@ -15,9 +15,11 @@ from closedform.algebra.solutions import count_solutions
 from closedform.lemmas.legs import Leg, Strut, cross_in_plane, vector
 from closedform.lemmas.rails import Rail
 from closedform.loops.hand import check_order, check_plain, singular_everywhere, square
+from closedform.loops.leg_by_leg import signs_of_modes
+from closedform.loops.modes import Exported
 from closedform.mechanics.frames import hat, pose_symbols, rotation
 from closedform.model.derivation import Derivation
-from closedform.model.functions import real
+from closedform.model.functions import Program, real
 
 LEGS = {2: (3,), 3: (4, 6)}
 """How many legs carry a hand that turns in a plane, and in space."""
@@ -223,6 +225,49 @@ def check_holds(m: Platform) -> None:
         )
 
 
+def matrices(
+    m: Platform, A: sp.Matrix, driven: Sequence[sp.Expr], volume: sp.Expr
+) -> list[Exported]:
+    """Both matrices of A*t = B*dq and what makes them singular, as functions."""
+    return [
+        (
+            "jacobian_parallel",
+            "A of A*t = B*dq; a row is the vector along a rod and its moment about the hand.",
+            {"A": A},
+            (),
+        ),
+        (
+            "jacobian_serial",
+            "The diagonal of B of A*t = B*dq.",
+            {"B": driven},
+            signs_of_modes(m.legs),
+        ),
+        (
+            "singularities",
+            "The diagonal of B (serial) and the determinant of A (parallel).",
+            {"factors": [*driven, volume]},
+            (),
+        ),
+    ]
+
+
+def jacobians(
+    m: Platform, p: Program, A: sp.Matrix, driven: Sequence[sp.Expr], volume: sp.Expr
+) -> list[Exported]:
+    """The Jacobian of a hand that turns about one axis and its determinant, as functions."""
+    pole = ("Not finite at a parallel singularity.",)
+    *names, last = m.d.task
+    task = f"{', '.join(names)} and {last}"
+    # the quotient first: a cofactor times an entry of B may be too small for the type
+    shares = [p.let(f"share_{k}", b / volume) for k, b in enumerate(driven, 1)]
+    J = A.adjugate() * sp.diag(*shares)
+    det = sp.Mul(*driven) / volume
+    return [
+        ("jacobian", f"Derivative of {task} with respect to q: A^-1*B.", {"J": J}, pole),
+        ("determinant", "Determinant of the Jacobian.", {"det": det}, pole),
+    ]
+
+
 def counted_degree(m: Platform) -> int:
     """The number of complex poses for the same joints, at generic lengths and joints.
 
@@ -244,4 +289,13 @@ def counted_degree(m: Platform) -> int:
     return found // (1 << len(names))
 
 
-__all__ = ["LEGS", "UPRIGHT", "Half", "Platform", "check_holds", "counted_degree"]
+__all__ = [
+    "LEGS",
+    "UPRIGHT",
+    "Half",
+    "Platform",
+    "check_holds",
+    "counted_degree",
+    "jacobians",
+    "matrices",
+]

@@ -364,11 +364,10 @@ class Algorithm:
         self.page.lines.line_width = FITS - INDENTED
         branched: set[sp.Basic] = set(self.signs)
         common, each, once = list[Part](), list[Part](), list[Part]()
-        alike = self.twins.alike if self.twins else frozenset()
-        second = self.twins.second if self.twins else frozenset()
-        body = self.function.body
+        none: frozenset[sp.Symbol] = frozenset()
+        alike, second = (self.twins.alike, self.twins.second) if self.twins else (none, none)
         told = self.model.function.body if self.model else ()
-        for statement in body:
+        for statement in self.function.body:
             symbol = getattr(statement, "symbol", None)
             if symbol in second:  # told with those of the first part
                 self.printed.add(symbol)
@@ -419,9 +418,7 @@ class Algorithm:
     def _expressions(self, statement: Statement) -> Iterable[sp.Expr]:
         if isinstance(statement, Let | Bound):
             return [self.value(statement.symbol)]
-        if isinstance(statement, Require):
-            return statement.values
-        return [self.shown(statement.value)]
+        return statement.values if isinstance(statement, Require) else [self.shown(statement.value)]
 
     def _statement(self, statement: Statement) -> Iterable[tuple[str, str, str]]:
         """The kind of each line, its text and a remark."""

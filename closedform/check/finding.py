@@ -45,7 +45,10 @@ def float_backend(call: Callable[[str], Callable[..., Any]]) -> Backend:
 
 @dataclass
 class Finding:
-    """The worst error of one function in one backend, and where; no ``failures`` if it is right."""
+    """The worst error of one function in one backend, and where; no ``failures`` if it is right.
+
+    ``lost`` are solutions near singular postures that single precision does not return.
+    """
 
     robot: str
     function: str
@@ -55,6 +58,7 @@ class Finding:
     where: str = ""
     compared: int = 0
     failures: list[str] = field(default_factory=list)
+    lost: list[str] = field(default_factory=list)
 
     @property
     def full(self) -> bool:

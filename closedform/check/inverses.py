@@ -22,6 +22,8 @@ from closedform.model.functions import Function
 from closedform.model.inverse import Inverse
 from closedform.model.tolerances import HIGHEST_DEGREE
 
+APART = 5e-4
+"""The largest distance of an answer from the posture behind its target, times a thousandth."""
 SUSPECTS = 5
 """The number of worst answers on and near the singular set that are evaluated in Arb."""
 
@@ -93,7 +95,9 @@ class _Batch:
             code, reached = int(status[row, branch]), feasible[row, branch]
             problem = self._problem(row, solutions[row, branch], code, reached)
             if problem:
-                self.finding.fail(f"branch {branch} {problem}; {self._where(row)}")
+                lost = code in (UNREACHABLE, INVALID) and np.isnan(solutions[row, branch]).all()
+                say = self._lose if lost else self.finding.fail
+                say(f"branch {branch} {problem}; {self._where(row)}")
             wrong[row, branch] = bool(problem)
             if self.finding.full:
                 return
@@ -195,19 +199,28 @@ class _Batch:
         """Check that the posture behind a target is among the branches, unless a joint is free."""
         truth, backend, parameters = self.truth, self.backend, self.sample.parameters
         one = Sample(self.sample.name, self.sample.values[row : row + 1], parameters)
-        condition = max(truth.condition(posture, parameters), math.sqrt(backend.eps))
+        # where three solutions meet, a rounding moves them by its cube root
+        condition = max(truth.condition(posture, parameters), backend.eps ** (2 / 3))
         nearest = np.nanmin(truth.gap(solutions, posture), initial=np.inf)
         if np.isnan(solutions).all() and _leaves_the_workspace(truth, backend, one):
             return
         if truth.undetermined(posture, parameters) and not np.isnan(solutions).all():
             return
-        allowed = backend.eps * _spread(parameters) / condition
-        if nearest > 1e3 * allowed:  # an ulp of the target turns a nearly free joint far
-            allowed += _movement(truth, backend, one, solutions)
-        if not nearest <= 1e3 * allowed:
-            self.finding.fail(
-                f"{posture.tolist()} is not among {solutions.tolist()}; {self._where(row)}"
-            )
+        allowed = min(backend.eps / condition, APART) * _spread(parameters)
+        # an ulp of the target turns a nearly free joint far
+        far = nearest / 1e3 - allowed
+        if far > 0 and not _moves(truth, backend, one, solutions, far):
+            self._lose(f"{posture.tolist()} is not among {solutions.tolist()}; {self._where(row)}")
+
+    def _lose(self, message: str) -> None:
+        """Report a solution that is not returned.
+
+        Near a singular posture, single precision cannot always tell whether there is one.
+        """
+        if self.backend.dtype is np.float32 and self.sample.name != "random":
+            self.finding.lost.append(message)
+        else:
+            self.finding.fail(message)
 
 
 def _in_range(
@@ -265,19 +278,21 @@ def _spread(parameters: Sequence[float]) -> float:
     return max(sizes) / min(sizes) if sizes else 1.0
 
 
-def _movement(truth: Solutions, backend: Backend, sample: Sample, solutions: NDArray[Any]) -> float:
-    """How far the answers move when a coordinate of the target or a parameter moves by an ulp.
+def _moves(
+    truth: Solutions, backend: Backend, sample: Sample, solutions: NDArray[Any], far: float
+) -> bool:
+    """Whether the answers move that far when a coordinate or a parameter moves by an ulp.
 
     A tiny coordinate hardly moves by an ulp, but lengths that nearly cancel do: where a rod ends
     close to the axis of its crank, the angle depends on the last bits of two equal lengths.  The
     first rounding may hide a single ulp, so four ulps are tried as well.
     """
-    largest = 0.0
     for ulps in (1, 4):
         for nearby in (_nearby(backend, sample, ulps), *_resized(backend, sample, ulps)):
             moved = truth.gap(called(backend, truth.function, nearby)[0], solutions) / ulps
-            largest = float(np.max(moved, initial=largest, where=np.isfinite(moved)))
-    return largest
+            if np.max(moved, initial=0.0, where=np.isfinite(moved)) >= far:
+                return True
+    return False
 
 
 def _leaves_the_workspace(truth: Solutions, backend: Backend, sample: Sample) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 from closedform.check import runners
 from closedform.check.crosscheck import crosscheck
@@ -15,8 +16,16 @@ from closedform.emit.escape import markdown_text
 from closedform.model.derivation import Derivation
 
 
-def report(derivation: Derivation, root: Path, backends: Sequence[str]) -> tuple[str, list[str]]:
-    """The page, and the errors above the tolerances.
+class Report(NamedTuple):
+    """The page, the errors above the tolerances, and what single precision does not return."""
+
+    page: str
+    failures: list[str]
+    lost: list[str]
+
+
+def report(derivation: Derivation, root: Path, backends: Sequence[str]) -> Report:
+    """Cross-check what was printed.
 
     ``root`` is the folder with the printed files, each back end in a folder of its own.  Code that
     cannot be run here is left out, and the page says so.
@@ -33,7 +42,13 @@ def report(derivation: Derivation, root: Path, backends: Sequence[str]) -> tuple
         except UnavailableError as error:
             remarks.append(f"What is in {name}/ was not checked: {error}.")
     failures = [f"{f.function} ({f.backend}): {x}" for f in findings for x in f.failures]
-    return _page(derivation, findings, failures, remarks), failures
+    lost = [f"{f.function} ({f.backend}): {x}" for f in findings for x in f.lost]
+    if lost:
+        remarks.append(
+            "Not returned in single precision, near singular postures:\n\n"
+            + "\n".join(f"- {x}" for x in lost)
+        )
+    return Report(_page(derivation, findings, failures, remarks), failures, lost)
 
 
 def _page(

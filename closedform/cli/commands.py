@@ -233,14 +233,20 @@ def _crosscheck(root: Path, chosen: Sequence[scripts.Source], backends: Sequence
         for source in chosen:
             progress(source.name, "cross-checking")
             try:
-                text, failures = report(scripts.load(source), root, backends)
+                found = report(scripts.load(source), root, backends)
             except FailedError as error:
                 raise CommandError(f"{source.name}: {error}") from error
-            _write(root, {Path(f"{source.name}-crosscheck.md"): text})
-            if failures:
+            path = Path(f"{source.name}-crosscheck.md")
+            _write(root, {path: found.page})
+            if found.failures:
                 raise CommandError(
                     f"{source.name}: the generated code differs from its symbolic source; see "
-                    f"{root / f'{source.name}-crosscheck.md'}: {failures[0]}"
+                    f"{root / path}: {found.failures[0]}"
+                )
+            if found.lost:
+                console.say(
+                    f"closedform: note: {source.name}: near singular postures, single precision "
+                    f"does not return all solutions; see {root / path}"
                 )
 
 

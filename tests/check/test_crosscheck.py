@@ -59,7 +59,7 @@ def test_against_the_symbolic_source(
     for backend in backends(name, robot, tmp_path_factory):
         found = crosscheck(derivation(robot), backend)
         findings += found
-        assert not [failure for f in found for failure in f.failures]
+        assert not [problem for f in found for problem in (*f.failures, *f.lost)]
         assert all(f.compared for f in found)
 
 
@@ -107,6 +107,25 @@ def never_reachable(solutions):
 @all_robots
 def test_a_wrong_inverse_is_found(robot: str, change) -> None:
     assert broken(robot, "ik", change)
+
+
+def near_singular_ones_lost(solutions):
+    near = abs(np.sin(solutions.q[:, 0, 1])) < 1e-3
+    solutions.q[near], solutions.status[near] = np.nan, 1
+    return solutions
+
+
+@pytest.mark.parametrize(
+    ("change", "wrong"), [(never_reachable, True), (near_singular_ones_lost, False)]
+)
+def test_single_precision_may_lose_solutions_near_singular_postures(change, wrong: bool) -> None:
+    """This is told.  At random postures it is a failure."""
+    module = importlib.import_module("closedform.generated.numpy.planar_2r")
+    d = derivation("planar_2r")
+    backend = float_backend(lambda name: lambda *a: change(getattr(module, name)(*a)))
+    finding = check_inverse(d, d["ik"], d.inverses[0], backend)
+    assert all("; random:" in failure for failure in finding.failures)
+    assert bool(finding.failures) == wrong and (wrong or finding.lost)
 
 
 @pytest.mark.parametrize("change", [first_branch_only, backwards])

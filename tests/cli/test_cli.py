@@ -12,6 +12,7 @@ import pytest
 from derivations_for_tests import SLIDER
 from places import ROOT
 
+from closedform.check.finding import Finding
 from closedform.cli import console
 from closedform.cli.commands import main
 from closedform.pipeline import folders, scripts
@@ -207,6 +208,22 @@ def test_a_difference_found_by_the_cross_check_fails(
     assert main(["derive", str(slider), "-o", str(output), "--backend", "numpy"]) == 1
     assert "slider: the generated code differs from its symbolic source" in capsys.readouterr().err
     assert "ulp" in (output / "slider-crosscheck.md").read_text("utf-8")
+
+
+def test_what_single_precision_loses_near_singular_postures_is_told(
+    slider: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
+) -> None:
+    """The code is printed, and the command succeeds."""
+    from closedform.check import report
+
+    lost = Finding("slider", "ik", "c float", lost=["x is not among y"])
+    monkeypatch.setattr(report, "crosscheck", lambda *_: [lost])
+    output = tmp_path / "out"
+    assert main(["derive", str(slider), "-o", str(output), "--backend", "numpy"]) == 0
+    page = (output / "slider-crosscheck.md").read_text("utf-8")
+    assert "Not returned in single precision" in page and "x is not among y" in page
+    told = f"single precision does not return all solutions; see {output}"
+    assert told in capsys.readouterr().err
 
 
 def test_a_broken_neighbour_does_not_hold_up_a_robot(

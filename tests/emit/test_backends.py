@@ -78,7 +78,7 @@ def test_what_cannot_be_run_is_named_on_the_page(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(node.shutil, "which", lambda name: None)
-    page, failures = report(TOYS["levelled_arm"](), tmp_path, ["data", "js"])
+    page, failures, _ = report(TOYS["levelled_arm"](), tmp_path, ["data", "js"])
     assert not failures
     assert "What is in js/ was not checked: Node is not installed." in page
 
@@ -143,7 +143,7 @@ def test_the_back_end_of_the_guide(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         d = TOYS[toy]()
         written(d, tmp_path / "out", "scalar")
         assert module(tmp_path / "out" / "scalar", d.name).fk(0.0, 1.0, **example(d))
-        page, failures = report(d, tmp_path / "out", ["scalar"])
+        page, failures, _ = report(d, tmp_path / "out", ["scalar"])
         assert not failures, page
         assert "| fk |" in page
 

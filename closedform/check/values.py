@@ -132,7 +132,7 @@ class _Errors:
             moved = float(_variation(self.values, k, self.rows[row], exacts[k], self.backend))
             scale += moved / self.backend.eps
             error = _ulps(self.computed[row, k], exact, scale, self.backend)
-        if error > WELL_CONDITIONED and self.values.in_modes:
+        if error > WELL_CONDITIONED:
             scale += self._of_lengths(row, k)
             error = _ulps(self.computed[row, k], exact, scale, self.backend)
         if error > WELL_CONDITIONED and (self.values.beside_pose or self.values.in_modes):

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import libraries
 import numpy as np
 import pytest
+import sympy as sp
 from places import ROOT
 
 from closedform.check import runners
@@ -16,7 +17,7 @@ from closedform.check.finding import Backend, Finding, float_backend, module_bac
 from closedform.check.inverses import check_inverse
 from closedform.check.values import check_boolean, check_forward
 from closedform.emit.backends import load, names
-from closedform.model.derivation import Derivation
+from closedform.model.derivation import Derivation, Paper
 from closedform.model.tolerances import DOUBLE
 from closedform.pipeline.scripts import sources
 
@@ -162,3 +163,19 @@ def test_a_wrong_value_is_found(robot: str) -> None:
 
 def test_a_wrong_truth_value_is_found() -> None:
     assert broken("hybrid_five_bar", "workspace_contains", np.logical_not)
+
+
+@pytest.mark.parametrize(("factor", "wrong"), [(1.0, False), (1 + 1e-10, True)])
+def test_lengths_that_cancel_in_names_lose_digits(factor: float, wrong: bool) -> None:
+    """A name holds the larger length; its rounding is not an error of the difference."""
+    d = Derivation("bar", "Bar", Paper("toy", "Toys", ("A.",)), "A bar.", task=["x"])
+    q, p = d.joint("theta1"), d.program()
+    x = p.let("x_1", sp.Rational(1569, 10000) * sp.cos(q))
+    outputs = {"x": [x - sp.Rational(1568, 10000) * sp.cos(q)]}
+    fk = d.function("fk", "Place of the end.", {"q": [q]}, outputs, program=p)
+
+    def printed(q, parameters):
+        return factor * (0.1569 * np.cos(q) - 0.1568 * np.cos(q))
+
+    backend = Backend("numpy", lambda name: printed, np.float64, DOUBLE)
+    assert bool(check_forward(d, fk, backend).failures) == wrong

@@ -356,18 +356,23 @@ class Solutions:
         """
         if not self._factors.exprs:
             return float(min([1.0, *self._rates(posture, parameters)]))
-        factors = self._factors.exactly([*map(float, posture), *parameters])
-        return min([1.0, *(abs(to_float(f)) for f in factors if f.is_finite())])
+        return min([1.0, *self._sizes(posture, parameters)])
 
     def undetermined(self, posture: NDArray[Any], parameters: Sequence[float]) -> bool:
         """Whether a posture is so close to a singularity that its target does not determine it.
 
         Where two singularities meet, rounding at one turns the joint of the other: the answers are
-        right, but far from the posture.  For arms with factors, the size of the factors decides.
+        right, but far from the posture.  An arm has factors for these, or only the singular values
+        of its forward map.
         """
         if self._factors.exprs:
-            return False
+            return sum(size < CLOSE for size in self._sizes(posture, parameters)) > 1
         return bool(min(self._rates(posture, parameters), default=1.0) < CLOSE)
+
+    def _sizes(self, posture: NDArray[Any], parameters: Sequence[float]) -> list[float]:
+        """The sizes of the factors of the singular set, where they are defined."""
+        factors = self._factors.exactly([*map(float, posture), *parameters])
+        return [abs(to_float(f)) for f in factors if f.is_finite()]
 
     def _rates(self, posture: NDArray[Any], parameters: Sequence[float]) -> list[float]:
         """The singular values of the forward map: how far the target moves with the joints."""

@@ -47,7 +47,8 @@ def float_backend(call: Callable[[str], Callable[..., Any]]) -> Backend:
 class Finding:
     """The worst error of one function in one backend, and where; no ``failures`` if it is right.
 
-    ``lost`` are solutions near singular postures that single precision does not return.
+    ``limits`` tell what single precision cannot do, mostly near singular postures or with very
+    unequal lengths.
     """
 
     robot: str
@@ -58,7 +59,7 @@ class Finding:
     where: str = ""
     compared: int = 0
     failures: list[str] = field(default_factory=list)
-    lost: list[str] = field(default_factory=list)
+    limits: list[str] = field(default_factory=list)
 
     @property
     def full(self) -> bool:

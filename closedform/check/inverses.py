@@ -24,6 +24,12 @@ from closedform.model.tolerances import HIGHEST_DEGREE
 
 APART = 5e-4
 """The largest distance of an answer from the posture behind its target, times a thousandth."""
+MISSED = 10
+"""By how many tolerances single precision may miss where its digits do not suffice."""
+FEW = 3
+"""So many ordinary answers of a sample may be lost in single precision, or a tenth of its rows."""
+UNEQUAL = 100
+"""The ratio of the longest length to the shortest from which on lengths are very unequal."""
 SUSPECTS = 5
 """The number of worst answers on and near the singular set that are evaluated in Arb."""
 
@@ -79,10 +85,20 @@ class _Batch:
     exact: bool
 
     def check(self, known: NDArray[Any] | None) -> None:
-        """Compare all answers; only what may be wrong, or worse than the worst so far, needs Arb.
+        """Compare all answers with the exact ones; the ``known`` postures must be among them.
 
-        The ``known`` postures must be among the answers.
+        What single precision cannot do is an error if it is more than a few ordinary answers.
         """
+        before = len(self.finding.limits)
+        self._compare(known)
+        limits = self.finding.limits[before:]
+        ordinary = self.sample.name == "random" and _spread(self.sample.parameters) < UNEQUAL
+        if ordinary and len(limits) > max(FEW, len(self.sample.values) / 10):
+            for message in limits:
+                self.finding.fail(message)
+
+    def _compare(self, known: NDArray[Any] | None) -> None:
+        """Only what may be wrong, or worse than the worst so far, is evaluated in Arb."""
         truth, sample, eps = self.truth, self.sample, self.backend.eps
         solutions, status = called(self.backend, truth.function, sample)
         feasibility = self.backend.tolerances.feasibility
@@ -93,11 +109,10 @@ class _Batch:
         wrong = self._suspicious(solutions, status, feasible)
         for row, branch in np.argwhere(wrong):
             code, reached = int(status[row, branch]), feasible[row, branch]
-            problem = self._problem(row, solutions[row, branch], code, reached)
+            problem, limited = self._problem(row, solutions[row, branch], code, reached)
             if problem:
-                lost = code in (UNREACHABLE, INVALID) and np.isnan(solutions[row, branch]).all()
-                say = self._lose if lost else self.finding.fail
-                say(f"branch {branch} {problem}; {self._where(row)}")
+                message = f"branch {branch} {problem}; {self._where(row)}"
+                self._fail(message, limited=limited)
             wrong[row, branch] = bool(problem)
             if self.finding.full:
                 return
@@ -145,16 +160,23 @@ class _Batch:
         accepted = (feasible < 0) | ~whole | turned.any(axis=-1)
         return np.asarray(np.where(np.isin(status, (UNREACHABLE, INVALID)), refused, accepted))
 
-    def _problem(self, row: Any, solution: NDArray[Any], code: int, feasible: float) -> str:
-        """What is wrong with an answer; empty if nothing is, or if a free joint explains it."""
+    def _problem(
+        self, row: Any, solution: NDArray[Any], code: int, feasible: float
+    ) -> tuple[str, bool]:
+        """What is wrong with an answer, and whether too few digits may explain it.
+
+        It is empty if nothing is wrong, or if a free joint explains it.
+        """
         problem = self._contradiction(solution, code, feasible)
-        if problem and feasible < 0 and code in (OK, SINGULAR):
+        if not problem or code not in (OK, SINGULAR):
+            return problem, np.isnan(solution).all()
+        if feasible < 0:
             # where a joint is free, another turn of it may reach what the generic one does not
             given, parameters = self.sample.values[row], self.sample.parameters
             missed = self.truth.residual(solution, given, parameters)
             allowed = self.backend.tolerances.round_trip + self.truth.violation(given, parameters)
-            return "" if missed <= allowed else problem
-        return problem
+            return "" if missed <= allowed else problem, missed <= MISSED * allowed
+        return problem, False
 
     def _contradiction(self, solution: NDArray[Any], code: int, feasible: float) -> str:
         """What is wrong with a status and its answer; empty if nothing is."""
@@ -191,7 +213,8 @@ class _Batch:
             if counted[k]:
                 self.finding.see(residual / eps, lambda: where)  # noqa: B023
             if not residual <= allowed:
-                self.finding.fail(f"branch {branch[k]} misses by {residual:.3g}; {where}")
+                near = residual <= MISSED * allowed
+                self._fail(f"branch {branch[k]} misses by {residual:.3g}; {where}", limited=near)
                 if self.finding.full:
                     return
 
@@ -204,21 +227,20 @@ class _Batch:
         nearest = np.nanmin(truth.gap(solutions, posture), initial=np.inf)
         if np.isnan(solutions).all() and _leaves_the_workspace(truth, backend, one):
             return
-        if truth.undetermined(posture, parameters) and not np.isnan(solutions).all():
-            return
         allowed = min(backend.eps / condition, APART) * _spread(parameters)
         # an ulp of the target turns a nearly free joint far
         far = nearest / 1e3 - allowed
-        if far > 0 and not _moves(truth, backend, one, solutions, far):
-            self._lose(f"{posture.tolist()} is not among {solutions.tolist()}; {self._where(row)}")
+        if far <= 0 or _moves(truth, backend, one, solutions, far):
+            return
+        answered = not np.isnan(solutions).all()
+        if not (answered and truth.continues(posture, parameters, backend.tolerances.forward)):
+            message = f"{posture.tolist()} is not among {solutions.tolist()}; {self._where(row)}"
+            self._fail(message, limited=True)
 
-    def _lose(self, message: str) -> None:
-        """Report a solution that is not returned.
-
-        Near a singular posture, single precision cannot always tell whether there is one.
-        """
-        if self.backend.dtype is np.float32 and self.sample.name != "random":
-            self.finding.lost.append(message)
+    def _fail(self, message: str, *, limited: bool) -> None:
+        """Report an error; with ``limited``, the digits of single precision may not suffice."""
+        if limited and self.backend.dtype is np.float32:
+            self.finding.limits.append(message)
         else:
             self.finding.fail(message)
 

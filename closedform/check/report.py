@@ -17,11 +17,11 @@ from closedform.model.derivation import Derivation
 
 
 class Report(NamedTuple):
-    """The page, the errors above the tolerances, and what single precision does not return."""
+    """The page, the errors above the tolerances, and what single precision cannot do."""
 
     page: str
     failures: list[str]
-    lost: list[str]
+    limits: list[str]
 
 
 def report(derivation: Derivation, root: Path, backends: Sequence[str]) -> Report:
@@ -42,13 +42,13 @@ def report(derivation: Derivation, root: Path, backends: Sequence[str]) -> Repor
         except UnavailableError as error:
             remarks.append(f"What is in {name}/ was not checked: {error}.")
     failures = [f"{f.function} ({f.backend}): {x}" for f in findings for x in f.failures]
-    lost = [f"{f.function} ({f.backend}): {x}" for f in findings for x in f.lost]
-    if lost:
+    limits = [f"{f.function} ({f.backend}): {x}" for f in findings for x in f.limits]
+    if limits:
         remarks.append(
-            "Not returned in single precision, near singular postures:\n\n"
-            + "\n".join(f"- {x}" for x in lost)
+            "Mostly near singular postures and with very unequal lengths, the digits of single\n"
+            "precision do not suffice:\n\n" + "\n".join(f"- {x}" for x in limits)
         )
-    return Report(_page(derivation, findings, failures, remarks), failures, lost)
+    return Report(_page(derivation, findings, failures, remarks), failures, limits)
 
 
 def _page(

@@ -38,8 +38,13 @@ from closedform.model.inverse import Combination, Inverse
 
 Array = NDArray[Any]
 
-CLOSE = 1e-10
-"""Below this singular value of the forward map, an ulp of the target turns a joint by 1e-6."""
+STEP, CORRECTIONS, SLOW, STILL = 1e-3, 12, 1e-5, 1e-8
+"""Of a motion that keeps the hand in place: its first step, and how often it is corrected.
+
+The step is in a direction in which the hand is slow, and no correction is made where it stands
+still, as shares of the fastest direction.  Where two solutions meet, each correction halves the
+step, so twelve lead back.
+"""
 
 _numbers_of_tool = cached(numbers_of_tool)
 
@@ -356,31 +361,45 @@ class Solutions:
         """
         if not self._factors.exprs:
             return float(min([1.0, *self._rates(posture, parameters)]))
-        return min([1.0, *self._sizes(posture, parameters)])
-
-    def undetermined(self, posture: NDArray[Any], parameters: Sequence[float]) -> bool:
-        """Whether a posture is so close to a singularity that its target does not determine it.
-
-        Where two singularities meet, rounding at one turns the joint of the other: the answers are
-        right, but far from the posture.  An arm has factors for these, or only the singular values
-        of its forward map.
-        """
-        if self._factors.exprs:
-            return sum(size < CLOSE for size in self._sizes(posture, parameters)) > 1
-        return bool(min(self._rates(posture, parameters), default=1.0) < CLOSE)
-
-    def _sizes(self, posture: NDArray[Any], parameters: Sequence[float]) -> list[float]:
-        """The sizes of the factors of the singular set, where they are defined."""
         factors = self._factors.exactly([*map(float, posture), *parameters])
-        return [abs(to_float(f)) for f in factors if f.is_finite()]
+        return min([1.0, *(abs(to_float(f)) for f in factors if f.is_finite())])
+
+    def continues(self, posture: NDArray[Any], parameters: Sequence[float], allowed: float) -> bool:
+        """Whether the mechanism can move on from a posture and miss its target by no more.
+
+        Then the target does not determine the posture: the answers are right, but may be far from
+        it.  A step in a direction that hardly moves the hand is corrected in the other directions.
+        """
+        for mode, found in enumerate(self.wide_images(posture[None], parameters)):
+            if not np.isfinite(found).all():
+                continue
+            _, rates, directions = np.linalg.svd(self._slopes(posture, parameters)[mode])
+            least = SLOW * rates.max()
+            rates = np.append(rates, np.zeros(len(directions) - len(rates)))
+            for direction in directions[rates < least]:
+                q = posture + STEP * direction
+                for _ in range(CORRECTIONS):
+                    missed = (found - self.wide_images(q[None], parameters)[mode])[0]
+                    slopes = self._slopes(q, parameters)[mode]
+                    q = q + np.linalg.lstsq(slopes, missed.astype(float), rcond=STILL)[0]
+                ends = self.wide_images(q[None], parameters)[mode : mode + 1]
+                moved = self.gap(q[None], posture)[0] > STEP / 10
+                if moved and self.missed(ends, q[None], found, parameters)[0] <= allowed:
+                    return True
+        return False
 
     def _rates(self, posture: NDArray[Any], parameters: Sequence[float]) -> list[float]:
         """The singular values of the forward map: how far the target moves with the joints."""
+        slopes = self._slopes(posture, parameters)
+        found = np.linalg.svd(slopes[np.isfinite(slopes).all(axis=(1, 2))], compute_uv=False)
+        return [float(rate) for rate in found.flat]
+
+    def _slopes(self, posture: NDArray[Any], parameters: Sequence[float]) -> NDArray[np.float64]:
+        """The derivatives of the forward map by the joints in each mode, by differences."""
         steps = 1e-6 * np.eye(len(posture))
         ends = self.wide_images(np.concatenate([posture + steps, posture - steps]), parameters)
         rates = (ends[:, : len(steps)] - ends[:, len(steps) :]).astype(float) / 2e-6
-        found = np.linalg.svd(rates[np.isfinite(rates).all(axis=(1, 2))], compute_uv=False)
-        return [float(rate) for rate in found.flat]
+        return np.asarray(rates.swapaxes(1, 2))
 
     def gap(self, solutions: NDArray[Any], posture: NDArray[Any]) -> NDArray[np.float64]:
         """The distance of each solution from a posture, angles modulo a turn."""

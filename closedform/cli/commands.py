@@ -243,10 +243,10 @@ def _crosscheck(root: Path, chosen: Sequence[scripts.Source], backends: Sequence
                     f"{source.name}: the generated code differs from its symbolic source; see "
                     f"{root / path}: {found.failures[0]}"
                 )
-            if found.lost:
+            if found.limits:
                 console.say(
-                    f"closedform: note: {source.name}: near singular postures, single precision "
-                    f"does not return all solutions; see {root / path}"
+                    f"closedform: note: {source.name}: the digits of single precision do not "
+                    f"suffice for some targets; see {root / path}"
                 )
 
 

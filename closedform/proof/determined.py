@@ -47,10 +47,12 @@ def undetermined(
         if len(found) < len(open_columns):
             alone = {x for rows, _ in parts for x in _determined(rows, open_columns, draw)}
             found = [x for x in open_columns if x in alone.union(found)]
-        if len(found) == len(open_columns):
+        missing = [x for x in open_columns if x not in found]
+        # what the target determines follows from the rest of it
+        if all(x in posture.extra_coordinates for x in missing):
             return []
         if not found or not nonlinear:
-            return [str(x) for x in open_columns if x not in found]
+            return [str(x) for x in missing]
         known |= {x: columns[x] for x in found}
 
 

@@ -15,6 +15,7 @@ from closedform.check.crosscheck import crosscheck
 from closedform.check.failures import UnavailableError
 from closedform.check.finding import Backend, Finding, float_backend, module_backend
 from closedform.check.inverses import check_inverse
+from closedform.check.truth import solutions_of
 from closedform.check.values import check_boolean, check_forward
 from closedform.emit.backends import load, names
 from closedform.model.derivation import Derivation, Paper
@@ -60,7 +61,7 @@ def test_against_the_symbolic_source(
     for backend in backends(name, robot, tmp_path_factory):
         found = crosscheck(derivation(robot), backend)
         findings += found
-        assert not [problem for f in found for problem in (*f.failures, *f.lost)]
+        assert not [problem for f in found for problem in (*f.failures, *f.limits)]
         assert all(f.compared for f in found)
 
 
@@ -119,14 +120,13 @@ def near_singular_ones_lost(solutions):
 @pytest.mark.parametrize(
     ("change", "wrong"), [(never_reachable, True), (near_singular_ones_lost, False)]
 )
-def test_single_precision_may_lose_solutions_near_singular_postures(change, wrong: bool) -> None:
-    """This is told.  At random postures it is a failure."""
+def test_single_precision_may_lose_a_few_solutions(change, wrong: bool) -> None:
+    """This is told.  If it loses ordinary ones, it is a failure."""
     module = importlib.import_module("closedform.generated.numpy.planar_2r")
     d = derivation("planar_2r")
     backend = float_backend(lambda name: lambda *a: change(getattr(module, name)(*a)))
     finding = check_inverse(d, d["ik"], d.inverses[0], backend)
-    assert all("; random:" in failure for failure in finding.failures)
-    assert bool(finding.failures) == wrong and (wrong or finding.lost)
+    assert bool(finding.failures) == wrong and finding.limits
 
 
 @pytest.mark.parametrize("change", [first_branch_only, backwards])
@@ -179,3 +179,22 @@ def test_lengths_that_cancel_in_names_lose_digits(factor: float, wrong: bool) ->
 
     backend = Backend("numpy", lambda name: printed, np.float64, DOUBLE)
     assert bool(check_forward(d, fk, backend).failures) == wrong
+
+
+@pytest.mark.parametrize(
+    ("robot", "posture", "moves"),
+    [
+        ("puma560", [0.3, 0.5, -0.7, 0.2, 0.9, 1.1], False),
+        ("puma560", [0.3, 0.5, -0.7, 0.2, 1e-13, 1.1], True),  # axes 4 and 6 are in line
+        ("ur_arm", [0.3, 0.5, 1e-9, 0.2, 0.9, 1.1], False),  # a straight elbow
+        ("ur_arm", [0.3, 0.5, 0.7, 0.2, 1e-13, 1.1], True),  # four axes are parallel
+        ("ur_arm", [0.3, 0.5, 1e-9, 0.2, 1e-13, 1.1], True),
+    ],
+)
+def test_where_a_mechanism_moves_without_its_hand(
+    robot: str, posture: list[float], moves: bool
+) -> None:
+    d = derivation(robot)
+    truth = solutions_of(d, d["ik"], d.inverses[0])
+    lengths = [float(p.value) for p in d.parameters]
+    assert truth.continues(np.array(posture), lengths, 1e-12) == moves

@@ -210,19 +210,19 @@ def test_a_difference_found_by_the_cross_check_fails(
     assert "ulp" in (output / "slider-crosscheck.md").read_text("utf-8")
 
 
-def test_what_single_precision_loses_near_singular_postures_is_told(
+def test_what_single_precision_cannot_do_is_told(
     slider: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
 ) -> None:
     """The code is printed, and the command succeeds."""
     from closedform.check import report
 
-    lost = Finding("slider", "ik", "c float", lost=["x is not among y"])
+    lost = Finding("slider", "ik", "c float", limits=["x is not among y"])
     monkeypatch.setattr(report, "crosscheck", lambda *_: [lost])
     output = tmp_path / "out"
     assert main(["derive", str(slider), "-o", str(output), "--backend", "numpy"]) == 0
     page = (output / "slider-crosscheck.md").read_text("utf-8")
-    assert "Not returned in single precision" in page and "x is not among y" in page
-    told = f"single precision does not return all solutions; see {output}"
+    assert "digits of single" in page and "x is not among y" in page
+    told = f"suffice for some targets; see {output}"
     assert told in capsys.readouterr().err
 
 

@@ -199,6 +199,24 @@ def test_an_arm_with_skew_axes_gets_all_its_postures(rows: Any, joint: int, tmp_
     _is_found(code, singular(code, q, joint), 1e-2)  # where three meet, a cube root of rounding
 
 
+def test_four_joints_whose_first_three_carry_a_point_in_space(tmp_path: Path) -> None:
+    """The pose has more coordinates than the joints; the rest of it is compared."""
+    rows = [(-H, pi / 2, 1), (2, pi / 2, FIFTH), (1, 0, -H), (FIFTH, 0, 0)]
+    d, serial = arm(rows)
+    found = propose(serial)
+    assert "quartic" in found.lemmas and found.branches == 4
+    solved(d, serial, found.source)
+    (inverse,) = prove(d).inverses
+    assert inverse.branches == 4
+    serial.export(d)
+    code = printed(d, tmp_path)
+    q = np.random.default_rng(13).uniform(-np.pi, np.pi, (2000, 4))
+    _is_found(code, q, 1e-5)
+    T = code.fk(q)
+    T[:, :3, 3] += 1e-3 * np.random.default_rng(14).normal(size=(len(T), 3))
+    assert (code.ik(T).status == 1).all()
+
+
 def singular(code: Any, q: NDArray[Any], joint: int) -> NDArray[Any]:
     """Postures at which a factor of the determinant changes its sign, by bisection."""
     low, high = q.copy(), q.copy()

@@ -445,11 +445,12 @@ class Chain:
         return pair.angle + sp.Add(*(flip for _, flip in half))
 
     def _less_offset(self, total: sp.Expr) -> sp.Expr:
-        """A sum of solved angles; a parameter in it, whose size is not known, turns one of them."""
+        """A sum of solved angles; what is constant in it, other than right angles, turns one."""
         parameters = {p.symbol for p in self.d.parameters}
         if total.free_symbols & parameters:
             total = self.by_angles(total, solved=True)  # in which the same offset cancels
-        offset = sp.Add(*(t for t in total.as_ordered_terms() if t.free_symbols & parameters))
+        constant = [t for t in total.as_ordered_terms() if t.free_symbols <= parameters]
+        offset = sp.Add(*(t for t in constant if not (2 * t / sp.pi).is_Integer))
         for angle in (total - offset).as_ordered_terms() if offset != 0 else ():
             if pair := self.pair_of(angle + offset, {}):
                 return pair.angle + substitute(total - offset - angle, self.values)

@@ -223,6 +223,9 @@ def heading(v: Sequence[Any]) -> Any:
         if 0 in (along, across) and (along + across).is_number:
             turn = angle + sp.atan2(across, along)
             return sp.atan2(sp.sin(turn), sp.cos(turn))
+    if x.is_number and y.is_number and x != 0:  # atan knows 2 + sqrt(3), but no other form of it
+        side = sp.sign(y)
+        return side * sp.atan2(sp.radsimp(abs(y / x)), sp.sign(x)) if y else sp.atan2(0, x)
     return sp.atan2(y, x)
 
 

@@ -422,6 +422,8 @@ it is extended; nothing has to be solved.""",
 @chain_lemma("d = value", "the value")
 def slide(chain: Chain, joint: sp.Symbol, value: sp.Expr) -> Applied:
     """``joint = value``: a prismatic joint along the direction of a coordinate."""
+    if value.is_Symbol and value.name not in chain.d.written:
+        chain.d.write(value, same=joint.name)  # such as d3_, which is written like d3
     roles = (("d", joint), ("c", value))
     lemma = Lemma("slide", r"d = c", (joint - value,), {joint: value}, 1, roles=roles)
     return Applied(lemma, value)

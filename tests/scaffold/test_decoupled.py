@@ -9,7 +9,9 @@ from arms import OK, SINGULAR, UNREACHABLE, link, misses
 from chains import arm, printed, solved
 from sympy import pi
 
-from closedform.proof.prove import prove
+from closedform.emit.backends.latex.article import document
+from closedform.emit.render import render
+from closedform.proof.prove import Proof, prove
 from closedform.scaffold.chains.propose import NoChainError, propose
 from closedform.scaffold.new import new
 
@@ -116,6 +118,15 @@ def test_the_joints_that_turn_come_from_the_rotation_alone(name: str, tmp_path: 
         turned = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0], [0.48, 0.64, 0.6]])
         T[:, :3, :3] = T[:, :3, :3] @ turned
         assert np.isin(robot.ik(T).status[300:], UNREACHABLE).all()
+
+
+def test_what_a_slide_is_set_to_is_written_like_the_slide() -> None:
+    """The value d1_ of the slide d1 looked like another symbol with its letter."""
+    d, serial = arm(*APART["offset wrist"])
+    serial.export(d)
+    solved(d, serial, propose(serial).source)
+    text = render("latex/robot.tex.jinja", document(d, Proof(d.name, d.paper.key, (), 0, ())))
+    assert r"$\displaystyle d_{1} = " in text
 
 
 def test_two_slides_do_not_reach_what_a_singular_wrist_leaves() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -53,6 +54,13 @@ class Singles:
         """The constant motion after the last joint."""
         return _motion(self.joints[-1])
 
+    def pose(self) -> sp.Matrix:
+        """Where the tool is, or the base seen from the tool."""
+        found = self.lead
+        for joint in self.joints:
+            found = found * sp.diag(rotation("z", joint.turn), 1) * _motion(joint)
+        return found
+
     def reversed(self) -> Singles:
         """The arm seen from its tool: the inverse of each motion, in the opposite order."""
         still = [replace(s, shift=s.shift - slid(s) * Z) for s in self.joints]
@@ -70,6 +78,46 @@ class Singles:
             )
         return Singles(tuple(joints), after[-1], not self.inverted)
 
+    def orders(self) -> Iterator[Singles]:
+        """This arm, and the same with slides moved past joints that turn about parallel axes."""
+        found, seen = [self], {self.numbers}
+        for arm in found:
+            yield arm
+            for k in range(len(arm.joints) - 1):
+                first, second = arm.joints[k : k + 2]
+                if first.slides == second.slides or not parallel(first):
+                    continue
+                exchanged = arm._exchanged(k)
+                if exchanged.numbers not in seen:
+                    seen.add(exchanged.numbers)
+                    found.append(exchanged)
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        return tuple(joint.number for joint in self.joints)
+
+    def _exchanged(self, k: int) -> Singles:
+        """The arm with joint ``k`` after the next; one slides along the axis of the other."""
+        first, second = self.joints[k : k + 2]
+        along = (first.end * Z)[2]
+        slide, turn = (first, second) if first.slides else (second, first)
+        plain = replace(slide, shift=slide.shift - slid(slide) * Z)
+        still = sp.diag(rotation("z", slide.turn), 1) * _motion(plain)
+        moved, free = along * slid(slide) * Z, sp.zeros(3, 1)
+        joints, lead = list(self.joints), self.lead
+        if first.slides:
+            joints[k] = replace(turn, shift=free, end=sp.eye(3))
+            joints[k + 1] = replace(slide, turn=sp.S.Zero, shift=turn.shift + moved, end=turn.end)
+            before = (lead if k == 0 else _motion(joints[k - 1])) * still
+            if k == 0:
+                lead = _simplified(before)
+            else:
+                joints[k - 1] = _moved(joints[k - 1], before)
+        else:
+            joints[k] = replace(slide, turn=sp.S.Zero, shift=moved, end=sp.eye(3))
+            joints[k + 1] = _moved(turn, _motion(turn) * still)
+        return Singles(tuple(joints), lead, self.inverted)
+
     def with_given(self, number: int, value: sp.Symbol) -> Singles:
         """The arm with a joint that has a known ``value``."""
         k = next(i for i, s in enumerate(self.joints) if s.number == number)
@@ -79,8 +127,8 @@ class Singles:
         others = [*self.joints[:k], *self.joints[k + 1 :]]
         if k == 0:
             return Singles(tuple(others), _simplified(self.lead * fixed), self.inverted)
-        before = _simplified(_motion(others[k - 1]) * fixed)
-        others[k - 1] = replace(others[k - 1], shift=before[:3, 3], end=before[:3, :3])
+        before = _motion(others[k - 1]) * fixed
+        others[k - 1] = _moved(others[k - 1], before)
         return Singles(tuple(others), self.lead, self.inverted)
 
     def met(self, first: int, count: int) -> Singles | None:
@@ -154,6 +202,12 @@ def parallel(single: Single) -> bool:
 
 def _motion(single: Single) -> sp.Matrix:
     return homogeneous(single.end, tuple(single.shift))
+
+
+def _moved(single: Single, motion: sp.Matrix) -> Single:
+    """The joint with another ``motion`` after it."""
+    motion = _simplified(motion)
+    return replace(single, shift=motion[:3, 3], end=motion[:3, :3])
 
 
 def _inverse(motion: sp.Matrix) -> sp.Matrix:

@@ -218,6 +218,11 @@ def _to_give(whole: Singles, given: str = "") -> list[Single]:
     return [j for j in joints if given in ("", j.joint.name)]
 
 
+def _moved(order: Singles, whole: Singles) -> str:
+    """The order of the joints, in words, if it is not the one in which they follow each other."""
+    return "" if order is whole else f", in the order {', '.join(map(str, order.numbers))}"
+
+
 def _with_coordinates(arm: Serial, whole: Singles, names: tuple[str, ...]) -> Iterator[_Candidate]:
     """Three joints for a point, and another one for its yaw."""
     maker = SubproblemMaker(arm)
@@ -232,11 +237,14 @@ def _with_coordinates(arm: Serial, whole: Singles, names: tuple[str, ...]) -> It
 def _fewer_than_six(arm: Serial, whole: Singles) -> Iterator[_Candidate]:
     """Up to three joints before or after others whose axes meet."""
     n = len(arm.joints)
-    for which, view, counts in (("last", whole, (3, 2, 1)), ("first", whole.reversed(), (3, 2))):
-        for wrist in (w for w in counts if 0 <= n - w <= 3):
-            maker = SubproblemMaker(arm)
-            name = f"the {which} {wrist} of {n} joints"
-            yield _Candidate(name, maker, partial(_fewer, maker, view, wrist))
+    for order in whole.orders():
+        moved = _moved(order, whole)
+        ends = (("last", order, (3, 2, 1)), ("first", order.reversed(), (3, 2)))
+        for which, view, counts in ends:
+            for wrist in (w for w in counts if 0 <= n - w <= 3):
+                maker = SubproblemMaker(arm)
+                name = f"the {which} {wrist} of {n} joints{moved}"
+                yield _Candidate(name, maker, partial(_fewer, maker, view, wrist))
     if n == 5 and not any(joint.slides for joint in whole.joints):
         maker = SubproblemMaker(arm)
         write = partial(maker.solved_in_plane, _met(whole, ((3, 2),)))
@@ -268,7 +276,6 @@ def _six(arm: Serial, whole: Singles, given: Single | None = None) -> Iterator[_
     """An arm of six joints that are not given, from its base and from its tool."""
     left = whole if given is None else whole.with_given(given.number, GIVEN)
     more = "" if given is None else f", with {given.joint} given"
-    views = (left, left.reversed())
     regular = cache(partial(is_regular, left))
 
     def candidate(name: str, maker: SubproblemMaker, solve: _Solve, view: Singles) -> _Candidate:
@@ -284,8 +291,10 @@ def _six(arm: Serial, whole: Singles, given: Single | None = None) -> Iterator[_
 
         return _Candidate(f"{name}{more}", maker, write)
 
-    for view, wrist in zip(views, ("spherical wrist", "spherical shoulder"), strict=True):
-        yield candidate(wrist, SubproblemMaker(arm), _with_wrist, view)
+    for order in left.orders():
+        moved = _moved(order, left)
+        for view, wrist in ((order, "spherical wrist"), (order.reversed(), "spherical shoulder")):
+            yield candidate(f"{wrist}{moved}", SubproblemMaker(arm), _with_wrist, view)
     if any(joint.slides for joint in left.joints):
         return
     for name, solve in (
@@ -293,7 +302,7 @@ def _six(arm: Serial, whole: Singles, given: Single | None = None) -> Iterator[_
         ("three parallel axes at the end", SixMaker.parallel_first),
         ("three axes in the middle that meet", SixMaker.meeting_middle),
     ):
-        for view, seen in zip(views, ("", ", from the tool"), strict=True):
+        for view, seen in ((left, ""), (left.reversed(), ", from the tool")):
             yield candidate(f"{name}{seen}", SixMaker(arm), solve, view)
 
 

@@ -20,7 +20,7 @@ from closedform.model.inverse import Degenerate
 from closedform.model.lemma import Lemma, label
 from closedform.model.pair import Pair
 
-_ROUNDINGS = 16
+ALIGNED = 16
 """How far a wrist may be from aligned to count as such, in units of the rounding of the target.
 
 This covers the rounding that an arm adds to the rotation of its wrist, and it turns the hand by
@@ -275,9 +275,7 @@ def zyz(
     unit: dict[sp.Expr, sp.Expr] = {}
     near: tuple[sp.Symbol, ...] = ()
     if reaching is None:
-        angles = zyz_angles(
-            p, R, unknowns, sigma, free=(free,), scale=_ROUNDINGS, suffix=f"_{name}"
-        )
+        angles = zyz_angles(p, R, unknowns, sigma, free=(free,), scale=ALIGNED, suffix=f"_{name}")
         lemma, aligned = angles.lemma, angles.aligned
         halves = {first: (angles.first, angles.flip), last: (angles.last, angles.flip)}
         halves[middle] = _tilt(R, angles.first, sigma), sp.S.Zero
@@ -286,7 +284,7 @@ def zyz(
     else:
         h = p.let(f"h_{name}", sp.sqrt(R[0, 2] ** 2 + R[1, 2] ** 2), nonnegative=True)
         aligned = p.vanishes(
-            f"aligned_{name}", h, _ROUNDINGS, "the first and the last axis are parallel", (free,)
+            f"aligned_{name}", h, ALIGNED, "the first and the last axis are parallel", (free,)
         )
         u = sigma * R[0, 2] / h, sigma * R[1, 2] / h
         found, near, unit = within_reach(reaching, u, h, first, aligned)
@@ -355,4 +353,4 @@ def _aligned(psi: sp.Symbol) -> tuple[sp.Matrix, sp.Matrix]:
     )
 
 
-__all__ = ["Reaching", "Zyz", "within_reach", "zyz", "zyz_angles", "zyz_lemma"]
+__all__ = ["ALIGNED", "Reaching", "Zyz", "within_reach", "zyz", "zyz_angles", "zyz_lemma"]

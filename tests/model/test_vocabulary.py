@@ -19,9 +19,10 @@ from closedform.check.crosscheck import crosscheck
 from closedform.check.finding import Backend, float_backend, module_backend
 from closedform.emit.pages import pages, shared_files
 from closedform.lemmas.triangle import Triangle
+from closedform.lemmas.zyz import ALIGNED
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Program, branches, real
-from closedform.model.tolerances import DOUBLE
+from closedform.model.tolerances import DOUBLE, FLOAT, Tolerances
 from closedform.proof.prove import prove
 from closedform.proof.require import ProofError
 
@@ -146,6 +147,14 @@ def test_mistakes_in_a_script_are_named() -> None:
         d.parameter("k", value=1, unit="m", meaning="a\nb")
     with pytest.raises(ValueError, match="'my arm' is not a name of a module"):
         Derivation("my arm", "", PAPER, "")
+
+
+@pytest.mark.parametrize("tolerances", [DOUBLE, FLOAT])
+def test_both_solutions_of_an_aligned_wrist_are_in_tolerance(
+    tolerances: Tolerances,
+) -> None:
+    """In single precision they were not, and a surgical instrument failed its cross-check."""
+    assert 2 * ALIGNED * tolerances.vanishing <= tolerances.round_trip
 
 
 def test_tolerances_are_honoured() -> None:

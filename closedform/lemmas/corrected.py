@@ -19,10 +19,14 @@ from closedform.model.pair import Pair
 
 LOOSE = sp.Rational(1, 2**46)
 """How much of the target may be missed before it counts as more than rounding of the answer."""
-FAR = sp.Rational(1, 2**10)
-"""The largest step; the error that remains is of the order of its square."""
+FAR = sp.Rational(1, 2**7)
+"""The largest step; the error that remains is of the order of its square, and is compared."""
 DAMPING = sp.Rational(1, 2**50)
-"""Added to the squares of least squares, of the order of their rounding."""
+"""Added to the squares of least squares, of the order of their rounding in double precision.
+
+A rounding error of the lemmas is of the order of the root of it, so that the square of what is
+missed serves in single precision.
+"""
 
 
 @dataclass(frozen=True)
@@ -65,7 +69,7 @@ class Correction:
             "the joints are moved together to reach the part of the target that the lemmas miss"
         )
         loose = self.program.vanishes("loose", LOOSE - most, sp.S.One, meaning)
-        step = self._step(relative)
+        step = self._step(relative, let("damping", most**2 + DAMPING))
         pairs = {
             total: pair + _turned(sum(total.diff(j) * step[j] for j in self.joints))
             for total, pair in self.pairs.items()
@@ -75,12 +79,14 @@ class Correction:
             for k, (total, pair) in enumerate(pairs.items())
         }
         slides = {j: value + step[j] for j, value in self.slides.items()}
+        remaining = [let(f"remaining_{k}", e) for k, e in enumerate(self._missed(named, slides))]
+        after = sp.Max(*(sp.Abs(e / c) for e, c in zip(remaining, self.scales, strict=True)))
+        nearer = let("most_remaining", after) < most
         left = tuple(
-            choose(loose, let(f"remaining_{k}", after), before)
-            for k, (after, before) in enumerate(
-                zip(self._missed(named, slides), missed, strict=True)
-            )
+            choose(loose, sp.Piecewise((after, nearer), (before, True)), before)
+            for after, before in zip(remaining, missed, strict=True)
         )
+        step = {j: sp.Piecewise((e, nearer), (0, True)) for j, e in step.items()}
         turns = {j: atan2(e * (1 + e**2 / 3), sp.S.One) for j, e in step.items() if j not in slides}
         return Corrected(loose, left, {**step, **turns})
 
@@ -101,7 +107,7 @@ class Correction:
             for target, image in zip(self.targets, self.images, strict=True)
         ]
 
-    def _step(self, missed: Sequence[sp.Symbol]) -> dict[sp.Symbol, sp.Expr]:
+    def _step(self, missed: Sequence[sp.Symbol], damping: sp.Symbol) -> dict[sp.Symbol, sp.Expr]:
         """How far each joint moves: a step of damped least squares, or none if the step is long."""
         let, known = self.program.let, self._known(self.pairs, self.slides)
         units = {j: self.size if j in self.slides else sp.S.One for j in self.joints}
@@ -115,26 +121,35 @@ class Correction:
                 [e if e.is_number else let(f"moves_{k}_by_{j}", e) for k, e in enumerate(rates)]
             )
         squares = [[sp.Add(*map(sp.Mul, a, b)) for b in columns] for a in columns]
-        by = self._solved(squares, [sp.Add(*map(sp.Mul, a, missed)) for a in columns])
+        right = [sp.Add(*map(sp.Mul, a, missed)) for a in columns]
+        by = self._solved(squares, right, damping)
         most = let("farthest", sp.Max(*map(sp.Abs, by)))
         return {
             j: let(f"moved_{j}", sp.Piecewise((b * unit, most <= FAR), (0, True)))
             for (j, unit), b in zip(units.items(), by, strict=True)
         }
 
-    def _solved(self, squares: list[list[sp.Expr]], right: list[sp.Expr]) -> list[sp.Symbol]:
-        """The solution of the damped normal equations, without a search for pivots."""
+    def _solved(
+        self, squares: list[list[sp.Expr]], right: list[sp.Expr], damping: sp.Symbol
+    ) -> list[sp.Symbol]:
+        """The solution of the damped normal equations, without a search for pivots.
+
+        A joint that moves like those before it, up to rounding, stays where it is.
+        """
         let, n = self.program.let, len(right)
         factors: dict[tuple[int, int], sp.Symbol] = {}
         pivots: list[sp.Symbol] = []
+        inverses: list[sp.Symbol] = []
         for i in range(n):
             for k in range(i):
                 left = [factors[i, m] * factors[k, m] * pivots[m] for m in range(k)]
-                value = (squares[i][k] - sp.Add(*left)) / pivots[k]
+                value = (squares[i][k] - sp.Add(*left)) * inverses[k]
                 factors[i, k] = let(f"factor_{i}{k}", value)
             left = [factors[i, m] ** 2 * pivots[m] for m in range(i)]
-            pivot = sp.Max(DAMPING, squares[i][i] + DAMPING - sp.Add(*left))
+            pivot = sp.Max(damping, squares[i][i] + damping - sp.Add(*left))
             pivots.append(let(f"pivot_{i}", pivot, positive=True))
+            moves = pivots[i] > 4 * damping
+            inverses.append(let(f"inverse_{i}", sp.Piecewise((1 / pivots[i], moves), (0, True))))
         forward: list[sp.Symbol] = []
         for i in range(n):
             left = [factors[i, m] * forward[m] for m in range(i)]
@@ -142,7 +157,7 @@ class Correction:
         back: dict[int, sp.Symbol] = {}
         for i in reversed(range(n)):
             left = [factors[m, i] * back[m] for m in range(i + 1, n)]
-            back[i] = let(f"back_{i}", forward[i] / pivots[i] - sp.Add(*left))
+            back[i] = let(f"back_{i}", forward[i] * inverses[i] - sp.Add(*left))
         return [back[i] for i in range(n)]
 
 

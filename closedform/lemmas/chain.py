@@ -94,6 +94,8 @@ class Chain:
         self.directions: dict[sp.Expr, Pair] = {}
         self.extra_coordinates: list[sp.Symbol] = []
         self.condition: sp.Expr = sp.S.Zero
+        self.rounding: sp.Expr = sp.S.Zero
+        """What a rounding error of the target becomes in a length that is compared with it."""
         self.corrected: Corrected | None = None
         self.weights: dict[sp.Symbol, sp.Expr] = {}
         self.coefficients: set[sp.Symbol] = set()
@@ -275,6 +277,7 @@ class Chain:
         """
         length = sp.sympify(length, strict=True)
         self.condition = 5 * self.sum_of_lengths() / (2 * length)
+        self.rounding = self.condition * self.sum_of_lengths() / 4
         if length.free_symbols:
             meaning = "the distance between skew axes is not zero"
             none = self.program.vanishes("no_distance", length, self.size, meaning)

@@ -114,6 +114,9 @@ class Branch:
             case Match():
                 size = self.graph.even("abs", self.build(statement.value))
                 allowed = self._tolerance("feasibility", statement.scale)
+                if statement.rounding != 0:
+                    rounded = self._tolerance("vanishing", statement.rounding)
+                    allowed = self.graph.node("max", allowed, rounded)
                 self.reachable.append(self.graph.node("le", size, allowed))
             case Vanishes():
                 value = self.build(statement.value)

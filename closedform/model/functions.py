@@ -99,11 +99,12 @@ class Bound:
 
 @dataclass(frozen=True)
 class Match:
-    """``value`` must be zero; otherwise the target is out of reach."""
+    """``value`` must be zero up to a ``rounding`` error; otherwise the target is out of reach."""
 
     value: sp.Expr
     scale: sp.Expr
     meaning: str
+    rounding: sp.Expr = sp.S.Zero
 
 
 @dataclass(frozen=True)
@@ -452,8 +453,10 @@ class Program:
         self.body.append(Bound(symbol, value, scale, meaning, above))
         return symbol
 
-    def match(self, value: sp.Expr, scale: sp.Expr, meaning: str) -> None:
-        self.body.append(Match(value, scale, meaning))
+    def match(
+        self, value: sp.Expr, scale: sp.Expr, meaning: str, *, rounding: sp.Expr | int = 0
+    ) -> None:
+        self.body.append(Match(value, scale, meaning, sp.sympify(rounding, strict=True)))
 
     def vanishes(
         self,

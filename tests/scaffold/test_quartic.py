@@ -16,6 +16,7 @@ from chains import arm, printed, solved
 from flint import arb
 from numpy.typing import NDArray
 from sympy import cos, pi, sin
+from test_corrected import printed_array
 
 from closedform.algebra.balls import Evaluator, to_float
 from closedform.algebra.resolvent import Resolvent, cubic, enclosed
@@ -215,6 +216,21 @@ def test_four_joints_whose_first_three_carry_a_point_in_space(tmp_path: Path) ->
     T = code.fk(q)
     T[:, :3, 3] += 1e-3 * np.random.default_rng(14).normal(size=(len(T), 3))
     assert (code.ik(T).status == 1).all()
+
+
+def test_single_precision_finds_the_postures_too(tmp_path: Path) -> None:
+    """A short lever amplifies roundings beyond what is allowed of a reachable target."""
+    d, serial = arm(MIDDLE["level"])
+    solved(d, serial, propose(serial).source)
+    serial.export(d)
+    code = printed_array(d, tmp_path)
+    q = np.random.default_rng(0).uniform(-3, 3, (20000, 6))
+    T = code.pose(q)
+    answers, status = code.ik(T.astype(np.float32))
+    away = abs(wrapped(answers - q[:, None])).max(axis=-1)
+    assert np.nan_to_num(away, nan=9).min(axis=1).max() < 0.1
+    missed = abs(code.pose(np.nan_to_num(answers)) - T[:, None]).max(axis=(2, 3))
+    assert missed[status == OK].max() / abs(T[:, :3, 3]).max() < 4e-5
 
 
 def singular(code: Any, q: NDArray[Any], joint: int) -> NDArray[Any]:

@@ -351,8 +351,9 @@ class AroundParallelMaker(SubproblemMaker):
         above = f"q[2] - to_end[2] - ({source(height)})" if height != 0 else "q[2] - to_end[2]"
         across = [f"sqrt({v}[0]**2 + {v}[1]**2)" for v in ("axis", "M[:, 2]")]
         aside = f"ik.size*({across[0]} - {across[1]})"
+        meaning = "'the pose is one of the arm'"
         for miss in ("ik.size*(axis[2] - M[2, 2])", aside, above):
-            self.add(f"ik.program.match({miss}, play, 'the pose is one of the arm')")
+            self.add(f"ik.program.match({miss}, play, {meaning}, rounding=ik.rounding)")
         self._two_links_less(beside)
         return beside.told("{} and {} skew" if beside.start else "{}, {} and {} skew")
 

@@ -274,8 +274,9 @@ class SixMaker(AroundParallelMaker):
         self.add(f"play = ik.amplified_over({source(lever)})")
         for n in ("to_target", "to_end"):
             self.add(f"radius_{n} = ik.let('radius_{n}', sqrt({n}[0]**2 + {n}[1]**2))")
+        meaning = "'the pose is one of the arm'"
         for miss in ("to_target[2] - to_end[2]", "radius_to_target - radius_to_end"):
-            self.add(f"ik.program.match({miss}, play, 'the pose is one of the arm')")
+            self.add(f"ik.program.match({miss}, play, {meaning}, rounding=ik.rounding)")
         both = [
             f"2*({source(b)}) + (to_target[2] + to_end[2])*({source(a)})"
             for a, b in zip(turned.row(0), turned.row(1), strict=True)

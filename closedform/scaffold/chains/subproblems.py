@@ -504,7 +504,7 @@ class SubproblemMaker(WristMaker):
         for n in ("to_target", "to_end"):
             self.add(f"radius_{n} = ik.let('radius_{n}', sqrt({n}[0]**2 + {n}[1]**2))")
         for miss in ("to_target[2] - to_end[2]", "radius_to_target - radius_to_end"):
-            self.add(f"ik.program.match({miss}, play, {meaning})")
+            self.add(f"ik.program.match({miss}, play, {meaning}, rounding=ik.rounding)")
         both = f"2*{source(s)} + (to_target[2] + to_end[2])*{source(g)}"
         self.vector("lever", f"turned({first}) * ({both})")
         because = f"{{{self.unknowns[one.number]}: (-lever[0], -lever[1])}}"

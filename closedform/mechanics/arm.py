@@ -453,6 +453,7 @@ def _motion(d: Derivation, entries: Sequence[sp.Expr], where: str) -> Motion | N
     if len(held) > 1:
         raise RowError(f"{where} must contain at most one joint, not {', '.join(map(str, held))}")
     (joint,) = held
+    _require_motor(d, joint, where)
     column, name = (3, "theta") if joints[joint] == "revolute" else (2, "d")
     place = entries[column]
     if not place.has(joint):
@@ -469,6 +470,16 @@ def _motion(d: Derivation, entries: Sequence[sp.Expr], where: str) -> Motion | N
             f"{place if sense not in (1, -1) else tuple(entries)}"
         )
     return Motion(joint, joints[joint] == "prismatic", int(sense))
+
+
+def _require_motor(d: Derivation, joint: sp.Symbol, where: str) -> None:
+    """Refuse a joint that follows others: its functions would need the angles of all joints."""
+    if joint not in d.actuated:
+        raise RowError(
+            f"{where}: {joint} is moved by other joints; a serial arm has a motor for each joint, "
+            f"or a column of motors.  If a parallelogram keeps the hand level, add the lengths "
+            f"from the wrist to the hand to those of the turret, as docs/adding-a-mechanism.md says"
+        )
 
 
 def _followed(lead: sp.Matrix, links: list[Link], step: sp.Matrix) -> sp.Matrix:
@@ -507,6 +518,7 @@ def from_screws(
         joint = next((s for s in variable.free_symbols if s in kinds), variable)
         if joint not in kinds:
             raise RowError(f"{where}: {joint} is not a joint; declare it with d.joint")
+        _require_motor(d, joint, where)
         (offset,) = constant(d, [variable - joint], where)
         if offset != 0 and kinds[joint] != "revolute":
             raise RowError(f"{where}: {joint} slides; put {offset} into the points after it")

@@ -84,6 +84,16 @@ def test_a_row_that_makes_no_sense(row, message: str) -> None:
         from_dh(derivation(), [row])
 
 
+def test_a_joint_that_others_move_is_not_one_of_a_serial_arm() -> None:
+    """The printed functions took the angles of all joints, and JOINTS had those with motors."""
+    d = derivation()
+    third = d.joint("theta3", coupling=-(THETA1 + THETA2))
+    with pytest.raises(RowError, match=r"row 3 .*: theta3 is moved by other joints"):
+        from_dh(d, [(1, 0, 0, THETA1), (1, 0, 0, THETA2), (1, 0, 0, third)])
+    with pytest.raises(RowError, match="axis 1: theta3 is moved by other joints"):
+        from_screws(d, [(third, (0, 0, 1), (0, 0, 0))], sp.eye(4))
+
+
 def test_a_screw_that_makes_no_sense() -> None:
     d = derivation()
     for axis, message in (

@@ -435,6 +435,16 @@ def test_a_joint_that_mimics_another_is_a_coupling(tmp_path: Path) -> None:
     assert "4 branches" in new("palletiser", "urdf", path).inverse
 
 
+def test_a_hand_that_is_kept_level_by_mimic_joints_is_led_to_its_table(tmp_path: Path) -> None:
+    path = tmp_path / "palletiser.urdf"
+    level = joint("hand", "forearm", "tool", "0.6 0 0", "0 1 0", more=MIMIC.format(-1))
+    path.write_text(
+        PALLETISER[: PALLETISER.index('<joint name="end"')] + level + "</robot>", "utf-8"
+    )
+    with pytest.raises(TableError, match="from the wrist to the hand in the row of the turret"):
+        read_urdf(path)
+
+
 def test_a_joint_that_mimics_another_may_have_an_offset(tmp_path: Path) -> None:
     text = PALLETISER.replace('multiplier="-1"', 'multiplier="-1" offset="0.7853982"')
     path = tmp_path / "palletiser.urdf"

@@ -138,8 +138,9 @@ class Mimic:
                 f"{told}; {why}.  A mimic joint is read if it turns about the axis of a neighbour "
                 f"on the chain that has a motor of its own, and by a whole multiple of the angle "
                 f"of another, as in a parallelogram, or if it slides in the direction of a "
-                f"neighbour, as in a telescope.  Write the arm as a table of joints and couple "
-                f"the two with d.joint(..., coupling=...)"
+                f"neighbour, as in a telescope.  If such joints keep the hand level, as in a "
+                f"palletiser, write the arm as a table, with the lengths from the wrist to the "
+                f"hand in the row of the turret, as docs/adding-a-mechanism.md says"
             )
         name, sense = near[0]
         own = table.couplings.get(name, real(f"m_{name}"))

@@ -191,8 +191,10 @@ class _Posture:
         c = self.let("held", sp.Min(sp.Max(wanted, -h), h))
         root = self.let("across", sp.sqrt(sp.Max(0, (h - c) * (h + c))))
         side = sign_of(v)
-        sine = self.let("by_s", (v * c - side * u * root) / h**2)
-        cosine = self.let("by_c", (u * c + side * v * root) / h**2)
+        in_line = sp.Eq(h, 0)  # one of the axes is the axis of the turn, which does not tilt it
+        by_s, by_c = (v * c - side * u * root) / h**2, (u * c + side * v * root) / h**2
+        sine = self.let("by_s", sp.Piecewise((0, in_line), (by_s, True)))
+        cosine = self.let("by_c", sp.Piecewise((1, in_line), (by_c, True)))
         forward = cosine > 0
         top = self.let("half_s", sp.Piecewise((sine, forward), (1 - cosine, True)))
         below = self.let("half_c", sp.Piecewise((1 + cosine, forward), (sine, True)))

@@ -24,6 +24,9 @@ ARMS = {
     "two axes that meet": [
         (0, pi / 2, 1), (2, pi / 2, H), (1, pi / 2, 0), (0, pi / 3, 0), (0, pi / 3, 0), (0, 0, 1),
     ],
+    "axes in line": [
+        (0, pi / 2, 1), (1, 0, 0), (0, pi / 2, 0), (0, pi / 3, 2), (0, -pi / 3, 0), (0, 0, H),
+    ],
 }  # fmt: skip
 """All have axes 4, 5 and 6 that meet, and not at right angles."""
 NEAR = np.array([0, 1e-15, 1e-13, 1e-11, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4])
@@ -117,6 +120,17 @@ def test_a_wrist_on_the_first_axis_points_anywhere(module: Any) -> None:
     check(module, name, T)
     _, status = module(name).ik(T)
     assert (np.isin(status, (OK, SINGULAR)).sum(axis=-1) >= 2).all()
+
+
+def test_an_arm_that_is_straight_along_its_first_axis_with_the_wrist_at_its_limit(
+    module: Any,
+) -> None:
+    """A turn about the last axis does not tilt it, and how far it tilted was zero over zero."""
+    name, rng = "axes in line", np.random.default_rng(5)
+    q = rng.uniform(-3, 3, (400, 6))
+    q[:, 1:5] = rng.choice([-1, 1], (400, 4)) * np.pi / 2
+    q[:, 4] = np.pi * rng.choice([0, 1], 400)
+    check(module, name, pose(name, q))
 
 
 def test_what_the_wrist_cannot_reach_stays_out_of_reach(module: Any) -> None:

@@ -98,14 +98,17 @@ class _Errors:
         # if lengths are divided by the largest one, what is smaller than this is lost
         self.least = np.finfo(backend.dtype).tiny * np.maximum(powers, 1.0)
         self.middle, self.radius = values.exact.balls(rows)
-        # an angle just above -pi may be rounded to -pi, which is returned as pi
-        self.turned = values.angles & (computed > CUT) & (self.middle < -CUT)
+        # an angle just above -pi may be rounded to -pi, which is returned as pi, and one that is
+        # just below it before it is reduced may be rounded to one above it
+        ahead, behind = computed > CUT, computed < -CUT
+        whole = (ahead & (self.middle < -CUT)).astype(int) - (behind & (self.middle > CUT))
+        self.turns = np.where(values.angles, whole, 0)
         self.unsettled: set[int] = set()
         self._largest: dict[int, float] = {}
 
     def bounds(self) -> NDArray[np.float64]:
         """Upper bounds of all errors; infinite where nothing is known."""
-        exact = self.middle + TURN * self.turned
+        exact = self.middle + TURN * self.turns
         with np.errstate(all="ignore"):
             sizes = np.where(np.isfinite(self.radius), np.maximum(abs(exact) - self.radius, 0), 0)
             most = NESTED * sizes.max(axis=1, initial=max(self.lengths, default=0.0))
@@ -126,7 +129,7 @@ class _Errors:
             self.unsettled.add(row)
             return None
         scale = natural = self._scale(row, k, exacts)
-        exact = _turned(exacts[k]) if self.turned[row, k] else exacts[k]
+        exact = _turned(exacts[k], int(self.turns[row, k]))
         error = _ulps(self.computed[row, k], exact, scale, self.backend)
         if error > WELL_CONDITIONED:
             moved = float(_variation(self.values, k, self.rows[row], exacts[k], self.backend))
@@ -185,9 +188,12 @@ class _Errors:
         return self.values.amplified(self.rows)
 
 
-def _turned(angle: arb) -> arb:
+def _turned(angle: arb, turns: int) -> arb:
+    """The angle and whole turns."""
+    if turns == 0:
+        return angle
     with ctx.workprec(HIGH):
-        return angle + 2 * arb.pi()
+        return angle + 2 * turns * arb.pi()
 
 
 def _last_places(sizes: NDArray[Any], backend: Backend) -> NDArray[Any]:

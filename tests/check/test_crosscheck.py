@@ -9,17 +9,18 @@ import pytest
 import sympy as sp
 from places import ROOT
 
-from closedform.check import runners
+from closedform.check import runners, values
 from closedform.check.clibrary import CLibrary
 from closedform.check.crosscheck import crosscheck
 from closedform.check.failures import UnavailableError
 from closedform.check.finding import Backend, Finding, float_backend, module_backend
 from closedform.check.inverses import check_inverse
+from closedform.check.samples import Sample
 from closedform.check.truth import solutions_of
 from closedform.check.values import check_boolean, check_forward
 from closedform.emit.backends import load, names
 from closedform.model.derivation import Derivation, Paper
-from closedform.model.tolerances import DOUBLE
+from closedform.model.tolerances import DOUBLE, FLOAT
 from closedform.pipeline.scripts import sources
 
 ROBOTS = [source.name for source in sources()]
@@ -198,3 +199,21 @@ def test_where_a_mechanism_moves_without_its_hand(
     truth = solutions_of(d, d["ik"], d.inverses[0])
     lengths = [float(p.value) for p in d.parameters]
     assert truth.continues(np.array(posture), lengths, 1e-12) == moves
+
+
+def test_a_yaw_beside_the_cut_may_be_on_either_side(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Joints that add up to just less than -pi in single precision add up to just more."""
+    joints = [-1.5697963237762451, -1.5707963705062866, 0.5, 0.0010000000474974513]
+    d, lengths = derivation("scara"), (1.0,) * len(derivation("scara").parameters)
+    sample = Sample("folded back", np.array([joints]), lengths)
+    monkeypatch.setattr(values, "joint_samples", lambda *_: [sample])
+    module = importlib.import_module("closedform.generated.numpy.scara")
+
+    def fk(q: np.ndarray, *parameters: np.ndarray) -> np.ndarray:
+        x = module.fk(q, *parameters)
+        assert 3.1415925 < x[0, 3] < np.pi
+        x[0, 3] = np.float32(joints[0]) + np.float32(joints[1]) - np.float32(joints[3])
+        return x
+
+    backend = Backend("single", lambda _: fk, np.float32, FLOAT)
+    assert check_forward(d, d["fk"], backend).failures == []

@@ -178,15 +178,17 @@ class Chain:
         must be zero.
         """
         meaning, place = "the pose is one of the arm's", self.forward
+        slides = {j.symbol: self.values[j.symbol] for j in self.d.joints if j.kind == "prismatic"}
+        size = self.size or sp.S.One
+        if slides:  # which have no limits
+            size = self.let("extent", size + sp.Add(*map(sp.Abs, self.p)))
         if rest is not None:
             for entry in rest:
-                self.program.match(entry, self.size, meaning)
+                self.program.match(entry, size, meaning)
             return
         functions = sorted(place.atoms(sp.sin, sp.cos), key=str)
         pairs = {f.args[0]: self._solved_pair(f.args[0]) for f in functions}
-        slides = {j.symbol: self.values[j.symbol] for j in self.d.joints if j.kind == "prismatic"}
         place, target = place[:3, :], self.T[:3, :]
-        size = self.size or sp.S.One
         scales = [size if j == 3 else sp.S.One for _ in range(3) for j in range(4)]
         self.corrected = Correction(
             self.program, self.joints, tuple(target), tuple(place), scales,

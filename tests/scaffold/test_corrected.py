@@ -110,6 +110,15 @@ def test_an_arm_that_is_straight_along_its_first_axis_in_single_precision(tmp_pa
     assert (~np.isin(status, (OK, SINGULAR)).any(axis=-1)).sum() < 20  # it was 111
 
 
+def test_a_slide_that_is_long_beside_the_links_in_single_precision(tmp_path: Path) -> None:
+    """The target was compared in units of the links, and rounded in units of the slide."""
+    module = arm(POLAR, tmp_path, printed_array)
+    q = np.random.default_rng(4).uniform(-3, 3, (400, 4))
+    q[:, 2] = np.random.default_rng(5).uniform(5, 50, 400)
+    status = module.ik(pose(POLAR, q).astype(np.float32)).status
+    assert np.isin(status, (OK, SINGULAR)).any(axis=-1).all()
+
+
 def test_what_the_arm_does_not_reach_stays_unreachable(tmp_path: Path) -> None:
     """Least squares find the nearest pose, which is not the target."""
     module = arm(ROLLING, tmp_path)

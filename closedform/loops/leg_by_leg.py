@@ -232,8 +232,8 @@ def named_in(p: Program, name: str, value: sp.Expr) -> sp.Symbol:
 
 
 def named(p: Program, name: str, place: sp.Matrix) -> sp.Matrix:
-    """A vector in a plane, with its coordinates under names."""
-    return sp.Matrix([named_in(p, f"{name}_{i}", e) for i, e in zip("xy", place, strict=True)])
+    """A vector, with its coordinates under names."""
+    return sp.Matrix([named_in(p, f"{name}_{i}", e) for i, e in zip("xyz", place, strict=False)])
 
 
 __all__ = [

@@ -15,17 +15,16 @@ from closedform.lemmas.legs import Leg, Slide, Stretch, cross_in_plane
 from closedform.lemmas.lines import coordinate
 from closedform.lemmas.missed import MOVED, SHARE
 from closedform.lemmas.sine_cosine import linear_pair
-from closedform.loops.hand import rate_of, square
+from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import (
     SIGN,
     named,
-    named_in,
     record_lemma,
     size_of,
 )
 from closedform.loops.modes import export
-from closedform.loops.platform_legs import Platform, jacobians, matrices
-from closedform.model.functions import Branches, Program, branches, choose, real
+from closedform.loops.platform_legs import Platform, Posture, jacobians, matrices
+from closedform.model.functions import Program, branches, choose, real
 from closedform.model.inverse import Degenerate, Inverse, Link
 from closedform.model.pair import Pair
 from closedform.model.step import Step
@@ -41,19 +40,6 @@ NEAR = "Ill-conditioned near the parallel singularities, where two modes meet."
 
 
 @dataclass(frozen=True)
-class Posture:
-    """The hand in an assembly mode, in the names of a program."""
-
-    program: Program
-    modes: Branches
-    position: sp.Matrix
-    rotation: sp.Matrix
-    rods: dict[int, sp.Matrix]
-    volume: sp.Expr
-    """The determinant of A."""
-
-
-@dataclass(frozen=True)
 class Meet:
     """The numbers of the legs that end in one point, that of the other one, and its arm."""
 
@@ -64,10 +50,10 @@ class Meet:
     @classmethod
     def of(cls, m: Platform) -> Meet | None:
         """The same of a hand, if it is of this kind."""
-        if m.dimensions != 2 or len(m.meeting) != LEGS - 1:
+        groups = sorted(m.groups, key=len, reverse=True)
+        if m.dimensions != 2 or [*map(len, groups)] != [LEGS - 1, 1]:
             return None
-        first, second = (k for k, leg in m.numbered if leg in m.meeting)
-        (third,) = {1, 2, 3} - {first, second}
+        (first, second), (third,) = groups
         return cls(m, (first, second), third)
 
     @property
@@ -90,9 +76,21 @@ class Meet:
         """The sign of the order of the legs with the third one last."""
         return 1 if (LEGS - self.third) % 2 == 0 else -1
 
+    def forward(self, loop: Step) -> Posture:
+        """Derive and export ``fk``."""
+        return _forward(self, loop)
 
-def forward(meet: Meet, loop: Step) -> Posture:
-    """Derive and export ``fk``."""
+    def export_rates(self, at: Posture) -> None:
+        """Export what depends on the joints and the assembly mode."""
+        m, d = self.m, self.m.d
+        v = Program(list(at.program.body), at.program.taken)
+        A, driven = at.rates(v, *at.vectors(v))
+        volume = v.let("Delta", at.sign * sp.Mul(*at.volumes))
+        functions = [*matrices(m, A, driven, volume), *jacobians(m, v, A, driven, volume)]
+        export(d, v, at.modes, functions)
+
+
+def _forward(meet: Meet, loop: Step) -> Posture:
     m, arm = meet.m, meet.arm
     d, f, yaw = m.d, m.d.program(), m.pose[2]
     modes = branches(*((sigma, SIGN) for sigma in SIGMAS))
@@ -185,14 +183,16 @@ def forward(meet: Meet, loop: Step) -> Posture:
     for link in links:
         record_lemma(d, "fk", link)
     rods = {k: at_c - near[k] for k in meet.pair} | {meet.third: at_d - near[meet.third]}
-    volume = meet.sign * first * second
     return Posture(
+        m=m,
         program=Program(list(f.body), f.taken),
         modes=modes,
         position=position,
         rotation=R,
         rods=rods,
-        volume=volume,
+        spans=(between,),
+        volumes=(first, second),
+        sign=meet.sign,
     )
 
 
@@ -263,22 +263,4 @@ def _end(m: Platform, k: int) -> sp.Matrix:
     return m.position + m.arms[k - 1]
 
 
-def export_rates(m: Platform, at: Posture) -> None:
-    """Export what depends on the joints and the assembly mode."""
-    d, v = m.d, Program(list(at.program.body), at.program.taken)
-    arms = [named(v, f"h_{k}", at.rotation * place) for k, place in enumerate(m.places, 1)]
-    rods = [named(v, f"r_{k}", at.rods[k]) for k, _ in m.numbered]
-    rows = [
-        [*rod, named_in(v, f"A_{k}3", cross_in_plane(arm, rod))]
-        for k, (rod, arm) in enumerate(zip(rods, arms, strict=True), 1)
-    ]
-    driven = [
-        named_in(v, f"B_{k}{k}", rate_of(leg, rod))
-        for (k, leg), rod in zip(m.numbered, rods, strict=True)
-    ]
-    volume, A = v.let("Delta", at.volume), sp.Matrix(rows)
-    functions = [*matrices(m, A, driven, volume), *jacobians(m, v, A, driven, volume)]
-    export(d, v, at.modes, functions)
-
-
-__all__ = ["Meet", "Posture", "export_rates", "forward"]
+__all__ = ["Meet"]

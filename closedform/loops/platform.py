@@ -6,7 +6,8 @@ In space four legs may keep the hand upright; then it turns about the z axis alo
 and the singular sets.  The forward problem leads to an equation of degree 6 in a plane, 8 for a
 hand that is kept upright, or 40, and no ``fk`` is derived.  What depends on the posture is a
 function of the pose and of the joints.  If two of three legs end in one point of the hand, there is
-``fk`` too, see :mod:`closedform.loops.meeting`.
+``fk`` too, see :mod:`closedform.loops.meeting`; also if six legs end in three points, three, two
+and one of them, see :mod:`closedform.loops.three_points`.
 """
 
 from __future__ import annotations
@@ -29,19 +30,21 @@ from closedform.loops.leg_by_leg import (
     size_of,
 )
 from closedform.loops.letters import letters
-from closedform.loops.meeting import Meet, Posture, export_rates, forward
+from closedform.loops.meeting import Meet
 from closedform.loops.modes import NO_MODE
 from closedform.loops.on_rails import on_rails
 from closedform.loops.platform_legs import (
     UPRIGHT,
     Half,
     Platform,
+    Posture,
     check_holds,
     counted_degree,
     jacobians,
     matrices,
 )
 from closedform.loops.skeleton import Drawing, points_of
+from closedform.loops.three_points import ThreePoints
 from closedform.loops.upright import check_upright, constraint, left_out, state_upright
 from closedform.mechanics.frames import hat, require_pose
 from closedform.mechanics.skeleton import skeleton
@@ -65,11 +68,15 @@ def platform(d: Derivation, legs: Sequence[Leg | Half], *, bars: int = 2) -> Non
     each leg is a :class:`Half`, or each is a :class:`~closedform.lemmas.planes.Plane`.
 
     It exports ``ik``, ``jacobian_parallel`` (A), ``jacobian_serial`` (the diagonal of B),
-    ``jacobian_inverse`` (B^-1*A), ``singularities`` and ``skeleton``, except for six legs
+    ``jacobian_inverse`` (B^-1*A), ``singularities`` and ``skeleton``, in a plane and for four legs
     ``jacobian`` and ``determinant``, for four legs ``constraint``, and ``workspace_contains`` where
-    the reach of the legs is limited.  On three rails in a plane, and on four
-    :class:`~closedform.lemmas.planes.Plane` legs in space, there is also ``fk``, with two assembly
-    modes; if two of three legs end in one point of the hand, with four.
+    the reach of the legs is limited.
+
+    There is also ``fk`` on three rails in a plane, and on four
+    :class:`~closedform.lemmas.planes.Plane` legs in space, with two assembly modes; if two of three
+    legs end in one point of the hand, with four; and if six legs end in three points of it, three,
+    two and one of them, with eight.  Then what depends on the posture is a function of the joints,
+    and there is ``jacobian`` instead of ``jacobian_inverse``.
 
     Parameters
     ----------
@@ -97,11 +104,11 @@ def platform(d: Derivation, legs: Sequence[Leg | Half], *, bars: int = 2) -> Non
     m.d.loop = loop = _close(m)
     if upright:
         state_upright(m, loop)
-    if meet := Meet.of(m):
+    if solved := Meet.of(m) or ThreePoints.of(m):
         d.poles = d.singularities[-1:]
-        at = forward(meet, loop)
+        at = solved.forward(loop)
         _velocity(m, loop)
-        export_rates(m, at)
+        solved.export_rates(at)
         _draw(m, at)
         _inverse(m, loop)
         return
@@ -435,7 +442,7 @@ def _inverse(m: Platform, loop: Step, degree: str = "") -> None:
             ),
         ],
     )
-    solved.certify(m.loop, "" if degree else "fk", angles=() if degree else m.pose[2:])
+    solved.certify(m.loop, "" if degree else "fk", angles=() if degree or m.tilts else m.pose[2:])
 
 
 def _scale(m: Platform, g: Program, solved: LegByLeg, *, turns: bool) -> tuple[sp.Expr, str, str]:
@@ -445,17 +452,20 @@ def _scale(m: Platform, g: Program, solved: LegByLeg, *, turns: bool) -> tuple[s
     """
     rods, product = solved.lengths(m.legs), r"\prod_i |\mathbf r_i|"
     of = "of the product of the lengths of the rods and"
-    if turns:
-        return (
-            rods * solved.size,
-            rf"\Lambda {product}",
-            f"2^-10 {of} Lambda, the sum of all lengths",
-        )
+    total = "Lambda, the sum of all lengths"
+    if turns and not m.tilts:
+        return rods * solved.size, rf"\Lambda {product}", f"2^-10 {of} {total}"
     lever = g.let("lever", sp.sqrt(m.spread), nonnegative=True)
     spread = (
         "lambda, the root mean square distance of the ends of the rods on the hand from their "
         "centre"
     )
+    if turns:  # twice, because three points are computed one after the other
+        return (
+            2 * rods * lever**2 * solved.size,
+            rf"2 \Lambda \lambda^2 {product}",
+            f"2^-9 {of} the square of {spread}, and {total}",
+        )
     if m.tilts:  # six legs lose more digits in their determinant than in the pose
         scale = rods * lever**3 / 2**10
         return scale, rf"2^{{-10}} \lambda^3 {product}", f"2^-20 {of} the third power of {spread}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -14,12 +14,18 @@ from closedform.algebra.shapes import ShapeError
 from closedform.algebra.solutions import count_solutions
 from closedform.lemmas.legs import Leg, Strut, cross_in_plane, vector
 from closedform.lemmas.rails import Rail
-from closedform.loops.hand import check_order, check_plain, singular_everywhere, square
-from closedform.loops.leg_by_leg import signs_of_modes
+from closedform.loops.hand import (
+    check_order,
+    check_plain,
+    rate_of,
+    singular_everywhere,
+    square,
+)
+from closedform.loops.leg_by_leg import named, named_in, signs_of_modes
 from closedform.loops.modes import Exported
 from closedform.mechanics.frames import hat, pose_symbols, rotation
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Program, real
+from closedform.model.functions import Branches, Program, real
 
 LEGS = {2: (3,), 3: (4, 6)}
 """How many legs carry a hand that turns in a plane, and in space."""
@@ -160,13 +166,17 @@ class Platform:
         return sp.factor(sp.expand(sum(map(square, away)) / n))
 
     @property
+    def groups(self) -> list[list[int]]:
+        """The numbers of the legs that end in the same point of the hand, for each such point."""
+        found: dict[tuple[sp.Expr, ...], list[int]] = {}
+        for k, place in enumerate(self.places, 1):
+            found.setdefault(tuple(place), []).append(k)
+        return list(found.values())
+
+    @property
     def meeting(self) -> list[Leg]:
         """The most legs that end in the same point of the hand."""
-        groups = [
-            [leg for leg, e in zip(self.legs, self.places, strict=True) if e == place]
-            for place in self.places
-        ]
-        return max(groups, key=len)
+        return [self.legs[k - 1] for k in max(self.groups, key=len)]
 
     @cached_property
     def arms(self) -> list[sp.Matrix]:
@@ -208,6 +218,48 @@ class Platform:
         if self.tilts:
             return arm.cross(force)
         return sp.Matrix([cross_in_plane(arm, force)])
+
+
+@dataclass(frozen=True)
+class Posture:
+    """The hand in an assembly mode, in the names of a program."""
+
+    m: Platform
+    program: Program
+    modes: Branches
+    position: sp.Matrix
+    rotation: sp.Matrix
+    rods: Mapping[int, sp.Matrix]
+    """The vectors along the rods, by the numbers of the legs."""
+    spans: Sequence[sp.Matrix]
+    """The vectors from the first point in which legs end to the others."""
+    volumes: Sequence[sp.Expr]
+    """The factors of the determinant of A, up to a sign."""
+    sign: int
+    """The sign of this product."""
+
+    def vectors(self, v: Program) -> tuple[list[sp.Matrix], list[sp.Matrix]]:
+        """The arms from the point of the hand to the ends of the rods, and the rods, named."""
+        arms: dict[int, sp.Matrix] = {}
+        for group in self.m.groups:
+            arm = self.rotation * self.m.places[group[0] - 1]
+            arms |= dict.fromkeys(group, named(v, f"h_{group[0]}", arm))
+        in_order = [arms[k] for k, _ in self.m.numbered]
+        return in_order, [named(v, f"r_{k}", self.rods[k]) for k, _ in self.m.numbered]
+
+    def rates(
+        self, v: Program, arms: Sequence[sp.Matrix], rods: Sequence[sp.Matrix]
+    ) -> tuple[sp.Matrix, list[sp.Expr]]:
+        """The matrix A and the diagonal of B, named."""
+        rows = []
+        for k, (rod, arm) in enumerate(zip(rods, arms, strict=True), 1):
+            moments = enumerate(self.m.moment(arm, rod), len(rod) + 1)
+            rows.append([*rod, *(named_in(v, f"A_{k}{i}", e) for i, e in moments)])
+        driven = [
+            named_in(v, f"B_{k}{k}", rate_of(leg, rod))
+            for (k, leg), rod in zip(self.m.numbered, rods, strict=True)
+        ]
+        return sp.Matrix(rows), driven
 
 
 def check_holds(m: Platform) -> None:
@@ -294,6 +346,7 @@ __all__ = [
     "UPRIGHT",
     "Half",
     "Platform",
+    "Posture",
     "check_holds",
     "counted_degree",
     "jacobians",

@@ -426,8 +426,11 @@ class Program:
     body: list[Statement] = field(default_factory=list)
     taken: frozenset[str] = frozenset()
     """Names that are taken; a statement that would use one gets a longer name."""
+    suffix: str = ""
+    """What the names of statements end in, so that a lemma may be applied several times."""
 
     def _symbol(self, name: str, **assumptions: bool) -> sp.Symbol:
+        name += self.suffix
         while name in self.taken:
             name += "_0"
         return sp.Symbol(name, **assumptions)

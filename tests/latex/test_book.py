@@ -21,7 +21,8 @@ from closedform.emit.backends.latex.equations import canonical, names_in
 from closedform.emit.render import render
 from closedform.lemmas.registry import theorem, theorems
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Program, real
+from closedform.model.functions import Program, choose, real
+from closedform.model.inverse import Inverse
 from closedform.model.paper import Paper, Work
 from closedform.proof.prove import Proof
 
@@ -94,6 +95,18 @@ def test_what_an_algorithm_explains_is_in_it(tex: Path) -> None:
         lines = text[text.rindex(r"\begin{algorithm}", 0, found.start()) : found.start()]
         for name in re.findall(r"\$([^$]*)\$", found[1]):
             assert name in lines
+
+
+def test_a_length_that_must_not_vanish_is_required_by_name() -> None:
+    """The article said that 0 = 0 is required, which a flag is where it is not set."""
+    d = toy()
+    p, x, length = d.program(), real("x"), d.parameters[0].symbol
+    none = p.vanishes("none", length, 1, "the link has a length")
+    p.require([choose(none, 1, 0)], 1, "the link has a length")
+    d.function("ik", "The turns.", {"x": (x,)}, {"q": (x, x)}, program=p, result="Solutions")
+    d.inverses.append(Inverse("ik", d.actuated, (x,), (d.actuated[0],)))
+    text = article(d)
+    assert r"\textbf{unless} $l_{1} \ne 0$ (the link has a length): \textsc{invalid}" in text
 
 
 def test_a_matrix_is_printed_once() -> None:

@@ -471,7 +471,10 @@ class Algorithm:
             return f"the input is {self.page.prose(statement.meaning)}"
         texts = []
         for value in statement.values:
-            if isinstance(value, sp.Piecewise) and value.args[0][0] == 0:
+            flag = value.args[0][1] if isinstance(value, sp.Piecewise) else None
+            if flag in self.flags:
+                texts.append(rf"${self.page.math(self.full(self.flags[flag].value))} \ne 0$")
+            elif isinstance(value, sp.Piecewise) and value.args[0][0] == 0:
                 texts.append(self.page.printer.condition(self._condition(value.args[0][1])))
             else:
                 texts.append(f"${self.page.math(self.full(value))} = 0$")

@@ -1,0 +1,368 @@
+"""A hand whose six legs end in three of its points, 3, 2 and 1 of them: eight modes, by spheres.
+
+Three legs place their common point C.  The point D of two legs is at known distances from C and
+from the near ends of these legs, and the end E of the last leg at known distances from C, D and its
+near end.  So three spheres meet, three times.  The three points give the pose.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import sympy as sp
+
+from closedform.lemmas.legs import Slide, Stretch
+from closedform.lemmas.lines import coordinate
+from closedform.lemmas.missed import MOVED, SHARE
+from closedform.lemmas.spheres import three_spheres
+from closedform.lemmas.two_vectors import two_vectors
+from closedform.loops.hand import square
+from closedform.loops.leg_by_leg import SIGN, named, record_lemma, size_of
+from closedform.loops.modes import export
+from closedform.loops.platform_legs import Platform, Posture, matrices
+from closedform.mechanics.frames import rotation
+from closedform.model.functions import Program, branches, choose, real
+from closedform.model.inverse import Inverse, Link
+from closedform.model.names import listed
+from closedform.model.step import Step
+
+SIZES = [3, 2, 1]
+"""How many legs end in each of the points."""
+NAMES = "CDE"
+SIGMAS = tuple(real(f"sigma_{name}") for name in NAMES)
+UNKNOWN = {name: sp.Matrix([real(f"{name}_{i}") for i in "xyz"]) for name in NAMES}
+IN_LINE = "the points of the hand in which legs end are not in line"
+NEAR = "Ill-conditioned near the parallel singularities, where two modes meet."
+
+
+@dataclass(frozen=True)
+class ThreePoints:
+    """The numbers of the legs that end in C, D and E, in this order."""
+
+    m: Platform
+    order: tuple[int, ...]
+
+    @classmethod
+    def of(cls, m: Platform) -> ThreePoints | None:
+        """The same of a hand, if it is of this kind."""
+        groups = sorted(m.groups, key=len, reverse=True)
+        if not m.tilts or [*map(len, groups)] != SIZES:
+            return None
+        return cls(m, tuple(k for group in groups for k in group))
+
+    @property
+    def places(self) -> list[sp.Matrix]:
+        """The three points, in the frame of the hand."""
+        return [self.m.places[self.order[k] - 1] for k in (0, 3, 5)]
+
+    @property
+    def unknown(self) -> list[sp.Matrix]:
+        """Their unknown coordinates; C may be the point of the hand."""
+        first = self.m.position if self.places[0].is_zero_matrix else UNKNOWN["C"]
+        return [first, UNKNOWN["D"], UNKNOWN["E"]]
+
+    @property
+    def spans(self) -> list[sp.Matrix]:
+        """The vectors from C to D and E, in the frame of the hand."""
+        first, *others = self.places
+        return [place - first for place in others]
+
+    @property
+    def sign(self) -> int:
+        """The sign of the order of the legs."""
+        return int(sp.combinatorics.Permutation([k - 1 for k in self.order]).signature())
+
+    def forward(self, loop: Step) -> Posture:
+        """Derive and export ``fk``."""
+        m = self.m
+        d, f = m.d, m.d.program()
+        modes = branches(*((sigma, SIGN) for sigma in SIGMAS))
+        d.assembly_modes = modes.labels
+        slid = [leg.joint for leg in m.legs if isinstance(leg, Slide)]
+        stretched = [leg.joint for leg in m.legs if isinstance(leg, Stretch)]
+        size = f.let("size", size_of(d, m.whole, slid) + sp.Add(*map(sp.Abs, stretched)))
+        share = MOVED if slid or stretched else SHARE
+        near = {k: named(f, f"b_{k}", leg.end()) for k, leg in m.numbered}
+        radii = {k: self._radius(f, k, size) for k in self.order}
+        spans = [named(f, letter, e) for letter, e in zip("de", self.spans, strict=True)]
+        sides = self._sides(f)
+        normal = spans[0].cross(spans[1])
+        flat = f.vanishes("flat", normal.dot(normal), size**4, IN_LINE, squares=True)
+        f.require([choose(flat, 1, 0)], 1, IN_LINE)
+        links: list[Link] = []
+
+        def met(
+            which: int, centres: Sequence[sp.Matrix], lengths: Sequence[sp.Symbol]
+        ) -> tuple[sp.Matrix, sp.Expr]:
+            """A point where three spheres meet, under a name, and the determinant of the radii."""
+            x = self.unknown[which]
+            found = three_spheres(
+                replace(f, suffix=f"_{NAMES[which]}"),
+                centres,
+                lengths,
+                tuple(x),
+                SIGMAS[which],
+                scale=size,
+                share=share,
+                free=tuple(x),
+            )
+            start = len(f.body)
+            place = sp.Matrix([f.let(str(e), found.lemma[e]) for e in x])
+            link = replace(found.link, lemma=replace(found.lemma, roles=self._roles(which)))
+            body, means = (*link.body, *f.body[start:]), dict(zip(place, x, strict=True))
+            links.append(replace(link, body=body, means=means))
+            return place, found.volume
+
+        *three, i, j, last = self.order
+        C, first = met(0, [near[k] for k in three], [radii[k] for k in three])
+        D, second = met(1, [C, near[i], near[j]], [sides[0], radii[i], radii[j]])
+        E, third = met(2, [C, D, near[last]], [sides[1], sides[2], radii[last]])
+        turned = [named(f, letter, x - C) for letter, x in zip("uv", (D, E), strict=True)]
+        link, R = two_vectors(f, spans, turned, m.rotation)
+        links.append(link)
+        position = named(f, "p", C - R * self.places[0])
+        if self.unknown[0] != m.position:
+            links += [coordinate(x, e) for x, e in zip(m.position, position, strict=True)]
+        told = len(links)
+        links += [coordinate(x, sp.Integer(k == 3)) for k, x in enumerate(m.pose[3, :])]
+        self._state(loop)
+        solved = {x: e for link in links if link.lemma for x, e in link.lemma.solution.items()}
+        d.function(
+            "fk",
+            "Pose of the hand in all assembly modes.",
+            {"q": d.actuated},
+            {"p": m.pose.xreplace(solved)},
+            program=f,
+            branches=modes,
+            result="Positions",
+            notes=(
+                "UNREACHABLE: the rods do not meet.",
+                "SINGULAR: the centres of three spheres are in line, and the point where they meet "
+                "is free on a circle; one of its points is returned.",
+                f"INVALID: also unless {IN_LINE}.",
+                NEAR,
+            ),
+        )
+        equations = self._equations()
+        zeros = (sp.S.Zero,) * len(equations)
+        passive = tuple(e for link in links for e in link.unknowns if e not in {*m.pose})
+        d.inverses.append(
+            Inverse("fk", tuple(m.pose), zeros, equations, links=tuple(links), passive=passive)
+        )
+        for link in links[:told]:
+            record_lemma(d, "fk", link)
+        rods = {k: C - near[k] for k in three}
+        rods |= {k: D - near[k] for k in (i, j)} | {last: E - near[last]}
+        return Posture(
+            m=m,
+            program=Program(list(f.body), f.taken),
+            modes=modes,
+            position=position,
+            rotation=R,
+            rods=rods,
+            spans=turned,
+            volumes=(first, second, third),
+            sign=self.sign,
+        )
+
+    def _roles(self, which: int) -> tuple[tuple[str, Any], ...]:
+        """What the letters of the lemma stand for that gives a point."""
+        (d, e), (*three, i, j, last) = self.spans, self.order
+        C, D, E = ("p" if self.unknown[0] == self.m.position else "C"), *"DE"
+        x, *centres = [
+            (C, *(f"b_{k}" for k in three)),
+            (D, C, f"b_{i}", f"b_{j}"),
+            (E, C, D, f"b_{last}"),
+        ][which]
+        sides = [[], [d], [e, e - d]][which]
+        lengths = [_length(side) for side in sides]
+        lengths += [
+            sp.sympify(self.m.legs[k - 1].rod, strict=True) for k in [three, [i, j], [last]][which]
+        ]
+        letters = zip((r"\mathbf x", r"\mathbf a", r"\mathbf c_3"), (x, *centres[1:]), strict=True)
+        return (
+            *((letter, f"{point} - {centres[0]}") for letter, point in letters),
+            *((f"r_{k}", length) for k, length in enumerate(lengths, 1)),
+        )
+
+    def _radius(self, p: Program, k: int, size: sp.Expr) -> sp.Expr:
+        """The length of a rod; the lemma equates radii, so that numbers have names."""
+        leg = self.m.legs[k - 1]
+        rod = sp.sympify(leg.rod, strict=True)
+        if isinstance(leg, Stretch):
+            return p.bound(f"r_{k}", rod, size, "a leg has a positive length")
+        return rod if rod.is_Symbol else p.let(f"r_{k}", rod, nonnegative=True)
+
+    def _sides(self, p: Program) -> list[sp.Symbol]:
+        """The distances of C from D, of C from E and of D from E on the hand."""
+        d, e = self.spans
+        return [
+            p.let(name, _length(side), nonnegative=True)
+            for name, side in (("side_CD", d), ("side_CE", e), ("side_DE", e - d))
+        ]
+
+    def _equations(self) -> tuple[sp.Expr, ...]:
+        """The equations of the loop, with the points C, D and E as further unknowns."""
+        m, (d, e), (C, D, E) = self.m, self.spans, self.unknown
+        *three, i, j, last = self.order
+
+        def rod(end: sp.Matrix, k: int) -> sp.Expr:
+            leg = m.legs[k - 1]
+            return square(end - leg.end()) - sp.sympify(leg.rod, strict=True) ** 2
+
+        u, v = D - C, E - C
+        turned = (m.rotation * d - u, m.rotation * e - v, m.rotation * d.cross(e) - u.cross(v))
+        placed = m.position - C + m.rotation * self.places[0]
+        return (
+            *(rod(C, k) for k in three),
+            square(u) - square(d),
+            rod(D, i),
+            rod(D, j),
+            square(v) - square(e),
+            square(E - D) - square(e - d),
+            rod(E, last),
+            *(entry for equation in turned for entry in equation),
+            *(placed if m.position != C else ()),
+            *(x - int(k == 3) for k, x in enumerate(m.pose[3, :])),
+        )
+
+    def _state(self, loop: Step) -> None:
+        """The step on the assembly modes."""
+        m, (*three, i, j, last) = self.m, self.order
+        ends = [m.position + m.rotation * place for place in self.places]
+        unknown, known = (sp.Matrix.vstack(*points) for points in (self.unknown, ends))
+        at = dict(zip(unknown, known, strict=True))
+        turned = rotation("z", real("alpha")) * rotation("y", real("beta"))
+        turned *= rotation("x", real("gamma"))
+        turning = dict(zip(m.rotation, turned, strict=True))
+        turning |= dict(zip(m.pose[3, :], (0, 0, 0, 1), strict=True))
+        zero = sp.S.Zero
+        rods = [*(m.loop[k - 1] for k in three), zero, m.loop[i - 1], m.loop[j - 1]]
+        rods += [zero, zero, m.loop[last - 1]]
+        found = [e.xreplace(at) for e in self._equations()]
+        rest = [zero] * (len(found) - len(rods))
+        m.d.step(
+            "Forward: three spheres, three times",
+            f"Legs {listed([*map(str, three)])} end in the same point C of the hand.  It is where "
+            f"three spheres meet about the near ends of their rods.  Legs {i} and {j} end in D, "
+            "which is at known distances from C and from the near ends of both rods.  The end E of "
+            f"leg {last} is at known distances from C, from D and from the near end of its rod.  "
+            "Each time there are two points, so there are eight assembly modes.  C, D and E give "
+            "the rotation of the hand, and so its position.  The signs of a mode are those of the "
+            "determinants of the three vectors from the centres of the spheres to C, D and E.",
+            {},
+            proves="The ends of the legs satisfy these equations if and only if they satisfy those "
+            "of the loop.",
+            equal=[
+                (e.xreplace(turning), x.xreplace(turning))
+                for e, x in zip(found, [*rods, *rest], strict=True)
+            ],
+            uses=[loop],
+            solves={"fk": ()},
+        )
+
+    def _state_rates(self) -> None:
+        """The step on the Jacobian and on the determinant of A."""
+        m, three, last = self.m, self.order[:3], self.order[-1]
+        u, v, p, r, s, t = (
+            sp.Matrix([real(f"{letter}_{axis}") for axis in "xyz"]) for letter in "uvprst"
+        )
+        M = sp.Matrix(3, 3, lambda row, column: real(f"m{row + 1}{column + 1}"))
+        volume = sp.Matrix.hstack(u, r, s).det()
+        rows = sp.Matrix.hstack(u.cross(r), u.cross(s), v.cross(t)).T
+        product = volume * sp.Matrix.hstack(u, v, t).det()
+        m.d.step(
+            "Velocity: point by point",
+            f"The rods of legs {listed([*map(str, three)])} give the velocity of C.  Let u and v "
+            "be the vectors from C to D and to E.  The moment about C of a rod that ends in D is "
+            f"the product of u and the vector along it; for leg {last} v takes the place of u.  "
+            "These three moments give the angular velocity, from what the joints add to the "
+            "velocity of C along the rods.  So the Jacobian needs two matrices of three rows only, "
+            "and the determinant of A is the product of their determinants.  That of the moments "
+            "is a product again.  So the determinant of A has three factors: the determinants of "
+            "the vectors from the centres of the spheres to C, D and E.",
+            {},
+            proves="A moment about C differs from that about p by the product of the vector from p "
+            "to C and the force, so it does not change the determinant.  The determinant of three "
+            "moments is the product of two.  The adjugate of a matrix gives its inverse.",
+            equal=[
+                ((p + u).cross(r) - p.cross(r), u.cross(r)),
+                (u.cross(r).cross(u.cross(s)), volume * u),
+                (rows.det(), product),
+                (sp.Matrix.hstack(v, v - u, t).det(), sp.Matrix.hstack(u, v, t).det()),
+                (M * M.adjugate(), M.det() * sp.eye(3)),
+            ],
+            uses=[m.d.loop] if m.d.loop else [],
+        )
+
+    def export_rates(self, at: Posture) -> None:
+        """Export what depends on the joints and the assembly mode."""
+        self._state_rates()
+        m, d = self.m, self.m.d
+        v = Program(list(at.program.body), at.program.taken)
+        arms, rods = at.vectors(v)
+        A, driven = at.rates(v, arms, rods)
+        named_volumes = zip(NAMES, at.volumes, strict=True)
+        at = replace(at, volumes=[v.let(f"Delta_{name}", e) for name, e in named_volumes])
+        volume = v.let("Delta", at.sign * sp.Mul(*at.volumes))
+        pole = ("Not finite at a parallel singularity.",)
+        functions = [
+            *matrices(m, A, driven, volume),
+            (
+                "jacobian",
+                "Velocity and angular velocity of the hand, in base axes, per joint rate: A^-1*B.",
+                {"J": self._jacobian(v, at, arms, rods, driven)},
+                pole,
+            ),
+            (
+                "determinant",
+                "Determinant of the Jacobian.",
+                {"det": sp.Mul(*driven) / volume},
+                pole,
+            ),
+        ]
+        export(d, v, at.modes, functions)
+
+    def _jacobian(
+        self,
+        v: Program,
+        at: Posture,
+        arms: Sequence[sp.Matrix],
+        rods: Sequence[sp.Matrix],
+        driven: Sequence[sp.Expr],
+    ) -> sp.Matrix:
+        """The velocity of C, and the angular velocity, for each joint."""
+        (to_d, to_e), (at_c, at_d, at_e) = at.spans, at.volumes
+        *first, i, j, last = (k - 1 for k in self.order)
+        one, two, three = (
+            named(v, f"M_{k + 1}", span.cross(rods[k]))
+            for k, span in ((i, to_d), (j, to_d), (last, to_e))
+        )
+        both = v.let("Delta_DE", at_d * at_e)
+        turns = {
+            i: named(v, f"W_{i + 1}", two.cross(three) / both),
+            j: named(v, f"W_{j + 1}", three.cross(one) / both),
+            last: named(v, f"W_{last + 1}", to_d / at_e),
+        }
+        columns = {}
+        for n, k in enumerate(first):
+            across = rods[first[n - 2]].cross(rods[first[n - 1]])
+            moved = named(v, f"V_{k + 1}", across * (driven[k] / at_c))
+            against = {e: v.let(f"Q_{k + 1}{e + 1}", rods[e].dot(moved)) for e in turns}
+            turned = sum((-q * turns[e] for e, q in against.items()), sp.zeros(3, 1))
+            columns[k] = moved, turned
+        columns |= {k: (sp.zeros(3, 1), driven[k] * turn) for k, turn in turns.items()}
+        found = []
+        for k, (moved, turned) in sorted(columns.items()):
+            omega = named(v, f"omega_{k + 1}", turned)
+            found.append((moved + arms[first[0]].cross(omega)).col_join(omega))
+        return sp.Matrix.hstack(*found)
+
+
+def _length(vector: sp.Matrix) -> sp.Expr:
+    return sp.sqrt(sp.factor(sp.expand(square(vector))))
+
+
+__all__ = ["ThreePoints"]

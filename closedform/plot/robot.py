@@ -129,7 +129,10 @@ class Robot:
         return [k for k, n in enumerate(self.module.JOINTS) if kinds[n].kind == "prismatic"]
 
     def draw(self, n: int, seed: int = 0) -> Array:
-        """Random joints; slides have lengths like those of the mechanism, twin arms agree."""
+        """Random joints; slides have lengths like those of the mechanism, twin arms agree.
+
+        If assembly modes give a pose, the joints are those of random poses.
+        """
         q = np.random.default_rng(seed).uniform(-np.pi, np.pi, (n, len(self.module.JOINTS)))
         for k in self.slides:
             q[:, k] = self.size / 2 * (1 + q[:, k] / (3 * np.pi))
@@ -138,6 +141,9 @@ class Robot:
             twin = name[:-1] + "R"
             if name.endswith("L") and twin in names:
                 q[:, k] = q[:, names.index(twin)] + 0.02 * q[:, k]
+        if self.modes and "T14" in self.module.TASK:  # random legs of a platform hardly ever close
+            answers = self.call("ik", self.poses(n, seed)).q[:, 0]
+            q = np.where(np.isfinite(answers).all(-1, keepdims=True), answers, q)
         return q
 
     def poses(self, n: int, seed: int = 0) -> Array:

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from loop_files import derived, newton, read_script, script_of
 
+from closedform.plot.robot import Robot
+
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 BUNDLE = """
 hand = "P"
@@ -196,6 +198,17 @@ def test_the_jacobian_is_the_derivative(case: tuple) -> None:
         turns = [W[..., 2, 1], W[..., 0, 2], W[..., 1, 0]]
         twist = np.stack([*np.moveaxis(rate[..., :3, 3], -1, 0), *turns], -1)
         assert np.allclose(twist[good], J[good][:, :, k], atol=1e-5, rtol=1e-5)
+
+
+@pytest.mark.filterwarnings("error")
+def test_it_is_drawn_in_a_posture_that_closes(case: tuple) -> None:
+    """Of random lengths hardly any could be assembled, and none was found."""
+    robot, _ = case
+    drawn = Robot.of(robot)
+    assert not drawn.flat
+    joints = drawn.draw(50)
+    assert np.isfinite(drawn.points(joints)).all((-1, -2)).any(-1).sum() > 10
+    assert OK in robot.fk(drawn.posture()).status
 
 
 @pytest.fixture(scope="module")

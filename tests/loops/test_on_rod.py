@@ -111,7 +111,7 @@ def test_it_can_be_followed(loop: ModuleType) -> None:
         ('C = ["l2", 0]', "C = [0, 0]", "c and b1 are at the same point of shank"),
         ('c = {between = ["shank", "rod2"]', 'c = {between = ["crank1", "rod2"]',
          "shank carries the hand and is joined to crank1; it must be joined to one"),
-        ('rod2 = {length = "l2"}', 'rod2 = {B2 = [0, 0], C = ["l2", 0]}', "which must be joined"),
+        ('{length = "l2"}', '{B2 = [0, 0], C = ["l2", 0], Q = [0, 1]}', "which must be joined"),
         ('"rod2"], at = "C"', '"rod2"], at = "D"', "shank has no point D, where c is"),
     ],
 )  # fmt: skip

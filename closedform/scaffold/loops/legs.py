@@ -227,8 +227,8 @@ class Legs:
             carried = listed([j.other(body) for j in onward]) or "nothing else"
             raise loop.error(
                 f"{joint.name} moves {body}, which must be joined to one rod, a body with a "
-                f"length, or to one body by a passive slide; it is joined to {carried}"
-                + self.ball_on_hand(onward)
+                f"length or two points, or to one body by a passive slide; it is joined to "
+                f"{carried}" + self.ball_on_hand(onward)
             )
         if joint.kind == "prismatic":
             return self.slider(joint, *rods[0])

@@ -23,6 +23,7 @@ from closedform.scaffold.loops.on_pins import on_pins
 from closedform.scaffold.loops.on_rod import on_rod
 from closedform.scaffold.loops.sliding import sliding
 from closedform.scaffold.loops.slotted import slotted
+from closedform.scaffold.loops.two_points import read_rods
 from closedform.scaffold.loops.uprights import HINGED, uprights
 from closedform.scaffold.source import file_name, literal
 
@@ -94,6 +95,7 @@ def _first_way(found: Legs) -> _Way:
     follower = loop.joints.get(loop.hand)
     if lines := sliding(loop) or linkage(loop):
         return _bodies(loop, lines)
+    read_rods(found)
     if follower and not follower.driven and (turning := slotted(found, follower)):
         found.check_all_used()
         return _Way(turning, [loop.hand])

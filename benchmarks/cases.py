@@ -11,7 +11,8 @@ from typing import Any, TypeAlias
 import numpy as np
 import sympy as sp
 
-from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
+from closedform.model.expressions import substitute
+from closedform.model.functions import Bound, Function, Let, Vanishes
 
 Assignments: TypeAlias = "list[tuple[sp.Symbol, sp.Expr]]"
 

@@ -25,7 +25,7 @@ from flint import arb, fmpq
 from sympy import Symbol
 
 from closedform.algebra.resolvent import Resolvent, enclosed
-from closedform.model.functions import free_symbols
+from closedform.model.expressions import free_symbols
 
 Expr: TypeAlias = Any  # SymPy's annotations are partial
 Value: TypeAlias = Any  # int, Fraction, float, or an exact SymPy number such as pi/3

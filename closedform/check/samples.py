@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from closedform.check.rows import RowEvaluator, inaccurate
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Function, substitute
+from closedform.model.expressions import substitute
+from closedform.model.functions import Function
 
 Array = NDArray[np.float64]
 

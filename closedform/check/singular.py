@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from closedform.check.rows import WIDE, RowEvaluator
 from closedform.check.samples import Sample, drawn_beside, parameter_sets
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
+from closedform.model.expressions import substitute
+from closedform.model.functions import Bound, Function, Let, Vanishes
 from closedform.model.tolerances import DOUBLE
 
 Array = NDArray[Any]

@@ -23,17 +23,8 @@ from closedform.lower import lowered
 from closedform.mechanics.lengths import numbers_of_tool
 from closedform.model.cached import KEPT, cached
 from closedform.model.derivation import Derivation
-from closedform.model.functions import (
-    Bound,
-    Determined,
-    Function,
-    Let,
-    Match,
-    Require,
-    Vanishes,
-    free_symbols,
-    substitute,
-)
+from closedform.model.expressions import free_symbols, substitute
+from closedform.model.functions import Bound, Determined, Function, Let, Match, Require, Vanishes
 from closedform.model.inverse import Combination, Inverse
 
 Array = NDArray[Any]

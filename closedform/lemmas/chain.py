@@ -29,6 +29,7 @@ from closedform.lemmas.pairs import direction
 from closedform.mechanics.frames import pose_symbols, require_pose
 from closedform.mechanics.lengths import lengths_in_numbers
 from closedform.model.derivation import Derivation, Solved
+from closedform.model.expressions import substitute
 from closedform.model.functions import (
     SINGLE,
     Bound,
@@ -39,7 +40,6 @@ from closedform.model.functions import (
     branches,
     choose,
     real,
-    substitute,
 )
 from closedform.model.inverse import Degenerate, Inverse, Link, Rank, Relation
 from closedform.model.lemma import Lemma

@@ -9,7 +9,8 @@ from typing import Any
 import sympy as sp
 
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Bound, Let, Match, Program, Statement, Vanishes, substitute
+from closedform.model.expressions import substitute
+from closedform.model.functions import Bound, Let, Match, Program, Statement, Vanishes
 
 Kept = Let | Bound | Vanishes
 

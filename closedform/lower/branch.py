@@ -13,6 +13,7 @@ from closedform.lower.graph import Graph, Node
 from closedform.lower.operators import LEAVES
 from closedform.lower.ranges import Ranges, UnboundedError
 from closedform.model.derivation import Derivation
+from closedform.model.expressions import free_symbols
 from closedform.model.functions import (
     Bound,
     Determined,
@@ -22,7 +23,6 @@ from closedform.model.functions import (
     Require,
     Statement,
     Vanishes,
-    free_symbols,
 )
 
 

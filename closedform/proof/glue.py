@@ -34,7 +34,8 @@ from closedform.algebra import certificates
 from closedform.algebra.balls import Evaluator
 from closedform.algebra.normal_form import normal
 from closedform.algebra.resolvent import Resolvent
-from closedform.model.functions import Function, Match, Vanishes, explicit, substitute
+from closedform.model.expressions import substitute
+from closedform.model.functions import Function, Match, Vanishes, explicit
 from closedform.model.inverse import Combination, Degenerate, Inverse, Link, Rank
 from closedform.proof.determined import random_posture, undetermined
 from closedform.proof.posture import Posture, generic, meanings, outcomes

@@ -15,7 +15,7 @@ from closedform.algebra import certificates
 from closedform.algebra.shapes import ShapeError, require_shape
 from closedform.algebra.solutions import SolutionCount
 from closedform.model.derivation import Derivation
-from closedform.model.functions import substitute
+from closedform.model.expressions import substitute
 from closedform.model.inverse import Combination, Inverse, Rank
 from closedform.proof.glue import prove_glue
 from closedform.proof.links import count_system, prove_lemma, prove_system

@@ -14,7 +14,8 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.solutions import InfinitelyManyError, SolutionCount, count_solutions
-from closedform.model.functions import Bound, Function, Let, Statement, explicit, real, substitute
+from closedform.model.expressions import substitute
+from closedform.model.functions import Bound, Function, Let, Statement, explicit, real
 from closedform.model.inverse import Degenerate, Inverse, Link
 from closedform.proof.posture import outcomes
 from closedform.proof.require import ProofError, require

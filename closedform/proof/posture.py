@@ -8,16 +8,8 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.expressions import linear_root
-from closedform.model.functions import (
-    Bound,
-    Function,
-    Let,
-    Vanishes,
-    free_symbols,
-    parts,
-    replaced,
-    substitute,
-)
+from closedform.model.expressions import free_symbols, parts, replaced, substitute
+from closedform.model.functions import Bound, Function, Let, Vanishes
 from closedform.model.inverse import Combination, Inverse, Rank
 
 Expr = Any

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from closedform.model.functions import free_symbols, parts, replaced, substitute
+from closedform.model.expressions import free_symbols, parts, replaced, substitute
 from closedform.proof.posture import outcomes
 
 X, Y = sp.symbols("x y", real=True)

@@ -10,7 +10,8 @@ import sympy as sp
 
 from closedform.emit.backends.latex.plain import plain
 from closedform.emit.backends.latex.subject import Subject
-from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
+from closedform.model.expressions import substitute
+from closedform.model.functions import Bound, Function, Let, Vanishes
 from closedform.pipeline import scripts
 
 DIGITS = 40

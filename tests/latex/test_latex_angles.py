@@ -7,6 +7,7 @@ import sympy as sp
 
 from closedform.emit.backends.latex.angles import _InAngles, added, in_angles, turned
 from closedform.model.derivation import Derivation
+from closedform.model.expressions import substitute
 from closedform.model.functions import (
     Bound,
     Function,
@@ -16,7 +17,6 @@ from closedform.model.functions import (
     array,
     choose,
     real,
-    substitute,
 )
 from closedform.pipeline import scripts
 

@@ -17,7 +17,8 @@ from closedform.emit.backends.latex.names import Quantities
 from closedform.emit.backends.latex.twins import twins
 from closedform.emit.backends.latex.wide import Lines, unit_circles
 from closedform.lemmas.two_link import two_link_arm
-from closedform.model.functions import Bound, Let, Program, Vanishes, real, substitute
+from closedform.model.expressions import substitute
+from closedform.model.functions import Bound, Let, Program, Vanishes, real
 from closedform.proof.prove import Proof
 
 GENERATED = ROOT / "generated" / "latex"

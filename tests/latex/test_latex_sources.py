@@ -14,7 +14,8 @@ from closedform.emit.backends.latex.article import Page, document
 from closedform.emit.backends.latex.equations import Numbered, Numbers, reference
 from closedform.emit.backends.latex.sheet import Block
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
+from closedform.model.expressions import substitute
+from closedform.model.functions import Bound, Function, Let, Vanishes
 from closedform.proof.prove import Proof
 
 GENERATED = ROOT / "generated" / "latex"

@@ -4,16 +4,8 @@ import pytest
 import sympy as sp
 
 from closedform.emit.backends.latex.vectors import InVectors, in_vectors
-from closedform.model.functions import (
-    Array,
-    Bound,
-    Function,
-    Let,
-    Program,
-    Vanishes,
-    real,
-    substitute,
-)
+from closedform.model.expressions import substitute
+from closedform.model.functions import Array, Bound, Function, Let, Program, Vanishes, real
 from closedform.pipeline import scripts
 
 LOOPS = ("delta", "linear_delta", "orthoglide", "spherical_five_bar")

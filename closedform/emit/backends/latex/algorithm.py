@@ -28,16 +28,8 @@ from closedform.emit.backends.latex.subject import Subject
 from closedform.emit.backends.latex.twins import twins
 from closedform.emit.backends.latex.vectors import InVectors, is_vector, simplest_first
 from closedform.emit.backends.latex.wide import Equation
-from closedform.model.functions import (
-    Bound,
-    Let,
-    Match,
-    Require,
-    Statement,
-    Vanishes,
-    real,
-    substitute,
-)
+from closedform.model.expressions import substitute
+from closedform.model.functions import Bound, Let, Match, Require, Statement, Vanishes, real
 from closedform.model.inverse import Rank
 from closedform.model.lemma import label
 

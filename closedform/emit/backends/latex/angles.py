@@ -18,8 +18,8 @@ import sympy as sp
 
 from closedform.emit.backends.latex.plain import followed, is_rounding
 from closedform.emit.backends.latex.rotations import product
+from closedform.model.expressions import SIMPLE, parts, substitute
 from closedform.model.functions import (
-    SIMPLE,
     Bound,
     Function,
     Let,
@@ -27,9 +27,7 @@ from closedform.model.functions import (
     Statement,
     Vanishes,
     choose,
-    parts,
     real,
-    substitute,
 )
 from closedform.model.lemma import Lemma
 

@@ -12,7 +12,8 @@ from closedform.emit.backends.latex.algorithm import ONCE, Algorithm
 from closedform.emit.backends.latex.inequalities import equality
 from closedform.emit.backends.latex.plain import is_rounding
 from closedform.emit.backends.latex.sources import explained
-from closedform.model.functions import Bound, Determined, Let, Vanishes, substitute
+from closedform.model.expressions import substitute
+from closedform.model.functions import Bound, Determined, Let, Vanishes
 from closedform.model.names import listed
 
 LONGEST = 150

@@ -14,16 +14,8 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.model.functions import (
-    Array,
-    Bound,
-    Function,
-    Let,
-    Statement,
-    Vanishes,
-    real,
-    substitute,
-)
+from closedform.model.expressions import substitute
+from closedform.model.functions import Array, Bound, Function, Let, Statement, Vanishes, real
 from closedform.model.lemma import Lemma
 
 

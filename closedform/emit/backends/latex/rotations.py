@@ -13,14 +13,8 @@ from itertools import permutations
 import sympy as sp
 
 from closedform.emit.backends.latex.names import MATRIX_ENTRY
-from closedform.model.functions import (
-    Bound,
-    Function,
-    Let,
-    Statement,
-    Vanishes,
-    substitute,
-)
+from closedform.model.expressions import substitute
+from closedform.model.functions import Bound, Function, Let, Statement, Vanishes
 
 Place = tuple[int, tuple[int, int]]
 """The sign, the row and the column of an entry."""

@@ -36,13 +36,8 @@ from closedform.emit.backends.latex.sources import (
     of_the_target,
 )
 from closedform.emit.backends.latex.wide import Equation
-from closedform.model.functions import (
-    Bound,
-    Let,
-    Vanishes,
-    free_symbols,
-    substitute,
-)
+from closedform.model.expressions import free_symbols, substitute
+from closedform.model.functions import Bound, Let, Vanishes
 from closedform.model.names import listed
 
 FEW = 4

@@ -9,14 +9,8 @@ from itertools import combinations
 import sympy as sp
 
 from closedform.emit.backends.latex.plain import followed
-from closedform.model.functions import (
-    Bound,
-    Function,
-    Let,
-    Statement,
-    Vanishes,
-    substitute,
-)
+from closedform.model.expressions import substitute
+from closedform.model.functions import Bound, Function, Let, Statement, Vanishes
 
 AXES = "xyz"
 Triple = tuple[sp.Expr, sp.Expr, sp.Expr]

@@ -222,20 +222,25 @@ class _Batch:
         """Check that the posture behind a target is among the branches, unless a joint is free."""
         truth, backend, parameters = self.truth, self.backend, self.sample.parameters
         one = Sample(self.sample.name, self.sample.values[row : row + 1], parameters)
+        gaps = truth.gap(solutions, posture)
+        if np.isnan(gaps).all():
+            if not _leaves_the_workspace(truth, backend, one):
+                lost = f"{posture.tolist()} is lost: no branch has a solution"
+                self._fail(f"{lost}; {self._where(row)}", limited=True)
+            return
         # where three solutions meet, a rounding moves them by its cube root
         condition = max(truth.condition(posture, parameters), backend.eps ** (2 / 3))
-        nearest = np.nanmin(truth.gap(solutions, posture), initial=np.inf)
-        if np.isnan(solutions).all() and _leaves_the_workspace(truth, backend, one):
-            return
         allowed = min(backend.eps / condition, APART) * _spread(parameters)
+        nearest = int(np.nanargmin(gaps))
         # an ulp of the target turns a nearly free joint far
-        far = nearest / 1e3 - allowed
+        far = gaps[nearest] / 1e3 - allowed
         if far <= 0 or _moves(truth, backend, one, solutions, far):
             return
-        answered = not np.isnan(solutions).all()
-        if not (answered and truth.continues(posture, parameters, backend.tolerances.forward)):
-            message = f"{posture.tolist()} is not among {solutions.tolist()}; {self._where(row)}"
-            self._fail(message, limited=True)
+        if not truth.continues(posture, parameters, backend.tolerances.forward):
+            lost = (
+                f"{posture.tolist()} is lost: the nearest solution is {solutions[nearest].tolist()}"
+            )
+            self._fail(f"{lost}; {self._where(row)}", limited=True)
 
     def _fail(self, message: str, *, limited: bool) -> None:
         """Report an error; with ``limited``, the digits of single precision may not suffice."""

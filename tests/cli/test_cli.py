@@ -216,12 +216,12 @@ def test_what_single_precision_cannot_do_is_told(
     """The code is printed, and the command succeeds."""
     from closedform.check import report
 
-    lost = Finding("slider", "ik", "c float", limits=["x is not among y"])
+    lost = Finding("slider", "ik", "c float", limits=["x is lost"])
     monkeypatch.setattr(report, "crosscheck", lambda *_: [lost])
     output = tmp_path / "out"
     assert main(["derive", str(slider), "-o", str(output), "--backend", "numpy"]) == 0
     page = (output / "slider-crosscheck.md").read_text("utf-8")
-    assert "digits of single" in page and "x is not among y" in page
+    assert "digits of single" in page and "x is lost" in page
     told = f"suffice for some targets; see {output}"
     assert told in capsys.readouterr().err
 

@@ -136,7 +136,7 @@ def test_a_posture_at_two_limits_at_once_is_not_lost(
 
     printed_module = module(tmp_path / "numpy", d.name)
     broken = Backend("broken", without_half, np.float64, backend.tolerances)
-    assert "is not among" in check_inverse(d, d["ik"], inverse, broken).failures[0]
+    assert "is lost" in check_inverse(d, d["ik"], inverse, broken).failures[0]
 
 
 @pytest.mark.parametrize(

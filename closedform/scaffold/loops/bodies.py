@@ -59,6 +59,19 @@ class Loop:
         entries += [e for axis in axes for e in axis]
         return {s.name for e in entries for s in e.free_symbols}
 
+    @property
+    def positive(self) -> dict[sp.Symbol, sp.Symbol]:
+        """The symbols of lengths, as positive ones."""
+        angles = {n for n, given in self.parameters.items() if given.get("unit") == "rad"}
+        lengths = self.symbols - angles
+        return {sp.Symbol(n, real=True): sp.Symbol(n, positive=True) for n in lengths}
+
+    def length(self, v: sp.Matrix) -> sp.Expr:
+        """The length of a vector, for positive parameters."""
+        positive = self.positive
+        square = sp.trigsimp(sp.expand(v.dot(v)).xreplace(positive))
+        return sp.sqrt(sp.factor(square)).xreplace({b: a for a, b in positive.items()})
+
     def error(self, text: str) -> TableError:
         return TableError(f"{self.file}: {text}")
 

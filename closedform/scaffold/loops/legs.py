@@ -15,6 +15,7 @@ import sympy as sp
 from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
 from closedform.scaffold.loops.halves import halves
+from closedform.scaffold.loops.rods import several_told
 from closedform.scaffold.source import source
 
 UPRIGHT = 4
@@ -57,16 +58,8 @@ class Legs:
         """From the pin of a half to the end of a leg, while the leg is written."""
         self.upright: Callable[[sp.Matrix], sp.Matrix] | None = None
         """Coordinates in the plane of a leg, while the leg of a tripod is written."""
-        angles = [n for n, given in loop.parameters.items() if given.get("unit") == "rad"]
-        self.positive = {
-            sp.Symbol(n, real=True): sp.Symbol(n, positive=True) for n in loop.symbols - set(angles)
-        }
-
-    def length(self, v: sp.Matrix) -> sp.Expr:
-        """The length of a vector, for positive parameters."""
-        square = sp.trigsimp(sp.expand(v.dot(v)).xreplace(self.positive))
-        found = sp.sqrt(sp.factor(square))
-        return found.xreplace({b: a for a, b in self.positive.items()})
+        self.positive = loop.positive
+        self.length = loop.length
 
     def at(self, v: sp.Matrix) -> str:
         """A point or a direction as it is written."""
@@ -228,7 +221,7 @@ class Legs:
             raise loop.error(
                 f"{joint.name} moves {body}, which must be joined to one rod, a body with a "
                 f"length or two points, or to one body by a passive slide; it is joined to "
-                f"{carried}" + self.ball_on_hand(onward)
+                f"{carried}" + self.ball_on_hand(onward) + several_told(loop, body)
             )
         if joint.kind == "prismatic":
             return self.slider(joint, *rods[0])

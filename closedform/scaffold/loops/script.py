@@ -21,9 +21,9 @@ from closedform.scaffold.loops.linkages import LinkageLines, linkage
 from closedform.scaffold.loops.on_line import on_line
 from closedform.scaffold.loops.on_pins import on_pins
 from closedform.scaffold.loops.on_rod import on_rod
+from closedform.scaffold.loops.rods import read_pairs, read_rods
 from closedform.scaffold.loops.sliding import sliding
 from closedform.scaffold.loops.slotted import slotted
-from closedform.scaffold.loops.two_points import read_rods
 from closedform.scaffold.loops.uprights import HINGED, uprights
 from closedform.scaffold.source import file_name, literal
 
@@ -72,7 +72,7 @@ def _way(loop: Loop) -> _Way:
     """What derives the loop, by the first of the kinds that it is of."""
     again = deepcopy(loop)
     try:
-        return _first_way(Legs(loop))
+        return _first_way(loop)
     except TableError:
         try:
             lines = sliding(again, few=True)
@@ -90,12 +90,13 @@ def _bodies(loop: Loop, lines: LinkageLines) -> _Way:
     return _Way([], list(AXES[:2]), f"at={literal(lines.hand)}", lines)
 
 
-def _first_way(found: Legs) -> _Way:
-    loop = found.loop
+def _first_way(loop: Loop) -> _Way:
     follower = loop.joints.get(loop.hand)
     if lines := sliding(loop) or linkage(loop):
         return _bodies(loop, lines)
-    read_rods(found)
+    read_rods(loop)
+    read_pairs(loop)
+    found = Legs(loop)
     if follower and not follower.driven and (turning := slotted(found, follower)):
         found.check_all_used()
         return _Way(turning, [loop.hand])

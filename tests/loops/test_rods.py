@@ -1,10 +1,12 @@
-"""A rod may be written as a body with two points: the script is the same as with its length."""
+"""Rods that are written as bodies with two points, and pairs of rods that are parallelograms."""
 
 from pathlib import Path
 
 import pytest
 from loop_files import script_of
 from places import TESTS
+
+from closedform.scaffold.inputs.tables import TableError
 
 FOLDER = TESTS / "held_out_loops"
 FIVE_BAR = """
@@ -48,6 +50,17 @@ theta1 = {between = ["ground", "crank1"], at = "A1", axis = [0, 1, 0], driven = 
 b1 = {between = ["crank1", "rod1"], at = "B1"}
 c1 = {between = ["rod1", "hand"], at = "C1"}
 """
+PAIRS = (
+    DELTA.replace('C1 = ["e", 0, 0]', 'C1 = ["e", "w/2", 0], D1 = ["e", "-w/2", 0]')
+    .replace('B1 = ["f + L", 0, 0]', 'B1 = ["f + L", "w/2", 0], E1 = ["f + L", "-w/2", 0]')
+    .replace(', parallelogram = [0, "w", 0]}', '}\nother1 = {length = "l"}')
+    .replace('at = "B1"}', 'at = "B1", kind = "spherical"}')
+    .replace('at = "C1"}', 'at = "C1", kind = "spherical"}')
+    + """
+e1 = {between = ["crank1", "other1"], at = "E1", kind = "spherical"}
+f1 = {between = ["other1", "hand"], at = "D1", kind = "spherical"}
+"""
+)
 TRIPTERON = (FOLDER / "tripteron.toml").read_text("utf-8")
 HEXA = (FOLDER / "hexa.toml").read_text("utf-8")
 
@@ -71,3 +84,24 @@ def test_a_rod_may_have_two_points(text: str, rods: dict[str, str], tmp_path: Pa
         lines[k] = f"{rod} = {{{points}}}"
     written = "\n".join(lines)
     assert script_of("same", written, tmp_path) == script_of("same", text, tmp_path)
+
+
+def test_two_rods_of_a_leg_are_a_parallelogram(tmp_path: Path) -> None:
+    turned = DELTA.replace('[0, "w", 0]', '[0, "-w", 0]')  # from the first rod to the other one
+    one, two = (script_of("same", text, tmp_path).split("\nL = ") for text in (turned, PAIRS))
+    told = " ".join(two[0].replace('"', " ").split())
+    assert "The rods rod1 and other1 are the long sides of a parallelogram." in told
+    assert two[1] == one[1]
+
+
+@pytest.mark.parametrize(
+    ("old", "other"),
+    [
+        ('other1 = {length = "l"}', 'other1 = {length = "2*l"}'),
+        ('D1 = ["e", "-w/2", 0]', 'D1 = ["e", "-w", 0]'),
+        ('D1 = ["e", "-w/2", 0]', 'D1 = ["e", "-w/2", "w"]'),
+    ],
+)
+def test_other_rods_of_a_leg_say_why(old: str, other: str, tmp_path: Path) -> None:
+    with pytest.raises(TableError, match="are equally long, and are as far apart on it"):
+        script_of("same", PAIRS.replace(old, other), tmp_path)

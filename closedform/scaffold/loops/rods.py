@@ -1,0 +1,114 @@
+"""Reads rods that are written as other bodies are, and two parallel rods of a leg as one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import sympy as sp
+
+from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
+
+PINS = {"revolute", "spherical", "universal"}
+
+
+def read_rods(loop: Loop) -> None:
+    """Give the bodies that are rods a length in the place of their two points.
+
+    They are on a driven body, or on the rod that is on it.  The latter is no rod if it has the
+    point of the hand, because then it is the hand.
+    """
+    ends = _driven_bodies(loop)
+    for second in (False, True):
+        beside = dict.fromkeys(j.other(body) for body in ends for j in loop.of(body))
+        for body in beside:
+            if _is_rod(loop, body) and not (second and loop.hand in loop.bodies[body]):
+                first, last = loop.bodies[body].values()
+                loop.rods[body], loop.bodies[body] = loop.length(last - first), {}
+        ends = [body for body in beside if body in loop.rods]
+
+
+def _driven_bodies(loop: Loop) -> list[str]:
+    return [j.other(GROUND) for j in loop.joints.values() if j.driven and GROUND in j.between]
+
+
+def _is_rod(loop: Loop, body: str) -> bool:
+    """Whether a body has two points, which differ, and is pinned in both and nowhere else."""
+    joints, points = loop.of(body), loop.bodies[body]
+    return (
+        body not in loop.rods
+        and len(points) == 2
+        and {j.at for j in joints} == {*points}
+        and all(j.kind in PINS and not j.driven and j.name != loop.hand for j in joints)
+        and all(GROUND not in j.between for j in joints)
+        and _differ(*points.values())
+    )
+
+
+def read_pairs(loop: Loop) -> None:
+    """Put a parallelogram in the place of two parallel rods of a leg, as of a Delta robot.
+
+    They join a driven body to the same other one, are equally long, and are as far apart on both.
+    The parallelogram leads from the middle between them to the middle.
+    """
+    for body in _driven_bodies(loop):
+        rods = dict.fromkeys(j.other(body) for j in loop.of(body) if j.other(body) in loop.rods)
+        if len(rods) == 2:
+            _read_pair(loop, body, *rods)
+
+
+def _read_pair(loop: Loop, body: str, first: str, second: str) -> None:
+    ends = [_ends(loop, body, rod) for rod in (first, second)]
+    if (
+        None in ends
+        or {first, second} & {*loop.parallelograms}
+        or sp.simplify(loop.rods[first] - loop.rods[second]) != 0
+    ):
+        return
+    (near, far), (beside, beyond) = (e for e in ends if e)
+    hand = far.other(first)
+    pairs = {body: (near, beside), hand: (far, beyond)}
+    if hand != beyond.other(second) or any(
+        j.at not in loop.bodies[b] for b, pair in pairs.items() for j in pair
+    ):
+        return
+    places = {b: [loop.bodies[b][j.at] for j in pair] for b, pair in pairs.items()}
+    aside, same = (b - a for a, b in places.values())
+    if _differ(aside, same) or not _differ(*places[body]):
+        return
+    for b, (joint, other) in pairs.items():
+        middle = f"{joint.at}_{other.at}"
+        loop.bodies[b][middle] = (sum(places[b], sp.zeros(*aside.shape)) / 2).applyfunc(sp.simplify)
+        loop.joints[joint.name] = replace(joint, at=middle)
+        del loop.joints[other.name]
+    del loop.bodies[second], loop.rods[second]
+    loop.parallelograms[first] = aside
+    loop.said.append(f"The rods {first} and {second} are the long sides of a parallelogram.")
+
+
+def _ends(loop: Loop, body: str, rod: str) -> tuple[Joint, Joint] | None:
+    """The joints of a rod on a driven body and on the other one, if they are without an axis."""
+    joints = loop.of(rod)
+    near = [j for j in joints if body in j.between]
+    far = [j for j in joints if j not in near]
+    if len(near) != 1 or len(far) != 1 or any(j.axis is not None for j in joints):
+        return None
+    return near[0], far[0]
+
+
+def _differ(first: sp.Matrix, second: sp.Matrix) -> bool:
+    return any(sp.simplify(e) != 0 for e in first - second)
+
+
+def several_told(loop: Loop, body: str) -> str:
+    """What is said of a driven body with several rods."""
+    rods = {j.other(body) for j in loop.of(body)} & {*loop.rods}
+    if len(rods) < 2:
+        return ""
+    return (
+        ".  Two rods of a leg are taken as a parallelogram if they lead to the same body, are "
+        "equally long, and are as far apart on it as on the driven body, in the coordinates of the "
+        "file" + "; a third one is redundant beside three parallelograms" * (len(rods) > 2)
+    )
+
+
+__all__ = ["read_pairs", "read_rods", "several_told"]

@@ -218,3 +218,35 @@ def test_a_leg_more_than_a_hand_needs_is_redundant(tmp_path: Path) -> None:
     text = (TESTS / "held_out_loops/y_star.toml").read_text("utf-8")
     with pytest.raises(TableError, match=r"4 joints are driven, .* is redundant: leave it out"):
         script_of("y_star", text.replace("copies = 3", "copies = 4"), tmp_path)
+
+
+ECLIPSE = """hand = "P"
+copies = 3
+[bodies]
+ground = {O = [0, 0, 0]}
+column1 = {B1 = [0.5, 0, 0]}
+slider1 = {B1 = [0.5, 0, 0]}
+rod1 = {length = "l"}
+platform = {P = [0, 0, 0], C1 = [0.2, 0, 0]}
+[joints]
+phi1 = {between = ["ground", "column1"], at = "O", axis = [0, 0, 1], driven = true}
+q1 = {between = ["column1", "slider1"], at = "B1", kind = "prismatic", axis = [0, 0, 1]}
+b1 = {between = ["slider1", "rod1"], at = "B1", axis = [0, 1, 0]}
+c1 = {between = ["rod1", "platform"], at = "C1", kind = "spherical"}
+"""
+
+
+def test_a_leg_with_two_motors_is_told_so(tmp_path: Path) -> None:
+    """The slide with a motor was said to be passive."""
+    with pytest.raises(TableError, match="q1 slides; a passive"):
+        script_of("eclipse", ECLIPSE, tmp_path)
+    motor = ECLIPSE.replace('"prismatic", ', '"prismatic", driven = true, ')
+    with pytest.raises(TableError, match="q1 is driven, on column1, which phi1 moves; a leg has"):
+        script_of("eclipse", motor, tmp_path)
+
+
+def test_a_motor_between_rods_in_space_is_not_that_of_a_desk_lamp(tmp_path: Path) -> None:
+    text = (TESTS / "held_out_loops/hexa.toml").read_text("utf-8")
+    between = text.replace('"B1", kind = "universal"', '"B1", axis = [0, 1, 0], driven = true')
+    with pytest.raises(TableError, match=r"it is between crank1 and rod1$"):
+        script_of("hexa", between, tmp_path)

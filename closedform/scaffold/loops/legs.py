@@ -23,6 +23,13 @@ UPRIGHT = 4
 TURNING = {2: 3, 3: 6}
 """The number of driven joints of a hand that turns, in a plane and in space."""
 
+ON_ARM = (
+    ".  An arm whose bodies parallelograms keep from turning, as a desk lamp, is a table of joints "
+    "with motors, such as m2 - m1, in a column of that name.  Of another arm each loop is a file "
+    "of its own"
+)
+"""What may be meant if a joint between two moving bodies in a plane is driven."""
+
 
 @dataclass(frozen=True)
 class LoopLeg:
@@ -138,13 +145,11 @@ class Legs:
 
     def check_place(self, joint: Joint) -> None:
         """Refuse a drive between two bodies that both move, unless it slides them."""
+        in_plane = self.loop.dimensions == 2
         if GROUND not in joint.between and joint.kind != "prismatic":
             raise self.loop.error(
                 f"{joint.name} is driven, so it must be between the ground and a body, or slide "
-                f"the two halves of a leg; it is between {listed(joint.between)}.  An arm whose "
-                f"bodies parallelograms keep from turning, as a desk lamp, is a table of joints "
-                f"with motors, such as m2 - m1, in a column of that name.  Of another arm each "
-                f"loop is a file of its own"
+                f"the two halves of a leg; it is between {listed(joint.between)}{ON_ARM * in_plane}"
             )
 
     def on_half(self, joint: Joint) -> LoopLeg:
@@ -211,6 +216,11 @@ class Legs:
         slides = [j for j in onward if j.kind == "prismatic"]
         if joint.kind == "prismatic" and len(slides) == 1 and not rods:
             return self.rail(joint, body, slides[0])
+        if second := next((j for j in onward if j.driven), None):
+            raise loop.error(
+                f"{second.name} is driven, on {body}, which {joint.name} moves; a leg has one "
+                f"driven joint, and the others are passive"
+            )
         if joint.kind == "revolute" and slides and not rods:
             raise loop.error(
                 f"{joint.name} turns {body}, on which {slides[0].name} slides; a passive slide is "

@@ -163,7 +163,7 @@ def _forward(m: Platform, loop: Step) -> str:
             f"For points in general position it is {DEGREE_IN_SPACE}",
         )
         found = f"{general}, and it is never more."
-        if len(m.meeting) > 1:
+        if len(m.groups) < len(m.legs) or len(m.groups_on_ground) < len(m.legs):
             degree = f"at most {DEGREE_IN_SPACE}"
             found = f"{general}; here legs end in the same point, and it may be less."
     else:

@@ -168,10 +168,12 @@ class Platform:
     @property
     def groups(self) -> list[list[int]]:
         """The numbers of the legs that end in the same point of the hand, for each such point."""
-        found: dict[tuple[sp.Expr, ...], list[int]] = {}
-        for k, place in enumerate(self.places, 1):
-            found.setdefault(tuple(place), []).append(k)
-        return list(found.values())
+        return _together(self.places)
+
+    @property
+    def groups_on_ground(self) -> list[list[int]]:
+        """The same for legs that start in the same point of the ground, by their near ends."""
+        return _together([leg.end() for leg in self.legs])
 
     @property
     def meeting(self) -> list[Leg]:
@@ -260,6 +262,14 @@ class Posture:
             for (k, leg), rod in zip(self.m.numbered, rods, strict=True)
         ]
         return sp.Matrix(rows), driven
+
+
+def _together(points: Sequence[sp.Matrix]) -> list[list[int]]:
+    """The numbers of points, by their coordinates."""
+    found: dict[tuple[sp.Expr, ...], list[int]] = {}
+    for k, point in enumerate(points, 1):
+        found.setdefault(tuple(point), []).append(k)
+    return list(found.values())
 
 
 def check_holds(m: Platform) -> None:

@@ -423,3 +423,13 @@ def test_three_legs_that_meet_in_a_point_are_told_of() -> None:
     platform(d, [Stretch(q, b, on_hand=c) for q, b, c in ends])
     step = next(s for s in d.steps if s.title == "Forward: an equation of degree at most 40")
     assert "end in the same point of the hand, which follows from their equations" in step.reason
+
+
+def test_legs_that_start_in_a_point_of_the_ground_have_a_lower_degree() -> None:
+    """As many as end in a point of the hand: the article said that the degree is 40."""
+    d, joints = a_derivation(6, "prismatic")
+    hands = [(0, 0, 0), (3, 0, 0), (1, 4, 0), (5, 2, 0), (4, 5, 1), (1, 6, 0)]
+    bases = [(0, 0, 0)] * 2 + [(5, 0, 0)] * 2 + [(0, 5, 0)] * 2
+    ends = zip(joints, bases, hands, strict=True)
+    platform(d, [Stretch(q, b, on_hand=c) for q, b, c in ends])
+    assert any(s.title == "Forward: an equation of degree at most 40" for s in d.steps)

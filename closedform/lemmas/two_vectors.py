@@ -36,10 +36,12 @@ def two_vectors(
     given: Sequence[sp.Matrix],
     turned: Sequence[sp.Matrix],
     rotation: sp.Matrix,
+    *,
+    name: str = "R",
 ) -> tuple[Link, sp.Matrix]:
     """The rotation that takes two ``given`` vectors to the ``turned`` ones, with named entries.
 
-    The vectors have their coordinates under names.  The given ones are not parallel.
+    The vectors have their coordinates under names too.  The given ones are not parallel.
     """
     p, (d, e), (u, v) = program, given, turned
     start = len(p.body)
@@ -49,7 +51,7 @@ def two_vectors(
     rows.append(_named(p, "k", m * over))
     w = _named(p, "w", u.cross(v))
     made = u * rows[0].T + v * rows[1].T + w * rows[2].T
-    value = sp.Matrix(3, 3, lambda i, j: p.let(f"R_{i + 1}{j + 1}", made[i, j]))
+    value = sp.Matrix(3, 3, lambda i, j: p.let(f"{name}_{i + 1}{j + 1}", made[i, j]))
     equations = (rotation * d - u, rotation * e - v, rotation * d.cross(e) - u.cross(v))
     lemma = Lemma(
         "two vectors",

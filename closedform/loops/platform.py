@@ -75,8 +75,9 @@ def platform(d: Derivation, legs: Sequence[Leg | Half], *, bars: int = 2) -> Non
     There is also ``fk`` on three rails in a plane, and on four
     :class:`~closedform.lemmas.planes.Plane` legs in space, with two assembly modes; if two of three
     legs end in one point of the hand, with four; and if six legs end in three points of it, three,
-    two and one of them, with eight.  Then what depends on the posture is a function of the joints,
-    and there is ``jacobian`` instead of ``jacobian_inverse``.
+    two and one of them, or legs that stretch start so in three points of the ground, with eight.
+    Then what depends on the posture is a function of the joints, and there is ``jacobian`` instead
+    of ``jacobian_inverse``.
 
     Parameters
     ----------

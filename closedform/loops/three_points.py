@@ -3,6 +3,9 @@
 Three legs place their common point C.  The point D of two legs is at known distances from C and
 from the near ends of these legs, and the end E of the last leg at known distances from C, D and its
 near end.  So three spheres meet, three times.  The three points give the pose.
+
+Legs that stretch may start in three points of the ground instead.  Seen from the hand, this is the
+same.
 """
 
 from __future__ import annotations
@@ -33,7 +36,6 @@ SIZES = [3, 2, 1]
 NAMES = "CDE"
 SIGMAS = tuple(real(f"sigma_{name}") for name in NAMES)
 UNKNOWN = {name: sp.Matrix([real(f"{name}_{i}") for i in "xyz"]) for name in NAMES}
-IN_LINE = "the points of the hand in which legs end are not in line"
 NEAR = "Ill-conditioned near the parallel singularities, where two modes meet."
 
 
@@ -43,31 +45,59 @@ class ThreePoints:
 
     m: Platform
     order: tuple[int, ...]
+    on_ground: bool = False
+    """Whether these points are fixed to the ground, and not to the hand."""
 
     @classmethod
     def of(cls, m: Platform) -> ThreePoints | None:
         """The same of a hand, if it is of this kind."""
-        groups = sorted(m.groups, key=len, reverse=True)
-        if not m.tilts or [*map(len, groups)] != SIZES:
-            return None
-        return cls(m, tuple(k for group in groups for k in group))
+        stretch = all(isinstance(leg, Stretch) for leg in m.legs)
+        for on_ground, groups in ((False, m.groups), (True, m.groups_on_ground)):
+            groups = sorted(groups, key=len, reverse=True)
+            if m.tilts and [*map(len, groups)] == SIZES and (stretch or not on_ground):
+                return cls(m, tuple(k for group in groups for k in group), on_ground)
+        return None
 
     @property
-    def places(self) -> list[sp.Matrix]:
-        """The three points, in the frame of the hand."""
-        return [self.m.places[self.order[k] - 1] for k in (0, 3, 5)]
+    def body(self) -> str:
+        return "ground" if self.on_ground else "hand"
+
+    @property
+    def points(self) -> list[sp.Matrix]:
+        """C, D and E, in the frame of the body to which they are fixed."""
+        ends = [leg.end() for leg in self.m.legs] if self.on_ground else self.m.places
+        return [ends[self.order[k] - 1] for k in (0, 3, 5)]
+
+    @property
+    def centres(self) -> dict[int, sp.Matrix]:
+        """The other ends of the legs, in the frame of the other body."""
+        return {k: self.m.places[k - 1] if self.on_ground else e.end() for k, e in self.m.numbered}
 
     @property
     def unknown(self) -> list[sp.Matrix]:
-        """Their unknown coordinates; C may be the point of the hand."""
-        first = self.m.position if self.places[0].is_zero_matrix else UNKNOWN["C"]
-        return [first, UNKNOWN["D"], UNKNOWN["E"]]
+        """The coordinates of C, D and E in this frame; C may be the point of the hand."""
+        known = not self.on_ground and self.points[0].is_zero_matrix
+        return [self.m.position if known else UNKNOWN["C"], UNKNOWN["D"], UNKNOWN["E"]]
+
+    @property
+    def turn(self) -> sp.Matrix:
+        """The rotation from the frame of the points to that of the centres."""
+        return self.m.rotation.T if self.on_ground else self.m.rotation
 
     @property
     def spans(self) -> list[sp.Matrix]:
-        """The vectors from C to D and E, in the frame of the hand."""
-        first, *others = self.places
-        return [place - first for place in others]
+        """The vectors from C to D and E, in the frame of their body."""
+        first, *others = self.points
+        return [point - first for point in others]
+
+    @property
+    def in_line(self) -> str:
+        """What is required of the points."""
+        return f"the points of the {self.body} in which legs end are not in line"
+
+    def position_from(self, first: sp.Matrix, R: sp.Matrix) -> sp.Matrix:
+        """The position of the hand, from the coordinates of C and the rotation."""
+        return self.points[0] - R * first if self.on_ground else first - R * self.points[0]
 
     @property
     def sign(self) -> int:
@@ -84,13 +114,15 @@ class ThreePoints:
         stretched = [leg.joint for leg in m.legs if isinstance(leg, Stretch)]
         size = f.let("size", size_of(d, m.whole, slid) + sp.Add(*map(sp.Abs, stretched)))
         share = MOVED if slid or stretched else SHARE
-        near = {k: named(f, f"b_{k}", leg.end()) for k, leg in m.numbered}
+        letter = "e" if self.on_ground else "b"
+        near = {k: named(f, f"{letter}_{k}", e) for k, e in self.centres.items()}
         radii = {k: self._radius(f, k, size) for k in self.order}
-        spans = [named(f, letter, e) for letter, e in zip("de", self.spans, strict=True)]
+        spans = [named(f, name, e) for name, e in zip("de", self.spans, strict=True)]
         sides = self._sides(f)
         normal = spans[0].cross(spans[1])
-        flat = f.vanishes("flat", normal.dot(normal), size**4, IN_LINE, squares=True)
-        f.require([choose(flat, 1, 0)], 1, IN_LINE)
+        if not (across := normal.dot(normal)).is_number:
+            flat = f.vanishes("flat", across, size**4, self.in_line, squares=True)
+            f.require([choose(flat, 1, 0)], 1, self.in_line)
         links: list[Link] = []
 
         def met(
@@ -119,10 +151,16 @@ class ThreePoints:
         C, first = met(0, [near[k] for k in three], [radii[k] for k in three])
         D, second = met(1, [C, near[i], near[j]], [sides[0], radii[i], radii[j]])
         E, third = met(2, [C, D, near[last]], [sides[1], sides[2], radii[last]])
-        turned = [named(f, letter, x - C) for letter, x in zip("uv", (D, E), strict=True)]
-        link, R = two_vectors(f, spans, turned, m.rotation)
-        links.append(link)
-        position = named(f, "p", C - R * self.places[0])
+        turned = [named(f, name, x - C) for name, x in zip("uv", (D, E), strict=True)]
+        link, turn = two_vectors(f, spans, turned, self.turn, name="Q" if self.on_ground else "R")
+        R = turn.T if self.on_ground else turn
+        assert link.lemma
+        start = "p" if self.unknown[0] == m.position else "C"
+        roles: list[tuple[str, Any]] = [("R", "R^T")] if self.on_ground else []
+        roles += [(rf"\mathbf {x}", e) for x, e in zip("de", self.spans, strict=True)]
+        roles += [(rf"\mathbf {x}", f"{e} - {start}") for x, e in zip("uv", "DE", strict=True)]
+        links.append(replace(link, lemma=replace(link.lemma, roles=tuple(roles))))
+        position = named(f, "p", self.position_from(C, R))
         if self.unknown[0] != m.position:
             links += [coordinate(x, e) for x, e in zip(m.position, position, strict=True)]
         told = len(links)
@@ -141,7 +179,7 @@ class ThreePoints:
                 "UNREACHABLE: the rods do not meet.",
                 "SINGULAR: the centres of three spheres are in line, and the point where they meet "
                 "is free on a circle; one of its points is returned.",
-                f"INVALID: also unless {IN_LINE}.",
+                *([] if across.is_number else [f"INVALID: also unless {self.in_line}."]),
                 NEAR,
             ),
         )
@@ -155,6 +193,10 @@ class ThreePoints:
             record_lemma(d, "fk", link)
         rods = {k: C - near[k] for k in three}
         rods |= {k: D - near[k] for k in (i, j)} | {last: E - near[last]}
+        volumes = [first, second, third]
+        if self.on_ground:  # the rods lead the other way, and their vectors are turned
+            rods = {k: -R * rod for k, rod in rods.items()}
+            volumes, turned = [-first, second, -third], spans
         return Posture(
             m=m,
             program=Program(list(f.body), f.taken),
@@ -163,7 +205,7 @@ class ThreePoints:
             rotation=R,
             rods=rods,
             spans=turned,
-            volumes=(first, second, third),
+            volumes=volumes,
             sign=self.sign,
         )
 
@@ -171,10 +213,11 @@ class ThreePoints:
         """What the letters of the lemma stand for that gives a point."""
         (d, e), (*three, i, j, last) = self.spans, self.order
         C, D, E = ("p" if self.unknown[0] == self.m.position else "C"), *"DE"
+        end = "e" if self.on_ground else "b"
         x, *centres = [
-            (C, *(f"b_{k}" for k in three)),
-            (D, C, f"b_{i}", f"b_{j}"),
-            (E, C, D, f"b_{last}"),
+            (C, *(f"{end}_{k}" for k in three)),
+            (D, C, f"{end}_{i}", f"{end}_{j}"),
+            (E, C, D, f"{end}_{last}"),
         ][which]
         sides = [[], [d], [e, e - d]][which]
         lengths = [_length(side) for side in sides]
@@ -209,12 +252,12 @@ class ThreePoints:
         *three, i, j, last = self.order
 
         def rod(end: sp.Matrix, k: int) -> sp.Expr:
-            leg = m.legs[k - 1]
-            return square(end - leg.end()) - sp.sympify(leg.rod, strict=True) ** 2
+            rod = sp.sympify(m.legs[k - 1].rod, strict=True)
+            return square(end - self.centres[k]) - rod**2
 
         u, v = D - C, E - C
-        turned = (m.rotation * d - u, m.rotation * e - v, m.rotation * d.cross(e) - u.cross(v))
-        placed = m.position - C + m.rotation * self.places[0]
+        turned = (self.turn * d - u, self.turn * e - v, self.turn * d.cross(e) - u.cross(v))
+        placed = m.position - self.position_from(C, m.rotation)
         return (
             *(rod(C, k) for k in three),
             square(u) - square(d),
@@ -231,7 +274,10 @@ class ThreePoints:
     def _state(self, loop: Step) -> None:
         """The step on the assembly modes."""
         m, (*three, i, j, last) = self.m, self.order
-        ends = [m.position + m.rotation * place for place in self.places]
+        ends = [
+            self.turn * (point - m.position) if self.on_ground else m.position + self.turn * point
+            for point in self.points
+        ]
         unknown, known = (sp.Matrix.vstack(*points) for points in (self.unknown, ends))
         at = dict(zip(unknown, known, strict=True))
         turned = rotation("z", real("alpha")) * rotation("y", real("beta"))
@@ -243,15 +289,23 @@ class ThreePoints:
         rods += [zero, zero, m.loop[last - 1]]
         found = [e.xreplace(at) for e in self._equations()]
         rest = [zero] * (len(found) - len(rods))
+        seen, end, other = "It is where", "end", "near"
+        if self.on_ground:
+            seen, end, other = (
+                "Seen from the hand, whose points do not move, it is where",
+                "start",
+                "far",
+            )
         m.d.step(
             "Forward: three spheres, three times",
-            f"Legs {listed([*map(str, three)])} end in the same point C of the hand.  It is where "
-            f"three spheres meet about the near ends of their rods.  Legs {i} and {j} end in D, "
-            "which is at known distances from C and from the near ends of both rods.  The end E of "
-            f"leg {last} is at known distances from C, from D and from the near end of its rod.  "
-            "Each time there are two points, so there are eight assembly modes.  C, D and E give "
-            "the rotation of the hand, and so its position.  The signs of a mode are those of the "
-            "determinants of the three vectors from the centres of the spheres to C, D and E.",
+            f"Legs {listed([*map(str, three)])} {end} in the same point C of the {self.body}.  "
+            f"{seen} three spheres meet about the {other} ends of their rods.  Legs {i} and {j} "
+            f"{end} in D, which is at known distances from C and from the {other} ends of both "
+            f"rods.  The point E in which leg {last} {end}s is at known distances from C, from D "
+            f"and from the {other} end of its rod.  Each time there are two points, so there are "
+            f"eight assembly modes.  C, D and E give the rotation of the hand, and so its "
+            f"position.  The signs of a mode are those of the determinants of the three vectors "
+            f"from the centres of the spheres to C, D and E.",
             {},
             proves="The ends of the legs satisfy these equations if and only if they satisfy those "
             "of the loop.",
@@ -273,10 +327,11 @@ class ThreePoints:
         volume = sp.Matrix.hstack(u, r, s).det()
         rows = sp.Matrix.hstack(u.cross(r), u.cross(s), v.cross(t)).T
         product = volume * sp.Matrix.hstack(u, v, t).det()
+        at_c = "the hand where it passes C" if self.on_ground else "C"
         m.d.step(
             "Velocity: point by point",
-            f"The rods of legs {listed([*map(str, three)])} give the velocity of C.  Let u and v "
-            "be the vectors from C to D and to E.  The moment about C of a rod that ends in D is "
+            f"The rods of legs {listed([*map(str, three)])} give the velocity of {at_c}.  Let u "
+            "and v be the vectors from C to D and to E.  The moment about C of a rod through D is "
             f"the product of u and the vector along it; for leg {last} v takes the place of u.  "
             "These three moments give the angular velocity, from what the joints add to the "
             "velocity of C along the rods.  So the Jacobian needs two matrices of three rows only, "
@@ -350,14 +405,17 @@ class ThreePoints:
         for n, k in enumerate(first):
             across = rods[first[n - 2]].cross(rods[first[n - 1]])
             moved = named(v, f"V_{k + 1}", across * (driven[k] / at_c))
-            against = {e: v.let(f"Q_{k + 1}{e + 1}", rods[e].dot(moved)) for e in turns}
+            against = {e: v.let(f"K_{k + 1}{e + 1}", rods[e].dot(moved)) for e in turns}
             turned = sum((-q * turns[e] for e, q in against.items()), sp.zeros(3, 1))
             columns[k] = moved, turned
         columns |= {k: (sp.zeros(3, 1), driven[k] * turn) for k, turn in turns.items()}
+        to_c = arms[first[0]]
+        if self.on_ground:
+            to_c = named(v, "to_C", self.points[0] - at.position)
         found = []
         for k, (moved, turned) in sorted(columns.items()):
             omega = named(v, f"omega_{k + 1}", turned)
-            found.append((moved + arms[first[0]].cross(omega)).col_join(omega))
+            found.append((moved + to_c.cross(omega)).col_join(omega))
         return sp.Matrix.hstack(*found)
 
 

@@ -1,4 +1,7 @@
-"""Hands whose six legs end in three of their points, against Newton's method on their drawing."""
+"""Hands on six legs that end in three points of theirs, or start in three of the ground.
+
+They are compared with Newton's method on their drawing.
+"""
 
 from pathlib import Path
 from types import ModuleType
@@ -7,7 +10,10 @@ import numpy as np
 import pytest
 from loop_files import derived, newton, read_script, script_of
 
+from closedform.emit.backends.latex.article import document
+from closedform.emit.render import render
 from closedform.plot.robot import Robot
+from closedform.proof.prove import Proof
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 BUNDLE = """
@@ -77,6 +83,21 @@ platform(
     ],
 )
 """
+GROUND = """
+from sympy import Rational
+from closedform import Derivation, Paper, Stretch, platform
+paper = Paper("toy", "Toys", ("A. Nonymous",))
+d = Derivation("three_points_ground", "Ground", paper, "Legs from three points of the ground.")
+b = d.parameter("b", value=1, unit="m", meaning="base", source="an example")
+h = d.parameter("h", value=Rational(1, 5), unit="m", meaning="base", source="an example")
+bases = {"C": (0, 0, h), "D": (b, 0, 0), "E": (0, b, h)}
+hand = [(1, 0, 0), (0, 1, 0), (-1, 0, 0), (1, 1, 0), (1, -1, Rational(1, 2)), (0, 0, 1)]
+legs = [
+    Stretch(d.joint(f"q{k}", "prismatic"), bases[base], on_hand=[Rational(x) / 2 for x in place])
+    for k, (base, place) in enumerate(zip("CDECDC", hand), 1)
+]
+platform(d, legs)
+"""
 Drawn = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
@@ -102,14 +123,21 @@ def mixed(robot: ModuleType, q: np.ndarray) -> Drawn:
     return np.array(near), np.array([r, r, q[2], r, q[4], r]), np.array([D, C, E, C, D, C])
 
 
-CASES = {"bundle": bundle, "mixed": mixed}
+def on_ground(robot: ModuleType, q: np.ndarray) -> Drawn:
+    b, h = robot.Parameters()
+    C, D, E = [0, 0, h], [b, 0, 0], [0, b, h]
+    hand = [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [1, 1, 0], [1, -1, 0.5], [0, 0, 1]]
+    return np.array([C, D, E, C, D, C]), q, np.array(hand) / 2
+
+
+CASES = {"bundle": bundle, "mixed": mixed, "ground": on_ground}
+SCRIPTS = {"mixed": MIXED, "ground": GROUND}
 
 
 @pytest.fixture(scope="module", params=CASES)
 def case(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple:
     name, folder = f"three_points_{request.param}", tmp_path_factory.mktemp("three_points")
-    toml = on_legs("PPPDDE")
-    script = MIXED if request.param == "mixed" else script_of(name, toml, folder)
+    script = SCRIPTS.get(request.param) or script_of(name, on_legs("PPPDDE"), folder)
     return derived(name, script, folder), CASES[request.param]
 
 
@@ -258,3 +286,13 @@ def test_other_points_have_no_formula(ends: str, degree: int, tmp_path: Path) ->
     d = read_script(script_of("other", on_legs(ends), tmp_path))
     assert not d.has_forward_map
     assert any(f"of degree at most {degree}" in step.title for step in d.steps)
+
+
+def test_the_article_has_all_equations_of_the_rotation() -> None:
+    """It left out those in two entries where others had one alone."""
+    d = read_script(GROUND)
+    proof = Proof(d.name, d.paper.key, tuple(s.title for s in d.steps), 0, ())
+    text = render("latex/robot.tex.jinja", document(d, proof))
+    assert r"b R_{22} &= v_{y}" in text
+    assert r"b R_{13} - h R_{33} &= u_{z}" in text
+    assert r"$R$ is $R^T$" in text

@@ -198,8 +198,8 @@ class Stages:
                 for u in unknowns
             }
             unknown = next((u for u in unknowns if options[u]), None)
-            if unknown is None:
-                return chosen or left
+            if unknown is None:  # the rest determine the others together
+                return chosen + [e for e in left if e.free_symbols & {*unknowns}]
             found = sorted(options[unknown], key=lambda e: (width(e), str(e)))[:2]
             chosen += found
             left = [e for e in left if e not in found]

@@ -250,3 +250,18 @@ def test_a_motor_between_rods_in_space_is_not_that_of_a_desk_lamp(tmp_path: Path
     between = text.replace('"B1", kind = "universal"', '"B1", axis = [0, 1, 0], driven = true')
     with pytest.raises(TableError, match=r"it is between crank1 and rod1$"):
         script_of("hexa", between, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("kind", "meant"),
+    [
+        ("ball", "a ball joint is spherical"),
+        ("Hooke", "a joint of Cardan or Hooke is universal"),
+        ("cylindrical", "a leg with a cylindrical joint"),
+    ],
+)
+def test_another_name_of_a_joint_is_told(kind: str, meant: str, tmp_path: Path) -> None:
+    with pytest.raises(TableError, match=f"kind must be one of revolute, .*; {meant}"):
+        script_of("named", BALL.replace("spherical", kind), tmp_path)
+    with pytest.raises(TableError, match=r"universal$"):
+        script_of("named", BALL.replace("spherical", "welded"), tmp_path)

@@ -80,6 +80,15 @@ USED |= {
 }
 USED |= {"Abs", "Rational", "cos", "sin", "sqrt"}
 """Names that the written script uses itself."""
+OTHER_NAMES = {
+    **dict.fromkeys(("ball", "socket", "ball joint"), "a ball joint is spherical"),
+    **dict.fromkeys(("cardan", "hooke"), "a joint of Cardan or Hooke is universal"),
+    **dict.fromkeys(("hinge", "pin", "rotary", "turn"), "a hinge or a pin is revolute"),
+    **dict.fromkeys(("slide", "slider", "linear", "sliding"), "a slide is prismatic"),
+    "cylindrical": "a leg with a cylindrical joint, which turns and slides along one axis, is not "
+    "supported",
+}
+"""What is meant by other names of joints."""
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
 """Bodies and points."""
 TASK = (*AXES, "yaw")
@@ -195,7 +204,10 @@ def _read_joints(loop: Loop, joints: Any) -> None:
         check_keys(given, ("between", "kind", "at", "axis", "second", "driven"), where)
         kind, between = given.get("kind", "revolute"), given.get("between")
         if kind not in KINDS:
-            raise TableError(f"{where}: kind must be one of {', '.join(KINDS)}")
+            meant = OTHER_NAMES.get(kind.lower(), "") if isinstance(kind, str) else ""
+            raise TableError(
+                f"{where}: kind must be one of {', '.join(KINDS)}" + f"; {meant}" * bool(meant)
+            )
         if not (isinstance(between, list) and len(between) == 2):
             raise TableError(f'{where}: between must be two bodies, such as ["ground", "crank1"]')
         between = [_named(b, f"{where}: between") for b in between]

@@ -179,12 +179,12 @@ class Chain:
         """
         meaning, place = "the pose is one of the arm's", self.forward
         slides = {j.symbol: self.values[j.symbol] for j in self.d.joints if j.kind == "prismatic"}
-        size = self.size or sp.S.One
-        if slides:  # which have no limits
-            size = self.let("extent", size + sp.Add(*map(sp.Abs, self.p)))
+        size, rounding = self.size or sp.S.One, sp.S.Zero
+        if slides:  # which have no limits, so that a target may be large beside the size
+            rounding = self.let("rounded", 4 * (size + sp.Add(*map(sp.Abs, self.p))))
         if rest is not None:
             for entry in rest:
-                self.program.match(entry, size, meaning)
+                self.program.match(entry, size, meaning, rounding=rounding)
             return
         functions = sorted(place.atoms(sp.sin, sp.cos), key=str)
         pairs = {f.args[0]: self._solved_pair(f.args[0]) for f in functions}
@@ -196,7 +196,8 @@ class Chain:
         ).applied()  # fmt: skip
         for entry, scale in zip(self.corrected.missed, scales, strict=True):
             # half: the size counts a length once for each term of a coordinate that contains it
-            self.program.match(entry, scale / 2, meaning)
+            more = rounding if scale == size else sp.S.Zero
+            self.program.match(entry, scale / 2, meaning, rounding=more)
 
     def _solved_pair(self, total: sp.Expr) -> Pair:
         """The pair of a sum of solved joints."""
@@ -482,7 +483,8 @@ class Chain:
         kept: list[Statement] = []
         for statement in reversed(self.program.body):
             if not isinstance(statement, Let) or statement.symbol in needed:
-                values = [getattr(statement, "value", None), getattr(statement, "scale", None)]
+                held = ("value", "scale", "rounding")
+                values = [getattr(statement, name, None) for name in held]
                 values += getattr(statement, "values", ())
                 needed |= {s for e in values if e is not None for s in e.free_symbols}
                 kept.insert(0, statement)

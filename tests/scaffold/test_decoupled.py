@@ -155,3 +155,41 @@ def test_a_joint_that_does_not_move_the_tool_is_named(tmp_path: Path) -> None:
     path.write_text("a, alpha, d, theta\n0.5, 0, 0, t1\n0.5, 0, 0, t2\n", "utf-8")
     with pytest.raises(ValueError, match="because t2 does not move the tool"):
         new("arm", "dh", path, modified=True)
+
+
+FEW = {
+    "turret, joint, slide": ([(0, pi / 2, 0), (0, -pi / 2, 0), (0, pi / 2, None, 0), (0, 0, H)],
+                             "t1 t2 d3 t4", 2),
+    "turret, slide, joint": ([(0, 0, H), (0, pi / 2, None, 0), (H, pi / 2, 0), (0, 0, H)],
+                             "t1 d2 t3 t4", 4),
+    "polar with two more": ([(0, -pi / 2, H), (0, pi / 2, 0), (0, pi / 2, None, 0), (0, -pi / 2, 0),
+                             (0, 0, H)], "t1 t2 d3 t4 t5", 4),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FEW)
+def test_the_last_axis_decides_where_a_slide_leads_to_the_first(name: str, tmp_path: Path) -> None:
+    """With the wrist on the first axis, its joint was taken for free although the tool points."""
+    rows, joints, branches = FEW[name]
+    d, serial = arm(rows, joints)
+    found = propose(serial)
+    solved(d, serial, found.source)
+    assert prove(d).inverses[0].branches == found.branches == branches
+    serial.export(d)
+    robot = printed(d, tmp_path)
+    rng, n = np.random.default_rng(6), len(rows)
+    q = np.where(
+        rng.random((2000, n)) < 0.6, pi_halves(rng, (2000, n)), rng.uniform(-3, 3, (2000, n))
+    )
+    slide = joints.split().index(next(j for j in joints.split() if j.startswith("d")))
+    q[:, slide] = rng.uniform(0.3, 2, 2000)
+    T = forward([[None if e is None else float(e) for e in row] for row in rows], q)
+    answers, status = robot.ik(T)
+    assert np.isin(status, (OK, SINGULAR)).any(axis=1).all()
+    assert max(misses(robot.pose(answers), T, status)) < 1e-12 * 3
+
+
+def pi_halves(rng: np.random.Generator, shape: tuple[int, int]) -> np.ndarray:
+    """Multiples of a right angle, and angles near them."""
+    near = 10.0 ** rng.uniform(-16, -1, shape) * rng.choice([-1, 0, 1], shape)
+    return rng.integers(-2, 3, shape) * np.pi / 2 + near

@@ -24,8 +24,15 @@ REACH = "{+1: 'front', -1: 'back'}"
 class Slides:
     """Writes the lines for joints that carry the point ``p`` and of which some slide."""
 
-    def __init__(self, maker: Maker, joints: Sequence[Single], angle: Callable[[Single], str]):
-        self.maker, self.angle = maker, angle
+    def __init__(
+        self,
+        maker: Maker,
+        joints: Sequence[Single],
+        angle: Callable[[Single], str],
+        by_axis: Callable[[Single, sp.Matrix, sp.Expr], str] = lambda *_: "",
+    ):
+        """``by_axis`` solves a joint by the last axis of the arm too, and returns its pair."""
+        self.maker, self.angle, self.by_axis = maker, angle, by_axis
         self.sense = {j.number: j.sense for j in joints}
         self.joints = [_plain(j) for j in joints]
 
@@ -270,7 +277,9 @@ class Slides:
     def _turn(self, joint: Single, n: sp.Matrix, p: str, c: Any) -> str:
         """Solve a joint that turns the direction ``n`` until the point is at ``c`` along it."""
         at = point(p)
-        return self._equation(joint, (*turning(n, at), sp.simplify(c) - n[2] * at[2]))
+        value = sp.simplify(c) - n[2] * at[2]
+        pair = self.by_axis(joint, n, value) if p == "p" else ""
+        return pair or self._equation(joint, (*turning(n, at), value))
 
     def _turned_by(self, joint: Single, v: Any, n: sp.Matrix, c: Any) -> str:
         """Solve a joint that turns the vector ``v`` until it reaches ``c`` along ``n``."""

@@ -42,6 +42,8 @@ class SubproblemMaker(WristMaker):
     """The direction of the last axis, if it determines the first joint."""
     along: sp.Expr = sp.S.Zero
     """Its component along the parallel axes in between."""
+    between: sp.Matrix | None = None
+    """The direction of those."""
 
     def give(self, joint: Single) -> None:
         """Take a joint as an input."""
@@ -193,22 +195,28 @@ class SubproblemMaker(WristMaker):
         return R
 
     def _see_the_last_axis(self, arm: Singles, R: str) -> None:
-        """Keep the direction of the last axis if the joints between it and the first are parallel.
+        """Keep the direction of the last axis if the joints between that turn are parallel.
 
         Six joints reach every direction, so it says nothing of the first one.
         """
-        middle = arm.joints[1:-1]
-        few = len(arm.joints) <= 5 and not any(j.slides for j in arm.joints)
-        if few and middle and all(parallel(j) for j in middle[:-1]):
-            self.tool = times(arm.lead[:3, :3].T, self.last_axis(arm, R))
-            self.along = sp.simplify(sp.prod([j.end[2, 2] for j in middle]))
+        first, *middle, last = arm.joints
+        if not middle or len(middle) > 3 or first.slides or last.slides:
+            return
+        frame, axes = first.end, []
+        for joint in middle:
+            axes += [] if joint.slides else [(frame * Z).applyfunc(sp.simplify)]
+            frame = frame * (rotation("z", joint.turn) if joint.slides else sp.eye(3)) * joint.end
+        if not axes or not all(a.cross(axes[0]).is_zero_matrix for a in axes):
+            return
+        self.tool = times(arm.lead[:3, :3].T, self.last_axis(arm, R))
+        self.between, self.along = axes[0], sp.simplify(axes[0].dot(frame * Z))
 
     # The joints that carry a point
 
     def position(self, joints: Sequence[Single]) -> Solved:
         """Solve up to three joints that carry the point ``p``, which is at the end of the last."""
         if any(j.slides for j in joints):
-            return Slides(self, joints, self.unknown).solved()
+            return Slides(self, joints, self.unknown, self._slid_by_axis).solved()
         if len(joints) == 3:
             return self._three(*joints)
         if len(joints) == 2:
@@ -266,6 +274,11 @@ class SubproblemMaker(WristMaker):
         q = times(one.end.T, f"(turned({pair}).T * p - {source(one.shift)})")
         self.vector("q", q)
         return "q", pair
+
+    def _slid_by_axis(self, one: Single, n: sp.Matrix, c: sp.Expr) -> str:
+        """The pair by the point, ``c`` along the axes between, and by the last; else empty."""
+        seen = self.tool and n == self.between
+        return self._by_point_and_axis(one, n, c, "") if seen else ""
 
     def _by_point_and_axis(self, one: Single, g: sp.Matrix, c: sp.Expr, toward: str) -> str:
         """Solve a joint by the components of the point ``p`` and of the last axis along ``g``.

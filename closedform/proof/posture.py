@@ -34,10 +34,11 @@ class Posture:
         self.meaning = glue.meaning
         self.made = {s.symbol: s.value for s in function.body if isinstance(s, (Let, Bound))}
         self.flags = {s.symbol: sp.false for s in function.body if isinstance(s, Vanishes)}
-        self.targets = {
-            x: self.in_sums(f) for x, f in zip(inverse.targets, inverse.forward, strict=True)
-        }
-        self.lengths = {s: self.in_sums(e) for s, e in glue.lengths.items()}
+        images = dict(zip(inverse.targets, inverse.forward, strict=True))
+        # a sum may contain a given joint, as the direction of a link that this joint makes longer
+        given = {x: self.in_sums(f) for x, f in images.items() if f in inverse.unknowns}
+        self.targets = {x: substitute(self.in_sums(f), given) for x, f in images.items()}
+        self.lengths = {s: substitute(self.in_sums(e), given) for s, e in glue.lengths.items()}
 
     def in_sums(self, e: Expr) -> Expr:
         for _ in self.sums:

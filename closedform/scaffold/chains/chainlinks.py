@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -129,7 +129,7 @@ class Singles:
             return Singles(tuple(others), _simplified(self.lead * fixed), self.inverted)
         before = _motion(others[k - 1]) * fixed
         others[k - 1] = _moved(others[k - 1], before)
-        return Singles(tuple(others), self.lead, self.inverted)
+        return Singles((*others[: k - 1], *_level(others[k - 1 :])), self.lead, self.inverted)
 
     def met(self, first: int, count: int) -> Singles | None:
         """The same with the origins of joints that meet in one point moved there; None if not.
@@ -202,6 +202,25 @@ def parallel(single: Single) -> bool:
 
 def _motion(single: Single) -> sp.Matrix:
     return homogeneous(single.end, tuple(single.shift))
+
+
+def _level(joints: Sequence[Single]) -> list[Single]:
+    """The same with frames that are turned only where the direction of the axes changes.
+
+    Of two axes in opposite directions the second one is turned round, with its joint.
+    """
+    found = list(joints)
+    for k, after in enumerate(found[1:], 1):
+        end = found[k - 1].end
+        if not parallel(found[k - 1]) or end.free_symbols:
+            continue
+        flip = sp.eye(3) if sp.simplify((end * Z)[2]) > 0 else sp.diag(1, -1, -1)
+        turned = end * flip
+        sense = flip[2, 2]
+        turn = sense * after.turn + sp.atan2(turned[1, 0], turned[0, 0])
+        found[k - 1] = replace(found[k - 1], end=sp.eye(3))
+        found[k] = replace(after, turn=turn, shift=flip * after.shift, end=flip * after.end)
+    return found
 
 
 def _moved(single: Single, motion: sp.Matrix) -> Single:

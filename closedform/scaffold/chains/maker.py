@@ -11,7 +11,7 @@ import sympy as sp
 from closedform.mechanics.arm import Group, Serial
 from closedform.mechanics.frames import rotation
 from closedform.scaffold.chains.proposal import NoChainError
-from closedform.scaffold.source import source
+from closedform.scaffold.source import GIVEN, source
 
 Z = sp.Matrix([0, 0, 1])
 FLIP = "{+1: 'noflip', -1: 'flip'}"
@@ -226,6 +226,8 @@ def heading(v: Sequence[Any]) -> Any:
     if x.is_number and y.is_number and x != 0:  # atan knows 2 + sqrt(3), but no other form of it
         side = sp.sign(y)
         return side * sp.atan2(sp.radsimp(abs(y / x)), sp.sign(x)) if y else sp.atan2(0, x)
+    if x.is_number and y.has(GIVEN):  # this stays as it is, with the length of the vector
+        return sp.pi / 2 - sp.atan2(x, y)
     return sp.atan2(y, x)
 
 

@@ -4,13 +4,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sympy as sp
 from arms import OK, SINGULAR, misses
 from chains import printed
-from test_urdf import forward
+from test_urdf import arm_of, forward
 
 from closedform.pipeline import scripts
 from closedform.pipeline.trial import fault
+from closedform.scaffold.chains.chainlinks import singles
 from closedform.scaffold.new import InverseSearch, new
+from closedform.scaffold.source import GIVEN
 
 JOINTS = (
     ("slew", "revolute", "0 0 1.6", "0 0 1"),
@@ -23,16 +26,20 @@ JOINTS = (
 )
 
 
-@pytest.mark.parametrize("axis", ["0 1 0", "0 -1 0"])
-def test_the_printed_inverse_returns_to_every_posture(axis: str, tmp_path: Path) -> None:
-    """The direction of a link that a given joint makes longer, and an axis against the others."""
+def crane(axis: str) -> str:
     joints = "".join(
         f'<joint name="{name}" type="{kind}"><parent link="l{k}"/><child link="l{k + 1}"/>'
         f'<origin xyz="{xyz}"/><axis xyz="{along.format(axis)}"/></joint>'
         for k, (name, kind, xyz, along) in enumerate(JOINTS)
     )
+    return f'<robot name="crane">{joints}</robot>'
+
+
+@pytest.mark.parametrize("axis", ["0 1 0", "0 -1 0"])
+def test_the_printed_inverse_returns_to_every_posture(axis: str, tmp_path: Path) -> None:
+    """The direction of a link that a given joint makes longer, and an axis against the others."""
     urdf = tmp_path / "crane.urdf"
-    urdf.write_text(f'<robot name="crane">{joints}</robot>', "utf-8")
+    urdf.write_text(crane(axis), "utf-8")
     script = new("crane", "urdf", urdf, search=InverseSearch(fault=fault))
     assert script.structure == "axes 2, 3 and 5 parallel, 6 and 7 meet, with reach given"
     path = tmp_path / "crane.py"
@@ -50,3 +57,15 @@ def test_the_printed_inverse_returns_to_every_posture(axis: str, tmp_path: Path)
     turns = np.arange(7) != 3
     same = np.abs(np.exp(1j * answers[..., turns]) - np.exp(1j * q[:, None, turns])).max(axis=-1)
     assert np.nanmin(same, axis=-1).max() < 1e-9
+
+
+@pytest.mark.parametrize("number", range(1, 8))
+def test_an_arm_with_a_joint_given_has_the_pose_of_the_arm(number: int, tmp_path: Path) -> None:
+    urdf = tmp_path / "crane.urdf"
+    urdf.write_text(crane("0 -1 0"), "utf-8")
+    serial = arm_of(urdf)
+    values = dict(zip(serial.joints, map(sp.Rational, (1, 2, -1, 3, 2, -2, 1)), strict=True))
+    given = {GIVEN: values[serial.joints[number - 1]]}
+    left = singles(serial).with_given(number, GIVEN)
+    missed = sp.N((left.pose() - serial.pose).xreplace(given | values))
+    assert missed.norm() < 1e-12

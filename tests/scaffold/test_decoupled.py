@@ -38,6 +38,7 @@ def forward(rows: list, q: np.ndarray) -> np.ndarray:
 
 
 LEVEL = {
+    "a yaw": ([(0, 0, 1)], "t1"),
     "2 slides and a yaw": (
         [(0, pi / 2, None, 0), (H, -pi / 2, None, 0), (0, 0, 1)], "d1 d2 t3",
     ),

@@ -110,7 +110,7 @@ def test_limits_and_what_is_said(scara: Path) -> None:
     [
         ("<mujoco><worldbody>", "is not a model that MuJoCo reads"),
         ("<robot/>", "is not MJCF, which begins with <mujoco>"),
-        (BODIES.format('<body name="b"/>'), "no joint moves"),
+        (BODIES.format('<body name="b"/>'), "no joint turns about an axis or slides along one"),
         (BODIES.format('<joint type="ball" name="b"/><body><joint/></body>'), "a ball joint"),
         (BODIES.format('<freejoint/><body name="b"><joint name="q"/></body>'), "a floating joint"),
         (

@@ -352,6 +352,14 @@ def edited(old: str, new: str) -> str:
     return UR5.replace(old, new)
 
 
+CIRCLE = (
+    "<robot>"
+    + "".join(
+        f'<joint name="{n}" type="revolute"><parent link="{p}"/><child link="{c}"/></joint>'
+        for n, p, c in (("one", "a", "b"), ("two", "b", "a"))
+    )
+    + "</robot>"
+)
 BRANCHED = UR5.replace(
     "</robot>",
     '<joint name="finger" type="prismatic"><parent link="w3"/><child link="finger"/></joint>'
@@ -383,6 +391,7 @@ def test_an_expanded_file_may_mention_macros_in_its_comments(ur5: Path) -> None:
         (edited('<child link="w1"/>', '<child link="w1"/><mimic joint="pan"/>'), "it mimics pan"),
         (edited('<child link="w1"/>', '<child link="shoulder"/>'), "has two parents"),
         (BRANCHED, "choose one with --tool: finger, thumb"),
+        (CIRCLE, "the links form a circle; closed loops are written with --from loop"),
     ],
 )
 def test_what_cannot_be_read_is_explained(text: str, message: str, ur5: Path) -> None:

@@ -140,12 +140,14 @@ class KnownMaker(Maker):
     def _slides_and_yaw(self, names: Sequence[str]) -> str:
         """Solve an arm whose last joint turns the tool about z, and whose others slide."""
         *slides, last = self.arm.joints
-        self.add(f"{', '.join(names)} = ik.x")
+        self.add(f"{', '.join(names)}{',' * (len(names) == 1)} = ik.x")
         task = self.arm.coordinates()
         assert task is not None
         targets = [sp.Symbol(name, real=True) for name in names]
         (turned,) = sp.solve(task.values[-1] - targets[-1], last)
         self.solve("remainder", f"{last}, {source(turned)}")
+        if not slides:
+            return "a yaw"
         at = [value.subs(last, turned) for value in task.values[:-1]]
         missed = [value - target for value, target in zip(at, targets, strict=False)]
         found = sp.solve(missed, slides, dict=True)

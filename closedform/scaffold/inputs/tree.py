@@ -411,7 +411,9 @@ def _chain(joints: Sequence[Joint], base: str, tool: str, file: str) -> list[Joi
                 f"form here; choose a base after it, such as --base {shown_name(joint.child)}"
             )
         if len(found) > 20 * JOINTS:
-            raise TableError(f"{file}: the links form a circle")
+            raise TableError(
+                f"{file}: the links form a circle; closed loops are written with --from loop"
+            )
         found.insert(0, joint)
         link = joint.parent
     if base and link != base:
@@ -430,6 +432,10 @@ def _along_axes(place: sp.Matrix) -> bool:
 def _only_end(above: Mapping[str, Joint], parents: set[str], file: str) -> str:
     """The end of the only chain that moves, with the fixed links at its end."""
     ends: dict[tuple[str, ...], list[str]] = {}
+    if above and not set(above) - parents:
+        raise TableError(
+            f"{file}: the links form a circle; closed loops are written with --from loop"
+        )
     for link in sorted(set(above) - parents):
         moving: list[str] = []
         at = link
@@ -440,7 +446,7 @@ def _only_end(above: Mapping[str, Joint], parents: set[str], file: str) -> str:
         ends.setdefault(tuple(moving), []).append(link)
     longest = [m for m in ends if m and not any(m != o and m == o[: len(m)] for o in ends)]
     if not longest:
-        raise TableError(f"{file}: no joint moves")
+        raise TableError(f"{file}: no joint turns about an axis or slides along one")
     if len(longest) > 1 or len(ends[longest[0]]) > 1:
         choices = sorted(shown_name(link) for m in longest for link in ends[m])
         raise TableError(

@@ -199,8 +199,8 @@ class SubproblemMaker(WristMaker):
 
         Six joints reach every direction, so it says nothing of the first one.
         """
-        first, *middle, last = arm.joints
-        if not middle or len(middle) > 3 or first.slides or last.slides:
+        first, middle, last = arm.joints[0], arm.joints[1:-1], arm.joints[-1]
+        if len(arm.joints) > 5 or first.slides or last.slides:
             return
         frame, axes = first.end, []
         for joint in middle:

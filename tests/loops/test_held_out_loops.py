@@ -13,6 +13,8 @@ import pytest
 from loop_files import apart, derived, newton, script_of
 from places import TESTS
 
+from closedform.cli.commands import main
+
 FOLDER = TESTS / "held_out_loops"
 OK, UNREACHABLE, SINGULAR = range(3)
 STARTS, LINES = 30, 40
@@ -239,3 +241,13 @@ def test_rods_whose_lengths_are_different_numbers_are_proved(tmp_path: Path) -> 
     ends = 0.1 * np.array([(np.cos(a), np.sin(a)) for a in (0.3, 2)])
     assert not status.any()
     assert np.allclose(np.linalg.norm(p[:, None] - ends, axis=-1), [0.2, 0.25])
+
+
+def test_a_rod_at_right_angles_to_its_crank_in_single_precision(tmp_path: Path) -> None:
+    """An answer that missed its target by a twentieth of the lengths was OK."""
+    script = tmp_path / "shank.py"
+    script.write_text(
+        script_of("shank", (FOLDER / "ankle.toml").read_text("utf-8"), tmp_path), "utf-8"
+    )
+    out = ["-o", str(tmp_path / "out"), "--backend", "array"]
+    assert main(["derive", str(script), *out]) == 0

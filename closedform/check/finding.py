@@ -15,6 +15,8 @@ from closedform.check.samples import Sample
 from closedform.model.functions import Function
 from closedform.model.tolerances import DOUBLE, FLOAT, Tolerances
 
+MISSED = 10
+"""By how many tolerances single precision may miss where its digits do not suffice."""
 MENTIONED = 5
 """The number of failures of a function that are reported."""
 
@@ -32,6 +34,10 @@ class Backend:
     def eps(self) -> float:
         return float(np.finfo(self.dtype).eps)
 
+    def finding(self, robot: str, function: str, unit: str = "ulp") -> Finding:
+        """A finding without anything in it."""
+        return Finding(robot, function, self.name, unit, single=self.dtype is np.float32)
+
 
 def module_backend(name: str, module: ModuleType) -> Backend:
     """A generated Python module, NumPy or compiled C."""
@@ -47,8 +53,8 @@ def float_backend(call: Callable[[str], Callable[..., Any]]) -> Backend:
 class Finding:
     """The worst error of one function in one backend, and where; no ``failures`` if it is right.
 
-    ``limits`` tell what single precision cannot do, mostly near singular postures or with very
-    unequal lengths.
+    In ``single`` precision, ``limits`` tell what it cannot do, mostly near singular postures or
+    with very unequal lengths.
     """
 
     robot: str
@@ -59,6 +65,7 @@ class Finding:
     where: str = ""
     compared: int = 0
     failures: list[str] = field(default_factory=list)
+    single: bool = False
     limits: list[str] = field(default_factory=list)
 
     @property
@@ -70,8 +77,11 @@ class Finding:
         if error > self.worst or math.isnan(error):
             self.worst, self.where = error, where()
 
-    def fail(self, message: str) -> None:
-        if not self.full:
+    def fail(self, message: str, *, limited: bool = False) -> None:
+        """Report an error; with ``limited``, the digits of single precision may not suffice."""
+        if limited and self.single:
+            self.limits.append(message)
+        elif not self.full:
             self.failures.append(message)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from closedform.check.finding import Backend, Finding, called, rounded, thinned
+from closedform.check.finding import MISSED, Backend, Finding, called, rounded, thinned
 from closedform.check.samples import Sample, inverse_postures, joint_samples, perturbed
 from closedform.check.singular import singular_samples
 from closedform.check.truth import Solutions, solutions_of
@@ -24,8 +24,6 @@ from closedform.model.tolerances import HIGHEST_DEGREE
 
 APART = 5e-4
 """The largest distance of an answer from the posture behind its target, times a thousandth."""
-MISSED = 10
-"""By how many tolerances single precision may miss where its digits do not suffice."""
 FEW = 3
 """So many ordinary answers of a sample may be lost in single precision, or a tenth of its rows."""
 UNEQUAL = 100
@@ -47,7 +45,7 @@ def check_inverse(
     If the inputs are images of the unknowns, they are made from postures, which the inverse must
     return.  Otherwise (the assembly modes of a loop) the inputs are sampled directly.
     """
-    finding = Finding(derivation.name, function.name, backend.name, unit="residual / eps")
+    finding = backend.finding(derivation.name, function.name, "residual / eps")
     truth = solutions_of(derivation, function, inverse)
     if not truth.has_images:
         if not truth.stated:
@@ -112,7 +110,7 @@ class _Batch:
             problem, limited = self._problem(row, solutions[row, branch], code, reached)
             if problem:
                 message = f"branch {branch} {problem}; {self._where(row)}"
-                self._fail(message, limited=limited)
+                self.finding.fail(message, limited=limited)
             wrong[row, branch] = bool(problem)
             if self.finding.full:
                 return
@@ -214,7 +212,9 @@ class _Batch:
                 self.finding.see(residual / eps, lambda: where)  # noqa: B023
             if not residual <= allowed:
                 near = residual <= MISSED * allowed
-                self._fail(f"branch {branch[k]} misses by {residual:.3g}; {where}", limited=near)
+                self.finding.fail(
+                    f"branch {branch[k]} misses by {residual:.3g}; {where}", limited=near
+                )
                 if self.finding.full:
                     return
 
@@ -226,7 +226,7 @@ class _Batch:
         if np.isnan(gaps).all():
             if not _leaves_the_workspace(truth, backend, one):
                 lost = f"{posture.tolist()} is lost: no branch has a solution"
-                self._fail(f"{lost}; {self._where(row)}", limited=True)
+                self.finding.fail(f"{lost}; {self._where(row)}", limited=True)
             return
         # where three solutions meet, a rounding moves them by its cube root
         condition = max(truth.condition(posture, parameters), backend.eps ** (2 / 3))
@@ -240,14 +240,7 @@ class _Batch:
             lost = (
                 f"{posture.tolist()} is lost: the nearest solution is {solutions[nearest].tolist()}"
             )
-            self._fail(f"{lost}; {self._where(row)}", limited=True)
-
-    def _fail(self, message: str, *, limited: bool) -> None:
-        """Report an error; with ``limited``, the digits of single precision may not suffice."""
-        if limited and self.backend.dtype is np.float32:
-            self.finding.limits.append(message)
-        else:
-            self.finding.fail(message)
+            self.finding.fail(f"{lost}; {self._where(row)}", limited=True)
 
 
 def _in_range(

@@ -12,7 +12,7 @@ from flint import arb, ctx
 from numpy.typing import NDArray
 
 from closedform.algebra.balls import Undetermined, to_float
-from closedform.check.finding import Backend, Finding, called, rounded, thinned
+from closedform.check.finding import MISSED, Backend, Finding, called, rounded, thinned
 from closedform.check.samples import Sample, joint_samples
 from closedform.check.truth import Values, condition_of, values_of
 from closedform.model.derivation import Derivation
@@ -37,7 +37,7 @@ NEAR_POLE = 2.0**-4
 
 def check_forward(derivation: Derivation, function: Function, backend: Backend) -> Finding:
     """Compare values, in ulps of their natural scale."""
-    finding = Finding(derivation.name, function.name, backend.name)
+    finding = backend.finding(derivation.name, function.name)
     values = values_of(derivation, function)
     for sample in joint_samples(derivation, function):
         sample = rounded(thinned(sample, len(values.exprs)), backend)
@@ -46,7 +46,8 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
             _compare(finding, values, backend, sample, outputs[: len(function.outputs)])
     allowed = backend.tolerances.ulps + values.operations * backend.tolerances.ulps_per_operation
     if not finding.worst <= allowed:
-        finding.fail(f"{finding.worst:.3g} ulp: {finding.where}")
+        near = finding.worst <= MISSED * allowed
+        finding.fail(f"{finding.worst:.3g} ulp: {finding.where}", limited=near)
     return finding
 
 
@@ -207,7 +208,7 @@ def check_boolean(derivation: Derivation, function: Function, backend: Backend) 
 
     A condition in the output itself is compared in Arb as well.
     """
-    finding = Finding(derivation.name, function.name, backend.name, unit="wrong answers")
+    finding = backend.finding(derivation.name, function.name, "wrong answers")
     condition = condition_of(derivation, function)
     for sample in joint_samples(derivation, function):
         sample = rounded(sample, backend)

@@ -298,20 +298,21 @@ def _by_parallel_axes(m: Hand, loop: Step) -> None:
     a, b = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in "ab")
     across = a.cross(b)
     normals = [leg.normal for leg in m.planes]
-    m.d.explain({r"\mathbf a": "direction of the axes of a leg", "R": "rotation of the hand"})
-    m.d.explain({r"\mathbf b": "direction of the axes of another leg"})
+    one, two = letters(m.d, "es")
+    cross = rf"\mathbf {one}\times\mathbf {two}"
+    m.d.explain({rf"\mathbf {one}": "direction of the axes of a leg", "R": "rotation of the hand"})
+    m.d.explain({rf"\mathbf {two}": "direction of the axes of another leg"})
     m.d.step(
         "The axes",
         "All joints of a leg that turn have the same direction, so the leg turns the hand about it "
-        "alone: its rotation R keeps this direction.  It keeps those of two legs, a and b, and so "
-        "their cross product too.  The three vectors are a basis, because a and b are not "
-        "parallel.  So the hand does not turn at any posture.",
+        f"alone: its rotation R keeps this direction.  It keeps those of two legs, {one} and "
+        f"{two}, and so their cross product too.  The three vectors are a basis, because {one} and "
+        f"{two} are not parallel.  So the hand does not turn at any posture.",
         {
-            r"R\,\mathbf a": r"\mathbf a",
-            r"R\,\mathbf b": r"\mathbf b",
-            r"R\,(\mathbf a\times\mathbf b)": r"\mathbf a\times\mathbf b",
-            r"\det[\mathbf a\ \ \mathbf b\ \ \mathbf a\times\mathbf b]": r"|\mathbf a\times"
-            r"\mathbf b|^2",
+            rf"R\,\mathbf {one}": rf"\mathbf {one}",
+            rf"R\,\mathbf {two}": rf"\mathbf {two}",
+            rf"R\,({cross})": cross,
+            rf"\det[\mathbf {one}\ \ \mathbf {two}\ \ {cross}]": rf"|{cross}|^2",
         },
         proves="The determinant of the three vectors is the squared length of the cross product, "
         "and the directions of the axes are unit vectors.",

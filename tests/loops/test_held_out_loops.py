@@ -251,3 +251,11 @@ def test_a_rod_at_right_angles_to_its_crank_in_single_precision(tmp_path: Path) 
     )
     out = ["-o", str(tmp_path / "out"), "--backend", "array"]
     assert main(["derive", str(script), *out]) == 0
+
+
+def test_a_length_may_have_the_letter_of_a_direction(tmp_path: Path) -> None:
+    """The article called the direction of an axis b, as the file calls a length."""
+    script = tmp_path / "tilted.py"
+    text = (FOLDER / "tilted_tripteron.toml").read_text("utf-8")
+    script.write_text(script_of("tilted", text, tmp_path), "utf-8")
+    assert main(["derive", str(script), "-o", str(tmp_path / "out"), "--backend", "latex"]) == 0

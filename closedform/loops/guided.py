@@ -25,6 +25,7 @@ from closedform.loops.hand import check_order, check_plain, rate_of, square
 from closedform.loops.hinged_pose import motions, state_pose
 from closedform.loops.hinges import Hinged, Hinges, InPlane
 from closedform.loops.leg_by_leg import MISSED, LegByLeg, named_in, signs_of_modes, size_of
+from closedform.loops.letters import bold, letters
 from closedform.loops.skeleton import Drawing, points_of
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
@@ -178,10 +179,10 @@ def _place(m: Guided, guide: Guide | Gimbal) -> Step:
     d, p, at = m.d, m.d.program(), m.posture
     placed = guide.place(p, m.places, m.size)
     a, b, c = guide.joint.axes
-    turn_1, turn_2 = TURNS
-    v = at.turns[1]
-    d.explain({r"\mathbf v": "second axis", "R": "rotation of the hand"})
-    shown: dict[str, Any] = {"R": at.rotation, r"\mathbf v": v}
+    (turn_1, turn_2), v = TURNS, at.turns[1]
+    second, along = letters(d, "vu")
+    d.explain({rf"\mathbf {second}": "second axis", "R": "rotation of the hand"})
+    shown: dict[str, Any] = {"R": at.rotation, rf"\mathbf {second}": v}
     equal: list[tuple[Any, Any]] = [
         (at.rotation.T * at.rotation, sp.eye(3)),
         (v.dot(a), sp.S.Zero),
@@ -189,32 +190,31 @@ def _place(m: Guided, guide: Guide | Gimbal) -> Step:
         (sp.Matrix([square(a), square(b), a.dot(b)]), sp.Matrix([1, 1, 0])),
     ]
     proves = (
-        "R is a rotation, keeps the first axis at right angles to v, and takes the second axis to "
-        "v.  The axes, where nothing is turned, are unit vectors at right angles."
+        f"R is a rotation, keeps the first axis at right angles to {second}, and takes the second "
+        f"axis to {second}.  The axes, where nothing is turned, are unit vectors at right angles."
     )
     if isinstance(guide, Gimbal):
         said = (
             "The universal joint turns the hand by turn_1 about an axis that is fixed to the "
-            "ground, and by turn_2 about the axis v, which the first turn moves."
+            f"ground, and by turn_2 about the axis {second}, which the first turn moves."
         )
         notes: tuple[str, ...] = ()
     else:
-        assert at.slide
-        assert m.exact.slide
+        assert at.slide and m.exact.slide
         u = at.slide.ahead
-        d.explain({r"\mathbf u": "direction of the passive leg"})
+        d.explain({rf"\mathbf {along}": "direction of the passive leg"})
         d.explain({r"\mathbf p": "position of the point of the hand"})
-        shown |= {r"\mathbf u": u, r"\mathbf p": m.pivot + at.shift}
+        shown |= {rf"\mathbf {along}": u, r"\mathbf p": m.pivot + at.shift}
         said = (
             "The universal joint of the passive leg turns it by turn_1 about an axis that is fixed "
-            "to the ground, and by turn_2 about the axis v, which the first turn moves.  The hand "
-            "is fixed to the end of the leg, whose direction is u.  So R is the rotation of the "
-            "hand, and its point p is ahead of the pivot by the length of the leg.  Conversely, "
-            "let X, Y and Z be the coordinates of p along the two axes and the leg where nothing "
-            "is turned, from the pivot.  Then the length is the root of X^2 + Y^2 + Z^2, and with "
-            "rho, the root of Y^2 + Z^2, turn_1 = atan2(-Y, Z) and turn_2 = atan2(X, rho).  The "
-            "postures with -Y, -Z and -rho, in which the hand is turned by half a turn about the "
-            "leg, are left out."
+            f"to the ground, and by turn_2 about the axis {second}, which the first turn moves.  "
+            f"The hand is fixed to the end of the leg, whose direction is {along}.  So R is the "
+            "rotation of the hand, and its point p is ahead of the pivot by the length of the "
+            "leg.  Conversely, let X, Y and Z be the coordinates of p along the two axes and the "
+            "leg where nothing is turned, from the pivot.  Then the length is the root of X^2 + "
+            "Y^2 + Z^2, and with rho, the root of Y^2 + Z^2, turn_1 = atan2(-Y, Z) and turn_2 = "
+            "atan2(X, rho).  The postures with -Y, -Z and -rho, in which the hand is turned by "
+            "half a turn about the leg, are left out."
         )
         equal += [
             (v.dot(u), sp.S.Zero),
@@ -394,13 +394,14 @@ def _state_velocity(m: Guided, loop: Step) -> None:
     )
     hinges = isinstance(m.guide, Hinges)
     moment = r"(\mathbf f_i\times\mathbf r_i)"
-    entry = r"\mathbf a^T(\mathbf e_i\times\mathbf r_i) + \mathbf w^T\mathbf r_i"
+    first, second, along, rate = bold(d, "avuw")
+    entry = rf"{first}^T(\mathbf e_i\times\mathbf r_i) + {rate}^T\mathbf r_i"
     shown: dict[str, Any] = {
         ("A_{ik}" if hinges else r"\mathbf a_i"): entry
         if hinges
         else rf"{moment}^T"
         if isinstance(m.guide, Ball)
-        else rf"\begin{{bmatrix}}\mathbf a^T{moment} & \mathbf v^T{moment}\end{{bmatrix}}",
+        else rf"\begin{{bmatrix}}{first}^T{moment} & {second}^T{moment}\end{{bmatrix}}",
         "B_{ii}": r"\mathbf r_i^T\,\frac{\partial\mathbf b_i}{\partial q_i}",
     }
     equal: list[tuple[Any, Any]] = [(r.dot(w.cross(f)), w.dot(f.cross(r)))]
@@ -412,15 +413,15 @@ def _state_velocity(m: Guided, loop: Step) -> None:
         d.explain(
             {
                 r"\mathbf e_i": "from the point of the hand to the far end of rod i",
-                r"\mathbf a": "axis about which a coordinate turns the hand",
-                r"\mathbf w": "velocity of the point of the hand per rate of a coordinate",
+                first: "axis about which a coordinate turns the hand",
+                rate: "velocity of the point of the hand per rate of a coordinate",
             }
         )
         equal += motions(m.guide, at)
         proves += "  The derivatives of the position and of each e_i with respect to the target "
         proves += "are those motions."
     elif not isinstance(m.guide, Ball):
-        d.explain({r"\mathbf a": "first axis"})
+        d.explain({first: "first axis"})
         proves += "  The derivative of each f_i with respect to a joint that holds the hand is "
         proves += "that of a point that this joint moves."
     for arm in at.arms:
@@ -438,8 +439,8 @@ def _state_velocity(m: Guided, loop: Step) -> None:
             }
         )
         shown = {
-            r"\mathbf D_i": rf"\begin{{bmatrix}}\mathbf a^T{moment} & \mathbf v^T{moment} & "
-            r"\mathbf u^T\mathbf r_i\end{bmatrix}",
+            r"\mathbf D_i": rf"\begin{{bmatrix}}{first}^T{moment} & {second}^T{moment} & "
+            rf"{along}^T\mathbf r_i\end{{bmatrix}}",
             r"\mathbf a_i": r"\mathbf D_i\,G^{-1}",
             "G": at.slide.rates,
             "B_{ii}": shown["B_{ii}"],

@@ -10,6 +10,7 @@ import sympy as sp
 from closedform.lemmas.legs import vector
 from closedform.loops.guides import Placed
 from closedform.loops.hinges import TILTED, Hinges, InPlane, StandingPlane, TurningPlane
+from closedform.loops.letters import letters
 from closedform.loops.three_hinges import PSI, ThreeHinges
 from closedform.loops.tripod_legs import sum_of_cosines
 from closedform.mechanics.frames import homogeneous
@@ -65,12 +66,14 @@ def state_pose(d: Derivation, guide: Hinges, places: Sequence[sp.Matrix], at: Pl
     if plane:
         a, b, _ = plane.joint.axes
         v, turns = at.rotation * b, isinstance(plane, TurningPlane)
-        d.explain({r"\mathbf v": "normal of the plane" if turns else "axis of the hand"})
-        shown[r"\mathbf v"] = v
+        (letter,) = letters(d, "v")
+        name = rf"\mathbf {letter}"
+        d.explain({name: "normal of the plane" if turns else "axis of the hand"})
+        shown[name] = v
         equal.append((v.dot(a), sp.S.Zero))
         normal = v if turns else a
         equal += [((at.shift + at.levers[k]).dot(normal), sp.S.Zero) for k in plane.inside]
-        proves += "v is at right angles to the first axis, and the legs end in the plane.  "
+        proves += f"{letter} is at right angles to the first axis, and the legs end in the plane.  "
     for k, h in guide.hinged:
         normal = at.rotation * h.axis if h.on_hand else h.axis
         span = vector(guide.pivot) + at.arms[k] - h.leg.base

@@ -31,6 +31,7 @@ from closedform.loops.leg_by_leg import (
     record_lemma,
     size_of,
 )
+from closedform.loops.letters import letters
 from closedform.loops.modes import NO_MODE, export
 from closedform.loops.parallel import NEAR
 from closedform.mechanics.loops import velocity_matrices
@@ -164,6 +165,11 @@ class OnRod:
         )
 
     @property
+    def letter(self) -> str:
+        """That of the end of the second rod on the first."""
+        return letters(self.d, "c")[0]
+
+    @property
     def moved(self) -> list[sp.Symbol]:
         return [leg.joint for leg in self.legs if isinstance(leg, Slide)]
 
@@ -173,20 +179,20 @@ def _state_loop(m: OnRod) -> Step:
         r"\mathbf b_1": m.first.end(),
         r"\mathbf b_2": m.second.end(),
         r"|\mathbf p - \mathbf b_1|": m.length,
-        r"|\mathbf c - \mathbf b_2|": m.rod,
+        rf"|\mathbf {m.letter} - \mathbf b_2|": m.rod,
     }
     m.d.explain(
         {
             r"\mathbf b_1": "near end of the first rod",
             r"\mathbf b_2": "near end of the second rod",
-            r"\mathbf c": "end of the second rod on the first",
+            rf"\mathbf {m.letter}": "end of the second rod on the first",
         }
     )
     return m.d.step(
         "The loop",
         "The joints determine the near ends of the rods, b1 and b2.  The first rod leads from b1 "
-        "to the hand p, and the second from b2 to the point c of the first.  Both keep their "
-        "lengths.",
+        f"to the hand p, and the second from b2 to the point {m.letter} of the first.  Both keep "
+        "their lengths.",
         shown,
     )
 
@@ -232,10 +238,10 @@ def _forward(m: OnRod, choice: Choice, loop: Step) -> _Posture:
     first, second = m.centres
     d.step(
         "Forward: two circles",
-        "The point c is seen from b1 as p is, turned and stretched by constants.  The inverse "
-        "turn and stretch take the rod from b2 to c to a vector from b3 to p, so that the hand is "
-        "on a circle about b3.  It meets the circle about b1 twice: these are the two assembly "
-        "modes.",
+        f"The point {m.letter} is seen from b1 as p is, turned and stretched by constants.  The "
+        f"inverse turn and stretch take the rod from b2 to {m.letter} to a vector from b3 to p, so "
+        "that the hand is on a circle about b3.  It meets the circle about b1 twice: these are the "
+        "two assembly modes.",
         {r"\mathbf b_3": second, r"|\mathbf p - \mathbf b_3|": m.rod * m.stretch},
         proves="The squared distance of the hand from b3 is that of c from b2, times a constant.",
         equal=[
@@ -353,9 +359,9 @@ def _velocity(m: OnRod, at: _Posture, loop: Step) -> None:
         "Velocity and singular sets",
         "The derivatives of the equations of both circles, halved, give A*dp = B*dq.  The rows of "
         "A are the vectors from the centres of the circles to the hand.  B is lower triangular, "
-        "because the first leg also moves the point c.  B is singular if a joint moves the near "
-        "end of its rod at right angles to it (serial).  A is singular if both centres are in "
-        f"line with the hand, which is where {MEET} (parallel).",
+        f"because the first leg also moves the point {m.letter}.  B is singular if a joint moves "
+        "the near end of its rod at right angles to it (serial).  A is singular if both centres "
+        f"are in line with the hand, which is where {MEET} (parallel).",
         {
             "A": sp.Matrix.vstack(*(s.T for s in spans)),
             "B": rates,
@@ -440,8 +446,8 @@ def _inverse(m: OnRod, loop: Step) -> None:
     g.determined(sp.Abs(volume), scale, MEET, name=r"|\det A|", missed=missed, size=size)
     d.step(
         "Inverse: one leg after the other",
-        "The first leg has to reach the hand with its rod.  Then the point c is known, and the "
-        "second leg has to reach it with its own rod.  "
+        f"The first leg has to reach the hand with its rod.  Then the point {m.letter} is known, "
+        "and the second leg has to reach it with its own rod.  "
         f"{solved.on_modes}Near a parallel singularity rounded joints do not determine the hand.  "
         "The status is SINGULAR if the determinant of A is less than 2^-10 of the product of the "
         "radii of both circles, or of a multiple of it if the hand is farther from b1 than c: as "

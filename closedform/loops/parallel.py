@@ -34,6 +34,7 @@ from closedform.loops.leg_by_leg import (
     signs_of_modes,
     size_of,
 )
+from closedform.loops.letters import bold
 from closedform.loops.modes import NO_MODE, Exported, export
 from closedform.loops.skeleton import draw
 from closedform.mechanics.frames import merge_angles
@@ -461,10 +462,11 @@ def _shown_jacobian(m: Hand) -> dict[str, Any]:
     if struts:
         still = next(k for k, leg in m.numbered if isinstance(leg, Strut))
         rod = rf"\mathbf p - \mathbf b_{still}"
-        shown[r"\mathbf s"] = rf"\frac{{{rod}}}{{\left|{rod}\right|}}"
-        shown["Q"] = r"A \left(I - \mathbf s\,\mathbf s^T\right)"
+        (along,) = bold(m.d, "s")
+        shown[along] = rf"\frac{{{rod}}}{{\left|{rod}\right|}}"
+        shown["Q"] = rf"A \left(I - {along}\,{along}^T\right)"
         shown[r"\kappa"] = r"\frac{\varsigma_1}{\varsigma_2}"
-        meanings[r"\mathbf s"] = "unit vector along the strut"
+        meanings[along] = "unit vector along the strut"
         meanings["Q"] = "rows of A without their part along the strut"
         meanings[r"\kappa"] = "condition number of Q, whose least singular value is zero"
         meanings[r"\varsigma_1"] = "largest singular value of Q"

@@ -4,6 +4,7 @@ Each is described in a short file, proved and tried: Newton's method on the leng
 which are written here from the drawings, finds no posture that the closed form lacks.
 """
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -253,9 +254,17 @@ def test_a_rod_at_right_angles_to_its_crank_in_single_precision(tmp_path: Path) 
     assert main(["derive", str(script), *out]) == 0
 
 
-def test_a_length_may_have_the_letter_of_a_direction(tmp_path: Path) -> None:
-    """The article called the direction of an axis b, as the file calls a length."""
-    script = tmp_path / "tilted.py"
-    text = (FOLDER / "tilted_tripteron.toml").read_text("utf-8")
-    script.write_text(script_of("tilted", text, tmp_path), "utf-8")
+@pytest.mark.parametrize(
+    ("mechanism", "length", "letter"),
+    [("tilted_tripteron", "b", "b"), ("tricept", "e", "v"), ("parallel_leg", "l1", "c")],
+)
+def test_a_length_may_have_the_letter_of_a_vector(
+    mechanism: str, length: str, letter: str, tmp_path: Path
+) -> None:
+    """The article then has another letter for the vector."""
+    text = (FOLDER / f"{mechanism}.toml").read_text("utf-8")
+    text = re.sub(rf'(?<=")(-?){length}(?=")', rf"\1{letter}", text)
+    text = re.sub(rf"^{length} = ", f"{letter} = ", text, flags=re.MULTILINE)
+    script = tmp_path / "lettered.py"
+    script.write_text(script_of("lettered", text, tmp_path), "utf-8")
     assert main(["derive", str(script), "-o", str(tmp_path / "out"), "--backend", "latex"]) == 0

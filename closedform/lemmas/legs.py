@@ -216,11 +216,8 @@ class Crank:
         if aside != 0:
             s = chain.half_chord("fore", r, aside, "the rod reaches the plane of the crank")
             missed = sp.Max(0, sp.Abs(aside) - r)
-            # Where the rod is nearly at right angles to the plane, s has lost digits that r has,
-            # and the point that it leads to is nearly at the end of the crank.
-            size = chain.size
-            apart = sp.Abs(a**2 + b**2 - l**2) + (size / 2**22) ** 2
-            lost = chain.let("lost", sp.Max(1, size * r / (size * s + apart)), positive=True)
+            # where the rod is nearly at right angles to the plane, s has lost digits that r has
+            lost = chain.let("lost", sp.Max(1, r / (s + chain.size / 2**22)), positive=True)
             scale = scale * lost
         R = chain.let("R", sp.sqrt(a**2 + b**2), nonnegative=True)
         triangle = Triangle.from_reach(p, (l, s), R, sigma, scale=scale, suffix=chain.tag)

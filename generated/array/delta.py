@@ -11,8 +11,8 @@
 #   singularities: 71 compare and select, 83 add, 12 divide, 123 multiply, 6 sincos, 1 sqrt
 #   condition_number: 68 compare and select, 121 add, 14 divide, 174 multiply, 6 sincos, 3 sqrt
 #   constraint: 65 compare and select, 93 add, 12 divide, 160 multiply, 6 sincos, 1 sqrt
-#   ik: 190 compare and select, 164 add, 6 atan2, 14 divide, 180 multiply, 3 sincos, 18 sqrt
-#   workspace_contains: 56 compare and select, 55 add, 8 divide, 44 multiply, 3 sincos, 6 sqrt
+#   ik: 187 compare and select, 157 add, 6 atan2, 14 divide, 174 multiply, 3 sincos, 18 sqrt
+#   workspace_contains: 48 add, 53 compare and select, 8 divide, 38 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
 
 Three cranks of length L turn about axes in the base plane z = 0, at the distance f from the
@@ -1965,262 +1965,254 @@ def _ik(ops, x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t6 = c_alpha1 * t4 - s_alpha1 * t5
     t7 = l + t6
     t8 = l - t6
-    t9 = l * size
-    t10 = size * size * 5.684341886080802e-14
-    t11 = z * z
-    t12 = L * L - t11
+    t9 = size * 2.384185791015625e-07
+    t10 = ops.max(t7, 0.0) * ops.max(t8, 0.0)
+    fore_1 = ops.sqrt(t10)
+    lost_1 = ops.max(1.0, l / (t9 + fore_1))
+    t11 = -(ops.feasibility * (size * lost_1 * 0.5))
+    t12 = z * z
     t13 = s_alpha1 * t4 + c_alpha1 * t5
-    t14 = t13 * t13
-    t15 = ops.max(t7, 0.0) * ops.max(t8, 0.0)
-    fore_1 = ops.sqrt(t15)
-    t16 = t9 / (t10 + ops.abs(t12 - t14) + size * fore_1)
-    lost_1 = ops.max(1.0, t16)
-    t17 = -(ops.feasibility * (size * lost_1 * 0.5))
-    t18 = t11 + t14
-    R_1 = ops.sqrt(t18)
-    t19 = L - R_1
-    t20 = t19 + fore_1
-    t21 = L + R_1
-    t22 = t21 - fore_1
-    t23 = (t3 <= t7) & (t3 <= t8) & (t17 <= t20) & (t17 <= t22)
-    t24 = fore_1 - t19
-    t25 = f * s_alpha2 - (y + e * s_alpha2)
-    t26 = f * c_alpha2 - (x + e * c_alpha2)
-    t27 = c_alpha2 * t25 - s_alpha2 * t26
-    t28 = l + t27
-    t29 = l - t27
-    t30 = t23 & (t17 <= t24) & (t3 <= t28) & (t3 <= t29)
-    t31 = s_alpha2 * t25 + c_alpha2 * t26
-    t32 = t31 * t31
-    t33 = ops.max(t28, 0.0) * ops.max(t29, 0.0)
-    fore_2 = ops.sqrt(t33)
-    t34 = t9 / (t10 + ops.abs(t12 - t32) + size * fore_2)
-    lost_2 = ops.max(1.0, t34)
-    t35 = -(ops.feasibility * (size * lost_2 * 0.5))
-    t36 = t11 + t32
-    R_2 = ops.sqrt(t36)
-    t37 = L - R_2
-    t38 = fore_2 + t37
-    t39 = L + R_2
-    t40 = t39 - fore_2
-    t41 = fore_2 - t37
-    t42 = t30 & (t35 <= t38) & (t35 <= t40) & (t35 <= t41)
-    t43 = f * s_alpha3 - (y + e * s_alpha3)
-    t44 = f * c_alpha3 - (x + e * c_alpha3)
-    t45 = c_alpha3 * t43 - s_alpha3 * t44
-    t46 = l + t45
-    t47 = l - t45
-    t48 = s_alpha3 * t43 + c_alpha3 * t44
-    t49 = t48 * t48
-    t50 = ops.max(t46, 0.0) * ops.max(t47, 0.0)
-    fore_3 = ops.sqrt(t50)
-    t51 = t9 / (t10 + ops.abs(t12 - t49) + size * fore_3)
-    lost_3 = ops.max(1.0, t51)
-    t52 = -(ops.feasibility * (size * lost_3 * 0.5))
-    t53 = t11 + t49
-    R_3 = ops.sqrt(t53)
-    t54 = L - R_3
-    t55 = fore_3 + t54
-    t56 = t42 & (t3 <= t46) & (t3 <= t47) & (t52 <= t55)
-    t57 = L + R_3
-    t58 = t57 - fore_3
-    t59 = fore_3 - t54
-    unreachable = ops.opposite(t56 & (t52 <= t58) & (t52 <= t59))
+    t14 = t12 + t13 * t13
+    R_1 = ops.sqrt(t14)
+    t15 = L - R_1
+    t16 = t15 + fore_1
+    t17 = L + R_1
+    t18 = t17 - fore_1
+    t19 = (t3 <= t7) & (t3 <= t8) & (t11 <= t16) & (t11 <= t18)
+    t20 = fore_1 - t15
+    t21 = f * s_alpha2 - (y + e * s_alpha2)
+    t22 = f * c_alpha2 - (x + e * c_alpha2)
+    t23 = c_alpha2 * t21 - s_alpha2 * t22
+    t24 = l + t23
+    t25 = l - t23
+    t26 = t19 & (t11 <= t20) & (t3 <= t24) & (t3 <= t25)
+    t27 = ops.max(t24, 0.0) * ops.max(t25, 0.0)
+    fore_2 = ops.sqrt(t27)
+    lost_2 = ops.max(1.0, l / (t9 + fore_2))
+    t28 = -(ops.feasibility * (size * lost_2 * 0.5))
+    t29 = s_alpha2 * t21 + c_alpha2 * t22
+    t30 = t12 + t29 * t29
+    R_2 = ops.sqrt(t30)
+    t31 = L - R_2
+    t32 = fore_2 + t31
+    t33 = L + R_2
+    t34 = t33 - fore_2
+    t35 = fore_2 - t31
+    t36 = t26 & (t28 <= t32) & (t28 <= t34) & (t28 <= t35)
+    t37 = f * s_alpha3 - (y + e * s_alpha3)
+    t38 = f * c_alpha3 - (x + e * c_alpha3)
+    t39 = c_alpha3 * t37 - s_alpha3 * t38
+    t40 = l + t39
+    t41 = l - t39
+    t42 = ops.max(t40, 0.0) * ops.max(t41, 0.0)
+    fore_3 = ops.sqrt(t42)
+    lost_3 = ops.max(1.0, l / (t9 + fore_3))
+    t43 = -(ops.feasibility * (size * lost_3 * 0.5))
+    t44 = s_alpha3 * t37 + c_alpha3 * t38
+    t45 = t12 + t44 * t44
+    R_3 = ops.sqrt(t45)
+    t46 = L - R_3
+    t47 = fore_3 + t46
+    t48 = t36 & (t3 <= t40) & (t3 <= t41) & (t43 <= t47)
+    t49 = L + R_3
+    t50 = t49 - fore_3
+    t51 = fore_3 - t46
+    unreachable = ops.opposite(t48 & (t43 <= t50) & (t43 <= t51))
     failed = invalid | unreachable
-    t60 = size * ops.vanishing
-    no_crank_1 = L <= t60
-    t61 = (R_1 <= t60) | no_crank_1
-    t62 = ops.opposite(failed)
-    t63 = t62 & ops.opposite(t61)
-    R_1_2 = ops.sqrt(ops.select(t63, t18, 1.0))
-    t64 = L - R_1_2
-    fore_1_2 = ops.sqrt(ops.select(t63, t15, 1.0))
-    t65 = ops.max(t64 + fore_1_2, 0.0) * ops.max(fore_1_2 - t64, 0.0)
-    t66 = L + R_1_2
-    t67 = (fore_1_2 + t66) * ops.max(t66 - fore_1_2, 0.0)
-    t68 = t65 - t67
-    t69 = z * t68
-    beyond_1 = 2.0 * ops.sqrt(ops.select(t63, t65 * t67, 1.0))
-    t70 = t13 * beyond_1
-    t71 = t13 * t68
-    t72 = z * beyond_1
-    t73 = ops.select(t62, ops.select(t61, 1.0, t71 - t72), 1.0)
-    t74 = ops.atan2(ops.select(t61, 0.0, t69 + t70), t73)
-    t75 = ops.select(failed, ops.nan, ops.wrap_cut(t74))
-    met_2 = R_2 <= t60
-    t76 = met_2 | no_crank_1
-    t77 = t62 & ops.opposite(t76)
-    fore_2_2 = ops.sqrt(ops.select(t77, t33, 1.0))
-    R_2_2 = ops.sqrt(ops.select(t77, t36, 1.0))
-    t78 = L - R_2_2
-    t79 = ops.max(fore_2_2 + t78, 0.0) * ops.max(fore_2_2 - t78, 0.0)
-    t80 = L + R_2_2
-    t81 = (fore_2_2 + t80) * ops.max(t80 - fore_2_2, 0.0)
-    t82 = t79 - t81
-    t83 = z * t82
-    beyond_2 = 2.0 * ops.sqrt(ops.select(t77, t79 * t81, 1.0))
-    t84 = t31 * beyond_2
-    t85 = t31 * t82
-    t86 = z * beyond_2
-    t87 = ops.select(t62, ops.select(t76, 1.0, t85 - t86), 1.0)
-    t88 = ops.atan2(ops.select(t76, 0.0, t83 + t84), t87)
-    t89 = ops.select(failed, ops.nan, ops.wrap_cut(t88))
-    met_3 = R_3 <= t60
-    t90 = met_3 | no_crank_1
-    t91 = t62 & ops.opposite(t90)
-    fore_3_2 = ops.sqrt(ops.select(t91, t50, 1.0))
-    R_3_2 = ops.sqrt(ops.select(t91, t53, 1.0))
-    t92 = L - R_3_2
-    t93 = ops.max(fore_3_2 + t92, 0.0) * ops.max(fore_3_2 - t92, 0.0)
-    t94 = L + R_3_2
-    t95 = (fore_3_2 + t94) * ops.max(t94 - fore_3_2, 0.0)
-    t96 = t93 - t95
-    t97 = z * t96
-    beyond_3 = 2.0 * ops.sqrt(ops.select(t91, t93 * t95, 1.0))
-    t98 = t48 * beyond_3
-    t99 = t48 * t96
-    t100 = z * beyond_3
-    t101 = ops.select(t62, ops.select(t90, 1.0, t99 - t100), 1.0)
-    t102 = ops.atan2(ops.select(t90, 0.0, t97 + t98), t101)
-    t103 = ops.select(failed, ops.nan, ops.wrap_cut(t102))
-    t104 = ops.select(t62, ops.select(t90, 1.0, t99 + t100), 1.0)
-    t105 = ops.atan2(ops.select(t90, 0.0, t97 - t98), t104)
-    t106 = ops.select(failed, ops.nan, ops.wrap_cut(t105))
-    t107 = ops.select(t62, ops.select(t76, 1.0, t85 + t86), 1.0)
-    t108 = ops.atan2(ops.select(t76, 0.0, t83 - t84), t107)
-    t109 = ops.select(failed, ops.nan, ops.wrap_cut(t108))
-    t110 = ops.select(t62, ops.select(t61, 1.0, t71 + t72), 1.0)
-    t111 = ops.atan2(ops.select(t61, 0.0, t69 - t70), t110)
-    t112 = ops.select(failed, ops.nan, ops.wrap_cut(t111))
-    t113 = t61 | met_2 | met_3
-    t114 = ops.max(t20, 0.0) * ops.max(t24, 0.0)
-    t115 = (fore_1 + t21) * ops.max(t22, 0.0)
-    t116 = t114 - t115
-    t117 = t13 * t116
-    beyond_1_2 = 2.0 * ops.sqrt(t114 * t115)
-    t118 = z * beyond_1_2
-    cosine_1 = ops.select(t61, 1.0, t117 - t118)
-    share_1 = L / ops.select(t61, 1.0, R_1 * (t114 + t115))
-    t119 = c_alpha1 * share_1
-    t120 = t5 + cosine_1 * t119
-    t121 = ops.max(t38, 0.0) * ops.max(t41, 0.0)
-    t122 = (fore_2 + t39) * ops.max(t40, 0.0)
-    t123 = t121 - t122
-    t124 = t31 * t123
-    beyond_2_2 = 2.0 * ops.sqrt(t121 * t122)
-    t125 = z * beyond_2_2
-    cosine_2 = ops.select(t76, 1.0, t124 - t125)
-    share_2 = L / ops.select(t76, 1.0, R_2 * (t121 + t122))
-    t126 = s_alpha2 * share_2
-    t127 = t25 + cosine_2 * t126
-    t128 = ops.max(t55, 0.0) * ops.max(t59, 0.0)
-    t129 = (fore_3 + t57) * ops.max(t58, 0.0)
-    t130 = t128 - t129
-    t131 = z * t130
-    beyond_3_2 = 2.0 * ops.sqrt(t128 * t129)
-    t132 = t48 * beyond_3_2
-    share_3 = L / ops.select(t90, 1.0, R_3 * (t128 + t129))
-    A_33 = z + ops.select(t90, 0.0, t131 + t132) * share_3
-    t133 = z * t123
-    t134 = t31 * beyond_2_2
-    A_23 = z + ops.select(t76, 0.0, t133 + t134) * share_2
-    t135 = t48 * t130
-    t136 = z * beyond_3_2
-    cosine_3 = ops.select(t90, 1.0, t135 - t136)
-    t137 = s_alpha3 * share_3
-    t138 = t43 + cosine_3 * t137
-    t139 = t127 * A_33 - A_23 * t138
-    t140 = s_alpha1 * share_1
-    t141 = t4 + cosine_1 * t140
-    t142 = c_alpha2 * share_2
-    t143 = t26 + cosine_2 * t142
-    t144 = c_alpha3 * share_3
-    t145 = t44 + cosine_3 * t144
-    t146 = A_33 * t143 - A_23 * t145
-    t147 = z * t116
-    t148 = t13 * beyond_1_2
-    A_13 = z + ops.select(t61, 0.0, t147 + t148) * share_1
-    t149 = t138 * t143 - t127 * t145
-    t150 = ops.abs(t120 * t139 - t141 * t146 + A_13 * t149)
-    t151 = ops.min(ops.min(ops.min(0.0, t24), t20), t22)
-    missed_1 = ops.max(0.0, ops.abs(-t6) - l) - t151 / lost_1
-    t152 = ops.min(ops.min(ops.min(0.0, t41), t38), t40)
-    missed_2 = ops.max(0.0, ops.abs(-t27) - l) - t152 / lost_2
-    t153 = ops.min(ops.min(ops.min(0.0, t59), t55), t58)
-    missed_3 = ops.max(0.0, ops.abs(-t45) - l) - t153 / lost_3
-    t154 = ops.determined * (l * l * l) * (t60 + (missed_1 + missed_2 + missed_3))
-    t155 = ops.status(invalid, unreachable, t113 | (t60 * t150 <= t154))
-    A_33_plus_plus_minus = z + ops.select(t90, 0.0, t131 - t132) * share_3
-    cosine_3_plus_plus_minus = ops.select(t90, 1.0, t135 + t136)
-    t156 = t43 + cosine_3_plus_plus_minus * t137
-    t157 = t127 * A_33_plus_plus_minus - A_23 * t156
-    t158 = t44 + cosine_3_plus_plus_minus * t144
-    t159 = t143 * A_33_plus_plus_minus - A_23 * t158
-    t160 = t143 * t156 - t127 * t158
-    t161 = ops.abs(t120 * t157 - t141 * t159 + A_13 * t160)
-    t162 = ops.status(invalid, unreachable, t113 | (t60 * t161 <= t154))
-    cosine_2_plus_minus_plus = ops.select(t76, 1.0, t124 + t125)
-    t163 = t25 + cosine_2_plus_minus_plus * t126
-    A_23_plus_minus_plus = z + ops.select(t76, 0.0, t133 - t134) * share_2
-    t164 = A_33 * t163 - t138 * A_23_plus_minus_plus
-    t165 = t26 + cosine_2_plus_minus_plus * t142
-    t166 = A_33 * t165 - t145 * A_23_plus_minus_plus
-    t167 = t138 * t165 - t145 * t163
-    t168 = ops.abs(t120 * t164 - t141 * t166 + A_13 * t167)
-    t169 = ops.status(invalid, unreachable, t113 | (t60 * t168 <= t154))
-    t170 = A_33_plus_plus_minus * t163 - t156 * A_23_plus_minus_plus
-    t171 = A_33_plus_plus_minus * t165 - t158 * A_23_plus_minus_plus
-    t172 = t156 * t165 - t158 * t163
-    t173 = ops.abs(t120 * t170 - t141 * t171 + A_13 * t172)
-    t174 = ops.status(invalid, unreachable, t113 | (t60 * t173 <= t154))
-    cosine_1_minus_plus_plus = ops.select(t61, 1.0, t117 + t118)
-    t175 = t5 + cosine_1_minus_plus_plus * t119
-    t176 = t4 + cosine_1_minus_plus_plus * t140
-    A_13_minus_plus_plus = z + ops.select(t61, 0.0, t147 - t148) * share_1
-    Delta_minus_plus_plus = t139 * t175 - t146 * t176 + t149 * A_13_minus_plus_plus
-    t177 = t113 | (t60 * ops.abs(Delta_minus_plus_plus) <= t154)
-    Delta_minus_plus_minus = t157 * t175 - t159 * t176 + t160 * A_13_minus_plus_plus
-    t178 = t60 * ops.abs(Delta_minus_plus_minus) <= t154
-    t179 = ops.status(invalid, unreachable, t113 | t178)
-    Delta_minus_minus_plus = t164 * t175 - t166 * t176 + t167 * A_13_minus_plus_plus
-    t180 = t60 * ops.abs(Delta_minus_minus_plus) <= t154
-    t181 = ops.status(invalid, unreachable, t113 | t180)
-    Delta_minus_minus_minus = t170 * t175 - t171 * t176 + t172 * A_13_minus_plus_plus
-    t182 = t60 * ops.abs(Delta_minus_minus_minus) <= t154
-    t183 = ops.status(invalid, unreachable, t113 | t182)
+    t52 = size * ops.vanishing
+    no_crank_1 = L <= t52
+    t53 = (R_1 <= t52) | no_crank_1
+    t54 = ops.opposite(failed)
+    t55 = t54 & ops.opposite(t53)
+    R_1_2 = ops.sqrt(ops.select(t55, t14, 1.0))
+    t56 = L - R_1_2
+    fore_1_2 = ops.sqrt(ops.select(t55, t10, 1.0))
+    t57 = ops.max(t56 + fore_1_2, 0.0) * ops.max(fore_1_2 - t56, 0.0)
+    t58 = L + R_1_2
+    t59 = (fore_1_2 + t58) * ops.max(t58 - fore_1_2, 0.0)
+    t60 = t57 - t59
+    t61 = z * t60
+    beyond_1 = 2.0 * ops.sqrt(ops.select(t55, t57 * t59, 1.0))
+    t62 = t13 * beyond_1
+    t63 = t13 * t60
+    t64 = z * beyond_1
+    t65 = ops.select(t54, ops.select(t53, 1.0, t63 - t64), 1.0)
+    t66 = ops.atan2(ops.select(t53, 0.0, t61 + t62), t65)
+    t67 = ops.select(failed, ops.nan, ops.wrap_cut(t66))
+    met_2 = R_2 <= t52
+    t68 = met_2 | no_crank_1
+    t69 = t54 & ops.opposite(t68)
+    fore_2_2 = ops.sqrt(ops.select(t69, t27, 1.0))
+    R_2_2 = ops.sqrt(ops.select(t69, t30, 1.0))
+    t70 = L - R_2_2
+    t71 = ops.max(fore_2_2 + t70, 0.0) * ops.max(fore_2_2 - t70, 0.0)
+    t72 = L + R_2_2
+    t73 = (fore_2_2 + t72) * ops.max(t72 - fore_2_2, 0.0)
+    t74 = t71 - t73
+    t75 = z * t74
+    beyond_2 = 2.0 * ops.sqrt(ops.select(t69, t71 * t73, 1.0))
+    t76 = t29 * beyond_2
+    t77 = t29 * t74
+    t78 = z * beyond_2
+    t79 = ops.select(t54, ops.select(t68, 1.0, t77 - t78), 1.0)
+    t80 = ops.atan2(ops.select(t68, 0.0, t75 + t76), t79)
+    t81 = ops.select(failed, ops.nan, ops.wrap_cut(t80))
+    met_3 = R_3 <= t52
+    t82 = met_3 | no_crank_1
+    t83 = t54 & ops.opposite(t82)
+    fore_3_2 = ops.sqrt(ops.select(t83, t42, 1.0))
+    R_3_2 = ops.sqrt(ops.select(t83, t45, 1.0))
+    t84 = L - R_3_2
+    t85 = ops.max(fore_3_2 + t84, 0.0) * ops.max(fore_3_2 - t84, 0.0)
+    t86 = L + R_3_2
+    t87 = (fore_3_2 + t86) * ops.max(t86 - fore_3_2, 0.0)
+    t88 = t85 - t87
+    t89 = z * t88
+    beyond_3 = 2.0 * ops.sqrt(ops.select(t83, t85 * t87, 1.0))
+    t90 = t44 * beyond_3
+    t91 = t44 * t88
+    t92 = z * beyond_3
+    t93 = ops.select(t54, ops.select(t82, 1.0, t91 - t92), 1.0)
+    t94 = ops.atan2(ops.select(t82, 0.0, t89 + t90), t93)
+    t95 = ops.select(failed, ops.nan, ops.wrap_cut(t94))
+    t96 = ops.select(t54, ops.select(t82, 1.0, t91 + t92), 1.0)
+    t97 = ops.atan2(ops.select(t82, 0.0, t89 - t90), t96)
+    t98 = ops.select(failed, ops.nan, ops.wrap_cut(t97))
+    t99 = ops.select(t54, ops.select(t68, 1.0, t77 + t78), 1.0)
+    t100 = ops.atan2(ops.select(t68, 0.0, t75 - t76), t99)
+    t101 = ops.select(failed, ops.nan, ops.wrap_cut(t100))
+    t102 = ops.select(t54, ops.select(t53, 1.0, t63 + t64), 1.0)
+    t103 = ops.atan2(ops.select(t53, 0.0, t61 - t62), t102)
+    t104 = ops.select(failed, ops.nan, ops.wrap_cut(t103))
+    t105 = t53 | met_2 | met_3
+    t106 = ops.max(t16, 0.0) * ops.max(t20, 0.0)
+    t107 = (fore_1 + t17) * ops.max(t18, 0.0)
+    t108 = t106 - t107
+    t109 = t13 * t108
+    beyond_1_2 = 2.0 * ops.sqrt(t106 * t107)
+    t110 = z * beyond_1_2
+    cosine_1 = ops.select(t53, 1.0, t109 - t110)
+    share_1 = L / ops.select(t53, 1.0, R_1 * (t106 + t107))
+    t111 = c_alpha1 * share_1
+    t112 = t5 + cosine_1 * t111
+    t113 = ops.max(t32, 0.0) * ops.max(t35, 0.0)
+    t114 = (fore_2 + t33) * ops.max(t34, 0.0)
+    t115 = t113 - t114
+    t116 = t29 * t115
+    beyond_2_2 = 2.0 * ops.sqrt(t113 * t114)
+    t117 = z * beyond_2_2
+    cosine_2 = ops.select(t68, 1.0, t116 - t117)
+    share_2 = L / ops.select(t68, 1.0, R_2 * (t113 + t114))
+    t118 = s_alpha2 * share_2
+    t119 = t21 + cosine_2 * t118
+    t120 = ops.max(t47, 0.0) * ops.max(t51, 0.0)
+    t121 = (fore_3 + t49) * ops.max(t50, 0.0)
+    t122 = t120 - t121
+    t123 = z * t122
+    beyond_3_2 = 2.0 * ops.sqrt(t120 * t121)
+    t124 = t44 * beyond_3_2
+    share_3 = L / ops.select(t82, 1.0, R_3 * (t120 + t121))
+    A_33 = z + ops.select(t82, 0.0, t123 + t124) * share_3
+    t125 = z * t115
+    t126 = t29 * beyond_2_2
+    A_23 = z + ops.select(t68, 0.0, t125 + t126) * share_2
+    t127 = t44 * t122
+    t128 = z * beyond_3_2
+    cosine_3 = ops.select(t82, 1.0, t127 - t128)
+    t129 = s_alpha3 * share_3
+    t130 = t37 + cosine_3 * t129
+    t131 = t119 * A_33 - A_23 * t130
+    t132 = s_alpha1 * share_1
+    t133 = t4 + cosine_1 * t132
+    t134 = c_alpha2 * share_2
+    t135 = t22 + cosine_2 * t134
+    t136 = c_alpha3 * share_3
+    t137 = t38 + cosine_3 * t136
+    t138 = A_33 * t135 - A_23 * t137
+    t139 = z * t108
+    t140 = t13 * beyond_1_2
+    A_13 = z + ops.select(t53, 0.0, t139 + t140) * share_1
+    t141 = t130 * t135 - t119 * t137
+    t142 = ops.abs(t112 * t131 - t133 * t138 + A_13 * t141)
+    t143 = ops.min(ops.min(ops.min(0.0, t20), t16), t18)
+    missed_1 = ops.max(0.0, ops.abs(-t6) - l) - t143 / lost_1
+    t144 = ops.min(ops.min(ops.min(0.0, t35), t32), t34)
+    missed_2 = ops.max(0.0, ops.abs(-t23) - l) - t144 / lost_2
+    t145 = ops.min(ops.min(ops.min(0.0, t51), t47), t50)
+    missed_3 = ops.max(0.0, ops.abs(-t39) - l) - t145 / lost_3
+    t146 = ops.determined * (l * l * l) * (t52 + (missed_1 + missed_2 + missed_3))
+    t147 = ops.status(invalid, unreachable, t105 | (t52 * t142 <= t146))
+    A_33_plus_plus_minus = z + ops.select(t82, 0.0, t123 - t124) * share_3
+    cosine_3_plus_plus_minus = ops.select(t82, 1.0, t127 + t128)
+    t148 = t37 + cosine_3_plus_plus_minus * t129
+    t149 = t119 * A_33_plus_plus_minus - A_23 * t148
+    t150 = t38 + cosine_3_plus_plus_minus * t136
+    t151 = t135 * A_33_plus_plus_minus - A_23 * t150
+    t152 = t135 * t148 - t119 * t150
+    t153 = ops.abs(t112 * t149 - t133 * t151 + A_13 * t152)
+    t154 = ops.status(invalid, unreachable, t105 | (t52 * t153 <= t146))
+    cosine_2_plus_minus_plus = ops.select(t68, 1.0, t116 + t117)
+    t155 = t21 + cosine_2_plus_minus_plus * t118
+    A_23_plus_minus_plus = z + ops.select(t68, 0.0, t125 - t126) * share_2
+    t156 = A_33 * t155 - t130 * A_23_plus_minus_plus
+    t157 = t22 + cosine_2_plus_minus_plus * t134
+    t158 = A_33 * t157 - t137 * A_23_plus_minus_plus
+    t159 = t130 * t157 - t137 * t155
+    t160 = ops.abs(t112 * t156 - t133 * t158 + A_13 * t159)
+    t161 = ops.status(invalid, unreachable, t105 | (t52 * t160 <= t146))
+    t162 = A_33_plus_plus_minus * t155 - t148 * A_23_plus_minus_plus
+    t163 = A_33_plus_plus_minus * t157 - t150 * A_23_plus_minus_plus
+    t164 = t148 * t157 - t150 * t155
+    t165 = ops.abs(t112 * t162 - t133 * t163 + A_13 * t164)
+    t166 = ops.status(invalid, unreachable, t105 | (t52 * t165 <= t146))
+    cosine_1_minus_plus_plus = ops.select(t53, 1.0, t109 + t110)
+    t167 = t5 + cosine_1_minus_plus_plus * t111
+    t168 = t4 + cosine_1_minus_plus_plus * t132
+    A_13_minus_plus_plus = z + ops.select(t53, 0.0, t139 - t140) * share_1
+    Delta_minus_plus_plus = t131 * t167 - t138 * t168 + t141 * A_13_minus_plus_plus
+    t169 = t105 | (t52 * ops.abs(Delta_minus_plus_plus) <= t146)
+    Delta_minus_plus_minus = t149 * t167 - t151 * t168 + t152 * A_13_minus_plus_plus
+    t170 = t52 * ops.abs(Delta_minus_plus_minus) <= t146
+    t171 = ops.status(invalid, unreachable, t105 | t170)
+    Delta_minus_minus_plus = t156 * t167 - t158 * t168 + t159 * A_13_minus_plus_plus
+    t172 = t52 * ops.abs(Delta_minus_minus_plus) <= t146
+    t173 = ops.status(invalid, unreachable, t105 | t172)
+    Delta_minus_minus_minus = t162 * t167 - t163 * t168 + t164 * A_13_minus_plus_plus
+    t174 = t52 * ops.abs(Delta_minus_minus_minus) <= t146
+    t175 = ops.status(invalid, unreachable, t105 | t174)
     return (
-        t75,
-        t89,
-        t103,
-        t75,
-        t89,
-        t106,
-        t75,
-        t109,
-        t103,
-        t75,
-        t109,
-        t106,
-        t112,
-        t89,
-        t103,
-        t112,
-        t89,
-        t106,
-        t112,
-        t109,
-        t103,
-        t112,
-        t109,
-        t106,
-        t155,
-        t162,
-        t169,
-        t174,
-        ops.status(invalid, unreachable, t177),
-        t179,
-        t181,
-        t183,
+        t67,
+        t81,
+        t95,
+        t67,
+        t81,
+        t98,
+        t67,
+        t101,
+        t95,
+        t67,
+        t101,
+        t98,
+        t104,
+        t81,
+        t95,
+        t104,
+        t81,
+        t98,
+        t104,
+        t101,
+        t95,
+        t104,
+        t101,
+        t98,
+        t147,
+        t154,
+        t161,
+        t166,
+        ops.status(invalid, unreachable, t169),
+        t171,
+        t173,
+        t175,
     )
 
 
@@ -2298,48 +2290,40 @@ def _workspace_contains(ops, x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     aside_1 = c_alpha1 * t4 - s_alpha1 * t5
     t6 = l - aside_1
     t7 = l + aside_1
-    t8 = l * size
-    t9 = size * size * 5.684341886080802e-14
+    t8 = size * 2.384185791015625e-07
     fore_1 = ops.sqrt(ops.max(t6, 0.0) * ops.max(t7, 0.0))
-    t10 = z * z
-    t11 = L * L - t10
+    t9 = ops.feasibility * (size * ops.max(1.0, l / (t8 + fore_1)) * 0.5)
     wu_1 = s_alpha1 * t4 + c_alpha1 * t5
-    t12 = wu_1 * wu_1
-    t13 = t8 / (t9 + size * fore_1 + ops.abs(t11 - t12))
-    t14 = ops.feasibility * (size * ops.max(1.0, t13) * 0.5)
-    R_1 = ops.sqrt(t12 + t10)
-    t15 = L - R_1
-    t16 = (t3 <= t6) & (t3 <= t7) & (-t14 <= fore_1 + t15)
-    t17 = t16 & (-t14 <= L + R_1 - fore_1) & (-t14 <= fore_1 - t15)
-    t18 = y + e * s_alpha2 - f * s_alpha2
-    t19 = x + e * c_alpha2 - f * c_alpha2
-    aside_2 = c_alpha2 * t18 - s_alpha2 * t19
-    t20 = l - aside_2
-    t21 = l + aside_2
-    fore_2 = ops.sqrt(ops.max(t20, 0.0) * ops.max(t21, 0.0))
-    wu_2 = s_alpha2 * t18 + c_alpha2 * t19
-    t22 = wu_2 * wu_2
-    t23 = t8 / (t9 + size * fore_2 + ops.abs(t11 - t22))
-    t24 = ops.feasibility * (size * ops.max(1.0, t23) * 0.5)
-    R_2 = ops.sqrt(t10 + t22)
-    t25 = L - R_2
-    t26 = t17 & (t3 <= t20) & (t3 <= t21) & (-t24 <= fore_2 + t25)
-    t27 = t26 & (-t24 <= L + R_2 - fore_2) & (-t24 <= fore_2 - t25)
-    t28 = y + e * s_alpha3 - f * s_alpha3
-    t29 = x + e * c_alpha3 - f * c_alpha3
-    aside_3 = c_alpha3 * t28 - s_alpha3 * t29
-    t30 = l - aside_3
-    t31 = l + aside_3
-    fore_3 = ops.sqrt(ops.max(t30, 0.0) * ops.max(t31, 0.0))
-    wu_3 = s_alpha3 * t28 + c_alpha3 * t29
-    t32 = wu_3 * wu_3
-    t33 = t8 / (t9 + size * fore_3 + ops.abs(t11 - t32))
-    t34 = ops.feasibility * (size * ops.max(1.0, t33) * 0.5)
-    R_3 = ops.sqrt(t10 + t32)
-    t35 = L - R_3
-    t36 = t27 & (t3 <= t30) & (t3 <= t31) & (-t34 <= fore_3 + t35)
-    t37 = t36 & (-t34 <= L + R_3 - fore_3) & (-t34 <= fore_3 - t35)
-    failed = ops.opposite(t2 & ops.finite(x, y, z)) | ops.opposite(t37)
+    t10 = z * z
+    R_1 = ops.sqrt(wu_1 * wu_1 + t10)
+    t11 = L - R_1
+    t12 = (t3 <= t6) & (t3 <= t7) & (-t9 <= fore_1 + t11)
+    t13 = t12 & (-t9 <= L + R_1 - fore_1) & (-t9 <= fore_1 - t11)
+    t14 = y + e * s_alpha2 - f * s_alpha2
+    t15 = x + e * c_alpha2 - f * c_alpha2
+    aside_2 = c_alpha2 * t14 - s_alpha2 * t15
+    t16 = l - aside_2
+    t17 = l + aside_2
+    fore_2 = ops.sqrt(ops.max(t16, 0.0) * ops.max(t17, 0.0))
+    t18 = ops.feasibility * (size * ops.max(1.0, l / (t8 + fore_2)) * 0.5)
+    wu_2 = s_alpha2 * t14 + c_alpha2 * t15
+    R_2 = ops.sqrt(t10 + wu_2 * wu_2)
+    t19 = L - R_2
+    t20 = t13 & (t3 <= t16) & (t3 <= t17) & (-t18 <= fore_2 + t19)
+    t21 = t20 & (-t18 <= L + R_2 - fore_2) & (-t18 <= fore_2 - t19)
+    t22 = y + e * s_alpha3 - f * s_alpha3
+    t23 = x + e * c_alpha3 - f * c_alpha3
+    aside_3 = c_alpha3 * t22 - s_alpha3 * t23
+    t24 = l - aside_3
+    t25 = l + aside_3
+    fore_3 = ops.sqrt(ops.max(t24, 0.0) * ops.max(t25, 0.0))
+    t26 = ops.feasibility * (size * ops.max(1.0, l / (t8 + fore_3)) * 0.5)
+    wu_3 = s_alpha3 * t22 + c_alpha3 * t23
+    R_3 = ops.sqrt(t10 + wu_3 * wu_3)
+    t27 = L - R_3
+    t28 = t21 & (t3 <= t24) & (t3 <= t25) & (-t26 <= fore_3 + t27)
+    t29 = t28 & (-t26 <= L + R_3 - fore_3) & (-t26 <= fore_3 - t27)
+    failed = ops.opposite(t2 & ops.finite(x, y, z)) | ops.opposite(t29)
     return (
         ops.opposite(failed),
     )

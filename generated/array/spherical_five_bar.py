@@ -9,8 +9,8 @@
 #   jacobian: 107 compare and select, 102 add, 26 divide, 169 multiply, 7 sincos, 7 sqrt
 #   singularities: 100 compare and select, 84 add, 14 divide, 133 multiply, 7 sincos, 7 sqrt
 #   condition_number: 107 compare and select, 128 add, 22 divide, 178 multiply, 7 sincos, 11 sqrt
-#   ik: 151 compare and select, 111 add, 4 atan2, 15 divide, 138 multiply, 5 sincos, 14 sqrt
-#   workspace_contains: 55 compare and select, 30 add, 9 divide, 37 multiply, 5 sincos, 5 sqrt
+#   ik: 149 compare and select, 107 add, 4 atan2, 15 divide, 132 multiply, 5 sincos, 14 sqrt
+#   workspace_contains: 53 compare and select, 26 add, 9 divide, 30 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
 
 All axes meet in the centre O, and all links are arcs of great circles of a sphere of radius r
@@ -1686,177 +1686,171 @@ def _ik(ops, x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     t10 = r_1 - aside_1
     t11 = aside_1 + r_1
     t12 = (ops.abs(r - strut_0) <= t5) & (-t5 <= t10) & (-t5 <= t11)
-    t13 = r * r
-    t14 = t13 * 5.684341886080802e-14
+    t13 = r * 2.384185791015625e-07
     fore_1 = ops.sqrt(ops.max(t10, 0.0) * ops.max(t11, 0.0))
+    lost_1 = ops.max(1.0, r_1 / (t13 + fore_1))
+    t14 = -(ops.feasibility * (r * lost_1 * 0.5))
     l_1 = r * ops.abs(s_alpha1)
     py_0 = y * share_0
     pz_0 = z * share_0
     t15 = pz_0 * pz_0
-    t16 = py_0 * py_0 + t15
-    t17 = r * r_1 / (t14 + r * fore_1 + ops.abs(l_1 * l_1 - t16))
-    lost_1 = ops.max(1.0, t17)
-    t18 = -(ops.feasibility * (r * lost_1 * 0.5))
-    R_1 = ops.sqrt(t16)
-    t19 = l_1 - R_1
-    t20 = fore_1 + t19
-    t21 = l_1 + R_1
-    t22 = t21 - fore_1
-    t23 = fore_1 - t19
-    t24 = t12 & (t18 <= t20) & (t18 <= t22) & (t18 <= t23)
-    t25 = ops.abs(s_beta2_half)
-    r_2 = t25 * t7
-    t26 = r * c_alpha2
-    t27 = c_gamma * t26
-    t28 = px_0 - t27
-    t29 = s_gamma * t26
-    t30 = py_0 - t29
-    aside_2 = c_gamma * t28 + s_gamma * t30
-    t31 = r_2 - aside_2
-    t32 = r_2 + aside_2
-    fore_2 = ops.sqrt(ops.max(t31, 0.0) * ops.max(t32, 0.0))
-    t33 = s_gamma * t28 - c_gamma * t30
-    t34 = t15 + t33 * t33
+    R_1 = ops.sqrt(py_0 * py_0 + t15)
+    t16 = l_1 - R_1
+    t17 = fore_1 + t16
+    t18 = l_1 + R_1
+    t19 = t18 - fore_1
+    t20 = fore_1 - t16
+    t21 = t12 & (t14 <= t17) & (t14 <= t19) & (t14 <= t20)
+    t22 = ops.abs(s_beta2_half)
+    r_2 = t22 * t7
+    t23 = r * c_alpha2
+    t24 = c_gamma * t23
+    t25 = px_0 - t24
+    t26 = s_gamma * t23
+    t27 = py_0 - t26
+    aside_2 = c_gamma * t25 + s_gamma * t27
+    t28 = r_2 - aside_2
+    t29 = r_2 + aside_2
+    fore_2 = ops.sqrt(ops.max(t28, 0.0) * ops.max(t29, 0.0))
+    lost_2 = ops.max(1.0, r_2 / (t13 + fore_2))
+    t30 = -(ops.feasibility * (r * lost_2 * 0.5))
     l_2 = r * ops.abs(s_alpha2)
-    t35 = r * r_2 / (t14 + r * fore_2 + ops.abs(t34 - l_2 * l_2))
-    lost_2 = ops.max(1.0, t35)
-    t36 = -(ops.feasibility * (r * lost_2 * 0.5))
-    t37 = l_2 + fore_2
-    R_2 = ops.sqrt(t34)
-    t38 = t37 - R_2
-    t39 = t24 & (-t5 <= t31) & (-t5 <= t32) & (t36 <= t38)
-    t40 = l_2 - fore_2
-    t41 = R_2 + t40
-    t42 = R_2 - t40
-    unreachable = ops.opposite(t39 & (t36 <= t41) & (t36 <= t42))
+    t31 = l_2 + fore_2
+    t32 = s_gamma * t25 - c_gamma * t27
+    R_2 = ops.sqrt(t15 + t32 * t32)
+    t33 = t31 - R_2
+    t34 = t21 & (-t5 <= t28) & (-t5 <= t29) & (t30 <= t33)
+    t35 = l_2 - fore_2
+    t36 = R_2 + t35
+    t37 = R_2 - t35
+    unreachable = ops.opposite(t34 & (t30 <= t36) & (t30 <= t37))
     failed = invalid | unreachable
-    t43 = (R_1 <= t8) | (l_1 <= t8)
-    t44 = ops.opposite(failed)
-    t45 = t44 & ops.opposite(t43)
+    t38 = (R_1 <= t8) | (l_1 <= t8)
+    t39 = ops.opposite(failed)
+    t40 = t39 & ops.opposite(t38)
     met_2 = R_2 <= t8
     no_crank_2 = l_2 <= t8
-    t46 = met_2 | no_crank_2
-    t47 = t44 & ops.opposite(t46)
-    t48 = (t45 | t47) & ops.opposite(none_0)
-    t49 = ops.select(t48, ops.sqrt(ops.select(t48, t4, 1.0)), 1.0)
-    share_0_2 = ops.select(none_0, 1.0, r / t49)
+    t41 = met_2 | no_crank_2
+    t42 = t39 & ops.opposite(t41)
+    t43 = (t40 | t42) & ops.opposite(none_0)
+    t44 = ops.select(t43, ops.sqrt(ops.select(t43, t4, 1.0)), 1.0)
+    share_0_2 = ops.select(none_0, 1.0, r / t44)
     pz_0_2 = z * share_0_2
     px_0_2 = x * share_0_2
     aside_1_2 = px_0_2 - t9
-    t50 = ops.max(r_1 - aside_1_2, 0.0) * ops.max(aside_1_2 + r_1, 0.0)
-    fore_1_2 = ops.sqrt(ops.select(t45, t50, 1.0))
+    t45 = ops.max(r_1 - aside_1_2, 0.0) * ops.max(aside_1_2 + r_1, 0.0)
+    fore_1_2 = ops.sqrt(ops.select(t40, t45, 1.0))
     py_0_2 = y * share_0_2
-    t51 = pz_0_2 * pz_0_2
-    R_1_2 = ops.sqrt(ops.select(t45, py_0_2 * py_0_2 + t51, 1.0))
-    t52 = l_1 - R_1_2
-    t53 = ops.max(fore_1_2 + t52, 0.0) * ops.max(fore_1_2 - t52, 0.0)
-    t54 = l_1 + R_1_2
-    t55 = (fore_1_2 + t54) * ops.max(t54 - fore_1_2, 0.0)
-    t56 = t53 - t55
-    t57 = pz_0_2 * t56
-    beyond_1 = 2.0 * ops.sqrt(ops.select(t45, t53 * t55, 1.0))
-    t58 = py_0_2 * beyond_1
-    t59 = pz_0_2 * beyond_1
-    t60 = py_0_2 * t56
-    t61 = ops.select(t44, ops.select(t43, 1.0, t59 - t60), 1.0)
-    t62 = ops.atan2(ops.select(t43, 0.0, t57 + t58), t61)
-    t63 = ops.select(failed, ops.nan, ops.wrap_cut(-t62))
-    t64 = px_0_2 - t27
-    t65 = py_0_2 - t29
-    aside_2_2 = c_gamma * t64 + s_gamma * t65
-    t66 = ops.max(r_2 - aside_2_2, 0.0) * ops.max(r_2 + aside_2_2, 0.0)
-    fore_2_2 = ops.sqrt(ops.select(t47, t66, 1.0))
-    t67 = l_2 + fore_2_2
-    t68 = s_gamma * t64 - c_gamma * t65
-    R_2_2 = ops.sqrt(ops.select(t47, t51 + t68 * t68, 1.0))
-    t69 = l_2 - fore_2_2
-    t70 = ops.max(t67 - R_2_2, 0.0) * ops.max(R_2_2 - t69, 0.0)
-    t71 = (R_2_2 + t67) * ops.max(R_2_2 + t69, 0.0)
-    t72 = t70 - t71
-    t73 = pz_0_2 * t72
-    beyond_2 = 2.0 * ops.sqrt(ops.select(t47, t70 * t71, 1.0))
-    t74 = t68 * beyond_2
-    t75 = t68 * t72
-    t76 = pz_0_2 * beyond_2
-    t77 = ops.select(t44, ops.select(t46, 1.0, t75 + t76), 1.0)
-    t78 = ops.atan2(ops.select(t46, 0.0, t73 - t74), t77)
-    t79 = ops.select(failed, ops.nan, ops.wrap_cut(-t78))
-    t80 = ops.select(t44, ops.select(t46, 1.0, t75 - t76), 1.0)
-    t81 = ops.atan2(ops.select(t46, 0.0, t73 + t74), t80)
-    t82 = ops.select(failed, ops.nan, ops.wrap_cut(-t81))
-    t83 = ops.select(t44, ops.select(t43, 1.0, -(t60 + t59)), 1.0)
-    t84 = ops.atan2(ops.select(t43, 0.0, t57 - t58), t83)
-    t85 = ops.select(failed, ops.nan, ops.wrap_cut(-t84))
-    t86 = t43 | met_2 | no_crank_2
-    t87 = ops.max(t20, 0.0) * ops.max(t23, 0.0)
-    t88 = (fore_1 + t21) * ops.max(t22, 0.0)
-    beyond_1_2 = 2.0 * ops.sqrt(t87 * t88)
-    t89 = pz_0 * beyond_1_2
-    t90 = t87 - t88
-    t91 = py_0 * t90
-    share_1 = l_1 / ops.select(t43, 1.0, R_1 * (t87 + t88))
-    t92 = ops.select(t43, 1.0, t89 - t91) * share_1
-    t93 = ops.max(t38, 0.0) * ops.max(t42, 0.0)
-    t94 = (R_2 + t37) * ops.max(t41, 0.0)
-    t95 = t93 - t94
-    t96 = pz_0 * t95
-    beyond_2_2 = 2.0 * ops.sqrt(t93 * t94)
-    t97 = t33 * beyond_2_2
-    share_2 = l_2 / ops.select(t46, 1.0, R_2 * (t93 + t94))
-    A_23 = ops.select(t46, 0.0, t96 - t97) * share_2
-    t98 = pz_0 * t90
-    t99 = py_0 * beyond_1_2
-    A_13 = ops.select(t43, 0.0, t98 + t99) * share_1
-    t100 = t33 * t95
-    t101 = pz_0 * beyond_2_2
-    cosine_2 = ops.select(t46, 1.0, t100 + t101)
-    t102 = c_gamma * share_2
-    t103 = t29 + cosine_2 * t102
-    t104 = t9 * A_23
-    t105 = s_gamma * share_2
-    t106 = t27 - cosine_2 * t105
-    t107 = px_0 * (t92 * A_23 - A_13 * t103) - py_0 * (t104 - A_13 * t106)
-    t108 = t9 * t103
-    t109 = t8 * ops.abs(t107 - pz_0 * (t108 - t92 * t106))
-    t110 = t6 * t25 * 4.0 * (r * t13) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r)
-    t111 = ops.min(ops.min(ops.min(0.0, t20), t22), t23)
-    missed_1 = ops.max(0.0, ops.abs(aside_1) - r_1) - t111 / lost_1
-    t112 = ops.min(ops.min(ops.min(0.0, t38), t41), t42)
-    missed_2 = ops.max(0.0, ops.abs(aside_2) - r_2) - t112 / lost_2
-    t113 = ops.determined * t110 * (t8 + (missed_1 + missed_2))
-    t114 = ops.status(invalid, unreachable, t86 | (t109 <= t113))
-    A_23_plus_minus = ops.select(t46, 0.0, t96 + t97) * share_2
-    cosine_2_plus_minus = ops.select(t46, 1.0, t100 - t101)
-    t115 = t29 + cosine_2_plus_minus * t102
-    t116 = t9 * A_23_plus_minus
-    t117 = t27 - cosine_2_plus_minus * t105
-    t118 = px_0 * (t92 * A_23_plus_minus - A_13 * t115) - py_0 * (t116 - A_13 * t117)
-    t119 = t9 * t115
-    t120 = t8 * ops.abs(t118 - pz_0 * (t119 - t92 * t117))
-    t121 = ops.status(invalid, unreachable, t86 | (t120 <= t113))
-    t122 = ops.select(t43, 1.0, -(t91 + t89)) * share_1
-    A_13_minus_plus = ops.select(t43, 0.0, t98 - t99) * share_1
-    t123 = px_0 * (A_23 * t122 - t103 * A_13_minus_plus)
-    t124 = t123 - py_0 * (t104 - t106 * A_13_minus_plus)
-    t125 = t8 * ops.abs(t124 - pz_0 * (t108 - t106 * t122))
-    t126 = ops.status(invalid, unreachable, t86 | (t125 <= t113))
-    t127 = A_23_plus_minus * t122 - t115 * A_13_minus_plus
-    t128 = px_0 * t127 - py_0 * (t116 - t117 * A_13_minus_plus)
-    t129 = t8 * ops.abs(t128 - pz_0 * (t119 - t117 * t122))
-    t130 = ops.status(invalid, unreachable, t86 | (t129 <= t113))
+    t46 = pz_0_2 * pz_0_2
+    R_1_2 = ops.sqrt(ops.select(t40, py_0_2 * py_0_2 + t46, 1.0))
+    t47 = l_1 - R_1_2
+    t48 = ops.max(fore_1_2 + t47, 0.0) * ops.max(fore_1_2 - t47, 0.0)
+    t49 = l_1 + R_1_2
+    t50 = (fore_1_2 + t49) * ops.max(t49 - fore_1_2, 0.0)
+    t51 = t48 - t50
+    t52 = pz_0_2 * t51
+    beyond_1 = 2.0 * ops.sqrt(ops.select(t40, t48 * t50, 1.0))
+    t53 = py_0_2 * beyond_1
+    t54 = pz_0_2 * beyond_1
+    t55 = py_0_2 * t51
+    t56 = ops.select(t39, ops.select(t38, 1.0, t54 - t55), 1.0)
+    t57 = ops.atan2(ops.select(t38, 0.0, t52 + t53), t56)
+    t58 = ops.select(failed, ops.nan, ops.wrap_cut(-t57))
+    t59 = px_0_2 - t24
+    t60 = py_0_2 - t26
+    aside_2_2 = c_gamma * t59 + s_gamma * t60
+    t61 = ops.max(r_2 - aside_2_2, 0.0) * ops.max(r_2 + aside_2_2, 0.0)
+    fore_2_2 = ops.sqrt(ops.select(t42, t61, 1.0))
+    t62 = l_2 + fore_2_2
+    t63 = s_gamma * t59 - c_gamma * t60
+    R_2_2 = ops.sqrt(ops.select(t42, t46 + t63 * t63, 1.0))
+    t64 = l_2 - fore_2_2
+    t65 = ops.max(t62 - R_2_2, 0.0) * ops.max(R_2_2 - t64, 0.0)
+    t66 = (R_2_2 + t62) * ops.max(R_2_2 + t64, 0.0)
+    t67 = t65 - t66
+    t68 = pz_0_2 * t67
+    beyond_2 = 2.0 * ops.sqrt(ops.select(t42, t65 * t66, 1.0))
+    t69 = t63 * beyond_2
+    t70 = t63 * t67
+    t71 = pz_0_2 * beyond_2
+    t72 = ops.select(t39, ops.select(t41, 1.0, t70 + t71), 1.0)
+    t73 = ops.atan2(ops.select(t41, 0.0, t68 - t69), t72)
+    t74 = ops.select(failed, ops.nan, ops.wrap_cut(-t73))
+    t75 = ops.select(t39, ops.select(t41, 1.0, t70 - t71), 1.0)
+    t76 = ops.atan2(ops.select(t41, 0.0, t68 + t69), t75)
+    t77 = ops.select(failed, ops.nan, ops.wrap_cut(-t76))
+    t78 = ops.select(t39, ops.select(t38, 1.0, -(t55 + t54)), 1.0)
+    t79 = ops.atan2(ops.select(t38, 0.0, t52 - t53), t78)
+    t80 = ops.select(failed, ops.nan, ops.wrap_cut(-t79))
+    t81 = t38 | met_2 | no_crank_2
+    t82 = ops.max(t17, 0.0) * ops.max(t20, 0.0)
+    t83 = (fore_1 + t18) * ops.max(t19, 0.0)
+    beyond_1_2 = 2.0 * ops.sqrt(t82 * t83)
+    t84 = pz_0 * beyond_1_2
+    t85 = t82 - t83
+    t86 = py_0 * t85
+    share_1 = l_1 / ops.select(t38, 1.0, R_1 * (t82 + t83))
+    t87 = ops.select(t38, 1.0, t84 - t86) * share_1
+    t88 = ops.max(t33, 0.0) * ops.max(t37, 0.0)
+    t89 = (R_2 + t31) * ops.max(t36, 0.0)
+    t90 = t88 - t89
+    t91 = pz_0 * t90
+    beyond_2_2 = 2.0 * ops.sqrt(t88 * t89)
+    t92 = t32 * beyond_2_2
+    share_2 = l_2 / ops.select(t41, 1.0, R_2 * (t88 + t89))
+    A_23 = ops.select(t41, 0.0, t91 - t92) * share_2
+    t93 = pz_0 * t85
+    t94 = py_0 * beyond_1_2
+    A_13 = ops.select(t38, 0.0, t93 + t94) * share_1
+    t95 = t32 * t90
+    t96 = pz_0 * beyond_2_2
+    cosine_2 = ops.select(t41, 1.0, t95 + t96)
+    t97 = c_gamma * share_2
+    t98 = t26 + cosine_2 * t97
+    t99 = t9 * A_23
+    t100 = s_gamma * share_2
+    t101 = t24 - cosine_2 * t100
+    t102 = px_0 * (t87 * A_23 - A_13 * t98) - py_0 * (t99 - A_13 * t101)
+    t103 = t9 * t98
+    t104 = t8 * ops.abs(t102 - pz_0 * (t103 - t87 * t101))
+    t105 = t6 * t22 * 4.0 * (r * r * r) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r)
+    t106 = ops.min(ops.min(ops.min(0.0, t17), t19), t20)
+    missed_1 = ops.max(0.0, ops.abs(aside_1) - r_1) - t106 / lost_1
+    t107 = ops.min(ops.min(ops.min(0.0, t33), t36), t37)
+    missed_2 = ops.max(0.0, ops.abs(aside_2) - r_2) - t107 / lost_2
+    t108 = ops.determined * t105 * (t8 + (missed_1 + missed_2))
+    t109 = ops.status(invalid, unreachable, t81 | (t104 <= t108))
+    A_23_plus_minus = ops.select(t41, 0.0, t91 + t92) * share_2
+    cosine_2_plus_minus = ops.select(t41, 1.0, t95 - t96)
+    t110 = t26 + cosine_2_plus_minus * t97
+    t111 = t9 * A_23_plus_minus
+    t112 = t24 - cosine_2_plus_minus * t100
+    t113 = px_0 * (t87 * A_23_plus_minus - A_13 * t110) - py_0 * (t111 - A_13 * t112)
+    t114 = t9 * t110
+    t115 = t8 * ops.abs(t113 - pz_0 * (t114 - t87 * t112))
+    t116 = ops.status(invalid, unreachable, t81 | (t115 <= t108))
+    t117 = ops.select(t38, 1.0, -(t86 + t84)) * share_1
+    A_13_minus_plus = ops.select(t38, 0.0, t93 - t94) * share_1
+    t118 = px_0 * (A_23 * t117 - t98 * A_13_minus_plus) - py_0 * (t99 - t101 * A_13_minus_plus)
+    t119 = t8 * ops.abs(t118 - pz_0 * (t103 - t101 * t117))
+    t120 = ops.status(invalid, unreachable, t81 | (t119 <= t108))
+    t121 = A_23_plus_minus * t117 - t110 * A_13_minus_plus
+    t122 = px_0 * t121 - py_0 * (t111 - t112 * A_13_minus_plus)
+    t123 = t8 * ops.abs(t122 - pz_0 * (t114 - t112 * t117))
+    t124 = ops.status(invalid, unreachable, t81 | (t123 <= t108))
     return (
-        t63,
-        t79,
-        t63,
-        t82,
-        t85,
-        t79,
-        t85,
-        t82,
-        t114,
-        t121,
-        t126,
-        t130,
+        t58,
+        t74,
+        t58,
+        t77,
+        t80,
+        t74,
+        t80,
+        t77,
+        t109,
+        t116,
+        t120,
+        t124,
     )
 
 
@@ -1935,36 +1929,32 @@ def _workspace_contains(ops, x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     t6 = r_1 - aside_1
     t7 = aside_1 + r_1
     t8 = (ops.abs(r - strut_0) <= t4) & (-t4 <= t6) & (-t4 <= t7)
-    t9 = r * r * 5.684341886080802e-14
+    t9 = r * 2.384185791015625e-07
     fore_1 = ops.sqrt(ops.max(t6, 0.0) * ops.max(t7, 0.0))
+    t10 = ops.feasibility * (r * ops.max(1.0, r_1 / (t9 + fore_1)) * 0.5)
     l_1 = r * ops.abs(s_alpha1)
     py_0 = y * share_0
     pz_0 = z * share_0
-    t10 = pz_0 * pz_0
-    t11 = py_0 * py_0 + t10
-    t12 = r * r_1 / (t9 + r * fore_1 + ops.abs(l_1 * l_1 - t11))
-    t13 = ops.feasibility * (r * ops.max(1.0, t12) * 0.5)
-    R_1 = ops.sqrt(t11)
-    t14 = l_1 - R_1
-    t15 = t8 & (-t13 <= fore_1 + t14) & (-t13 <= l_1 + R_1 - fore_1)
+    t11 = pz_0 * pz_0
+    R_1 = ops.sqrt(py_0 * py_0 + t11)
+    t12 = l_1 - R_1
+    t13 = t8 & (-t10 <= fore_1 + t12) & (-t10 <= l_1 + R_1 - fore_1)
     r_2 = ops.abs(s_beta2_half) * t5
-    t16 = r * c_alpha2
-    t17 = px_0 - c_gamma * t16
-    t18 = py_0 - s_gamma * t16
-    aside_2 = c_gamma * t17 + s_gamma * t18
-    t19 = r_2 - aside_2
-    t20 = r_2 + aside_2
-    t21 = t15 & (-t13 <= fore_1 - t14) & (-t4 <= t19) & (-t4 <= t20)
-    fore_2 = ops.sqrt(ops.max(t19, 0.0) * ops.max(t20, 0.0))
-    t22 = s_gamma * t17 - c_gamma * t18
-    t23 = t10 + t22 * t22
+    t14 = r * c_alpha2
+    t15 = px_0 - c_gamma * t14
+    t16 = py_0 - s_gamma * t14
+    aside_2 = c_gamma * t15 + s_gamma * t16
+    t17 = r_2 - aside_2
+    t18 = r_2 + aside_2
+    t19 = t13 & (-t10 <= fore_1 - t12) & (-t4 <= t17) & (-t4 <= t18)
+    fore_2 = ops.sqrt(ops.max(t17, 0.0) * ops.max(t18, 0.0))
+    t20 = ops.feasibility * (r * ops.max(1.0, r_2 / (t9 + fore_2)) * 0.5)
     l_2 = r * ops.abs(s_alpha2)
-    t24 = r * r_2 / (t9 + r * fore_2 + ops.abs(t23 - l_2 * l_2))
-    t25 = ops.feasibility * (r * ops.max(1.0, t24) * 0.5)
-    R_2 = ops.sqrt(t23)
-    t26 = l_2 - fore_2
-    t27 = t21 & (-t25 <= l_2 + fore_2 - R_2) & (-t25 <= R_2 + t26)
-    failed = ops.opposite(t3 & ops.finite(x, y, z)) | ops.opposite(t27 & (-t25 <= R_2 - t26))
+    t21 = s_gamma * t15 - c_gamma * t16
+    R_2 = ops.sqrt(t11 + t21 * t21)
+    t22 = l_2 - fore_2
+    t23 = t19 & (-t20 <= l_2 + fore_2 - R_2) & (-t20 <= R_2 + t22)
+    failed = ops.opposite(t3 & ops.finite(x, y, z)) | ops.opposite(t23 & (-t20 <= R_2 - t22))
     return (
         ops.opposite(failed),
     )

@@ -13,8 +13,8 @@
 #   singularities: 44 compare and select, 87 add, 8 divide, 112 multiply, 6 sincos, 1 sqrt
 #   condition_number: 44 compare and select, 119 add, 10 divide, 163 multiply, 6 sincos, 3 sqrt
 #   constraint: 44 compare and select, 91 add, 8 divide, 149 multiply, 6 sincos, 1 sqrt
-#   ik: 142 compare and select, 137 add, 6 atan2, 14 divide, 156 multiply, 3 sincos, 9 sqrt
-#   workspace_contains: 56 compare and select, 55 add, 8 divide, 44 multiply, 3 sincos, 6 sqrt
+#   ik: 139 compare and select, 130 add, 6 atan2, 14 divide, 150 multiply, 3 sincos, 9 sqrt
+#   workspace_contains: 48 add, 53 compare and select, 8 divide, 38 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
 
 Three cranks of length L turn about axes in the base plane z = 0, at the distance f from the
@@ -2245,312 +2245,300 @@ def _ik(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t2 = f * s_alpha1 - (y + e * s_alpha1)
     t3 = f * c_alpha1 - (x + e * c_alpha1)
     t4 = s_alpha1 * t2 + c_alpha1 * t3
-    t5 = t4 * t4
-    R_1 = np.sqrt(t1 + t5)
+    R_1 = np.sqrt(t1 + t4 * t4)
     size = f + e + L + l
-    t6 = size * _runtime.VANISHING
-    no_crank_1 = L <= t6
-    t7 = (R_1 <= t6) | no_crank_1
-    t8 = L - R_1
-    t9 = c_alpha1 * t2 - s_alpha1 * t3
-    t10 = l + t9
-    t11 = l - t9
-    fore_1 = np.sqrt(np.maximum(t10, 0.0) * np.maximum(t11, 0.0))
-    t12 = t8 + fore_1
-    t13 = fore_1 - t8
-    del t8
-    t14 = np.maximum(t12, 0.0) * np.maximum(t13, 0.0)
-    t15 = L + R_1
-    t16 = t15 - fore_1
-    t17 = (fore_1 + t15) * np.maximum(t16, 0.0)
-    del t15
-    t18 = t14 - t17
-    t19 = z * t18
-    beyond_1 = 2.0 * np.sqrt(t14 * t17)
-    t20 = t4 * beyond_1
-    sine_1 = _runtime.select(t7, 0.0, t19 + t20)
-    t21 = t4 * t18
-    del t18, t4
-    t22 = z * beyond_1
+    t5 = size * _runtime.VANISHING
+    no_crank_1 = L <= t5
+    t6 = (R_1 <= t5) | no_crank_1
+    t7 = L - R_1
+    t8 = c_alpha1 * t2 - s_alpha1 * t3
+    t9 = l + t8
+    t10 = l - t8
+    fore_1 = np.sqrt(np.maximum(t9, 0.0) * np.maximum(t10, 0.0))
+    t11 = t7 + fore_1
+    t12 = fore_1 - t7
+    del t7
+    t13 = np.maximum(t11, 0.0) * np.maximum(t12, 0.0)
+    t14 = L + R_1
+    t15 = t14 - fore_1
+    t16 = (fore_1 + t14) * np.maximum(t15, 0.0)
+    del t14
+    t17 = t13 - t16
+    t18 = z * t17
+    beyond_1 = 2.0 * np.sqrt(t13 * t16)
+    t19 = t4 * beyond_1
+    sine_1 = _runtime.select(t6, 0.0, t18 + t19)
+    t20 = t4 * t17
+    del t17, t4
+    t21 = z * beyond_1
     del beyond_1
-    cosine_1 = _runtime.select(t7, 1.0, t21 - t22)
-    t23 = _runtime.wrap_cut(np.arctan2(sine_1, cosine_1))
-    t24 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t25 = t24 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t24
-    t26 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    invalid = np.logical_not(t25 & t26)
-    del t25, t26
-    t27 = -(_runtime.FEASIBILITY * (size * 0.5))
-    t28 = l * size
-    t29 = size * size * 5.684341886080802e-14
-    t30 = L * L - t1
-    t31 = t28 / (t29 + np.abs(t30 - t5) + size * fore_1)
-    del fore_1, t5
-    lost_1 = np.maximum(1.0, t31)
-    del t31
-    t32 = -(_runtime.FEASIBILITY * (size * lost_1 * 0.5))
-    t33 = (t27 <= t10) & (t27 <= t11) & (t32 <= t12) & (t32 <= t16)
-    del t10, t11
-    t34 = f * s_alpha2 - (y + e * s_alpha2)
-    t35 = f * c_alpha2 - (x + e * c_alpha2)
-    t36 = c_alpha2 * t34 - s_alpha2 * t35
-    t37 = l + t36
-    t38 = l - t36
-    t39 = t33 & (t32 <= t13) & (t27 <= t37) & (t27 <= t38)
-    del t32, t33
-    t40 = s_alpha2 * t34 + c_alpha2 * t35
-    t41 = t40 * t40
-    fore_2 = np.sqrt(np.maximum(t37, 0.0) * np.maximum(t38, 0.0))
-    del t37, t38
-    t42 = t28 / (t29 + np.abs(t30 - t41) + size * fore_2)
-    lost_2 = np.maximum(1.0, t42)
-    del t42
-    t43 = -(_runtime.FEASIBILITY * (size * lost_2 * 0.5))
-    R_2 = np.sqrt(t1 + t41)
-    del t41
-    t44 = L - R_2
-    t45 = fore_2 + t44
-    t46 = L + R_2
-    t47 = t46 - fore_2
-    t48 = fore_2 - t44
-    del t44
-    t49 = t39 & (t43 <= t45) & (t43 <= t47) & (t43 <= t48)
-    del t39, t43
-    t50 = f * s_alpha3 - (y + e * s_alpha3)
-    t51 = f * c_alpha3 - (x + e * c_alpha3)
-    t52 = c_alpha3 * t50 - s_alpha3 * t51
-    t53 = l + t52
-    t54 = l - t52
-    t55 = s_alpha3 * t50 + c_alpha3 * t51
-    t56 = t55 * t55
-    fore_3 = np.sqrt(np.maximum(t53, 0.0) * np.maximum(t54, 0.0))
-    t57 = t28 / (t29 + np.abs(t30 - t56) + size * fore_3)
-    del t28, t29, t30
-    lost_3 = np.maximum(1.0, t57)
-    del t57
-    t58 = -(_runtime.FEASIBILITY * (size * lost_3 * 0.5))
-    del size
-    R_3 = np.sqrt(t1 + t56)
-    del t1, t56
-    t59 = L - R_3
-    t60 = fore_3 + t59
-    t61 = t49 & (t27 <= t53) & (t27 <= t54) & (t58 <= t60)
-    del t27, t49, t53, t54
-    t62 = L + R_3
-    t63 = t62 - fore_3
-    t64 = fore_3 - t59
-    del t59
-    unreachable = np.logical_not(t61 & (t58 <= t63) & (t58 <= t64))
-    del t58, t61
-    t65 = _runtime.poison(invalid | unreachable)
-    t66 = t23 + t65
+    cosine_1 = _runtime.select(t6, 1.0, t20 - t21)
+    t22 = _runtime.wrap_cut(np.arctan2(sine_1, cosine_1))
+    t23 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t24 = t23 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     del t23
-    met_2 = R_2 <= t6
-    t67 = met_2 | no_crank_1
-    t68 = np.maximum(t45, 0.0) * np.maximum(t48, 0.0)
-    t69 = (fore_2 + t46) * np.maximum(t47, 0.0)
-    del fore_2, t46
-    t70 = t68 - t69
-    t71 = z * t70
-    beyond_2 = 2.0 * np.sqrt(t68 * t69)
-    t72 = t40 * beyond_2
-    sine_2 = _runtime.select(t67, 0.0, t71 + t72)
-    t73 = t40 * t70
-    del t40, t70
-    t74 = z * beyond_2
+    t25 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    invalid = np.logical_not(t24 & t25)
+    del t24, t25
+    t26 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t27 = size * 2.384185791015625e-07
+    lost_1 = np.maximum(1.0, l / (t27 + fore_1))
+    del fore_1
+    t28 = -(_runtime.FEASIBILITY * (size * lost_1 * 0.5))
+    t29 = (t26 <= t9) & (t26 <= t10) & (t28 <= t11) & (t28 <= t15)
+    del t10, t9
+    t30 = f * s_alpha2 - (y + e * s_alpha2)
+    t31 = f * c_alpha2 - (x + e * c_alpha2)
+    t32 = c_alpha2 * t30 - s_alpha2 * t31
+    t33 = l + t32
+    t34 = l - t32
+    t35 = t29 & (t28 <= t12) & (t26 <= t33) & (t26 <= t34)
+    del t28, t29
+    fore_2 = np.sqrt(np.maximum(t33, 0.0) * np.maximum(t34, 0.0))
+    del t33, t34
+    lost_2 = np.maximum(1.0, l / (t27 + fore_2))
+    t36 = -(_runtime.FEASIBILITY * (size * lost_2 * 0.5))
+    t37 = s_alpha2 * t30 + c_alpha2 * t31
+    R_2 = np.sqrt(t1 + t37 * t37)
+    t38 = L - R_2
+    t39 = fore_2 + t38
+    t40 = L + R_2
+    t41 = t40 - fore_2
+    t42 = fore_2 - t38
+    del t38
+    t43 = t35 & (t36 <= t39) & (t36 <= t41) & (t36 <= t42)
+    del t35, t36
+    t44 = f * s_alpha3 - (y + e * s_alpha3)
+    t45 = f * c_alpha3 - (x + e * c_alpha3)
+    t46 = c_alpha3 * t44 - s_alpha3 * t45
+    t47 = l + t46
+    t48 = l - t46
+    fore_3 = np.sqrt(np.maximum(t47, 0.0) * np.maximum(t48, 0.0))
+    lost_3 = np.maximum(1.0, l / (t27 + fore_3))
+    del t27
+    t49 = -(_runtime.FEASIBILITY * (size * lost_3 * 0.5))
+    del size
+    t50 = s_alpha3 * t44 + c_alpha3 * t45
+    R_3 = np.sqrt(t1 + t50 * t50)
+    del t1
+    t51 = L - R_3
+    t52 = fore_3 + t51
+    t53 = t43 & (t26 <= t47) & (t26 <= t48) & (t49 <= t52)
+    del t26, t43, t47, t48
+    t54 = L + R_3
+    t55 = t54 - fore_3
+    t56 = fore_3 - t51
+    del t51
+    unreachable = np.logical_not(t53 & (t49 <= t55) & (t49 <= t56))
+    del t49, t53
+    t57 = _runtime.poison(invalid | unreachable)
+    t58 = t22 + t57
+    del t22
+    met_2 = R_2 <= t5
+    t59 = met_2 | no_crank_1
+    t60 = np.maximum(t39, 0.0) * np.maximum(t42, 0.0)
+    t61 = (fore_2 + t40) * np.maximum(t41, 0.0)
+    del fore_2, t40
+    t62 = t60 - t61
+    t63 = z * t62
+    beyond_2 = 2.0 * np.sqrt(t60 * t61)
+    t64 = t37 * beyond_2
+    sine_2 = _runtime.select(t59, 0.0, t63 + t64)
+    t65 = t37 * t62
+    del t37, t62
+    t66 = z * beyond_2
     del beyond_2
-    cosine_2 = _runtime.select(t67, 1.0, t73 - t74)
-    t75 = _runtime.wrap_cut(np.arctan2(sine_2, cosine_2))
-    t76 = t75 + t65
-    del t75
-    met_3 = R_3 <= t6
-    t77 = met_3 | no_crank_1
+    cosine_2 = _runtime.select(t59, 1.0, t65 - t66)
+    t67 = _runtime.wrap_cut(np.arctan2(sine_2, cosine_2))
+    t68 = t67 + t57
+    del t67
+    met_3 = R_3 <= t5
+    t69 = met_3 | no_crank_1
     del no_crank_1
-    t78 = np.maximum(t60, 0.0) * np.maximum(t64, 0.0)
-    t79 = (fore_3 + t62) * np.maximum(t63, 0.0)
-    del fore_3, t62
-    t80 = t78 - t79
-    t81 = z * t80
-    beyond_3 = 2.0 * np.sqrt(t78 * t79)
-    t82 = t55 * beyond_3
-    sine_3 = _runtime.select(t77, 0.0, t81 + t82)
-    t83 = t55 * t80
-    del t55, t80
-    t84 = z * beyond_3
+    t70 = np.maximum(t52, 0.0) * np.maximum(t56, 0.0)
+    t71 = (fore_3 + t54) * np.maximum(t55, 0.0)
+    del fore_3, t54
+    t72 = t70 - t71
+    t73 = z * t72
+    beyond_3 = 2.0 * np.sqrt(t70 * t71)
+    t74 = t50 * beyond_3
+    sine_3 = _runtime.select(t69, 0.0, t73 + t74)
+    t75 = t50 * t72
+    del t50, t72
+    t76 = z * beyond_3
     del beyond_3
-    cosine_3 = _runtime.select(t77, 1.0, t83 - t84)
-    t85 = _runtime.wrap_cut(np.arctan2(sine_3, cosine_3))
-    t86 = t85 + t65
-    del t85
-    sine_3_plus_plus_minus = _runtime.select(t77, 0.0, t81 - t82)
-    del t81, t82
-    cosine_3_plus_plus_minus = _runtime.select(t77, 1.0, t83 + t84)
-    del t83, t84
-    t87 = np.arctan2(sine_3_plus_plus_minus, cosine_3_plus_plus_minus)
-    t88 = _runtime.wrap_cut(t87) + t65
-    del t87
-    sine_2_plus_minus_plus = _runtime.select(t67, 0.0, t71 - t72)
-    del t71, t72
-    cosine_2_plus_minus_plus = _runtime.select(t67, 1.0, t73 + t74)
+    cosine_3 = _runtime.select(t69, 1.0, t75 - t76)
+    t77 = _runtime.wrap_cut(np.arctan2(sine_3, cosine_3))
+    t78 = t77 + t57
+    del t77
+    sine_3_plus_plus_minus = _runtime.select(t69, 0.0, t73 - t74)
     del t73, t74
-    t89 = np.arctan2(sine_2_plus_minus_plus, cosine_2_plus_minus_plus)
-    t90 = _runtime.wrap_cut(t89) + t65
-    del t89
-    sine_1_minus_plus_plus = _runtime.select(t7, 0.0, t19 - t20)
-    del t19, t20
-    cosine_1_minus_plus_plus = _runtime.select(t7, 1.0, t21 + t22)
-    del t21, t22
-    t91 = np.arctan2(sine_1_minus_plus_plus, cosine_1_minus_plus_plus)
-    t92 = _runtime.wrap_cut(t91) + t65
-    del t65, t91
-    t93 = t7 | met_2 | met_3
+    cosine_3_plus_plus_minus = _runtime.select(t69, 1.0, t75 + t76)
+    del t75, t76
+    t79 = np.arctan2(sine_3_plus_plus_minus, cosine_3_plus_plus_minus)
+    t80 = _runtime.wrap_cut(t79) + t57
+    del t79
+    sine_2_plus_minus_plus = _runtime.select(t59, 0.0, t63 - t64)
+    del t63, t64
+    cosine_2_plus_minus_plus = _runtime.select(t59, 1.0, t65 + t66)
+    del t65, t66
+    t81 = np.arctan2(sine_2_plus_minus_plus, cosine_2_plus_minus_plus)
+    t82 = _runtime.wrap_cut(t81) + t57
+    del t81
+    sine_1_minus_plus_plus = _runtime.select(t6, 0.0, t18 - t19)
+    del t18, t19
+    cosine_1_minus_plus_plus = _runtime.select(t6, 1.0, t20 + t21)
+    del t20, t21
+    t83 = np.arctan2(sine_1_minus_plus_plus, cosine_1_minus_plus_plus)
+    t84 = _runtime.wrap_cut(t83) + t57
+    del t57, t83
+    t85 = t6 | met_2 | met_3
     del met_2, met_3
-    share_1 = L / _runtime.select(t7, 1.0, R_1 * (t14 + t17))
-    del R_1, t14, t17, t7
-    t94 = c_alpha1 * share_1
+    share_1 = L / _runtime.select(t6, 1.0, R_1 * (t13 + t16))
+    del R_1, t13, t16, t6
+    t86 = c_alpha1 * share_1
     del c_alpha1
-    t95 = t3 + cosine_1 * t94
-    share_2 = L / _runtime.select(t67, 1.0, R_2 * (t68 + t69))
-    del R_2, t67, t68, t69
-    t96 = s_alpha2 * share_2
+    t87 = t3 + cosine_1 * t86
+    share_2 = L / _runtime.select(t59, 1.0, R_2 * (t60 + t61))
+    del R_2, t59, t60, t61
+    t88 = s_alpha2 * share_2
     del s_alpha2
-    t97 = t34 + cosine_2 * t96
-    share_3 = L / _runtime.select(t77, 1.0, R_3 * (t78 + t79))
-    del R_3, t77, t78, t79
+    t89 = t30 + cosine_2 * t88
+    share_3 = L / _runtime.select(t69, 1.0, R_3 * (t70 + t71))
+    del R_3, t69, t70, t71
     A_33 = z + sine_3 * share_3
     del sine_3
     A_23 = z + sine_2 * share_2
     del sine_2
-    t98 = s_alpha3 * share_3
+    t90 = s_alpha3 * share_3
     del s_alpha3
-    t99 = t50 + cosine_3 * t98
-    t100 = t97 * A_33 - A_23 * t99
-    t101 = s_alpha1 * share_1
+    t91 = t44 + cosine_3 * t90
+    t92 = t89 * A_33 - A_23 * t91
+    t93 = s_alpha1 * share_1
     del s_alpha1
-    t102 = t2 + cosine_1 * t101
+    t94 = t2 + cosine_1 * t93
     del cosine_1
-    t103 = c_alpha2 * share_2
+    t95 = c_alpha2 * share_2
     del c_alpha2
-    t104 = t35 + cosine_2 * t103
+    t96 = t31 + cosine_2 * t95
     del cosine_2
-    t105 = c_alpha3 * share_3
+    t97 = c_alpha3 * share_3
     del c_alpha3
-    t106 = t51 + cosine_3 * t105
+    t98 = t45 + cosine_3 * t97
     del cosine_3
-    t107 = A_33 * t104 - A_23 * t106
+    t99 = A_33 * t96 - A_23 * t98
     A_13 = z + sine_1 * share_1
     del sine_1
-    t108 = t99 * t104 - t97 * t106
-    t109 = np.abs(t95 * t100 - t102 * t107 + A_13 * t108)
-    t110 = np.minimum(np.minimum(np.minimum(0.0, t13), t12), t16)
-    del t12, t13, t16
-    missed_1 = np.maximum(0.0, np.abs(-t9) - l) - t110 / lost_1
-    del lost_1, t110, t9
-    t111 = np.minimum(np.minimum(np.minimum(0.0, t48), t45), t47)
-    del t45, t47, t48
-    missed_2 = np.maximum(0.0, np.abs(-t36) - l) - t111 / lost_2
-    del lost_2, t111, t36
-    t112 = np.minimum(np.minimum(np.minimum(0.0, t64), t60), t63)
-    del t60, t63, t64
-    missed_3 = np.maximum(0.0, np.abs(-t52) - l) - t112 / lost_3
-    del lost_3, t112, t52
-    t113 = _runtime.DETERMINED * (l * l * l) * (t6 + (missed_1 + missed_2 + missed_3))
+    t100 = t91 * t96 - t89 * t98
+    t101 = t5 * np.abs(t87 * t92 - t94 * t99 + A_13 * t100)
+    t102 = np.minimum(np.minimum(np.minimum(0.0, t12), t11), t15)
+    del t11, t12, t15
+    missed_1 = np.maximum(0.0, np.abs(-t8) - l) - t102 / lost_1
+    del lost_1, t102, t8
+    t103 = np.minimum(np.minimum(np.minimum(0.0, t42), t39), t41)
+    del t39, t41, t42
+    missed_2 = np.maximum(0.0, np.abs(-t32) - l) - t103 / lost_2
+    del lost_2, t103, t32
+    t104 = np.minimum(np.minimum(np.minimum(0.0, t56), t52), t55)
+    del t52, t55, t56
+    missed_3 = np.maximum(0.0, np.abs(-t46) - l) - t104 / lost_3
+    del lost_3, t104, t46
+    t105 = _runtime.DETERMINED * (l * l * l) * (t5 + (missed_1 + missed_2 + missed_3))
     del missed_1, missed_2, missed_3
-    t114 = _runtime.status(invalid, unreachable, t93 | (t6 * t109 <= t113))
-    del t109
+    t106 = _runtime.status(invalid, unreachable, t85 | (t101 <= t105))
+    del t101
     A_33_plus_plus_minus = z + sine_3_plus_plus_minus * share_3
     del share_3, sine_3_plus_plus_minus
-    t115 = t50 + cosine_3_plus_plus_minus * t98
-    del t50, t98
-    t116 = t97 * A_33_plus_plus_minus - A_23 * t115
-    t117 = t51 + cosine_3_plus_plus_minus * t105
-    del cosine_3_plus_plus_minus, t105, t51
-    t118 = t104 * A_33_plus_plus_minus - A_23 * t117
+    t107 = t44 + cosine_3_plus_plus_minus * t90
+    del t44, t90
+    t108 = t89 * A_33_plus_plus_minus - A_23 * t107
+    t109 = t45 + cosine_3_plus_plus_minus * t97
+    del cosine_3_plus_plus_minus, t45, t97
+    t110 = t96 * A_33_plus_plus_minus - A_23 * t109
     del A_23
-    t119 = t104 * t115 - t97 * t117
-    del t104, t97
-    t120 = np.abs(t95 * t116 - t102 * t118 + A_13 * t119)
-    t121 = _runtime.status(invalid, unreachable, t93 | (t6 * t120 <= t113))
-    del t120
-    t122 = t34 + cosine_2_plus_minus_plus * t96
-    del t34, t96
+    t111 = t96 * t107 - t89 * t109
+    del t89, t96
+    t112 = np.abs(t87 * t108 - t94 * t110 + A_13 * t111)
+    t113 = _runtime.status(invalid, unreachable, t85 | (t5 * t112 <= t105))
+    del t112
+    t114 = t30 + cosine_2_plus_minus_plus * t88
+    del t30, t88
     A_23_plus_minus_plus = z + sine_2_plus_minus_plus * share_2
     del share_2, sine_2_plus_minus_plus
-    t123 = A_33 * t122 - t99 * A_23_plus_minus_plus
-    t124 = t35 + cosine_2_plus_minus_plus * t103
-    del cosine_2_plus_minus_plus, t103, t35
-    t125 = A_33 * t124 - t106 * A_23_plus_minus_plus
+    t115 = A_33 * t114 - t91 * A_23_plus_minus_plus
+    t116 = t31 + cosine_2_plus_minus_plus * t95
+    del cosine_2_plus_minus_plus, t31, t95
+    t117 = A_33 * t116 - t98 * A_23_plus_minus_plus
     del A_33
-    t126 = t99 * t124 - t106 * t122
-    del t106, t99
-    t127 = np.abs(t95 * t123 - t102 * t125 + A_13 * t126)
-    t128 = _runtime.status(invalid, unreachable, t93 | (t6 * t127 <= t113))
-    del t127
-    t129 = A_33_plus_plus_minus * t122 - t115 * A_23_plus_minus_plus
-    t130 = A_33_plus_plus_minus * t124 - t117 * A_23_plus_minus_plus
+    t118 = t91 * t116 - t98 * t114
+    del t91, t98
+    t119 = np.abs(t87 * t115 - t94 * t117 + A_13 * t118)
+    t120 = _runtime.status(invalid, unreachable, t85 | (t5 * t119 <= t105))
+    del t119
+    t121 = A_33_plus_plus_minus * t114 - t107 * A_23_plus_minus_plus
+    t122 = A_33_plus_plus_minus * t116 - t109 * A_23_plus_minus_plus
     del A_23_plus_minus_plus, A_33_plus_plus_minus
-    t131 = t115 * t124 - t117 * t122
-    del t115, t117, t122, t124
-    t132 = np.abs(t95 * t129 - t102 * t130 + A_13 * t131)
-    del A_13, t102, t95
-    t133 = _runtime.status(invalid, unreachable, t93 | (t6 * t132 <= t113))
-    del t132
-    t134 = t3 + cosine_1_minus_plus_plus * t94
-    del t3, t94
-    t135 = t2 + cosine_1_minus_plus_plus * t101
-    del cosine_1_minus_plus_plus, t101, t2
+    t123 = t107 * t116 - t109 * t114
+    del t107, t109, t114, t116
+    t124 = np.abs(t87 * t121 - t94 * t122 + A_13 * t123)
+    del A_13, t87, t94
+    t125 = _runtime.status(invalid, unreachable, t85 | (t5 * t124 <= t105))
+    del t124
+    t126 = t3 + cosine_1_minus_plus_plus * t86
+    del t3, t86
+    t127 = t2 + cosine_1_minus_plus_plus * t93
+    del cosine_1_minus_plus_plus, t2, t93
     A_13_minus_plus_plus = z + sine_1_minus_plus_plus * share_1
     del share_1, sine_1_minus_plus_plus
-    Delta_minus_plus_plus = t100 * t134 - t107 * t135 + t108 * A_13_minus_plus_plus
-    del t100, t107, t108
-    t136 = t93 | (t6 * np.abs(Delta_minus_plus_plus) <= t113)
+    Delta_minus_plus_plus = t92 * t126 - t99 * t127 + t100 * A_13_minus_plus_plus
+    del t100, t92, t99
+    t128 = t85 | (t5 * np.abs(Delta_minus_plus_plus) <= t105)
     del Delta_minus_plus_plus
-    Delta_minus_plus_minus = t116 * t134 - t118 * t135 + t119 * A_13_minus_plus_plus
-    del t116, t118, t119
-    t137 = t93 | (t6 * np.abs(Delta_minus_plus_minus) <= t113)
+    Delta_minus_plus_minus = t108 * t126 - t110 * t127 + t111 * A_13_minus_plus_plus
+    del t108, t110, t111
+    t129 = t85 | (t5 * np.abs(Delta_minus_plus_minus) <= t105)
     del Delta_minus_plus_minus
-    Delta_minus_minus_plus = t123 * t134 - t125 * t135 + t126 * A_13_minus_plus_plus
-    del t123, t125, t126
-    t138 = t93 | (t6 * np.abs(Delta_minus_minus_plus) <= t113)
+    Delta_minus_minus_plus = t115 * t126 - t117 * t127 + t118 * A_13_minus_plus_plus
+    del t115, t117, t118
+    t130 = t85 | (t5 * np.abs(Delta_minus_minus_plus) <= t105)
     del Delta_minus_minus_plus
-    Delta_minus_minus_minus = t129 * t134 - t130 * t135 + t131 * A_13_minus_plus_plus
-    del A_13_minus_plus_plus, t129, t130, t131, t134, t135
-    t139 = t93 | (t6 * np.abs(Delta_minus_minus_minus) <= t113)
-    del Delta_minus_minus_minus, t113, t6, t93
+    Delta_minus_minus_minus = t121 * t126 - t122 * t127 + t123 * A_13_minus_plus_plus
+    del A_13_minus_plus_plus, t121, t122, t123, t126, t127
+    t131 = t85 | (t5 * np.abs(Delta_minus_minus_minus) <= t105)
+    del Delta_minus_minus_minus, t105, t5, t85
     return (
-        t66,
-        t76,
-        t86,
-        t66,
-        t76,
-        t88,
-        t66,
-        t90,
-        t86,
-        t66,
-        t90,
-        t88,
-        t92,
-        t76,
-        t86,
-        t92,
-        t76,
-        t88,
-        t92,
-        t90,
-        t86,
-        t92,
-        t90,
-        t88,
-        t114,
-        t121,
-        t128,
-        t133,
-        _runtime.status(invalid, unreachable, t136),
-        _runtime.status(invalid, unreachable, t137),
-        _runtime.status(invalid, unreachable, t138),
-        _runtime.status(invalid, unreachable, t139),
+        t58,
+        t68,
+        t78,
+        t58,
+        t68,
+        t80,
+        t58,
+        t82,
+        t78,
+        t58,
+        t82,
+        t80,
+        t84,
+        t68,
+        t78,
+        t84,
+        t68,
+        t80,
+        t84,
+        t82,
+        t78,
+        t84,
+        t82,
+        t80,
+        t106,
+        t113,
+        t120,
+        t125,
+        _runtime.status(invalid, unreachable, t128),
+        _runtime.status(invalid, unreachable, t129),
+        _runtime.status(invalid, unreachable, t130),
+        _runtime.status(invalid, unreachable, t131),
     )
 
 
@@ -2630,70 +2618,62 @@ def _workspace_contains(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t7 = l - aside_1
     t8 = l + aside_1
     del aside_1
-    t9 = l * size
-    t10 = size * size * 5.684341886080802e-14
+    t9 = size * 2.384185791015625e-07
     fore_1 = np.sqrt(np.maximum(t7, 0.0) * np.maximum(t8, 0.0))
-    t11 = z * z
-    t12 = L * L - t11
+    t10 = size * np.maximum(1.0, l / (t9 + fore_1)) * 0.5
+    t11 = -(_runtime.FEASIBILITY * t10)
+    del t10
     wu_1 = s_alpha1 * t5 + c_alpha1 * t6
     del c_alpha1, s_alpha1, t5, t6
-    t13 = wu_1 * wu_1
+    t12 = z * z
+    R_1 = np.sqrt(wu_1 * wu_1 + t12)
     del wu_1
-    t14 = t9 / (t10 + size * fore_1 + np.abs(t12 - t13))
-    t15 = _runtime.FEASIBILITY * (size * np.maximum(1.0, t14) * 0.5)
-    del t14
-    R_1 = np.sqrt(t13 + t11)
-    del t13
-    t16 = L - R_1
-    t17 = (t4 <= t7) & (t4 <= t8) & (-t15 <= fore_1 + t16)
+    t13 = L - R_1
+    t14 = (t4 <= t7) & (t4 <= t8) & (t11 <= fore_1 + t13)
     del t7, t8
-    t18 = t17 & (-t15 <= L + R_1 - fore_1) & (-t15 <= fore_1 - t16)
-    del R_1, fore_1, t15, t16, t17
-    t19 = y + e * s_alpha2 - f * s_alpha2
-    t20 = x + e * c_alpha2 - f * c_alpha2
-    aside_2 = c_alpha2 * t19 - s_alpha2 * t20
-    t21 = l - aside_2
-    t22 = l + aside_2
+    t15 = t14 & (t11 <= L + R_1 - fore_1) & (t11 <= fore_1 - t13)
+    del R_1, fore_1, t11, t13, t14
+    t16 = y + e * s_alpha2 - f * s_alpha2
+    t17 = x + e * c_alpha2 - f * c_alpha2
+    aside_2 = c_alpha2 * t16 - s_alpha2 * t17
+    t18 = l - aside_2
+    t19 = l + aside_2
     del aside_2
-    fore_2 = np.sqrt(np.maximum(t21, 0.0) * np.maximum(t22, 0.0))
-    wu_2 = s_alpha2 * t19 + c_alpha2 * t20
-    del c_alpha2, s_alpha2, t19, t20
-    t23 = wu_2 * wu_2
+    fore_2 = np.sqrt(np.maximum(t18, 0.0) * np.maximum(t19, 0.0))
+    t20 = size * np.maximum(1.0, l / (t9 + fore_2)) * 0.5
+    t21 = -(_runtime.FEASIBILITY * t20)
+    del t20
+    wu_2 = s_alpha2 * t16 + c_alpha2 * t17
+    del c_alpha2, s_alpha2, t16, t17
+    R_2 = np.sqrt(t12 + wu_2 * wu_2)
     del wu_2
-    t24 = t9 / (t10 + size * fore_2 + np.abs(t12 - t23))
-    t25 = _runtime.FEASIBILITY * (size * np.maximum(1.0, t24) * 0.5)
-    del t24
-    R_2 = np.sqrt(t11 + t23)
-    del t23
-    t26 = L - R_2
-    t27 = t18 & (t4 <= t21) & (t4 <= t22) & (-t25 <= fore_2 + t26)
-    del t18, t21, t22
-    t28 = t27 & (-t25 <= L + R_2 - fore_2) & (-t25 <= fore_2 - t26)
-    del R_2, fore_2, t25, t26, t27
-    t29 = y + e * s_alpha3 - f * s_alpha3
-    t30 = x + e * c_alpha3 - f * c_alpha3
-    aside_3 = c_alpha3 * t29 - s_alpha3 * t30
-    t31 = l - aside_3
-    t32 = l + aside_3
+    t22 = L - R_2
+    t23 = t15 & (t4 <= t18) & (t4 <= t19) & (t21 <= fore_2 + t22)
+    del t15, t18, t19
+    t24 = t23 & (t21 <= L + R_2 - fore_2) & (t21 <= fore_2 - t22)
+    del R_2, fore_2, t21, t22, t23
+    t25 = y + e * s_alpha3 - f * s_alpha3
+    t26 = x + e * c_alpha3 - f * c_alpha3
+    aside_3 = c_alpha3 * t25 - s_alpha3 * t26
+    t27 = l - aside_3
+    t28 = l + aside_3
     del aside_3
-    fore_3 = np.sqrt(np.maximum(t31, 0.0) * np.maximum(t32, 0.0))
-    wu_3 = s_alpha3 * t29 + c_alpha3 * t30
-    del c_alpha3, s_alpha3, t29, t30
-    t33 = wu_3 * wu_3
-    del wu_3
-    t34 = t9 / (t10 + size * fore_3 + np.abs(t12 - t33))
-    del t10, t12, t9
-    t35 = _runtime.FEASIBILITY * (size * np.maximum(1.0, t34) * 0.5)
-    del size, t34
-    R_3 = np.sqrt(t11 + t33)
-    del t11, t33
-    t36 = L - R_3
-    t37 = t28 & (t4 <= t31) & (t4 <= t32) & (-t35 <= fore_3 + t36)
-    del t28, t31, t32, t4
-    t38 = t37 & (-t35 <= L + R_3 - fore_3) & (-t35 <= fore_3 - t36)
-    del R_3, fore_3, t35, t36, t37
-    failed = np.logical_not(t2 & t3) | np.logical_not(t38)
-    del t2, t3, t38
+    fore_3 = np.sqrt(np.maximum(t27, 0.0) * np.maximum(t28, 0.0))
+    t29 = size * np.maximum(1.0, l / (t9 + fore_3)) * 0.5
+    del size, t9
+    t30 = -(_runtime.FEASIBILITY * t29)
+    del t29
+    wu_3 = s_alpha3 * t25 + c_alpha3 * t26
+    del c_alpha3, s_alpha3, t25, t26
+    R_3 = np.sqrt(t12 + wu_3 * wu_3)
+    del t12, wu_3
+    t31 = L - R_3
+    t32 = t24 & (t4 <= t27) & (t4 <= t28) & (t30 <= fore_3 + t31)
+    del t24, t27, t28, t4
+    t33 = t32 & (t30 <= L + R_3 - fore_3) & (t30 <= fore_3 - t31)
+    del R_3, fore_3, t30, t31, t32
+    failed = np.logical_not(t2 & t3) | np.logical_not(t33)
+    del t2, t3, t33
     return (
         np.logical_not(failed),
     )

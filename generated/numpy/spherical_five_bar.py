@@ -11,8 +11,8 @@
 #   jacobian: 67 compare and select, 95 add, 21 divide, 149 multiply, 7 sincos, 4 sqrt
 #   singularities: 67 compare and select, 71 add, 9 divide, 113 multiply, 7 sincos, 4 sqrt
 #   condition_number: 67 compare and select, 111 add, 17 divide, 158 multiply, 7 sincos, 8 sqrt
-#   ik: 109 compare and select, 82 add, 4 atan2, 14 divide, 110 multiply, 5 sincos, 7 sqrt
-#   workspace_contains: 55 compare and select, 30 add, 9 divide, 37 multiply, 5 sincos, 5 sqrt
+#   ik: 107 compare and select, 78 add, 4 atan2, 14 divide, 104 multiply, 5 sincos, 7 sqrt
+#   workspace_contains: 53 compare and select, 26 add, 9 divide, 30 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
 
 All axes meet in the centre O, and all links are arcs of great circles of a sphere of radius r
@@ -1995,222 +1995,214 @@ def _ik(x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     py_0 = y * share_0
     pz_0 = z * share_0
     t2 = pz_0 * pz_0
-    t3 = py_0 * py_0 + t2
-    R_1 = np.sqrt(t3)
+    R_1 = np.sqrt(py_0 * py_0 + t2)
     l_1 = r * np.abs(s_alpha1)
     del s_alpha1
-    t4 = (R_1 <= t1) | (l_1 <= t1)
-    t5 = np.abs(s_beta1_half)
+    t3 = (R_1 <= t1) | (l_1 <= t1)
+    t4 = np.abs(s_beta1_half)
     del s_beta1_half
-    t6 = r * 2.0
-    r_1 = t5 * t6
+    t5 = r * 2.0
+    r_1 = t4 * t5
     px_0 = x * share_0
     del share_0
-    t7 = r * c_alpha1
+    t6 = r * c_alpha1
     del c_alpha1
-    aside_1 = px_0 - t7
-    t8 = r_1 - aside_1
-    t9 = aside_1 + r_1
-    fore_1 = np.sqrt(np.maximum(t8, 0.0) * np.maximum(t9, 0.0))
-    t10 = l_1 - R_1
-    t11 = fore_1 + t10
-    t12 = fore_1 - t10
-    del t10
-    t13 = np.maximum(t11, 0.0) * np.maximum(t12, 0.0)
-    t14 = l_1 + R_1
-    t15 = t14 - fore_1
-    t16 = (fore_1 + t14) * np.maximum(t15, 0.0)
-    del t14
-    t17 = t13 - t16
-    t18 = pz_0 * t17
-    beyond_1 = 2.0 * np.sqrt(t13 * t16)
-    t19 = py_0 * beyond_1
-    t20 = _runtime.select(t4, 0.0, t18 + t19)
-    t21 = pz_0 * beyond_1
+    aside_1 = px_0 - t6
+    t7 = r_1 - aside_1
+    t8 = aside_1 + r_1
+    fore_1 = np.sqrt(np.maximum(t7, 0.0) * np.maximum(t8, 0.0))
+    t9 = l_1 - R_1
+    t10 = fore_1 + t9
+    t11 = fore_1 - t9
+    del t9
+    t12 = np.maximum(t10, 0.0) * np.maximum(t11, 0.0)
+    t13 = l_1 + R_1
+    t14 = t13 - fore_1
+    t15 = (fore_1 + t13) * np.maximum(t14, 0.0)
+    del t13
+    t16 = t12 - t15
+    t17 = pz_0 * t16
+    beyond_1 = 2.0 * np.sqrt(t12 * t15)
+    t18 = py_0 * beyond_1
+    t19 = _runtime.select(t3, 0.0, t17 + t18)
+    t20 = pz_0 * beyond_1
     del beyond_1
-    t22 = py_0 * t17
-    del t17
-    cosine_1 = _runtime.select(t4, 1.0, t21 - t22)
-    t23 = _runtime.wrap_cut(-np.arctan2(t20, cosine_1))
-    t24 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t25 = t24 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    t21 = py_0 * t16
+    del t16
+    cosine_1 = _runtime.select(t3, 1.0, t20 - t21)
+    t22 = _runtime.wrap_cut(-np.arctan2(t19, cosine_1))
+    t23 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t24 = t23 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t23
+    t25 = t24 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     del t24
-    t26 = t25 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t25
-    t27 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    invalid = np.logical_not(t26 & t27)
-    del t26, t27
-    t28 = _runtime.FEASIBILITY * (r * 0.5)
-    t29 = (np.abs(r - strut_0) <= t28) & (-t28 <= t8) & (-t28 <= t9)
-    del strut_0, t8, t9
-    t30 = r * r
-    t31 = t30 * 5.684341886080802e-14
-    t32 = r * r_1 / (t31 + r * fore_1 + np.abs(l_1 * l_1 - t3))
-    del fore_1, t3
-    lost_1 = np.maximum(1.0, t32)
-    del t32
-    t33 = -(_runtime.FEASIBILITY * (r * lost_1 * 0.5))
-    t34 = t29 & (t33 <= t11) & (t33 <= t15) & (t33 <= t12)
-    del t29, t33
-    t35 = np.abs(s_beta2_half)
+    t26 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    invalid = np.logical_not(t25 & t26)
+    del t25, t26
+    t27 = _runtime.FEASIBILITY * (r * 0.5)
+    t28 = (np.abs(r - strut_0) <= t27) & (-t27 <= t7) & (-t27 <= t8)
+    del strut_0, t7, t8
+    t29 = r * 2.384185791015625e-07
+    lost_1 = np.maximum(1.0, r_1 / (t29 + fore_1))
+    del fore_1
+    t30 = -(_runtime.FEASIBILITY * (r * lost_1 * 0.5))
+    t31 = t28 & (t30 <= t10) & (t30 <= t14) & (t30 <= t11)
+    del t28, t30
+    t32 = np.abs(s_beta2_half)
     del s_beta2_half
-    r_2 = t35 * t6
-    del t6
-    t36 = r * c_alpha2
+    r_2 = t32 * t5
+    del t5
+    t33 = r * c_alpha2
     del c_alpha2
-    t37 = c_gamma * t36
-    t38 = px_0 - t37
-    t39 = s_gamma * t36
-    del t36
-    t40 = py_0 - t39
-    aside_2 = c_gamma * t38 + s_gamma * t40
-    t41 = r_2 - aside_2
-    t42 = r_2 + aside_2
-    fore_2 = np.sqrt(np.maximum(t41, 0.0) * np.maximum(t42, 0.0))
-    t43 = s_gamma * t38 - c_gamma * t40
-    del t38, t40
-    t44 = t2 + t43 * t43
-    del t2
+    t34 = c_gamma * t33
+    t35 = px_0 - t34
+    t36 = s_gamma * t33
+    del t33
+    t37 = py_0 - t36
+    aside_2 = c_gamma * t35 + s_gamma * t37
+    t38 = r_2 - aside_2
+    t39 = r_2 + aside_2
+    fore_2 = np.sqrt(np.maximum(t38, 0.0) * np.maximum(t39, 0.0))
+    lost_2 = np.maximum(1.0, r_2 / (t29 + fore_2))
+    del t29
+    t40 = -(_runtime.FEASIBILITY * (r * lost_2 * 0.5))
     l_2 = r * np.abs(s_alpha2)
     del s_alpha2
-    t45 = r * r_2 / (t31 + r * fore_2 + np.abs(t44 - l_2 * l_2))
-    del t31
-    lost_2 = np.maximum(1.0, t45)
-    del t45
-    t46 = -(_runtime.FEASIBILITY * (r * lost_2 * 0.5))
-    t47 = l_2 + fore_2
-    R_2 = np.sqrt(t44)
-    del t44
-    t48 = t47 - R_2
-    t49 = t34 & (-t28 <= t41) & (-t28 <= t42) & (t46 <= t48)
-    del t28, t34, t41, t42
-    t50 = l_2 - fore_2
+    t41 = l_2 + fore_2
+    t42 = s_gamma * t35 - c_gamma * t37
+    del t35, t37
+    R_2 = np.sqrt(t2 + t42 * t42)
+    del t2
+    t43 = t41 - R_2
+    t44 = t31 & (-t27 <= t38) & (-t27 <= t39) & (t40 <= t43)
+    del t27, t31, t38, t39
+    t45 = l_2 - fore_2
     del fore_2
-    t51 = R_2 + t50
-    t52 = R_2 - t50
-    del t50
-    unreachable = np.logical_not(t49 & (t46 <= t51) & (t46 <= t52))
-    del t46, t49
-    t53 = _runtime.poison(invalid | unreachable)
-    t54 = t23 + t53
-    del t23
+    t46 = R_2 + t45
+    t47 = R_2 - t45
+    del t45
+    unreachable = np.logical_not(t44 & (t40 <= t46) & (t40 <= t47))
+    del t40, t44
+    t48 = _runtime.poison(invalid | unreachable)
+    t49 = t22 + t48
+    del t22
     met_2 = R_2 <= t1
     no_crank_2 = l_2 <= t1
-    t55 = met_2 | no_crank_2
-    t56 = np.maximum(t48, 0.0) * np.maximum(t52, 0.0)
-    t57 = (R_2 + t47) * np.maximum(t51, 0.0)
-    del t47
-    t58 = t56 - t57
-    t59 = pz_0 * t58
-    beyond_2 = 2.0 * np.sqrt(t56 * t57)
-    t60 = t43 * beyond_2
-    t61 = _runtime.select(t55, 0.0, t59 - t60)
-    t62 = t43 * t58
-    del t43, t58
-    t63 = pz_0 * beyond_2
+    t50 = met_2 | no_crank_2
+    t51 = np.maximum(t43, 0.0) * np.maximum(t47, 0.0)
+    t52 = (R_2 + t41) * np.maximum(t46, 0.0)
+    del t41
+    t53 = t51 - t52
+    t54 = pz_0 * t53
+    beyond_2 = 2.0 * np.sqrt(t51 * t52)
+    t55 = t42 * beyond_2
+    t56 = _runtime.select(t50, 0.0, t54 - t55)
+    t57 = t42 * t53
+    del t42, t53
+    t58 = pz_0 * beyond_2
     del beyond_2
-    cosine_2 = _runtime.select(t55, 1.0, t62 + t63)
-    t64 = _runtime.wrap_cut(-np.arctan2(t61, cosine_2))
-    t65 = t64 + t53
-    del t64
-    t66 = _runtime.select(t55, 0.0, t59 + t60)
-    del t59, t60
-    cosine_2_plus_minus = _runtime.select(t55, 1.0, t62 - t63)
-    del t62, t63
-    t67 = _runtime.wrap_cut(-np.arctan2(t66, cosine_2_plus_minus))
-    t68 = t67 + t53
-    del t67
-    t69 = _runtime.select(t4, 0.0, t18 - t19)
-    del t18, t19
-    cosine_1_minus_plus = _runtime.select(t4, 1.0, -(t22 + t21))
-    del t21, t22
-    t70 = _runtime.wrap_cut(-np.arctan2(t69, cosine_1_minus_plus))
-    t71 = t70 + t53
-    del t53, t70
-    t72 = t4 | met_2 | no_crank_2
+    cosine_2 = _runtime.select(t50, 1.0, t57 + t58)
+    t59 = _runtime.wrap_cut(-np.arctan2(t56, cosine_2))
+    t60 = t59 + t48
+    del t59
+    t61 = _runtime.select(t50, 0.0, t54 + t55)
+    del t54, t55
+    cosine_2_plus_minus = _runtime.select(t50, 1.0, t57 - t58)
+    del t57, t58
+    t62 = _runtime.wrap_cut(-np.arctan2(t61, cosine_2_plus_minus))
+    t63 = t62 + t48
+    del t62
+    t64 = _runtime.select(t3, 0.0, t17 - t18)
+    del t17, t18
+    cosine_1_minus_plus = _runtime.select(t3, 1.0, -(t21 + t20))
+    del t20, t21
+    t65 = _runtime.wrap_cut(-np.arctan2(t64, cosine_1_minus_plus))
+    t66 = t65 + t48
+    del t48, t65
+    t67 = t3 | met_2 | no_crank_2
     del met_2, no_crank_2
-    share_1 = l_1 / _runtime.select(t4, 1.0, R_1 * (t13 + t16))
-    del R_1, t13, t16, t4
-    t73 = cosine_1 * share_1
+    share_1 = l_1 / _runtime.select(t3, 1.0, R_1 * (t12 + t15))
+    del R_1, t12, t15, t3
+    t68 = cosine_1 * share_1
     del cosine_1
-    share_2 = l_2 / _runtime.select(t55, 1.0, R_2 * (t56 + t57))
-    del R_2, t55, t56, t57
-    A_23 = t61 * share_2
-    del t61
-    A_13 = t20 * share_1
-    del t20
-    t74 = c_gamma * share_2
+    share_2 = l_2 / _runtime.select(t50, 1.0, R_2 * (t51 + t52))
+    del R_2, t50, t51, t52
+    A_23 = t56 * share_2
+    del t56
+    A_13 = t19 * share_1
+    del t19
+    t69 = c_gamma * share_2
     del c_gamma
-    t75 = t39 + cosine_2 * t74
-    t76 = t7 * A_23
-    t77 = s_gamma * share_2
+    t70 = t36 + cosine_2 * t69
+    t71 = t6 * A_23
+    t72 = s_gamma * share_2
     del s_gamma
-    t78 = t37 - cosine_2 * t77
+    t73 = t34 - cosine_2 * t72
     del cosine_2
-    t79 = px_0 * (t73 * A_23 - A_13 * t75) - py_0 * (t76 - A_13 * t78)
-    t80 = t7 * t75
-    t81 = t5 * t35 * 4.0 * (r * t30) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r)
-    del l_1, l_2, t30, t35, t5
-    t82 = np.minimum(np.minimum(np.minimum(0.0, t11), t15), t12)
-    del t11, t12, t15
-    missed_1 = np.maximum(0.0, np.abs(aside_1) - r_1) - t82 / lost_1
-    del aside_1, lost_1, r_1, t82
-    t83 = np.minimum(np.minimum(np.minimum(0.0, t48), t51), t52)
-    del t48, t51, t52
-    missed_2 = np.maximum(0.0, np.abs(aside_2) - r_2) - t83 / lost_2
-    del aside_2, lost_2, r_2, t83
-    t84 = _runtime.DETERMINED * t81 * (t1 + (missed_1 + missed_2))
-    del missed_1, missed_2, t81
-    t85 = t1 * np.abs(t79 - pz_0 * (t80 - t73 * t78)) <= t84
-    del t79
-    t86 = _runtime.status(invalid, unreachable, t72 | t85)
-    del t85
-    A_23_plus_minus = t66 * share_2
-    del share_2, t66
-    t87 = t39 + cosine_2_plus_minus * t74
-    del t39, t74
-    t88 = t7 * A_23_plus_minus
-    t89 = t37 - cosine_2_plus_minus * t77
-    del cosine_2_plus_minus, t37, t77
-    t90 = px_0 * (t73 * A_23_plus_minus - A_13 * t87) - py_0 * (t88 - A_13 * t89)
+    t74 = px_0 * (t68 * A_23 - A_13 * t70) - py_0 * (t71 - A_13 * t73)
+    t75 = t6 * t70
+    t76 = t4 * t32 * 4.0 * (r * r * r) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r)
+    del l_1, l_2, t32, t4
+    t77 = np.minimum(np.minimum(np.minimum(0.0, t10), t14), t11)
+    del t10, t11, t14
+    missed_1 = np.maximum(0.0, np.abs(aside_1) - r_1) - t77 / lost_1
+    del aside_1, lost_1, r_1, t77
+    t78 = np.minimum(np.minimum(np.minimum(0.0, t43), t46), t47)
+    del t43, t46, t47
+    missed_2 = np.maximum(0.0, np.abs(aside_2) - r_2) - t78 / lost_2
+    del aside_2, lost_2, r_2, t78
+    t79 = _runtime.DETERMINED * t76 * (t1 + (missed_1 + missed_2))
+    del missed_1, missed_2, t76
+    t80 = t1 * np.abs(t74 - pz_0 * (t75 - t68 * t73)) <= t79
+    del t74
+    t81 = _runtime.status(invalid, unreachable, t67 | t80)
+    del t80
+    A_23_plus_minus = t61 * share_2
+    del share_2, t61
+    t82 = t36 + cosine_2_plus_minus * t69
+    del t36, t69
+    t83 = t6 * A_23_plus_minus
+    t84 = t34 - cosine_2_plus_minus * t72
+    del cosine_2_plus_minus, t34, t72
+    t85 = px_0 * (t68 * A_23_plus_minus - A_13 * t82) - py_0 * (t83 - A_13 * t84)
     del A_13
-    t91 = t7 * t87
-    del t7
-    t92 = t1 * np.abs(t90 - pz_0 * (t91 - t73 * t89)) <= t84
-    del t73, t90
-    t93 = _runtime.status(invalid, unreachable, t72 | t92)
-    del t92
-    t94 = cosine_1_minus_plus * share_1
+    t86 = t6 * t82
+    del t6
+    t87 = t1 * np.abs(t85 - pz_0 * (t86 - t68 * t84)) <= t79
+    del t68, t85
+    t88 = _runtime.status(invalid, unreachable, t67 | t87)
+    del t87
+    t89 = cosine_1_minus_plus * share_1
     del cosine_1_minus_plus
-    A_13_minus_plus = t69 * share_1
-    del share_1, t69
-    t95 = px_0 * (A_23 * t94 - t75 * A_13_minus_plus) - py_0 * (t76 - t78 * A_13_minus_plus)
-    del A_23, t75, t76
-    t96 = t1 * np.abs(t95 - pz_0 * (t80 - t78 * t94)) <= t84
-    del t78, t80, t95
-    t97 = _runtime.status(invalid, unreachable, t72 | t96)
-    del t96
-    t98 = A_23_plus_minus * t94 - t87 * A_13_minus_plus
-    del A_23_plus_minus, t87
-    t99 = px_0 * t98 - py_0 * (t88 - t89 * A_13_minus_plus)
-    del A_13_minus_plus, px_0, py_0, t88, t98
-    t100 = t1 * np.abs(t99 - pz_0 * (t91 - t89 * t94)) <= t84
-    del pz_0, t1, t84, t89, t91, t94, t99
-    t101 = _runtime.status(invalid, unreachable, t72 | t100)
-    del invalid, t100, t72, unreachable
+    A_13_minus_plus = t64 * share_1
+    del share_1, t64
+    t90 = px_0 * (A_23 * t89 - t70 * A_13_minus_plus) - py_0 * (t71 - t73 * A_13_minus_plus)
+    del A_23, t70, t71
+    t91 = t1 * np.abs(t90 - pz_0 * (t75 - t73 * t89)) <= t79
+    del t73, t75, t90
+    t92 = _runtime.status(invalid, unreachable, t67 | t91)
+    del t91
+    t93 = A_23_plus_minus * t89 - t82 * A_13_minus_plus
+    del A_23_plus_minus, t82
+    t94 = px_0 * t93 - py_0 * (t83 - t84 * A_13_minus_plus)
+    del A_13_minus_plus, px_0, py_0, t83, t93
+    t95 = t1 * np.abs(t94 - pz_0 * (t86 - t84 * t89)) <= t79
+    del pz_0, t1, t79, t84, t86, t89, t94
+    t96 = _runtime.status(invalid, unreachable, t67 | t95)
+    del invalid, t67, t95, unreachable
     return (
-        t54,
-        t65,
-        t54,
-        t68,
-        t71,
-        t65,
-        t71,
-        t68,
-        t86,
-        t93,
-        t97,
-        t101,
+        t49,
+        t60,
+        t49,
+        t63,
+        t66,
+        t60,
+        t66,
+        t63,
+        t81,
+        t88,
+        t92,
+        t96,
     )
 
 
@@ -2297,59 +2289,55 @@ def _workspace_contains(x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     del aside_1
     t9 = (np.abs(r - strut_0) <= t5) & (-t5 <= t7) & (-t5 <= t8)
     del strut_0
-    t10 = r * r * 5.684341886080802e-14
+    t10 = r * 2.384185791015625e-07
     fore_1 = np.sqrt(np.maximum(t7, 0.0) * np.maximum(t8, 0.0))
     del t7, t8
+    t11 = r * np.maximum(1.0, r_1 / (t10 + fore_1)) * 0.5
+    del r_1
+    t12 = -(_runtime.FEASIBILITY * t11)
+    del t11
     l_1 = r * np.abs(s_alpha1)
     del s_alpha1
     py_0 = y * share_0
     pz_0 = z * share_0
     del share_0
-    t11 = pz_0 * pz_0
+    t13 = pz_0 * pz_0
     del pz_0
-    t12 = py_0 * py_0 + t11
-    t13 = r * r_1 / (t10 + r * fore_1 + np.abs(l_1 * l_1 - t12))
-    del r_1
-    t14 = _runtime.FEASIBILITY * (r * np.maximum(1.0, t13) * 0.5)
-    del t13
-    R_1 = np.sqrt(t12)
-    del t12
-    t15 = l_1 - R_1
-    t16 = t9 & (-t14 <= fore_1 + t15) & (-t14 <= l_1 + R_1 - fore_1)
+    R_1 = np.sqrt(py_0 * py_0 + t13)
+    t14 = l_1 - R_1
+    t15 = t9 & (t12 <= fore_1 + t14) & (t12 <= l_1 + R_1 - fore_1)
     del R_1, l_1, t9
     r_2 = np.abs(s_beta2_half) * t6
     del s_beta2_half, t6
-    t17 = r * c_alpha2
+    t16 = r * c_alpha2
     del c_alpha2
-    t18 = px_0 - c_gamma * t17
+    t17 = px_0 - c_gamma * t16
     del px_0
-    t19 = py_0 - s_gamma * t17
-    del py_0, t17
-    aside_2 = c_gamma * t18 + s_gamma * t19
-    t20 = r_2 - aside_2
-    t21 = r_2 + aside_2
+    t18 = py_0 - s_gamma * t16
+    del py_0, t16
+    aside_2 = c_gamma * t17 + s_gamma * t18
+    t19 = r_2 - aside_2
+    t20 = r_2 + aside_2
     del aside_2
-    t22 = t16 & (-t14 <= fore_1 - t15) & (-t5 <= t20) & (-t5 <= t21)
-    del fore_1, t14, t15, t16, t5
-    fore_2 = np.sqrt(np.maximum(t20, 0.0) * np.maximum(t21, 0.0))
-    del t20, t21
-    t23 = s_gamma * t18 - c_gamma * t19
-    del c_gamma, s_gamma, t18, t19
-    t24 = t11 + t23 * t23
-    del t11, t23
+    t21 = t15 & (t12 <= fore_1 - t14) & (-t5 <= t19) & (-t5 <= t20)
+    del fore_1, t12, t14, t15, t5
+    fore_2 = np.sqrt(np.maximum(t19, 0.0) * np.maximum(t20, 0.0))
+    del t19, t20
+    t22 = r * np.maximum(1.0, r_2 / (t10 + fore_2)) * 0.5
+    del r_2, t10
+    t23 = -(_runtime.FEASIBILITY * t22)
+    del t22
     l_2 = r * np.abs(s_alpha2)
     del s_alpha2
-    t25 = r * r_2 / (t10 + r * fore_2 + np.abs(t24 - l_2 * l_2))
-    del r_2, t10
-    t26 = _runtime.FEASIBILITY * (r * np.maximum(1.0, t25) * 0.5)
-    del t25
-    R_2 = np.sqrt(t24)
-    del t24
-    t27 = l_2 - fore_2
-    t28 = t22 & (-t26 <= l_2 + fore_2 - R_2) & (-t26 <= R_2 + t27)
-    del fore_2, l_2, t22
-    failed = np.logical_not(t3 & t4) | np.logical_not(t28 & (-t26 <= R_2 - t27))
-    del R_2, t26, t27, t28, t3, t4
+    t24 = s_gamma * t17 - c_gamma * t18
+    del c_gamma, s_gamma, t17, t18
+    R_2 = np.sqrt(t13 + t24 * t24)
+    del t13, t24
+    t25 = l_2 - fore_2
+    t26 = t21 & (t23 <= l_2 + fore_2 - R_2) & (t23 <= R_2 + t25)
+    del fore_2, l_2, t21
+    failed = np.logical_not(t3 & t4) | np.logical_not(t26 & (t23 <= R_2 - t25))
+    del R_2, t23, t25, t26, t3, t4
     return (
         np.logical_not(failed),
     )

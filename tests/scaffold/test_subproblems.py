@@ -215,14 +215,14 @@ def test_a_rotation_needs_vectors_of_equal_length() -> None:
     Two().prove(lambda two: {two.t2: 2})
 
 
-def test_a_posture_beside_a_singularity_is_not_determined_by_its_target() -> None:
-    """An arm without factors: the rates of its forward map say how close it is to stretched."""
+def test_an_arm_without_factors_is_as_near_to_singular_as_its_rates_are_small() -> None:
+    """Where it is stretched, its two solutions meet, but it cannot move without its hand."""
     two = Two()
     two.solve(lambda two: {two.t2: 2})
     solutions = Solutions(two.d, two.d["ik"], two.d.inverses[0])
     stretched, bent = (np.array([0.3, elbow]) for elbow in (1e-12, 1.0))
-    assert solutions.undetermined(stretched, ()) and not solutions.undetermined(bent, ())
-    assert solutions.condition(bent, ()) > 0.1
+    assert solutions.condition(stretched, ()) < 1e-10 and solutions.condition(bent, ()) > 0.1
+    assert not any(solutions.continues(q, (), 1e-12) for q in (stretched, bent))
 
 
 @pytest.mark.parametrize(

@@ -362,22 +362,32 @@ class Solutions:
         it.  A step in a direction that hardly moves the hand is corrected in the other directions.
         """
         for mode, found in enumerate(self.wide_images(posture[None], parameters)):
-            if not np.isfinite(found).all():
+            slopes = self._slopes(posture, parameters)[mode]
+            if not (np.isfinite(found).all() and np.isfinite(slopes).all()):
                 continue
-            _, rates, directions = np.linalg.svd(self._slopes(posture, parameters)[mode])
+            _, rates, directions = np.linalg.svd(slopes)
             least = SLOW * rates.max()
             rates = np.append(rates, np.zeros(len(directions) - len(rates)))
             for direction in directions[rates < least]:
-                q = posture + STEP * direction
-                for _ in range(CORRECTIONS):
-                    missed = (found - self.wide_images(q[None], parameters)[mode])[0]
-                    slopes = self._slopes(q, parameters)[mode]
-                    q = q + np.linalg.lstsq(slopes, missed.astype(float), rcond=STILL)[0]
-                ends = self.wide_images(q[None], parameters)[mode : mode + 1]
-                moved = self.gap(q[None], posture)[0] > STEP / 10
-                if moved and self.missed(ends, q[None], found, parameters)[0] <= allowed:
+                q = self._corrected(posture + STEP * direction, found, mode, parameters)
+                if q is None or self.gap(q[None], posture)[0] < STEP / 10:
+                    continue
+                ends = self.wide_images(q[None], parameters)
+                if self.missed(ends, q[None], found, parameters)[0] <= allowed:
                     return True
         return False
+
+    def _corrected(
+        self, q: NDArray[Any], target: Array, mode: int, parameters: Sequence[float]
+    ) -> NDArray[Any] | None:
+        """A posture that reaches a target in an assembly mode; None where the mode ends."""
+        for _ in range(CORRECTIONS):
+            missed = (target - self.wide_images(q[None], parameters)[mode])[0].astype(float)
+            slopes = self._slopes(q, parameters)[mode]
+            if not (np.isfinite(missed).all() and np.isfinite(slopes).all()):
+                return None
+            q = q + np.linalg.lstsq(slopes, missed, rcond=STILL)[0]
+        return q
 
     def _rates(self, posture: NDArray[Any], parameters: Sequence[float]) -> list[float]:
         """The singular values of the forward map: how far the target moves with the joints."""

@@ -190,13 +190,15 @@ def test_lengths_that_cancel_in_names_lose_digits(factor: float, wrong: bool) ->
         ("ur_arm", [0.3, 0.5, 1e-9, 0.2, 0.9, 1.1], False),  # a straight elbow
         ("ur_arm", [0.3, 0.5, 0.7, 0.2, 1e-13, 1.1], True),  # four axes are parallel
         ("ur_arm", [0.3, 0.5, 1e-9, 0.2, 1e-13, 1.1], True),
+        ("five_bar", [1.364123590404401, 1.6115524275272999], False),  # a straight leg
     ],
 )
 def test_where_a_mechanism_moves_without_its_hand(
     robot: str, posture: list[float], moves: bool
 ) -> None:
     d = derivation(robot)
-    truth = solutions_of(d, d["ik"], d.inverses[0])
+    (inverse,) = (i for i in d.inverses if i.function == "ik")
+    truth = solutions_of(d, d["ik"], inverse)
     lengths = [float(p.value) for p in d.parameters]
     assert truth.continues(np.array(posture), lengths, 1e-12) == moves
 

@@ -361,8 +361,11 @@ class Solutions:
         Then the target does not determine the posture: the answers are right, but may be far from
         it.  A step in a direction that hardly moves the hand is corrected in the other directions.
         """
-        for mode, found in enumerate(self.wide_images(posture[None], parameters)):
-            slopes = self._slopes(posture, parameters)[mode]
+        images, every = (
+            self.wide_images(posture[None], parameters),
+            self._slopes(posture, parameters),
+        )
+        for mode, (found, slopes) in enumerate(zip(images, every, strict=True)):
             if not (np.isfinite(found).all() and np.isfinite(slopes).all()):
                 continue
             _, rates, directions = np.linalg.svd(slopes)

@@ -23,9 +23,9 @@ from closedform.loops.leg_by_leg import (
     size_of,
 )
 from closedform.loops.modes import export
-from closedform.loops.platform_legs import Platform, Posture, jacobians, matrices
+from closedform.loops.platform_legs import Platform, Posture, certify_forward, jacobians, matrices
 from closedform.model.functions import Program, branches, choose, real
-from closedform.model.inverse import Degenerate, Inverse, Link
+from closedform.model.inverse import Degenerate, Link
 from closedform.model.pair import Pair
 from closedform.model.step import Step
 
@@ -174,12 +174,7 @@ def _forward(meet: Meet, loop: Step) -> Posture:
             NEAR,
         ),
     )
-    equations = _equations(meet)
-    zeros = (sp.S.Zero,) * len(equations)
-    passive = tuple(e for link in links for e in link.unknowns if e not in {*m.pose})
-    d.inverses.append(
-        Inverse("fk", tuple(m.pose), zeros, equations, links=tuple(links), passive=passive)
-    )
+    certify_forward(m, links, _equations(meet))
     for link in links:
         record_lemma(d, "fk", link)
     rods = {k: at_c - near[k] for k in meet.pair} | {meet.third: at_d - near[meet.third]}

@@ -26,6 +26,7 @@ from closedform.loops.modes import Exported
 from closedform.mechanics.frames import hat, pose_symbols, rotation
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Branches, Program, real
+from closedform.model.inverse import Inverse, Link
 
 LEGS = {2: (3,), 3: (4, 6)}
 """How many legs carry a hand that turns in a plane, and in space."""
@@ -264,6 +265,21 @@ class Posture:
         return sp.Matrix(rows), driven
 
 
+def certify_forward(m: Platform, links: Sequence[Link], equations: Sequence[sp.Expr]) -> None:
+    """State that the links solve the equations of the loop for the pose, and for other points."""
+    passive = tuple(e for link in links for e in link.unknowns if e not in {*m.pose})
+    m.d.inverses.append(
+        Inverse(
+            "fk",
+            tuple(m.pose),
+            (sp.S.Zero,) * len(equations),
+            tuple(equations),
+            links=tuple(links),
+            passive=passive,
+        )
+    )
+
+
 def _together(points: Sequence[sp.Matrix]) -> list[list[int]]:
     """The numbers of points, by their coordinates."""
     found: dict[tuple[sp.Expr, ...], list[int]] = {}
@@ -357,6 +373,7 @@ __all__ = [
     "Half",
     "Platform",
     "Posture",
+    "certify_forward",
     "check_holds",
     "counted_degree",
     "jacobians",

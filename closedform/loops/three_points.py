@@ -24,10 +24,10 @@ from closedform.lemmas.two_vectors import two_vectors
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import SIGN, named, record_lemma, size_of
 from closedform.loops.modes import export
-from closedform.loops.platform_legs import Platform, Posture, matrices
+from closedform.loops.platform_legs import Platform, Posture, certify_forward, matrices
 from closedform.mechanics.frames import rotation
 from closedform.model.functions import Program, branches, choose, real
-from closedform.model.inverse import Inverse, Link
+from closedform.model.inverse import Link
 from closedform.model.names import listed
 from closedform.model.step import Step
 
@@ -183,12 +183,7 @@ class ThreePoints:
                 NEAR,
             ),
         )
-        equations = self._equations()
-        zeros = (sp.S.Zero,) * len(equations)
-        passive = tuple(e for link in links for e in link.unknowns if e not in {*m.pose})
-        d.inverses.append(
-            Inverse("fk", tuple(m.pose), zeros, equations, links=tuple(links), passive=passive)
-        )
+        certify_forward(m, links, self._equations())
         for link in links[:told]:
             record_lemma(d, "fk", link)
         rods = {k: C - near[k] for k in three}

@@ -42,6 +42,7 @@ FAR = 20
 """Joints farther apart than this are probably not placed in metres."""
 SHORT = 1 / 200
 """Of the longest length of a chain: a shorter one is named if no inverse is found."""
+CIRCLE = "the links form a circle; closed loops are written with --from loop"
 
 
 @dataclass(frozen=True)
@@ -411,9 +412,7 @@ def _chain(joints: Sequence[Joint], base: str, tool: str, file: str) -> list[Joi
                 f"form here; choose a base after it, such as --base {shown_name(joint.child)}"
             )
         if len(found) > 20 * JOINTS:
-            raise TableError(
-                f"{file}: the links form a circle; closed loops are written with --from loop"
-            )
+            raise TableError(f"{file}: {CIRCLE}")
         found.insert(0, joint)
         link = joint.parent
     if base and link != base:
@@ -433,9 +432,7 @@ def _only_end(above: Mapping[str, Joint], parents: set[str], file: str) -> str:
     """The end of the only chain that moves, with the fixed links at its end."""
     ends: dict[tuple[str, ...], list[str]] = {}
     if above and not set(above) - parents:
-        raise TableError(
-            f"{file}: the links form a circle; closed loops are written with --from loop"
-        )
+        raise TableError(f"{file}: {CIRCLE}")
     for link in sorted(set(above) - parents):
         moving: list[str] = []
         at = link

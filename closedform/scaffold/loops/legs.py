@@ -65,8 +65,6 @@ class Legs:
         """From the pin of a half to the end of a leg, while the leg is written."""
         self.upright: Callable[[sp.Matrix], sp.Matrix] | None = None
         """Coordinates in the plane of a leg, while the leg of a tripod is written."""
-        self.positive = loop.positive
-        self.length = loop.length
 
     def at(self, v: sp.Matrix) -> str:
         """A point or a direction as it is written."""
@@ -82,7 +80,7 @@ class Legs:
         side = self.loop.parallelograms.get(body)
         if side is None:
             return source(length)
-        width = self.length(side)
+        width = self.loop.length(side)
         if width == 0:
             raise self.loop.error(f"{body}: the short sides of a parallelogram need a length")
         way = _tuple(self.direction(side, width))
@@ -331,7 +329,7 @@ class Legs:
                 raise loop.error(f"{name} turns in space; say about which axis")
             along_axis = joint.axis * sp.simplify(arm.dot(joint.axis))
             start, arm = start + along_axis, (arm - along_axis).applyfunc(sp.simplify)
-        crank = self.length(arm)
+        crank = self.loop.length(arm)
         if crank == 0:
             raise loop.error(f"the end of {body} is on the axis of {name}, so it does not move")
         along = self.direction(arm, crank)

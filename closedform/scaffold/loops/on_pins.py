@@ -63,7 +63,7 @@ def _carrier(found: Legs, joint: Joint, pin: Joint) -> tuple[str, str]:
             "moves a slider",
         )
     pivot = found.pivot(joint)
-    length = found.length(end - pivot)
+    length = found.loop.length(end - pivot)
     if length == 0:
         raise found.loop.error(f"{pin.name} is on the axis of {joint.name}, so it does not move")
     along = found.direction(end - pivot, length)

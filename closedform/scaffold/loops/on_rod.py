@@ -35,7 +35,7 @@ def on_rod(found: Legs) -> tuple[list[LoopLeg], str] | None:
             f"body and one rod"
         )
     span = loop.bodies[arm][loop.hand] - found.point(arm, near)
-    length = found.length(span)
+    length = found.loop.length(span)
     if length == 0:
         raise loop.error(f"the hand {loop.hand} is where {arm} is joined to {near.other(arm)}")
     loop.rods[arm] = length

@@ -40,7 +40,7 @@ def slotted(found: Legs, follower: Joint) -> list[LoopLeg] | None:
 def _crank(found: Legs, joint: Joint, pin: Joint) -> LoopLeg:
     body, pivot = joint.other(GROUND), found.pivot(joint)
     arm = found.point(body, pin) - pivot
-    length = found.length(arm)
+    length = found.loop.length(arm)
     if length == 0:
         raise found.loop.error(f"{pin.name} is on the axis of {joint.name}, so it does not move")
     along = found.direction(arm, length)

@@ -58,7 +58,7 @@ def _upright(found: Legs, joint: Joint, hinged: Joint) -> LoopLeg:
 
     found.upright = seen
     leg = found.leg(joint)
-    if sp.simplify(leg.place.dot(heading)).xreplace(found.positive).is_negative:
+    if sp.simplify(leg.place.dot(heading)).xreplace(found.loop.positive).is_negative:
         heading = -heading
         leg = found.leg(joint)
     found.upright = None

@@ -25,6 +25,7 @@ from flint import arb, fmpq
 from sympy import Symbol
 
 from closedform.algebra.resolvent import Resolvent, enclosed
+from closedform.model.constant import Constant
 from closedform.model.expressions import free_symbols
 
 Expr: TypeAlias = Any  # SymPy's annotations are partial
@@ -248,6 +249,8 @@ class _Program:
         return self._size - 1
 
     def _emit(self, e: Expr) -> int:
+        if isinstance(e, Constant):
+            e = e.value
         if e.is_Rational:
             return self._constant(lambda: arb(fmpq(int(e.p), int(e.q))))
         if e is sp.pi:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from closedform.algebra.balls import Evaluator, Undetermined, to_float
 from closedform.algebra.resolvent import Resolvent, cubic, slope
+from closedform.model.constant import Constant
 
 Array = NDArray[Any]
 WIDE = np.longdouble
@@ -200,6 +201,8 @@ class _Program:
         return self._places[e]
 
     def _step(self, e: Any) -> tuple[_Step, Sequence[Any]]:
+        if isinstance(e, Constant):
+            e = e.value
         if e.is_Rational:
             number = WIDE(int(e.p)) / WIDE(int(e.q))
             exact = e.q == 1 and abs(int(e.p)) < 2**53

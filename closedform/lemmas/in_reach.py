@@ -67,10 +67,7 @@ def within_links(
     lengths
         those of the two links
     """
-    single = chain.program.vanishes(
-        f"single_{label(x)}", sp.Rational(1, 2**30), 1, "rounding is that of single precision"
-    )
-    start = _Place(chain, on_circle, carried, single, pair, f"{label(x)}_reach0")
+    start = _Place(chain, on_circle, carried, pair, f"{label(x)}_reach0")
     low, high = sp.Abs(lengths[0] - lengths[1]), sp.Add(*lengths)
     goal = start.let("goal", sp.Min(sp.Max(start.distance, low), high))
     away = start.let("away", start.distance - goal)
@@ -115,15 +112,12 @@ class _Place:
     chain: Chain
     on_circle: OnCircle
     carried: Turning
-    single: sp.Symbol
-    """The flag of single precision."""
     pair: Pair
     name: str
 
     def of(self, tolerance: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
         """The tolerance of the precision of numbers."""
-        double, single = tolerance
-        return choose(self.single, single, double)
+        return self.chain.program.by_precision(*tolerance)
 
     def let(self, name: str, value: sp.Expr) -> sp.Expr:
         return self.chain.let(f"{name}_{self.name}", value)

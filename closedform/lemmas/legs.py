@@ -28,6 +28,7 @@ from closedform.model.functions import Program, choose, real
 from closedform.model.inverse import Degenerate, Link
 from closedform.model.lemma import Lemma
 from closedform.model.pair import Pair
+from closedform.model.tolerances import HALF_DIGITS
 
 theorem(
     "crank and rod",
@@ -217,7 +218,8 @@ class Crank:
             s = chain.half_chord("fore", r, aside, "the rod reaches the plane of the crank")
             missed = sp.Max(0, sp.Abs(aside) - r)
             # where the rod is nearly at right angles to the plane, s has lost digits that r has
-            lost = chain.let("lost", sp.Max(1, r / (s + chain.size / 2**22)), positive=True)
+            least = chain.size * HALF_DIGITS
+            lost = chain.let("lost", sp.Max(1, r / (s + least)), positive=True)
             scale = scale * lost
         R = chain.let("R", sp.sqrt(a**2 + b**2), nonnegative=True)
         triangle = Triangle.from_reach(p, (l, s), R, sigma, scale=scale, suffix=chain.tag)

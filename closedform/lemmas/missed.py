@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import sympy as sp
 
+from closedform.model.tolerances import HALF_DIGITS
+
 SHARE = sp.Rational(3, 8)
 """The part of the size by which the hand may miss a rod."""
 MOVED = SHARE / 4
@@ -19,5 +21,15 @@ Their sum is at most the sum of the coordinates of the hand and three times the 
 So the size of the inverse, which counts the coordinates instead, may be a quarter of that of the
 forward map.
 """
+LEAST = 4 * HALF_DIGITS
+"""The part of a size below which a length has lost half of its digits."""
+MOST_LOST = LEAST**-2
+"""The most that two such losses amount to."""
 
-__all__ = ["MOVED", "SHARE"]
+
+def lost(size: sp.Expr, length: sp.Expr) -> sp.Expr:
+    """How much more than ``size`` rounding moves what is divided by a ``length``."""
+    return size / (length + size * LEAST)
+
+
+__all__ = ["MOST_LOST", "MOVED", "SHARE", "lost"]

@@ -274,10 +274,7 @@ class _Past:
 
 def _precise(turn: Turn) -> tuple[Turn, sp.Expr]:
     """The turn with the allowance of the precision of numbers, and how far links may miss."""
-    single = turn.chain.program.vanishes(
-        f"single_{turn.name}", sp.Rational(1, 2**30), 1, "rounding is that of single precision"
-    )
-    play = choose(single, SINGLE / ROUNDING, 1)
+    play = turn.chain.program.by_precision(1, SINGLE / ROUNDING)
     tolerance = turn.chain.size * ROUNDING * play
     return replace(turn, allowance=turn.let("play", play * turn.allowance)), tolerance
 

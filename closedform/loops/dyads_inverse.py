@@ -14,6 +14,7 @@ import sympy as sp
 
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.legs import Naming, Solution, Stretch
+from closedform.lemmas.missed import MOST_LOST, lost
 from closedform.loops.from_hand import export_inverse, turned
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import MISSED, named, where_free
@@ -176,8 +177,8 @@ class _Reverse:
         a, b = (self.at[step.pin] - self.at[near] for near in step.near)
         size = sp.Mul(*self._lengths(step))
         apart = sp.sqrt(square(self.at[step.near[0]] - self.at[step.near[1]]))
-        self.lost.append(size / (sp.Abs(a[0] * b[1] - a[1] * b[0]) + size / 2**20))
-        self.lost.append(self.size / (apart + self.size / 2**20))
+        self.lost.append(lost(size, sp.Abs(a[0] * b[1] - a[1] * b[0])))
+        self.lost.append(lost(self.size, apart))
 
     def _lengths(self, step: Dyad) -> list[sp.Expr]:
         pairs = zip(step.bodies, step.near, strict=True)
@@ -205,8 +206,8 @@ class _Reverse:
             gap = apart - m.length(step.body, near, point)
             # a pin that is free may be chosen such that the distance is right
             off = p.let(f"off_{k}{point}", choose(sp.Or(*self.free), 0, gap))
-            lost = sp.Min(2**40, sp.Mul(*self.lost))
-            p.match(off, self.size * lost / 2, "the hand is on its curve")
+            most = sp.Min(MOST_LOST, sp.Mul(*self.lost))
+            p.match(off, self.size * most / 2, "the hand is on its curve")
             self.missed.append(sp.Abs(off))
         if step.body in m.driven:
             self._angle(step.body, near, far)

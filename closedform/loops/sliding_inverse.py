@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from closedform.lemmas.legs import Naming, Stretch, cross_in_plane
+from closedform.lemmas.missed import MOST_LOST, lost
 from closedform.loops.crossed import Crossed, crossed, state
 from closedform.loops.from_hand import export_inverse
 from closedform.loops.hand import square
@@ -97,8 +98,7 @@ class _Reverse:
         det = block.matrix.applyfunc(lambda e: e.xreplace(self.solver.values)).det()
         if not det.is_number and self.order.held:
             size = self.program.let(f"det_{k}", sp.Abs(det), nonnegative=True)
-            scale = self._scale(block)
-            self.lost.append(scale / (size + scale / 2**20))
+            self.lost.append(lost(self._scale(block), size))
 
     def _scale(self, block: Block) -> sp.Expr:
         return self.size if block.scale is None else block.scale
@@ -109,12 +109,12 @@ class _Reverse:
         here, meant = solver.here, solver.meant
         near, *others = group.points
         free = [flag for link in solver.links for case in link.degenerate for flag in case.flags]
-        lost = sp.Min(2**40, sp.Mul(*self.lost))
+        most = sp.Min(MOST_LOST, sp.Mul(*self.lost))
 
         def compare(gap: sp.Expr, name: str) -> None:
             # a pin that is free may be chosen such that the distance is right
             off = p.let(name, choose(sp.Or(*free), 0, gap) if free else gap)
-            p.match(off, self.size * lost / 2, "the hand is on its curve")
+            p.match(off, self.size * most / 2, "the hand is on its curve")
             solver.missed.append(sp.Abs(off))
 
         if group.slides:

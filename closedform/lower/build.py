@@ -16,6 +16,7 @@ import sympy as sp
 from closedform.algebra.resolvent import Resolvent
 from closedform.lower.graph import Graph, Node
 from closedform.lower.resolvent import root_between
+from closedform.model.constant import Constant
 from closedform.model.functions import reject_floats
 
 RELATIONS = {
@@ -85,6 +86,8 @@ class Builder:
                 if not bottom.is_nonnegative:
                     top, bottom = expr.args[0], sp.S.One
                 return graph.atan2(self(top), self(bottom))
+            case Constant():
+                return graph.node("tolerance", payload=expr.name)
             case Resolvent():
                 return root_between(graph, *map(self, expr.args))
             case sp.Abs():

@@ -7,6 +7,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import sympy as sp
+
+from closedform.model.constant import Constant
+
 HIGHEST_DEGREE = 16
 """The highest power of a length that generated code keeps in range."""
 
@@ -27,6 +31,10 @@ class Tolerances:
         If a closed loop amplifies rounding errors by more than the reciprocal of this, the joints
         do not determine the posture.  At that limit four units in the last place become
         ``vanishing / determined``, which is less than ``forward``.
+    half_digits
+        A length from the root of a difference has half of the digits where the difference vanishes:
+        ``feasibility`` may be a quarter of the square of this, so what counts as on the boundary
+        changes such a length by no more than itself.
     rotation
         A matrix counts as a rotation if its columns are orthonormal and right-handed up to this.
         Matrices that were stored in single precision pass; a matrix that a person would call
@@ -54,6 +62,7 @@ class Tolerances:
     feasibility: float
     vanishing: float
     determined: float
+    half_digits: float
     rotation: float
     round_trip: float
     forward: float
@@ -83,6 +92,7 @@ DOUBLE = Tolerances(
     feasibility=1e-12,
     vanishing=2.0**-50,
     determined=2.0**-10,
+    half_digits=2.0**-22,
     rotation=1e-6,
     round_trip=1.1e-12,
     forward=1e-12,
@@ -94,6 +104,7 @@ FLOAT = Tolerances(
     feasibility=1e-6,
     vanishing=2.0**-21,
     determined=2.0**-6,
+    half_digits=2.0**-12,
     rotation=1e-4,
     round_trip=2.0**-16,
     forward=4e-5,
@@ -101,8 +112,10 @@ FLOAT = Tolerances(
     least_exponent=-64,
     most_exponent=112,
 )
-GENERATED = ("feasibility", "vanishing", "determined", "rotation")
+GENERATED = ("feasibility", "vanishing", "determined", "half_digits", "rotation")
 """The tolerances that generated code contains by name."""
+HALF_DIGITS = Constant("half_digits", sp.Rational(DOUBLE.half_digits))
+"""This tolerance in an expression of a derivation."""
 UNIT_LENGTH = 1e-3
 """How far a direction or a rotation in decimals may be from unit length: three decimals.
 

@@ -40,6 +40,7 @@ class Precision(NamedTuple):
     feasibility: float
     vanishing: float
     determined: float
+    half_digits: float
     rotation: float
     turn: float
     turn_tail: float
@@ -55,6 +56,7 @@ FLOAT64 = Precision(
     feasibility=1e-12,
     vanishing=8.881784197001252e-16,
     determined=0.0009765625,
+    half_digits=2.384185791015625e-07,
     rotation=1e-06,
     turn=6.283185307179586,
     turn_tail=2.4492935982947064e-16,
@@ -69,6 +71,7 @@ FLOAT32 = Precision(
     feasibility=1e-06,
     vanishing=4.76837158203125e-07,
     determined=0.015625,
+    half_digits=0.000244140625,
     rotation=0.0001,
     turn=6.2831854820251465,
     turn_tail=-1.7484555314695172e-07,
@@ -174,6 +177,7 @@ class Operations:
         self.feasibility = self.precision.feasibility
         self.vanishing = self.precision.vanishing
         self.determined = self.precision.determined
+        self.half_digits = self.precision.half_digits
         self.rotation = self.precision.rotation
         self.nan = math.nan
 

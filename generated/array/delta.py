@@ -11,8 +11,8 @@
 #   singularities: 71 compare and select, 83 add, 12 divide, 123 multiply, 6 sincos, 1 sqrt
 #   condition_number: 68 compare and select, 121 add, 14 divide, 174 multiply, 6 sincos, 3 sqrt
 #   constraint: 65 compare and select, 93 add, 12 divide, 160 multiply, 6 sincos, 1 sqrt
-#   ik: 187 compare and select, 157 add, 6 atan2, 14 divide, 174 multiply, 3 sincos, 18 sqrt
-#   workspace_contains: 48 add, 53 compare and select, 8 divide, 38 multiply, 3 sincos, 6 sqrt
+#   ik: 187 compare and select, 157 add, 6 atan2, 13 divide, 175 multiply, 3 sincos, 18 sqrt
+#   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
 
 Three cranks of length L turn about axes in the base plane z = 0, at the distance f from the
@@ -1965,7 +1965,7 @@ def _ik(ops, x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t6 = c_alpha1 * t4 - s_alpha1 * t5
     t7 = l + t6
     t8 = l - t6
-    t9 = size * 2.384185791015625e-07
+    t9 = size * ops.half_digits
     t10 = ops.max(t7, 0.0) * ops.max(t8, 0.0)
     fore_1 = ops.sqrt(t10)
     lost_1 = ops.max(1.0, l / (t9 + fore_1))
@@ -2290,7 +2290,7 @@ def _workspace_contains(ops, x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     aside_1 = c_alpha1 * t4 - s_alpha1 * t5
     t6 = l - aside_1
     t7 = l + aside_1
-    t8 = size * 2.384185791015625e-07
+    t8 = size * ops.half_digits
     fore_1 = ops.sqrt(ops.max(t6, 0.0) * ops.max(t7, 0.0))
     t9 = ops.feasibility * (size * ops.max(1.0, l / (t8 + fore_1)) * 0.5)
     wu_1 = s_alpha1 * t4 + c_alpha1 * t5

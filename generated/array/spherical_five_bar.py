@@ -9,8 +9,8 @@
 #   jacobian: 107 compare and select, 102 add, 26 divide, 169 multiply, 7 sincos, 7 sqrt
 #   singularities: 100 compare and select, 84 add, 14 divide, 133 multiply, 7 sincos, 7 sqrt
 #   condition_number: 107 compare and select, 128 add, 22 divide, 178 multiply, 7 sincos, 11 sqrt
-#   ik: 149 compare and select, 107 add, 4 atan2, 15 divide, 132 multiply, 5 sincos, 14 sqrt
-#   workspace_contains: 53 compare and select, 26 add, 9 divide, 30 multiply, 5 sincos, 5 sqrt
+#   ik: 149 compare and select, 107 add, 4 atan2, 14 divide, 133 multiply, 5 sincos, 14 sqrt
+#   workspace_contains: 53 compare and select, 26 add, 8 divide, 31 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
 
 All axes meet in the centre O, and all links are arcs of great circles of a sphere of radius r
@@ -1686,7 +1686,7 @@ def _ik(ops, x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     t10 = r_1 - aside_1
     t11 = aside_1 + r_1
     t12 = (ops.abs(r - strut_0) <= t5) & (-t5 <= t10) & (-t5 <= t11)
-    t13 = r * 2.384185791015625e-07
+    t13 = r * ops.half_digits
     fore_1 = ops.sqrt(ops.max(t10, 0.0) * ops.max(t11, 0.0))
     lost_1 = ops.max(1.0, r_1 / (t13 + fore_1))
     t14 = -(ops.feasibility * (r * lost_1 * 0.5))
@@ -1929,7 +1929,7 @@ def _workspace_contains(ops, x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     t6 = r_1 - aside_1
     t7 = aside_1 + r_1
     t8 = (ops.abs(r - strut_0) <= t4) & (-t4 <= t6) & (-t4 <= t7)
-    t9 = r * 2.384185791015625e-07
+    t9 = r * ops.half_digits
     fore_1 = ops.sqrt(ops.max(t6, 0.0) * ops.max(t7, 0.0))
     t10 = ops.feasibility * (r * ops.max(1.0, r_1 / (t9 + fore_1)) * 0.5)
     l_1 = r * ops.abs(s_alpha1)

@@ -12,8 +12,8 @@
  *   jacobian: 67 compare and select, 95 add, 21 divide, 149 multiply, 7 sincos, 4 sqrt
  *   singularities: 67 compare and select, 71 add, 9 divide, 113 multiply, 7 sincos, 4 sqrt
  *   condition_number: 67 compare and select, 111 add, 17 divide, 158 multiply, 7 sincos, 8 sqrt
- *   ik: 107 compare and select, 78 add, 4 atan2, 14 divide, 104 multiply, 5 sincos, 7 sqrt
- *   workspace_contains: 53 compare and select, 26 add, 9 divide, 30 multiply, 5 sincos, 5 sqrt
+ *   ik: 107 compare and select, 78 add, 4 atan2, 13 divide, 105 multiply, 5 sincos, 7 sqrt
+ *   workspace_contains: 53 compare and select, 26 add, 8 divide, 31 multiply, 5 sincos, 5 sqrt
  */
 #include "spherical_five_bar.h"
 
@@ -2055,7 +2055,7 @@ CF_INLINE void spherical_five_bar_ik_kernel(const int single, const real_t one,
     const int invalid = !(t28 & t29);
     const real_t t30 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.5));
     const int t31 = cf_abs(r - strut_0) <= t30;
-    const real_t t32 = r * CLOSEDFORM_C(2.384185791015625e-07);
+    const real_t t32 = cf_rounded(single, one, r * CLOSEDFORM_HALF_DIGITS);
     const real_t lost_1 = cf_max(CLOSEDFORM_C(1.0), r_1 / cf_nonzero(single, t32 + fore_1));
     const real_t t33 = CLOSEDFORM_FEASIBILITY * (r * lost_1 * CLOSEDFORM_C(0.5));
     const int t34 = t31 & (-t30 <= t9) & (-t30 <= t10) & (-t33 <= t13);
@@ -2355,7 +2355,7 @@ CF_INLINE void spherical_five_bar_workspace_contains_kernel(const int single, co
     const real_t aside_1 = px_0 - cf_rounded(single, one, r * c_alpha1);
     const real_t t11 = r_1 - aside_1;
     const real_t t12 = aside_1 + r_1;
-    const real_t t13 = r * CLOSEDFORM_C(2.384185791015625e-07);
+    const real_t t13 = cf_rounded(single, one, r * CLOSEDFORM_HALF_DIGITS);
     const real_t t14 = cf_max(t11, CLOSEDFORM_C(0.0)) * cf_max(t12, CLOSEDFORM_C(0.0));
     const real_t fore_1 = cf_sqrt(t14);
     const real_t lost_1 = cf_max(CLOSEDFORM_C(1.0), r_1 / cf_nonzero(single, t13 + fore_1));

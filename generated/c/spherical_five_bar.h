@@ -12,8 +12,8 @@
  *   jacobian: 67 compare and select, 95 add, 21 divide, 149 multiply, 7 sincos, 4 sqrt
  *   singularities: 67 compare and select, 71 add, 9 divide, 113 multiply, 7 sincos, 4 sqrt
  *   condition_number: 67 compare and select, 111 add, 17 divide, 158 multiply, 7 sincos, 8 sqrt
- *   ik: 107 compare and select, 78 add, 4 atan2, 14 divide, 104 multiply, 5 sincos, 7 sqrt
- *   workspace_contains: 53 compare and select, 26 add, 9 divide, 30 multiply, 5 sincos, 5 sqrt
+ *   ik: 107 compare and select, 78 add, 4 atan2, 13 divide, 105 multiply, 5 sincos, 7 sqrt
+ *   workspace_contains: 53 compare and select, 26 add, 8 divide, 31 multiply, 5 sincos, 5 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not

@@ -13,8 +13,8 @@
 //   singularities: 44 compare and select, 87 add, 8 divide, 112 multiply, 6 sincos, 1 sqrt
 //   condition_number: 44 compare and select, 119 add, 10 divide, 163 multiply, 6 sincos, 3 sqrt
 //   constraint: 44 compare and select, 91 add, 8 divide, 149 multiply, 6 sincos, 1 sqrt
-//   ik: 139 compare and select, 130 add, 6 atan2, 14 divide, 150 multiply, 3 sincos, 9 sqrt
-//   workspace_contains: 48 add, 53 compare and select, 8 divide, 38 multiply, 3 sincos, 6 sqrt
+//   ik: 139 compare and select, 130 add, 6 atan2, 13 divide, 151 multiply, 3 sincos, 9 sqrt
+//   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
 
 /**
  * Delta robot with rotary drives.
@@ -2058,7 +2058,7 @@ function _ik(v, o) {
     const t25 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z);
     const invalid = !(t24 && t25);
     const t26 = -(_runtime.FEASIBILITY * (size * 0.5));
-    const t27 = size * 2.384185791015625e-07;
+    const t27 = size * _runtime.HALF_DIGITS;
     const lost_1 = Math.max(1.0, l / (t27 + fore_1));
     const t28 = -(_runtime.FEASIBILITY * (size * lost_1 * 0.5));
     const t29 = t26 <= t9 && t26 <= t10 && t28 <= t11 && t28 <= t15;
@@ -2336,7 +2336,7 @@ function _workspace_contains(v, o) {
     const aside_1 = c_alpha1 * t5 - s_alpha1 * t6;
     const t7 = l - aside_1;
     const t8 = l + aside_1;
-    const t9 = size * 2.384185791015625e-07;
+    const t9 = size * _runtime.HALF_DIGITS;
     const fore_1 = Math.sqrt(Math.max(t7, 0.0) * Math.max(t8, 0.0));
     const t10 = size * Math.max(1.0, l / (t9 + fore_1)) * 0.5;
     const t11 = -(_runtime.FEASIBILITY * t10);

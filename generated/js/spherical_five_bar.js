@@ -11,8 +11,8 @@
 //   jacobian: 67 compare and select, 95 add, 21 divide, 149 multiply, 7 sincos, 4 sqrt
 //   singularities: 67 compare and select, 71 add, 9 divide, 113 multiply, 7 sincos, 4 sqrt
 //   condition_number: 67 compare and select, 111 add, 17 divide, 158 multiply, 7 sincos, 8 sqrt
-//   ik: 107 compare and select, 78 add, 4 atan2, 14 divide, 104 multiply, 5 sincos, 7 sqrt
-//   workspace_contains: 53 compare and select, 26 add, 9 divide, 30 multiply, 5 sincos, 5 sqrt
+//   ik: 107 compare and select, 78 add, 4 atan2, 13 divide, 105 multiply, 5 sincos, 7 sqrt
+//   workspace_contains: 53 compare and select, 26 add, 8 divide, 31 multiply, 5 sincos, 5 sqrt
 
 /**
  * Spherical five-bar linkage.
@@ -1710,7 +1710,7 @@ function _ik(v, o) {
     const invalid = !(t25 && t26);
     const t27 = _runtime.FEASIBILITY * (r * 0.5);
     const t28 = Math.abs(r - strut_0) <= t27 && -t27 <= t7 && -t27 <= t8;
-    const t29 = r * 2.384185791015625e-07;
+    const t29 = r * _runtime.HALF_DIGITS;
     const lost_1 = Math.max(1.0, r_1 / (t29 + fore_1));
     const t30 = -(_runtime.FEASIBILITY * (r * lost_1 * 0.5));
     const t31 = t28 && t30 <= t10 && t30 <= t14 && t30 <= t11;
@@ -1915,7 +1915,7 @@ function _workspace_contains(v, o) {
     const t7 = r_1 - aside_1;
     const t8 = aside_1 + r_1;
     const t9 = Math.abs(r - strut_0) <= t5 && -t5 <= t7 && -t5 <= t8;
-    const t10 = r * 2.384185791015625e-07;
+    const t10 = r * _runtime.HALF_DIGITS;
     const fore_1 = Math.sqrt(Math.max(t7, 0.0) * Math.max(t8, 0.0));
     const t11 = r * Math.max(1.0, r_1 / (t10 + fore_1)) * 0.5;
     const t12 = -(_runtime.FEASIBILITY * t11);

@@ -13,8 +13,8 @@
 #   singularities: 44 compare and select, 87 add, 8 divide, 112 multiply, 6 sincos, 1 sqrt
 #   condition_number: 44 compare and select, 119 add, 10 divide, 163 multiply, 6 sincos, 3 sqrt
 #   constraint: 44 compare and select, 91 add, 8 divide, 149 multiply, 6 sincos, 1 sqrt
-#   ik: 139 compare and select, 130 add, 6 atan2, 14 divide, 150 multiply, 3 sincos, 9 sqrt
-#   workspace_contains: 48 add, 53 compare and select, 8 divide, 38 multiply, 3 sincos, 6 sqrt
+#   ik: 139 compare and select, 130 add, 6 atan2, 13 divide, 151 multiply, 3 sincos, 9 sqrt
+#   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
 
 Three cranks of length L turn about axes in the base plane z = 0, at the distance f from the
@@ -2281,7 +2281,7 @@ def _ik(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     invalid = np.logical_not(t24 & t25)
     del t24, t25
     t26 = -(_runtime.FEASIBILITY * (size * 0.5))
-    t27 = size * 2.384185791015625e-07
+    t27 = size * _runtime.HALF_DIGITS
     lost_1 = np.maximum(1.0, l / (t27 + fore_1))
     del fore_1
     t28 = -(_runtime.FEASIBILITY * (size * lost_1 * 0.5))
@@ -2618,7 +2618,7 @@ def _workspace_contains(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t7 = l - aside_1
     t8 = l + aside_1
     del aside_1
-    t9 = size * 2.384185791015625e-07
+    t9 = size * _runtime.HALF_DIGITS
     fore_1 = np.sqrt(np.maximum(t7, 0.0) * np.maximum(t8, 0.0))
     t10 = size * np.maximum(1.0, l / (t9 + fore_1)) * 0.5
     t11 = -(_runtime.FEASIBILITY * t10)

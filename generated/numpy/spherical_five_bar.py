@@ -11,8 +11,8 @@
 #   jacobian: 67 compare and select, 95 add, 21 divide, 149 multiply, 7 sincos, 4 sqrt
 #   singularities: 67 compare and select, 71 add, 9 divide, 113 multiply, 7 sincos, 4 sqrt
 #   condition_number: 67 compare and select, 111 add, 17 divide, 158 multiply, 7 sincos, 8 sqrt
-#   ik: 107 compare and select, 78 add, 4 atan2, 14 divide, 104 multiply, 5 sincos, 7 sqrt
-#   workspace_contains: 53 compare and select, 26 add, 9 divide, 30 multiply, 5 sincos, 5 sqrt
+#   ik: 107 compare and select, 78 add, 4 atan2, 13 divide, 105 multiply, 5 sincos, 7 sqrt
+#   workspace_contains: 53 compare and select, 26 add, 8 divide, 31 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
 
 All axes meet in the centre O, and all links are arcs of great circles of a sphere of radius r
@@ -2042,7 +2042,7 @@ def _ik(x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     t27 = _runtime.FEASIBILITY * (r * 0.5)
     t28 = (np.abs(r - strut_0) <= t27) & (-t27 <= t7) & (-t27 <= t8)
     del strut_0, t7, t8
-    t29 = r * 2.384185791015625e-07
+    t29 = r * _runtime.HALF_DIGITS
     lost_1 = np.maximum(1.0, r_1 / (t29 + fore_1))
     del fore_1
     t30 = -(_runtime.FEASIBILITY * (r * lost_1 * 0.5))
@@ -2289,7 +2289,7 @@ def _workspace_contains(x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     del aside_1
     t9 = (np.abs(r - strut_0) <= t5) & (-t5 <= t7) & (-t5 <= t8)
     del strut_0
-    t10 = r * 2.384185791015625e-07
+    t10 = r * _runtime.HALF_DIGITS
     fore_1 = np.sqrt(np.maximum(t7, 0.0) * np.maximum(t8, 0.0))
     del t7, t8
     t11 = r * np.maximum(1.0, r_1 / (t10 + fore_1)) * 0.5

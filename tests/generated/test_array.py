@@ -139,6 +139,28 @@ def test_single_precision_of_any_size() -> None:
         assert abs(back - x[:2, None]).max() < FLOAT.forward * 0.7 * unit
 
 
+def test_a_rod_at_right_angles_to_its_crank() -> None:
+    """In single precision too the rod of an OK answer ends at the target."""
+    delta = importlib.import_module("closedform.generated.array.delta")
+    n, rng = 20_000, np.random.default_rng(1)
+    f, L, l = rng.uniform(0.05, 0.5, (3, n))
+    parts = [f, np.full(n, 0.04), L, l, *(np.full(n, k * 2.0943951023931953) for k in range(3))]
+    lengths = [p.astype(np.float32) for p in parts]
+    f, e, L, l = (p.astype(float) for p in lengths[:4])
+    aside = l * (1 - 10 ** rng.uniform(-8, -2, n))
+    reach = L * (1 + rng.choice([-1, 1], n) * 10 ** rng.uniform(-6, 0, n))
+    way = rng.uniform(-np.pi, np.pi, n)
+    p = np.stack([f - e + reach * np.cos(way), aside, -reach * np.sin(way)], -1).astype(np.float32)
+    found = delta.ik(p, lengths)
+    theta = found.q[..., 0].astype(float)
+    end = [f[:, None] + L[:, None] * np.cos(theta), 0 * theta, -L[:, None] * np.sin(theta)]
+    rod = np.stack(end, -1) - (p + np.stack([e, 0 * e, 0 * e], -1))[:, None]
+    missed = abs(np.linalg.norm(rod, axis=-1) - l[:, None]) / (f + e + L + l)[:, None]
+    ok = found.status == 0
+    assert ok.sum() > n / 2
+    assert missed[ok].max() < FLOAT.forward
+
+
 def test_tolerances_follow_the_type() -> None:
     """Out of reach by half of a millionth is at full stretch in single precision, not in double."""
     x = np.array([18.0 * (1 + 5e-7), 0.0])

@@ -13,6 +13,7 @@ export const Status = Object.freeze({ OK: 0, UNREACHABLE: 1, SINGULAR: 2, INVALI
 export const FEASIBILITY = 1e-12;
 export const VANISHING = 8.881784197001252e-16;
 export const DETERMINED = 0.0009765625;
+export const HALF_DIGITS = 2.384185791015625e-07;
 export const ROTATION = 1e-06;
 
 /**

@@ -93,7 +93,7 @@ class Case:
         return in_order(assigned, outputs), outputs
 
     def inputs(self, n: int) -> np.ndarray:
-        """``n`` inputs as rows; an inverse gets the images of random joints, if they exist."""
+        """``n`` rows of inputs: random joints that have an image, or for an inverse that image."""
         random = np.random.default_rng(7)
         drawn = self._drawn(n, random)
         while len(drawn) < n:
@@ -111,7 +111,8 @@ class Case:
             return q
         x = module.fk(q)
         x = (x.p[:, 0] if isinstance(x, tuple) else x).reshape(n, -1)
-        return x[np.isfinite(x).all(axis=1)]
+        reached = np.isfinite(x).all(axis=1)
+        return (q if self.source.result == "Positions" else x)[reached]
 
     def values(self, inputs: np.ndarray) -> np.ndarray:
         """The reference: the generated NumPy, which the tests compare with ball arithmetic."""

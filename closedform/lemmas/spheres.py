@@ -161,7 +161,7 @@ def three_spheres(
             + r"  The radii are equal, so $X = 1/2$."
             * equal
         ),
-        letters={uu: r"\mu"},
+        letters={uu: r"\mu", size: r"\lambda"},
         written={"u": r"\mathbf a", "v": r"\mathbf c_3"},
     )
     D, j = sp.sqrt(mu), sp.sqrt(lam)
@@ -235,9 +235,8 @@ def _unequal_spheres(
     # third
     tolerated = 2 * share * scale / 3
     unit = p.let("length_a", sp.sqrt(mu), nonnegative=True)
-    whole = p.let("length_m", sp.sqrt(lam), nonnegative=True)
-    over = p.let("over_a", 1 / unit, nonnegative=True)
-    rest = p.let("over_n", whole * over, nonnegative=True)
+    nu = p.let("nu", lam / mu, nonnegative=True)
+    rest = p.let("beside_a", sp.sqrt(nu), nonnegative=True)
     D = p.let("D", choose(point, 0, unit), nonnegative=True)
     j = p.let("j", choose(line, 0, rest), nonnegative=True)
     A = p.bound("slack", r1 + near - D, tolerated, "the spheres meet")
@@ -246,8 +245,9 @@ def _unequal_spheres(
     )
     along = p.let("along", choose(point, 0, along))
     radius = p.let("rho", choose(point, r1, beside), nonnegative=True)
-    part = p.let("part", 1 / whole, nonnegative=True)
-    left = p.let("left", j**2 + (dot * over - along) ** 2 + radius**2 - far**2)
+    part = p.let("part", 1 / (unit * rest), nonnegative=True)
+    over = p.let("over_a", rest * part, nonnegative=True)
+    left = p.let("left", nu + (dot * over - along) ** 2 + radius**2 - far**2)
     meaning = "the third sphere meets the circle of the others"
     # for a radius of zero the allowed error is the same, and its square is what appears here
     missed = 2 * tolerated * (far + scale / 2**42)
@@ -258,7 +258,7 @@ def _unequal_spheres(
     anywhere = sp.Or(flat, line)
     half = p.let("half", radius / both)
     X = p.let("X", along * over)
-    Y = p.let("Y", choose(anywhere, 0, half * (upper - lower) * over * part))
+    Y = p.let("Y", choose(anywhere, 0, half * (upper - lower) * part * over))
     rise = choose(anywhere, radius, 2 * half * sp.sqrt(upper) * sp.sqrt(lower))
     return X, Y, p.let("h", rise * part, nonnegative=True), flat
 
@@ -271,15 +271,15 @@ def _frame(
     Where the centres are nearly in line, the product m has lost its direction.  There it is found
     again from n, which is at right angles to a whatever m was.
     """
-    (mu, square), m = squares, _vector(p, "m", a.cross(c))
+    (mu, square), m = squares, _vector(p, "product", a.cross(c))
     n = _vector(p, "n", m.cross(a))
-    lam = p.let("m_m", m.dot(m), nonnegative=True)
+    lam = p.let("product_2", m.dot(m), nonnegative=True)
     apart = mu * square
     slim = p.vanishes("slim", lam - apart / 2**12, apart, "the centres are nearly in line")
     over = p.let("over", 1 / mu, nonnegative=True)
     again = [choose(slim, e * over, f) for e, f in zip(a.cross(n), m, strict=True)]
     size = choose(slim, n.dot(n) * over, lam)
-    return _vector(p, "m_again", again), n, p.let("mu_nu", size, nonnegative=True)
+    return _vector(p, "m", again), n, p.let("m_m", size, nonnegative=True)
 
 
 def lens(

@@ -2,15 +2,15 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 79 compare and select, 63 add, 10 divide, 99 multiply, 6 sincos, 2 sqrt
-#   skeleton: 142 compare and select, 114 add, 16 divide, 99 multiply, 6 sincos, 2 sqrt
-#   jacobian_parallel: 90 compare and select, 72 add, 10 divide, 99 multiply, 6 sincos, 2 sqrt
-#   jacobian_serial: 78 compare and select, 84 add, 10 divide, 123 multiply, 6 sincos, 2 sqrt
-#   jacobian: 88 compare and select, 102 add, 28 divide, 178 multiply, 6 sincos, 2 sqrt
-#   determinant: 72 compare and select, 84 add, 12 divide, 128 multiply, 6 sincos, 2 sqrt
-#   singularities: 77 compare and select, 84 add, 10 divide, 124 multiply, 6 sincos, 2 sqrt
-#   condition_number: 74 compare and select, 122 add, 12 divide, 175 multiply, 6 sincos, 4 sqrt
-#   constraint: 74 compare and select, 94 add, 10 divide, 161 multiply, 6 sincos, 2 sqrt
+#   fk: 79 compare and select, 55 add, 10 divide, 87 multiply, 6 sincos, 2 sqrt
+#   skeleton: 142 compare and select, 112 add, 16 divide, 105 multiply, 6 sincos, 2 sqrt
+#   jacobian_parallel: 90 compare and select, 64 add, 10 divide, 87 multiply, 6 sincos, 2 sqrt
+#   jacobian_serial: 78 compare and select, 76 add, 10 divide, 111 multiply, 6 sincos, 2 sqrt
+#   jacobian: 88 compare and select, 94 add, 28 divide, 166 multiply, 6 sincos, 2 sqrt
+#   determinant: 72 compare and select, 76 add, 12 divide, 116 multiply, 6 sincos, 2 sqrt
+#   singularities: 77 compare and select, 76 add, 10 divide, 112 multiply, 6 sincos, 2 sqrt
+#   condition_number: 74 compare and select, 114 add, 12 divide, 163 multiply, 6 sincos, 4 sqrt
+#   constraint: 74 compare and select, 86 add, 10 divide, 149 multiply, 6 sincos, 2 sqrt
 #   ik: 187 compare and select, 157 add, 6 atan2, 13 divide, 175 multiply, 3 sincos, 18 sqrt
 #   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -166,54 +166,55 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
     t3 = L * s1
     u_z = t3 - L * s2
-    t4 = L * c1
-    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
-    t6 = L * c2
-    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
-    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
-    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    u_u = u_z * u_z + t7 * t7 + t9 * t9
+    t4 = f - e
+    t5 = L * c1 + t4
+    c1_x = c_alpha1 * t5
+    t6 = L * c2 + t4
+    t7 = c1_x - c_alpha2 * t6
+    c1_y = s_alpha1 * t5
+    t8 = c1_y - s_alpha2 * t6
+    u_u = u_z * u_z + t7 * t7 + t8 * t8
     size = f + e + L + l
-    t10 = size * size
-    t11 = ops.vanishing * ops.vanishing
-    t12 = t10 * t11
-    same = u_u <= t12
-    t13 = L * c3
-    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
-    t15 = ops.select(same, t14, t9)
+    t9 = size * size
+    t10 = ops.vanishing * ops.vanishing
+    t11 = t9 * t10
+    same = u_u <= t11
+    t12 = L * c3 + t4
+    t13 = c1_y - s_alpha3 * t12
+    t14 = ops.select(same, t13, t8)
     v_z = t3 - L * s3
-    t16 = ops.select(same, u_z, v_z)
-    t17 = ops.select(same, t9, t14)
+    t15 = ops.select(same, u_z, v_z)
+    t16 = ops.select(same, t8, t13)
     d_z = ops.select(same, v_z, u_z)
-    t18 = t15 * t16 - t17 * d_z
-    t19 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
-    v_v = v_z * v_z + t19 * t19 + t14 * t14
-    all_same = u_u + v_v <= t12
+    t17 = t14 * t15 - t16 * d_z
+    t18 = c1_x - c_alpha3 * t12
+    v_v = v_z * v_z + t18 * t18 + t13 * t13
+    all_same = u_u + v_v <= t11
     whole = ops.select((size == 0.0), 1.0, size)
-    d_x = ops.select(same, t19, t7)
-    a_x = ops.select(all_same, whole, d_x)
-    t20 = ops.select(same, t7, t19)
-    t21 = a_x * t16 - t20 * d_z
-    t22 = a_x * t17 - t15 * t20
-    m_m = t18 * t18 + t21 * t21 + t22 * t22
+    t19 = ops.select(same, t18, t7)
+    a_x = ops.select(all_same, whole, -t19)
+    t20 = ops.select(same, t7, t18)
+    t21 = a_x * t15 + t20 * d_z
+    t22 = a_x * t16 + t14 * t20
+    product_2 = t17 * t17 + t21 * t21 + t22 * t22
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t23 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t23 * 0.000244140625 <= ops.vanishing * t23
-    t24 = t15 * t22 + d_z * t21
-    t25 = a_x * t22 - d_z * t18
-    n_z = a_x * t21 + t15 * t18
+    slim = product_2 - t23 * 0.000244140625 <= ops.vanishing * t23
+    t24 = t14 * t22 + d_z * t21
+    t25 = a_x * t22 - d_z * t17
+    n_z = a_x * t21 + t14 * t17
     t26 = t24 * t24 + t25 * t25 + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t26, m_m)
-    in_line = mu_nu <= t11 * (t10 * mu)
-    t27 = t20 * (d_x - t20) + t17 * (t15 - t17) + t16 * (d_z - t16)
-    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t10 * ops.feasibility
+    m_m = ops.select(slim, 1.0 / mu * t26, product_2)
+    in_line = m_m <= t10 * (t9 * mu)
+    t27 = t20 * (t19 - t20) + t16 * (t14 - t16) + t15 * (d_z - t15)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t9 * ops.feasibility
     t29 = l * size * 0.75
     t30 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(t15 * a_x)
-    t31 = whole * (t15 + a_x * s_w)
+    s_w = ops.sign(-(t14 * a_x))
+    t31 = whole * (t14 - a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    w_w = ops.select(in_line, t32, mu_nu)
+    w_w = ops.select(in_line, t32, m_m)
     t33 = ops.select(in_line, 0.0, 1.0 / w_w * t27 * 0.5)
     t34 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t33 * t33)))
     t35 = t30 - t34
@@ -226,32 +227,32 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t39 = t37 | ((t36 | (t37 & ops.opposite(all_same))) & t38)
     t40 = ops.select((t36 & t38 & slim) | (t39 & t38 & slim), mu, 1.0)
     over = 1.0 / t40
-    w_w_2 = ops.select(in_line, t32, ops.select(slim, over * t26, m_m))
+    w_w_2 = ops.select(in_line, t32, ops.select(slim, over * t26, product_2))
     part = 1.0 / ops.select(t39, w_w_2, 1.0)
     t41 = ops.select(in_line, 0.0, part * t27 * 0.5)
-    t42 = d_x * 0.5 - (t5 - t24 * t41)
-    m_again_x = ops.select(slim, over * (t15 * n_z - d_z * t25), t18)
-    t43 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t41 * t41)))
-    t44 = ops.select(t37, ops.max(t30 - t43, 0.0), 1.0)
-    t45 = ops.sqrt(ops.select(t37, part, 1.0)) * ops.sqrt(t44)
-    h = ops.select(touching, 0.0, t45)
-    t46 = ops.select(in_line, g_1 * s_w, m_again_x) * h
-    t47 = t15 * 0.5 - (t8 + t25 * t41)
-    t48 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
-    t49 = h * ops.select(in_line, g_1, -t48)
-    t50 = d_z * 0.5 - (t3 + n_z * t41)
-    m_again_z = ops.select(slim, over * (a_x * t25 + t15 * t24), t22)
-    t51 = h * ops.select(in_line, -t31, m_again_z)
-    t52 = ops.status(invalid, unreachable, in_line)
+    t42 = t19 * 0.5 - (c1_x + t24 * t41)
+    t43 = ops.select(slim, over * (t14 * n_z - d_z * t25), t17)
+    t44 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t41 * t41)))
+    t45 = ops.select(t37, ops.max(t30 - t44, 0.0), 1.0)
+    t46 = ops.sqrt(ops.select(t37, part, 1.0)) * ops.sqrt(t45)
+    h = ops.select(touching, 0.0, t46)
+    t47 = ops.select(in_line, g_1 * s_w, -t43) * h
+    t48 = t14 * 0.5 - (c1_y + t25 * t41)
+    t49 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
+    t50 = h * ops.select(in_line, g_1, -t49)
+    t51 = d_z * 0.5 - (t3 + n_z * t41)
+    t52 = ops.select(slim, over * (a_x * t25 + t14 * t24), t22)
+    t53 = h * ops.select(in_line, t31, -t52)
+    t54 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t42 - t46),
-        ops.select(failed, ops.nan, t47 - t49),
-        ops.select(failed, ops.nan, t50 - t51),
-        ops.select(failed, ops.nan, t46 + t42),
-        ops.select(failed, ops.nan, t49 + t47),
-        ops.select(failed, ops.nan, t51 + t50),
-        t52,
-        t52,
+        ops.select(failed, ops.nan, -(t42 + t47)),
+        ops.select(failed, ops.nan, -(t48 + t50)),
+        ops.select(failed, ops.nan, t51 - t53),
+        ops.select(failed, ops.nan, t47 - t42),
+        ops.select(failed, ops.nan, t50 - t48),
+        ops.select(failed, ops.nan, t51 + t53),
+        t54,
+        t54,
     )
 
 
@@ -326,286 +327,290 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t3 = L * s1
     t4 = L * s2
     u_z = t3 - t4
-    t5 = e * c_alpha1
-    t6 = f * c_alpha1
-    t7 = L * c1
-    t8 = t6 + c_alpha1 * t7
-    t9 = t5 - t8
-    t10 = e * c_alpha2
-    t11 = f * c_alpha2
-    t12 = L * c2
-    t13 = t11 + c_alpha2 * t12
-    t14 = t9 - (t10 - t13)
-    t15 = e * s_alpha1
-    t16 = f * s_alpha1
-    t17 = t16 + s_alpha1 * t7
-    t18 = t15 - t17
-    t19 = e * s_alpha2
-    t20 = f * s_alpha2
-    t21 = t20 + s_alpha2 * t12
-    t22 = t18 - (t19 - t21)
-    u_u = u_z * u_z + t14 * t14 + t22 * t22
+    t5 = L * c1
+    t6 = f - e
+    t7 = t5 + t6
+    c1_x = c_alpha1 * t7
+    t8 = L * c2
+    t9 = t8 + t6
+    t10 = c1_x - c_alpha2 * t9
+    c1_y = s_alpha1 * t7
+    t11 = c1_y - s_alpha2 * t9
+    u_u = u_z * u_z + t10 * t10 + t11 * t11
     size = f + e + L + l
-    t23 = size * size
-    t24 = ops.vanishing * ops.vanishing
-    t25 = t23 * t24
-    same = u_u <= t25
-    t26 = e * s_alpha3
-    t27 = f * s_alpha3
-    t28 = L * c3
-    t29 = t27 + s_alpha3 * t28
-    t30 = t18 - (t26 - t29)
-    t31 = ops.select(same, t30, t22)
-    t32 = L * s3
-    v_z = t3 - t32
-    t33 = ops.select(same, u_z, v_z)
+    t12 = size * size
+    t13 = ops.vanishing * ops.vanishing
+    t14 = t12 * t13
+    same = u_u <= t14
+    t15 = L * c3
+    t16 = t15 + t6
+    t17 = c1_y - s_alpha3 * t16
+    t18 = ops.select(same, t17, t11)
+    t19 = L * s3
+    v_z = t3 - t19
+    t20 = ops.select(same, u_z, v_z)
     d_z = ops.select(same, v_z, u_z)
-    t34 = ops.select(same, t22, t30)
-    t35 = t31 * t33 - d_z * t34
-    t36 = e * c_alpha3
-    t37 = f * c_alpha3
-    t38 = t37 + c_alpha3 * t28
-    t39 = t9 - (t36 - t38)
-    v_v = v_z * v_z + t39 * t39 + t30 * t30
-    all_same = u_u + v_v <= t25
+    t21 = ops.select(same, t11, t17)
+    t22 = t18 * t20 - d_z * t21
+    t23 = c1_x - c_alpha3 * t16
+    v_v = v_z * v_z + t23 * t23 + t17 * t17
+    all_same = u_u + v_v <= t14
     whole = ops.select((size == 0.0), 1.0, size)
-    d_x = ops.select(same, t39, t14)
-    a_x = ops.select(all_same, whole, d_x)
-    t40 = ops.select(same, t14, t39)
-    t41 = t33 * a_x - d_z * t40
-    t42 = t34 * a_x - t31 * t40
-    m_m = t35 * t35 + t41 * t41 + t42 * t42
+    t24 = ops.select(same, t23, t10)
+    a_x = ops.select(all_same, whole, -t24)
+    t25 = ops.select(same, t10, t23)
+    t26 = t20 * a_x + d_z * t25
+    t27 = t21 * a_x + t18 * t25
+    product_2 = t22 * t22 + t26 * t26 + t27 * t27
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t43 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t43 * 0.000244140625 <= ops.vanishing * t43
-    t44 = t31 * t42 + d_z * t41
-    t45 = a_x * t42 - d_z * t35
-    n_z = a_x * t41 + t31 * t35
-    t46 = t44 * t44 + t45 * t45 + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t46, m_m)
-    in_line = mu_nu <= t24 * (t23 * mu)
-    t47 = t40 * (d_x - t40) + t34 * (t31 - t34) - t33 * (t33 - d_z)
-    t48 = ops.abs(ops.select(in_line, -t47, 0.0)) <= t23 * ops.feasibility
-    t49 = 0.9375 * (l * size)
-    t50 = l * l
+    t28 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t28 * 0.000244140625 <= ops.vanishing * t28
+    t29 = t18 * t27 + d_z * t26
+    t30 = a_x * t27 - d_z * t22
+    n_z = a_x * t26 + t18 * t22
+    t31 = t29 * t29 + t30 * t30 + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t31, product_2)
+    in_line = m_m <= t13 * (t12 * mu)
+    t32 = t25 * (t24 - t25) + t21 * (t18 - t21) - t20 * (t20 - d_z)
+    t33 = ops.abs(ops.select(in_line, -t32, 0.0)) <= t12 * ops.feasibility
+    t34 = 0.9375 * (l * size)
+    t35 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(t31 * a_x)
-    t51 = whole * (t31 + a_x * s_w)
-    t52 = 2.0 * (g_1 * g_1) + t51 * t51
-    w_w = ops.select(in_line, t52, mu_nu)
-    t53 = ops.select(in_line, 0.0, t47 * (1.0 / w_w) * 0.5)
-    t54 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t53 * t53)))
-    t55 = t50 - t54
-    unreachable = ops.opposite(t48 & (-(ops.feasibility * t49) <= t55))
+    s_w = ops.sign(-(t18 * a_x))
+    t36 = whole * (t18 - a_x * s_w)
+    t37 = 2.0 * (g_1 * g_1) + t36 * t36
+    w_w = ops.select(in_line, t37, m_m)
+    t38 = ops.select(in_line, 0.0, t32 * (1.0 / w_w) * 0.5)
+    t39 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t38 * t38)))
+    t40 = t35 - t39
+    unreachable = ops.opposite(t33 & (-(ops.feasibility * t34) <= t40))
     failed = invalid | unreachable
-    t56 = ops.select(failed, ops.nan, t6)
-    t57 = ops.select(failed, ops.nan, t16)
-    t58 = ops.select(failed, ops.nan, 0.0)
-    t59 = ops.select(failed, ops.nan, t8)
-    t60 = ops.select(failed, ops.nan, t17)
-    t61 = ops.select(failed, ops.nan, -t3)
-    t62 = ops.opposite(failed)
-    touching = ops.max(t55, 0.0) <= ops.vanishing * t49
-    t63 = t62 & ops.opposite(touching)
-    t64 = ops.opposite(in_line)
-    t65 = t63 | ((t62 | (t63 & ops.opposite(all_same))) & t64)
-    t66 = ops.select((t62 & t64 & slim) | (t65 & t64 & slim), mu, 1.0)
-    over = 1.0 / t66
-    w_w_2 = ops.select(in_line, t52, ops.select(slim, over * t46, m_m))
-    part = 1.0 / ops.select(t65, w_w_2, 1.0)
-    t67 = ops.select(in_line, 0.0, t47 * part * 0.5)
-    t68 = t44 * t67 + d_x * 0.5
-    m_again_x = ops.select(slim, over * (t31 * n_z - d_z * t45), t35)
-    t69 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t67 * t67)))
-    t70 = ops.select(t63, ops.max(t50 - t69, 0.0), 1.0)
-    t71 = ops.sqrt(ops.select(t63, part, 1.0)) * ops.sqrt(t70)
-    h = ops.select(touching, 0.0, t71)
-    t72 = ops.select(in_line, g_1 * s_w, m_again_x) * h
-    t73 = t9 - (t68 - t72)
-    t74 = t5 - t73
-    t75 = t45 * t67 - t31 * 0.5
-    t76 = ops.select(slim, over * (a_x * n_z + d_z * t44), t41)
-    t77 = h * ops.select(in_line, g_1, -t76)
-    t78 = t18 + (t75 + t77)
-    t79 = t15 - t78
-    t80 = n_z * t67 - d_z * 0.5
-    m_again_z = ops.select(slim, over * (a_x * t45 + t31 * t44), t42)
-    t81 = h * ops.select(in_line, -t51, m_again_z)
-    t82 = ops.select(failed, ops.nan, -(t3 + (t80 + t81)))
-    t83 = t15 * 0.5
-    t84 = ops.select(failed, ops.nan, t8 - t83)
-    t85 = t5 * 0.5
-    t86 = ops.select(failed, ops.nan, t85 + t17)
-    t87 = ops.select(failed, ops.nan, t83 + t8)
-    t88 = ops.select(failed, ops.nan, t17 - t85)
-    t89 = ops.select(failed, ops.nan, t11)
-    t90 = ops.select(failed, ops.nan, t20)
-    t91 = ops.select(failed, ops.nan, t13)
-    t92 = ops.select(failed, ops.nan, t21)
-    t93 = ops.select(failed, ops.nan, -t4)
-    t94 = t10 - t73
-    t95 = t19 - t78
-    t96 = t19 * 0.5
-    t97 = ops.select(failed, ops.nan, t13 - t96)
-    t98 = t10 * 0.5
-    t99 = ops.select(failed, ops.nan, t98 + t21)
-    t100 = ops.select(failed, ops.nan, t96 + t13)
-    t101 = ops.select(failed, ops.nan, t21 - t98)
-    t102 = ops.select(failed, ops.nan, t37)
-    t103 = ops.select(failed, ops.nan, t27)
-    t104 = ops.select(failed, ops.nan, t38)
-    t105 = ops.select(failed, ops.nan, t29)
-    t106 = ops.select(failed, ops.nan, -t32)
-    t107 = t36 - t73
-    t108 = t26 - t78
-    t109 = t26 * 0.5
-    t110 = ops.select(failed, ops.nan, t38 - t109)
-    t111 = t36 * 0.5
-    t112 = ops.select(failed, ops.nan, t111 + t29)
-    t113 = ops.select(failed, ops.nan, t109 + t38)
-    t114 = ops.select(failed, ops.nan, t29 - t111)
-    t115 = t9 - (t68 + t72)
-    t116 = t5 - t115
-    t117 = t18 + (t75 - t77)
-    t118 = t15 - t117
-    t119 = ops.select(failed, ops.nan, -(t3 + (t80 - t81)))
-    t120 = t10 - t115
-    t121 = t19 - t117
-    t122 = t36 - t115
-    t123 = t26 - t117
+    t41 = f * c_alpha1
+    t42 = ops.select(failed, ops.nan, t41)
+    t43 = f * s_alpha1
+    t44 = ops.select(failed, ops.nan, t43)
+    t45 = ops.select(failed, ops.nan, 0.0)
+    t46 = t41 + t5 * c_alpha1
+    t47 = ops.select(failed, ops.nan, t46)
+    t48 = t43 + t5 * s_alpha1
+    t49 = ops.select(failed, ops.nan, t48)
+    t50 = ops.select(failed, ops.nan, -t3)
+    t51 = e * c_alpha1
+    t52 = ops.opposite(failed)
+    touching = ops.max(t40, 0.0) <= ops.vanishing * t34
+    t53 = t52 & ops.opposite(touching)
+    t54 = ops.opposite(in_line)
+    t55 = t53 | ((t52 | (t53 & ops.opposite(all_same))) & t54)
+    t56 = ops.select((t52 & t54 & slim) | (t55 & t54 & slim), mu, 1.0)
+    over = 1.0 / t56
+    w_w_2 = ops.select(in_line, t37, ops.select(slim, over * t31, product_2))
+    part = 1.0 / ops.select(t55, w_w_2, 1.0)
+    t57 = ops.select(in_line, 0.0, t32 * part * 0.5)
+    t58 = t29 * t57 - t24 * 0.5
+    t59 = ops.select(slim, over * (t18 * n_z - d_z * t30), t22)
+    t60 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t57 * t57)))
+    t61 = ops.select(t53, ops.max(t35 - t60, 0.0), 1.0)
+    t62 = ops.sqrt(ops.select(t53, part, 1.0)) * ops.sqrt(t61)
+    h = ops.select(touching, 0.0, t62)
+    t63 = ops.select(in_line, g_1 * s_w, -t59) * h
+    t64 = c1_x + (t58 - t63)
+    t65 = t51 + t64
+    t66 = e * s_alpha1
+    t67 = t30 * t57 - t18 * 0.5
+    t68 = ops.select(slim, over * (a_x * n_z + d_z * t29), t26)
+    t69 = h * ops.select(in_line, g_1, -t68)
+    t70 = c1_y + (t67 - t69)
+    t71 = t66 + t70
+    t72 = n_z * t57 - d_z * 0.5
+    t73 = ops.select(slim, over * (a_x * t30 + t18 * t29), t27)
+    t74 = h * ops.select(in_line, t36, -t73)
+    t75 = ops.select(failed, ops.nan, -(t3 + (t72 + t74)))
+    t76 = t66 * 0.5
+    t77 = ops.select(failed, ops.nan, t46 - t76)
+    t78 = t51 * 0.5
+    t79 = ops.select(failed, ops.nan, t78 + t48)
+    t80 = ops.select(failed, ops.nan, t76 + t46)
+    t81 = ops.select(failed, ops.nan, t48 - t78)
+    t82 = f * c_alpha2
+    t83 = ops.select(failed, ops.nan, t82)
+    t84 = f * s_alpha2
+    t85 = ops.select(failed, ops.nan, t84)
+    t86 = t82 + t8 * c_alpha2
+    t87 = ops.select(failed, ops.nan, t86)
+    t88 = t84 + t8 * s_alpha2
+    t89 = ops.select(failed, ops.nan, t88)
+    t90 = ops.select(failed, ops.nan, -t4)
+    t91 = e * c_alpha2
+    t92 = t91 + t64
+    t93 = e * s_alpha2
+    t94 = t93 + t70
+    t95 = t93 * 0.5
+    t96 = ops.select(failed, ops.nan, t86 - t95)
+    t97 = t91 * 0.5
+    t98 = ops.select(failed, ops.nan, t97 + t88)
+    t99 = ops.select(failed, ops.nan, t95 + t86)
+    t100 = ops.select(failed, ops.nan, t88 - t97)
+    t101 = f * c_alpha3
+    t102 = ops.select(failed, ops.nan, t101)
+    t103 = f * s_alpha3
+    t104 = ops.select(failed, ops.nan, t103)
+    t105 = t101 + t15 * c_alpha3
+    t106 = ops.select(failed, ops.nan, t105)
+    t107 = t103 + t15 * s_alpha3
+    t108 = ops.select(failed, ops.nan, t107)
+    t109 = ops.select(failed, ops.nan, -t19)
+    t110 = e * c_alpha3
+    t111 = t110 + t64
+    t112 = e * s_alpha3
+    t113 = t112 + t70
+    t114 = t112 * 0.5
+    t115 = ops.select(failed, ops.nan, t105 - t114)
+    t116 = t110 * 0.5
+    t117 = ops.select(failed, ops.nan, t116 + t107)
+    t118 = ops.select(failed, ops.nan, t114 + t105)
+    t119 = ops.select(failed, ops.nan, t107 - t116)
+    t120 = c1_x + (t58 + t63)
+    t121 = t51 + t120
+    t122 = c1_y + (t67 + t69)
+    t123 = t66 + t122
+    t124 = ops.select(failed, ops.nan, -(t3 + (t72 - t74)))
+    t125 = t91 + t120
+    t126 = t93 + t122
+    t127 = t110 + t120
+    t128 = t112 + t122
     return (
-        t56,
-        t57,
-        t58,
-        t59,
-        t60,
-        t61,
-        ops.select(failed, ops.nan, t74),
-        ops.select(failed, ops.nan, t79),
-        t82,
-        t84,
-        t86,
-        t61,
+        t42,
+        t44,
+        t45,
+        t47,
+        t49,
+        t50,
+        ops.select(failed, ops.nan, t65),
+        ops.select(failed, ops.nan, t71),
+        t75,
+        t77,
+        t79,
+        t50,
+        t80,
+        t81,
+        t50,
+        ops.select(failed, ops.nan, t65 - t76),
+        ops.select(failed, ops.nan, t78 + t71),
+        t75,
+        ops.select(failed, ops.nan, t76 + t65),
+        ops.select(failed, ops.nan, t71 - t78),
+        t75,
+        t83,
+        t85,
+        t45,
         t87,
-        t88,
-        t61,
-        ops.select(failed, ops.nan, t74 - t83),
-        ops.select(failed, ops.nan, t85 + t79),
-        t82,
-        ops.select(failed, ops.nan, t83 + t74),
-        ops.select(failed, ops.nan, t79 - t85),
-        t82,
         t89,
         t90,
-        t58,
-        t91,
-        t92,
-        t93,
+        ops.select(failed, ops.nan, t92),
         ops.select(failed, ops.nan, t94),
-        ops.select(failed, ops.nan, t95),
-        t82,
-        t97,
+        t75,
+        t96,
+        t98,
+        t90,
         t99,
-        t93,
         t100,
-        t101,
-        t93,
-        ops.select(failed, ops.nan, t94 - t96),
-        ops.select(failed, ops.nan, t98 + t95),
-        t82,
-        ops.select(failed, ops.nan, t96 + t94),
-        ops.select(failed, ops.nan, t95 - t98),
-        t82,
+        t90,
+        ops.select(failed, ops.nan, t92 - t95),
+        ops.select(failed, ops.nan, t97 + t94),
+        t75,
+        ops.select(failed, ops.nan, t95 + t92),
+        ops.select(failed, ops.nan, t94 - t97),
+        t75,
         t102,
-        t103,
-        t58,
         t104,
-        t105,
+        t45,
         t106,
-        ops.select(failed, ops.nan, t107),
-        ops.select(failed, ops.nan, t108),
-        t82,
-        t110,
-        t112,
-        t106,
-        t113,
-        t114,
-        t106,
-        ops.select(failed, ops.nan, t107 - t109),
-        ops.select(failed, ops.nan, t111 + t108),
-        t82,
-        ops.select(failed, ops.nan, t109 + t107),
-        ops.select(failed, ops.nan, t108 - t111),
-        t82,
-        ops.select(failed, ops.nan, -t73),
-        ops.select(failed, ops.nan, -t78),
-        t82,
-        t56,
-        t57,
-        t58,
-        t59,
-        t60,
-        t61,
-        ops.select(failed, ops.nan, t116),
-        ops.select(failed, ops.nan, t118),
+        t108,
+        t109,
+        ops.select(failed, ops.nan, t111),
+        ops.select(failed, ops.nan, t113),
+        t75,
+        t115,
+        t117,
+        t109,
+        t118,
         t119,
-        t84,
-        t86,
-        t61,
+        t109,
+        ops.select(failed, ops.nan, t111 - t114),
+        ops.select(failed, ops.nan, t116 + t113),
+        t75,
+        ops.select(failed, ops.nan, t114 + t111),
+        ops.select(failed, ops.nan, t113 - t116),
+        t75,
+        ops.select(failed, ops.nan, t64),
+        ops.select(failed, ops.nan, t70),
+        t75,
+        t42,
+        t44,
+        t45,
+        t47,
+        t49,
+        t50,
+        ops.select(failed, ops.nan, t121),
+        ops.select(failed, ops.nan, t123),
+        t124,
+        t77,
+        t79,
+        t50,
+        t80,
+        t81,
+        t50,
+        ops.select(failed, ops.nan, t121 - t76),
+        ops.select(failed, ops.nan, t78 + t123),
+        t124,
+        ops.select(failed, ops.nan, t76 + t121),
+        ops.select(failed, ops.nan, t123 - t78),
+        t124,
+        t83,
+        t85,
+        t45,
         t87,
-        t88,
-        t61,
-        ops.select(failed, ops.nan, t116 - t83),
-        ops.select(failed, ops.nan, t85 + t118),
-        t119,
-        ops.select(failed, ops.nan, t83 + t116),
-        ops.select(failed, ops.nan, t118 - t85),
-        t119,
         t89,
         t90,
-        t58,
-        t91,
-        t92,
-        t93,
-        ops.select(failed, ops.nan, t120),
-        ops.select(failed, ops.nan, t121),
-        t119,
-        t97,
+        ops.select(failed, ops.nan, t125),
+        ops.select(failed, ops.nan, t126),
+        t124,
+        t96,
+        t98,
+        t90,
         t99,
-        t93,
         t100,
-        t101,
-        t93,
-        ops.select(failed, ops.nan, t120 - t96),
-        ops.select(failed, ops.nan, t98 + t121),
-        t119,
-        ops.select(failed, ops.nan, t96 + t120),
-        ops.select(failed, ops.nan, t121 - t98),
-        t119,
+        t90,
+        ops.select(failed, ops.nan, t125 - t95),
+        ops.select(failed, ops.nan, t97 + t126),
+        t124,
+        ops.select(failed, ops.nan, t95 + t125),
+        ops.select(failed, ops.nan, t126 - t97),
+        t124,
         t102,
-        t103,
-        t58,
         t104,
-        t105,
+        t45,
         t106,
+        t108,
+        t109,
+        ops.select(failed, ops.nan, t127),
+        ops.select(failed, ops.nan, t128),
+        t124,
+        t115,
+        t117,
+        t109,
+        t118,
+        t119,
+        t109,
+        ops.select(failed, ops.nan, t127 - t114),
+        ops.select(failed, ops.nan, t116 + t128),
+        t124,
+        ops.select(failed, ops.nan, t114 + t127),
+        ops.select(failed, ops.nan, t128 - t116),
+        t124,
+        ops.select(failed, ops.nan, t120),
         ops.select(failed, ops.nan, t122),
-        ops.select(failed, ops.nan, t123),
-        t119,
-        t110,
-        t112,
-        t106,
-        t113,
-        t114,
-        t106,
-        ops.select(failed, ops.nan, t122 - t109),
-        ops.select(failed, ops.nan, t111 + t123),
-        t119,
-        ops.select(failed, ops.nan, t109 + t122),
-        ops.select(failed, ops.nan, t123 - t111),
-        t119,
-        ops.select(failed, ops.nan, -t115),
-        ops.select(failed, ops.nan, -t117),
-        t119,
+        t124,
     )
 
 
@@ -671,111 +676,110 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
     t3 = L * s1
     u_z = t3 - L * s2
-    t4 = L * c1
-    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
-    t6 = L * c2
-    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
-    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
-    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    u_u = u_z * u_z + t7 * t7 + t9 * t9
+    t4 = f - e
+    t5 = L * c1 + t4
+    c1_x = c_alpha1 * t5
+    t6 = L * c2 + t4
+    t7 = c1_x - c_alpha2 * t6
+    c1_y = s_alpha1 * t5
+    t8 = c1_y - s_alpha2 * t6
+    u_u = u_z * u_z + t7 * t7 + t8 * t8
     size = f + e + L + l
-    t10 = size * size
-    t11 = ops.vanishing * ops.vanishing
-    t12 = t10 * t11
-    same = u_u <= t12
-    t13 = L * c3
-    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
-    t15 = ops.select(same, t14, t9)
+    t9 = size * size
+    t10 = ops.vanishing * ops.vanishing
+    t11 = t9 * t10
+    same = u_u <= t11
+    t12 = L * c3 + t4
+    t13 = c1_y - s_alpha3 * t12
+    t14 = ops.select(same, t13, t8)
     v_z = t3 - L * s3
-    t16 = ops.select(same, u_z, v_z)
-    t17 = ops.select(same, t9, t14)
+    t15 = ops.select(same, u_z, v_z)
+    t16 = ops.select(same, t8, t13)
     d_z = ops.select(same, v_z, u_z)
-    t18 = t15 * t16 - t17 * d_z
-    t19 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
-    v_v = v_z * v_z + t19 * t19 + t14 * t14
-    all_same = u_u + v_v <= t12
+    t17 = t14 * t15 - t16 * d_z
+    t18 = c1_x - c_alpha3 * t12
+    v_v = v_z * v_z + t18 * t18 + t13 * t13
+    all_same = u_u + v_v <= t11
     whole = ops.select((size == 0.0), 1.0, size)
-    d_x = ops.select(same, t19, t7)
-    a_x = ops.select(all_same, whole, d_x)
-    t20 = ops.select(same, t7, t19)
-    t21 = a_x * t16 - t20 * d_z
-    t22 = a_x * t17 - t15 * t20
-    m_m = t18 * t18 + t21 * t21 + t22 * t22
+    t19 = ops.select(same, t18, t7)
+    a_x = ops.select(all_same, whole, -t19)
+    t20 = ops.select(same, t7, t18)
+    t21 = a_x * t15 + t20 * d_z
+    t22 = a_x * t16 + t14 * t20
+    product_2 = t17 * t17 + t21 * t21 + t22 * t22
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t23 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t23 * 0.000244140625 <= ops.vanishing * t23
-    t24 = t15 * t22 + d_z * t21
-    t25 = a_x * t22 - d_z * t18
-    n_z = a_x * t21 + t15 * t18
+    slim = product_2 - t23 * 0.000244140625 <= ops.vanishing * t23
+    t24 = t14 * t22 + d_z * t21
+    t25 = a_x * t22 - d_z * t17
+    n_z = a_x * t21 + t14 * t17
     t26 = t24 * t24 + t25 * t25 + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t26, m_m)
-    in_line = mu_nu <= t11 * (t10 * mu)
-    t27 = t20 * (d_x - t20) + t17 * (t15 - t17) + t16 * (d_z - t16)
-    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t10 * ops.feasibility
+    m_m = ops.select(slim, 1.0 / mu * t26, product_2)
+    in_line = m_m <= t10 * (t9 * mu)
+    t27 = t20 * (t19 - t20) + t16 * (t14 - t16) + t15 * (d_z - t15)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t9 * ops.feasibility
     t29 = 0.9375 * (l * size)
     t30 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(t15 * a_x)
-    t31 = whole * (t15 + a_x * s_w)
+    s_w = ops.sign(-(t14 * a_x))
+    t31 = whole * (t14 - a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    w_w = ops.select(in_line, t32, mu_nu)
+    w_w = ops.select(in_line, t32, m_m)
     t33 = ops.select(in_line, 0.0, 1.0 / w_w * t27 * 0.5)
     t34 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t33 * t33)))
     t35 = t30 - t34
     unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t35))
     failed = invalid | unreachable
     t36 = ops.opposite(failed)
-    t37 = ops.opposite(in_line)
     touching = ops.max(t35, 0.0) <= ops.vanishing * t29
-    t38 = t36 & ops.opposite(touching)
-    t39 = t38 | ((t36 | (t38 & ops.opposite(all_same))) & t37)
-    t40 = ops.select((t36 & t37 & slim) | (t39 & t37 & slim), mu, 1.0)
+    t37 = t36 & ops.opposite(touching)
+    t38 = ops.opposite(in_line)
+    t39 = t37 | ((t36 | (t37 & ops.opposite(all_same))) & t38)
+    t40 = ops.select((t36 & t38 & slim) | (t39 & t38 & slim), mu, 1.0)
     over = 1.0 / t40
-    m_again_x = ops.select(slim, over * (t15 * n_z - d_z * t25), t18)
-    w_w_2 = ops.select(in_line, t32, ops.select(slim, over * t26, m_m))
+    w_w_2 = ops.select(in_line, t32, ops.select(slim, over * t26, product_2))
     part = 1.0 / ops.select(t39, w_w_2, 1.0)
     t41 = ops.select(in_line, 0.0, part * t27 * 0.5)
-    t42 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t41 * t41)))
-    t43 = ops.select(t38, ops.max(t30 - t42, 0.0), 1.0)
-    t44 = ops.sqrt(ops.select(t38, part, 1.0)) * ops.sqrt(t43)
-    h = ops.select(touching, 0.0, t44)
-    t45 = ops.select(in_line, g_1 * s_w, m_again_x) * h
-    t46 = t24 * t41 + d_x * 0.5
-    t47 = t45 - t46
-    t48 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
-    t49 = h * ops.select(in_line, g_1, -t48)
-    t50 = t25 * t41 - t15 * 0.5
-    t51 = t49 + t50
-    m_again_z = ops.select(slim, over * (a_x * t25 + t15 * t24), t22)
-    t52 = h * ops.select(in_line, -t31, m_again_z)
-    t53 = n_z * t41 - d_z * 0.5
-    t54 = t52 + t53
-    A_11_above = t45 + t46
-    A_12_above = t49 - t50
-    A_13_above = t52 - t53
-    t55 = ops.select(failed, ops.nan, A_13_above - u_z)
-    t56 = ops.select(failed, ops.nan, A_11_above - t19)
-    t57 = ops.select(failed, ops.nan, A_12_above - t14)
-    t58 = ops.select(failed, ops.nan, A_13_above - v_z)
+    t42 = t24 * t41 - t19 * 0.5
+    t43 = ops.select(slim, over * (t14 * n_z - d_z * t25), t17)
+    t44 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t41 * t41)))
+    t45 = ops.select(t37, ops.max(t30 - t44, 0.0), 1.0)
+    t46 = ops.sqrt(ops.select(t37, part, 1.0)) * ops.sqrt(t45)
+    h = ops.select(touching, 0.0, t46)
+    t47 = ops.select(in_line, g_1 * s_w, -t43) * h
+    A_11 = t42 - t47
+    t48 = t25 * t41 - t14 * 0.5
+    t49 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
+    t50 = h * ops.select(in_line, g_1, -t49)
+    A_12 = t48 - t50
+    t51 = n_z * t41 - d_z * 0.5
+    t52 = ops.select(slim, over * (a_x * t25 + t14 * t24), t22)
+    t53 = h * ops.select(in_line, t31, -t52)
+    t54 = t51 + t53
+    A_11_above = t42 + t47
+    A_12_above = t48 + t50
+    t55 = t51 - t53
+    t56 = ops.select(failed, ops.nan, t18 + A_11_above)
+    t57 = ops.select(failed, ops.nan, t13 + A_12_above)
     return (
-        ops.select(failed, ops.nan, -t47),
-        ops.select(failed, ops.nan, -t51),
+        ops.select(failed, ops.nan, A_11),
+        ops.select(failed, ops.nan, A_12),
         ops.select(failed, ops.nan, -t54),
-        ops.select(failed, ops.nan, -(t7 + t47)),
-        ops.select(failed, ops.nan, -(t9 + t51)),
+        ops.select(failed, ops.nan, t7 + A_11),
+        ops.select(failed, ops.nan, t8 + A_12),
         ops.select(failed, ops.nan, -(u_z + t54)),
-        ops.select(failed, ops.nan, -(t19 + t47)),
-        ops.select(failed, ops.nan, -(t14 + t51)),
+        ops.select(failed, ops.nan, t18 + A_11),
+        ops.select(failed, ops.nan, t13 + A_12),
         ops.select(failed, ops.nan, -(v_z + t54)),
         ops.select(failed, ops.nan, A_11_above),
         ops.select(failed, ops.nan, A_12_above),
-        ops.select(failed, ops.nan, A_13_above),
-        ops.select(failed, ops.nan, A_11_above - t7),
-        ops.select(failed, ops.nan, A_12_above - t9),
-        t55,
+        ops.select(failed, ops.nan, -t55),
+        ops.select(failed, ops.nan, t7 + A_11_above),
+        ops.select(failed, ops.nan, t8 + A_12_above),
+        ops.select(failed, ops.nan, -(u_z + t55)),
         t56,
         t57,
-        t58,
+        ops.select(failed, ops.nan, -(v_z + t55)),
     )
 
 
@@ -822,18 +826,18 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
 
 def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
-    s_alpha1 = ops.sin(alpha1)
-    c_alpha1 = ops.cos(alpha1)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
     s2 = ops.sin(theta2)
     c2 = ops.cos(theta2)
+    s_alpha1 = ops.sin(alpha1)
+    c_alpha1 = ops.cos(alpha1)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
     s3 = ops.sin(theta3)
     c3 = ops.cos(theta3)
+    s_alpha3 = ops.sin(alpha3)
+    c_alpha3 = ops.cos(alpha3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
@@ -841,109 +845,113 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t4 = L * s2
     u_z = t3 - t4
     t5 = L * c1
-    t6 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t5
-    t7 = L * c2
-    t8 = t6 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t7)
-    t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
-    t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
-    u_u = u_z * u_z + t8 * t8 + t10 * t10
+    t6 = f - e
+    t7 = t5 + t6
+    c1_x = c_alpha1 * t7
+    t8 = L * c2
+    t9 = t8 + t6
+    t10 = c1_x - c_alpha2 * t9
+    c1_y = s_alpha1 * t7
+    t11 = c1_y - s_alpha2 * t9
+    u_u = u_z * u_z + t10 * t10 + t11 * t11
     size = f + e + L + l
-    t11 = size * size
-    t12 = ops.vanishing * ops.vanishing
-    t13 = t11 * t12
-    same = u_u <= t13
-    t14 = L * c3
-    t15 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t14)
-    t16 = ops.select(same, t15, t10)
-    t17 = L * s3
-    v_z = t3 - t17
-    t18 = ops.select(same, u_z, v_z)
-    t19 = ops.select(same, t10, t15)
+    t12 = size * size
+    t13 = ops.vanishing * ops.vanishing
+    t14 = t12 * t13
+    same = u_u <= t14
+    t15 = L * c3
+    t16 = t15 + t6
+    t17 = c1_y - s_alpha3 * t16
+    t18 = ops.select(same, t17, t11)
+    t19 = L * s3
+    v_z = t3 - t19
+    t20 = ops.select(same, u_z, v_z)
+    t21 = ops.select(same, t11, t17)
     d_z = ops.select(same, v_z, u_z)
-    t20 = t16 * t18 - t19 * d_z
-    t21 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t14)
-    v_v = v_z * v_z + t21 * t21 + t15 * t15
-    all_same = u_u + v_v <= t13
+    t22 = t18 * t20 - t21 * d_z
+    t23 = c1_x - c_alpha3 * t16
+    v_v = v_z * v_z + t23 * t23 + t17 * t17
+    all_same = u_u + v_v <= t14
     whole = ops.select((size == 0.0), 1.0, size)
-    d_x = ops.select(same, t21, t8)
-    a_x = ops.select(all_same, whole, d_x)
-    t22 = ops.select(same, t8, t21)
-    t23 = a_x * t18 - t22 * d_z
-    t24 = a_x * t19 - t16 * t22
-    m_m = t20 * t20 + t23 * t23 + t24 * t24
+    t24 = ops.select(same, t23, t10)
+    a_x = ops.select(all_same, whole, -t24)
+    t25 = ops.select(same, t10, t23)
+    t26 = a_x * t20 + t25 * d_z
+    t27 = a_x * t21 + t18 * t25
+    product_2 = t22 * t22 + t26 * t26 + t27 * t27
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t25 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t25 * 0.000244140625 <= ops.vanishing * t25
-    t26 = t16 * t24 + d_z * t23
-    t27 = a_x * t24 - d_z * t20
-    n_z = a_x * t23 + t16 * t20
-    t28 = t26 * t26 + t27 * t27 + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t28, m_m)
-    in_line = mu_nu <= t12 * (t11 * mu)
-    t29 = t22 * (d_x - t22) + t19 * (t16 - t19) + t18 * (d_z - t18)
-    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t11 * ops.feasibility
-    t31 = 0.9375 * (l * size)
-    t32 = l * l
+    t28 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t28 * 0.000244140625 <= ops.vanishing * t28
+    t29 = t18 * t27 + d_z * t26
+    t30 = a_x * t27 - d_z * t22
+    n_z = a_x * t26 + t18 * t22
+    t31 = t29 * t29 + t30 * t30 + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t31, product_2)
+    in_line = m_m <= t13 * (t12 * mu)
+    t32 = t25 * (t24 - t25) + t21 * (t18 - t21) + t20 * (d_z - t20)
+    t33 = ops.abs(ops.select(in_line, -t32, 0.0)) <= t12 * ops.feasibility
+    t34 = 0.9375 * (l * size)
+    t35 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(t16 * a_x)
-    t33 = whole * (t16 + a_x * s_w)
-    t34 = 2.0 * (g_1 * g_1) + t33 * t33
-    w_w = ops.select(in_line, t34, mu_nu)
-    t35 = ops.select(in_line, 0.0, 1.0 / w_w * t29 * 0.5)
-    t36 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t35 * t35)))
-    t37 = t32 - t36
-    unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t37))
+    s_w = ops.sign(-(t18 * a_x))
+    t36 = whole * (t18 - a_x * s_w)
+    t37 = 2.0 * (g_1 * g_1) + t36 * t36
+    w_w = ops.select(in_line, t37, m_m)
+    t38 = ops.select(in_line, 0.0, 1.0 / w_w * t32 * 0.5)
+    t39 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t38 * t38)))
+    t40 = t35 - t39
+    unreachable = ops.opposite(t33 & (-(ops.feasibility * t34) <= t40))
     failed = invalid | unreachable
-    t38 = c_alpha1 * t3
-    t39 = ops.opposite(failed)
-    t40 = ops.opposite(in_line)
-    touching = ops.max(t37, 0.0) <= ops.vanishing * t31
-    t41 = t39 & ops.opposite(touching)
-    t42 = t41 | ((t39 | (t41 & ops.opposite(all_same))) & t40)
-    t43 = ops.select((t39 & t40 & slim) | (t42 & t40 & slim), mu, 1.0)
-    over = 1.0 / t43
-    m_again_x = ops.select(slim, over * (t16 * n_z - d_z * t27), t20)
-    w_w_2 = ops.select(in_line, t34, ops.select(slim, over * t28, m_m))
-    part = 1.0 / ops.select(t42, w_w_2, 1.0)
-    t44 = ops.select(in_line, 0.0, part * t29 * 0.5)
-    t45 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t44 * t44)))
-    t46 = ops.select(t41, ops.max(t32 - t45, 0.0), 1.0)
-    t47 = ops.sqrt(ops.select(t41, part, 1.0)) * ops.sqrt(t46)
-    h = ops.select(touching, 0.0, t47)
-    t48 = ops.select(in_line, g_1 * s_w, m_again_x) * h
-    t49 = t26 * t44 + d_x * 0.5
-    t50 = t48 - t49
-    t51 = s_alpha1 * t3
-    t52 = ops.select(slim, over * (a_x * n_z + d_z * t26), t23)
-    t53 = h * ops.select(in_line, g_1, -t52)
-    t54 = t27 * t44 - t16 * 0.5
-    t55 = t53 + t54
-    m_again_z = ops.select(slim, over * (a_x * t27 + t16 * t26), t24)
-    t56 = h * ops.select(in_line, -t33, m_again_z)
-    t57 = n_z * t44 - d_z * 0.5
-    t58 = t56 + t57
-    t59 = ops.select(failed, ops.nan, t38 * t50 + t51 * t55 + t5 * t58)
-    t60 = c_alpha2 * t4
-    t61 = s_alpha2 * t4
-    B_22 = t60 * (t8 + t50) + t61 * (t10 + t55) + t7 * (u_z + t58)
-    t62 = c_alpha3 * t17
-    t63 = s_alpha3 * t17
-    B_33 = t62 * (t21 + t50) + t63 * (t15 + t55) + t14 * (v_z + t58)
-    A_11_above = t48 + t49
-    A_12_above = t53 - t54
-    t64 = t56 - t57
-    t65 = t38 * A_11_above + t51 * A_12_above + t5 * t64
-    t66 = t60 * (t8 - A_11_above) + t61 * (t10 - A_12_above)
-    t67 = ops.select(failed, ops.nan, t66 + t7 * (u_z - t64))
-    t68 = t62 * (t21 - A_11_above) + t63 * (t15 - A_12_above)
-    t69 = ops.select(failed, ops.nan, t68 + t14 * (v_z - t64))
+    t41 = ops.opposite(failed)
+    touching = ops.max(t40, 0.0) <= ops.vanishing * t34
+    t42 = t41 & ops.opposite(touching)
+    t43 = ops.opposite(in_line)
+    t44 = t42 | ((t41 | (t42 & ops.opposite(all_same))) & t43)
+    t45 = ops.select((t41 & t43 & slim) | (t44 & t43 & slim), mu, 1.0)
+    over = 1.0 / t45
+    w_w_2 = ops.select(in_line, t37, ops.select(slim, over * t31, product_2))
+    part = 1.0 / ops.select(t44, w_w_2, 1.0)
+    t46 = ops.select(in_line, 0.0, part * t32 * 0.5)
+    t47 = n_z * t46 - d_z * 0.5
+    t48 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t46 * t46)))
+    t49 = ops.select(t42, ops.max(t35 - t48, 0.0), 1.0)
+    t50 = ops.sqrt(ops.select(t42, part, 1.0)) * ops.sqrt(t49)
+    h = ops.select(touching, 0.0, t50)
+    t51 = ops.select(slim, over * (a_x * t30 + t18 * t29), t27)
+    t52 = h * ops.select(in_line, t36, -t51)
+    t53 = t47 + t52
+    t54 = c_alpha1 * t3
+    t55 = t29 * t46 - t24 * 0.5
+    t56 = ops.select(slim, over * (t18 * n_z - d_z * t30), t22)
+    t57 = ops.select(in_line, g_1 * s_w, -t56) * h
+    A_11 = t55 - t57
+    t58 = s_alpha1 * t3
+    t59 = t30 * t46 - t18 * 0.5
+    t60 = ops.select(slim, over * (a_x * n_z + d_z * t29), t26)
+    t61 = h * ops.select(in_line, g_1, -t60)
+    A_12 = t59 - t61
+    t62 = ops.select(failed, ops.nan, t5 * t53 - (t54 * A_11 + t58 * A_12))
+    t63 = c_alpha2 * t4
+    t64 = s_alpha2 * t4
+    B_22 = t8 * (u_z + t53) - (t63 * (t10 + A_11) + t64 * (t11 + A_12))
+    t65 = c_alpha3 * t19
+    t66 = s_alpha3 * t19
+    B_33 = t15 * (v_z + t53) - (t65 * (t23 + A_11) + t66 * (t17 + A_12))
+    t67 = t47 - t52
+    A_11_above = t55 + t57
+    A_12_above = t59 + t61
+    B_11_above = t5 * t67 - (t54 * A_11_above + t58 * A_12_above)
+    t68 = t63 * (t10 + A_11_above) + t64 * (t11 + A_12_above)
+    t69 = ops.select(failed, ops.nan, t8 * (u_z + t67) - t68)
+    t70 = t65 * (t23 + A_11_above) + t66 * (t17 + A_12_above)
+    t71 = ops.select(failed, ops.nan, t15 * (v_z + t67) - t70)
     return (
-        t59,
+        t62,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, B_33),
-        ops.select(failed, ops.nan, -t65),
-        t67,
+        ops.select(failed, ops.nan, B_11_above),
         t69,
+        t71,
     )
 
 
@@ -1009,149 +1017,155 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t4 = L * s2
     u_z = t3 - t4
     t5 = L * c1
-    t6 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t5
-    t7 = L * c2
-    t8 = t6 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t7)
-    t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
-    t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
-    u_u = u_z * u_z + t8 * t8 + t10 * t10
+    t6 = f - e
+    t7 = t5 + t6
+    c1_x = c_alpha1 * t7
+    t8 = L * c2
+    t9 = t8 + t6
+    t10 = c1_x - c_alpha2 * t9
+    c1_y = s_alpha1 * t7
+    t11 = c1_y - s_alpha2 * t9
+    u_u = u_z * u_z + t10 * t10 + t11 * t11
     size = f + e + L + l
-    t11 = size * size
-    t12 = ops.vanishing * ops.vanishing
-    t13 = t11 * t12
-    same = u_u <= t13
-    t14 = L * c3
-    t15 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t14)
-    t16 = ops.select(same, t15, t10)
-    t17 = L * s3
-    v_z = t3 - t17
-    t18 = ops.select(same, u_z, v_z)
-    t19 = ops.select(same, t10, t15)
+    t12 = size * size
+    t13 = ops.vanishing * ops.vanishing
+    t14 = t12 * t13
+    same = u_u <= t14
+    t15 = L * c3
+    t16 = t15 + t6
+    t17 = c1_y - s_alpha3 * t16
+    t18 = ops.select(same, t17, t11)
+    t19 = L * s3
+    v_z = t3 - t19
+    t20 = ops.select(same, u_z, v_z)
+    t21 = ops.select(same, t11, t17)
     d_z = ops.select(same, v_z, u_z)
-    t20 = t16 * t18 - t19 * d_z
-    t21 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t14)
-    v_v = v_z * v_z + t21 * t21 + t15 * t15
-    all_same = u_u + v_v <= t13
+    t22 = t18 * t20 - t21 * d_z
+    t23 = c1_x - c_alpha3 * t16
+    v_v = v_z * v_z + t23 * t23 + t17 * t17
+    all_same = u_u + v_v <= t14
     whole = ops.select((size == 0.0), 1.0, size)
-    d_x = ops.select(same, t21, t8)
-    a_x = ops.select(all_same, whole, d_x)
-    t22 = ops.select(same, t8, t21)
-    t23 = a_x * t18 - t22 * d_z
-    t24 = a_x * t19 - t16 * t22
-    m_m = t20 * t20 + t23 * t23 + t24 * t24
+    t24 = ops.select(same, t23, t10)
+    a_x = ops.select(all_same, whole, -t24)
+    t25 = ops.select(same, t10, t23)
+    t26 = a_x * t20 + t25 * d_z
+    t27 = a_x * t21 + t18 * t25
+    product_2 = t22 * t22 + t26 * t26 + t27 * t27
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t25 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t25 * 0.000244140625 <= ops.vanishing * t25
-    t26 = t16 * t24 + d_z * t23
-    t27 = a_x * t24 - d_z * t20
-    n_z = a_x * t23 + t16 * t20
-    t28 = t26 * t26 + t27 * t27 + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t28, m_m)
-    in_line = mu_nu <= t12 * (t11 * mu)
-    t29 = t22 * (d_x - t22) + t19 * (t16 - t19) + t18 * (d_z - t18)
-    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t11 * ops.feasibility
-    t31 = 0.9375 * (l * size)
-    t32 = l * l
+    t28 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t28 * 0.000244140625 <= ops.vanishing * t28
+    t29 = t18 * t27 + d_z * t26
+    t30 = a_x * t27 - d_z * t22
+    n_z = a_x * t26 + t18 * t22
+    t31 = t29 * t29 + t30 * t30 + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t31, product_2)
+    in_line = m_m <= t13 * (t12 * mu)
+    t32 = t25 * (t24 - t25) + t21 * (t18 - t21) + t20 * (d_z - t20)
+    t33 = ops.abs(ops.select(in_line, -t32, 0.0)) <= t12 * ops.feasibility
+    t34 = 0.9375 * (l * size)
+    t35 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(t16 * a_x)
-    t33 = whole * (t16 + a_x * s_w)
-    t34 = 2.0 * (g_1 * g_1) + t33 * t33
-    w_w = ops.select(in_line, t34, mu_nu)
-    t35 = ops.select(in_line, 0.0, 1.0 / w_w * t29 * 0.5)
-    t36 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t35 * t35)))
-    t37 = t32 - t36
-    unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t37))
+    s_w = ops.sign(-(t18 * a_x))
+    t36 = whole * (t18 - a_x * s_w)
+    t37 = 2.0 * (g_1 * g_1) + t36 * t36
+    w_w = ops.select(in_line, t37, m_m)
+    t38 = ops.select(in_line, 0.0, 1.0 / w_w * t32 * 0.5)
+    t39 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t38 * t38)))
+    t40 = t35 - t39
+    unreachable = ops.opposite(t33 & (-(ops.feasibility * t34) <= t40))
     failed = invalid | unreachable
-    t38 = c_alpha1 * t3
-    t39 = ops.opposite(failed)
-    t40 = ops.opposite(in_line)
-    over = 1.0 / ops.select(t39 & t40 & slim, mu, 1.0)
-    m_again_x = ops.select(slim, over * (t16 * n_z - d_z * t27), t20)
-    touching = ops.max(t37, 0.0) <= ops.vanishing * t31
-    t41 = t39 & ops.opposite(touching)
-    t42 = t41 | ((t39 | (t41 & ops.opposite(all_same))) & t40)
-    w_w_2 = ops.select(in_line, t34, ops.select(slim, over * t28, m_m))
-    part = 1.0 / ops.select(t42, w_w_2, 1.0)
-    t43 = ops.select(in_line, 0.0, part * t29 * 0.5)
-    t44 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t43 * t43)))
-    t45 = ops.select(t41, ops.max(t32 - t44, 0.0), 1.0)
-    t46 = ops.sqrt(ops.select(t41, part, 1.0)) * ops.sqrt(t45)
-    h = ops.select(touching, 0.0, t46)
-    t47 = ops.select(in_line, g_1 * s_w, m_again_x) * h
-    t48 = t26 * t43 + d_x * 0.5
-    t49 = t47 - t48
-    t50 = s_alpha1 * t3
-    t51 = ops.select(slim, over * (a_x * n_z + d_z * t26), t23)
-    t52 = h * ops.select(in_line, g_1, -t51)
-    t53 = t27 * t43 - t16 * 0.5
-    t54 = t52 + t53
-    m_again_z = ops.select(slim, over * (a_x * t27 + t16 * t26), t24)
-    t55 = h * ops.select(in_line, -t33, m_again_z)
-    t56 = n_z * t43 - d_z * 0.5
-    t57 = t55 + t56
-    t58 = t38 * t49 + t50 * t54 + t5 * t57
-    t59 = t10 + t54
-    t60 = v_z + t57
-    t61 = u_z + t57
-    t62 = t15 + t54
-    t63 = ops.select(t39, w_w_2 * h, 1.0)
-    t64 = ops.select(failed, ops.nan, -(t58 * (t59 * t60 - t61 * t62) / t63))
-    t65 = c_alpha2 * t4
-    t66 = t8 + t49
+    t41 = c_alpha1 * t3
+    t42 = ops.opposite(failed)
+    touching = ops.max(t40, 0.0) <= ops.vanishing * t34
+    t43 = t42 & ops.opposite(touching)
+    t44 = ops.opposite(in_line)
+    t45 = t43 | ((t42 | (t43 & ops.opposite(all_same))) & t44)
+    over = 1.0 / ops.select(t42 & t44 & slim, mu, 1.0)
+    w_w_2 = ops.select(in_line, t37, ops.select(slim, over * t31, product_2))
+    part = 1.0 / ops.select(t45, w_w_2, 1.0)
+    t46 = ops.select(in_line, 0.0, part * t32 * 0.5)
+    t47 = t29 * t46 - t24 * 0.5
+    t48 = ops.select(slim, over * (t18 * n_z - d_z * t30), t22)
+    t49 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t46 * t46)))
+    t50 = ops.select(t43, ops.max(t35 - t49, 0.0), 1.0)
+    t51 = ops.sqrt(ops.select(t43, part, 1.0)) * ops.sqrt(t50)
+    h = ops.select(touching, 0.0, t51)
+    t52 = ops.select(in_line, g_1 * s_w, -t48) * h
+    A_11 = t47 - t52
+    t53 = s_alpha1 * t3
+    t54 = t30 * t46 - t18 * 0.5
+    t55 = ops.select(slim, over * (a_x * n_z + d_z * t29), t26)
+    t56 = h * ops.select(in_line, g_1, -t55)
+    A_12 = t54 - t56
+    t57 = n_z * t46 - d_z * 0.5
+    t58 = ops.select(slim, over * (a_x * t30 + t18 * t29), t27)
+    t59 = h * ops.select(in_line, t36, -t58)
+    t60 = t57 + t59
+    t61 = t41 * A_11 + t53 * A_12 - t5 * t60
+    A_22 = t11 + A_12
+    t62 = v_z + t60
+    t63 = u_z + t60
+    A_32 = t17 + A_12
+    t64 = ops.select(t42, w_w_2 * h, 1.0)
+    t65 = ops.select(failed, ops.nan, -(t61 * (A_22 * t62 - t63 * A_32) / t64))
+    t66 = c_alpha2 * t4
+    A_21 = t10 + A_11
     t67 = s_alpha2 * t4
-    t68 = t65 * t66 + t67 * t59 + t7 * t61
-    t69 = ops.select(failed, ops.nan, t68 * (t54 * t60 - t57 * t62) / t63)
-    t70 = c_alpha3 * t17
-    t71 = t21 + t49
-    t72 = s_alpha3 * t17
-    t73 = t70 * t71 + t72 * t62 + t14 * t60
-    t74 = ops.select(failed, ops.nan, -(t73 * (t54 * t61 - t57 * t59) / t63))
-    t75 = ops.select(failed, ops.nan, t58 * (t60 * t66 - t61 * t71) / t63)
-    t76 = ops.select(failed, ops.nan, -(t68 * (t49 * t60 - t57 * t71) / t63))
-    t77 = ops.select(failed, ops.nan, t73 * (t49 * t61 - t57 * t66) / t63)
-    t78 = ops.select(failed, ops.nan, -(t58 * (t62 * t66 - t59 * t71) / t63))
-    t79 = ops.select(failed, ops.nan, t68 * (t49 * t62 - t54 * t71) / t63)
-    t80 = ops.select(failed, ops.nan, -(t73 * (t49 * t59 - t54 * t66) / t63))
-    A_11_above = t47 + t48
-    A_12_above = t52 - t53
-    t81 = t55 - t56
-    t82 = t38 * A_11_above + t50 * A_12_above + t5 * t81
-    t83 = t10 - A_12_above
-    t84 = v_z - t81
-    t85 = u_z - t81
-    t86 = t15 - A_12_above
-    t87 = ops.select(failed, ops.nan, -(t82 * (t83 * t84 - t85 * t86) / t63))
-    t88 = t8 - A_11_above
-    t89 = t65 * t88 + t67 * t83 + t7 * t85
-    t90 = ops.select(failed, ops.nan, t89 * (A_12_above * t84 - t81 * t86) / t63)
-    t91 = t21 - A_11_above
-    t92 = t70 * t91 + t72 * t86 + t14 * t84
-    t93 = -(t92 * (A_12_above * t85 - t81 * t83) / t63)
-    t94 = ops.select(failed, ops.nan, t82 * (t84 * t88 - t85 * t91) / t63)
-    t95 = -(t89 * (A_11_above * t84 - t81 * t91) / t63)
-    t96 = ops.select(failed, ops.nan, t92 * (A_11_above * t85 - t81 * t88) / t63)
-    t97 = ops.select(failed, ops.nan, -(t82 * (t86 * t88 - t83 * t91) / t63))
-    t98 = t89 * (A_11_above * t86 - A_12_above * t91) / t63
-    t99 = t92 * (A_11_above * t83 - A_12_above * t88) / t63
+    t68 = t66 * A_21 + t67 * A_22 - t8 * t63
+    t69 = ops.select(failed, ops.nan, t68 * (A_12 * t62 - t60 * A_32) / t64)
+    t70 = c_alpha3 * t19
+    A_31 = t23 + A_11
+    t71 = s_alpha3 * t19
+    t72 = t70 * A_31 + t71 * A_32 - t15 * t62
+    t73 = ops.select(failed, ops.nan, -(t72 * (A_12 * t63 - t60 * A_22) / t64))
+    t74 = ops.select(failed, ops.nan, t61 * (t62 * A_21 - t63 * A_31) / t64)
+    t75 = ops.select(failed, ops.nan, -(t68 * (A_11 * t62 - t60 * A_31) / t64))
+    t76 = ops.select(failed, ops.nan, t72 * (A_11 * t63 - t60 * A_21) / t64)
+    t77 = ops.select(failed, ops.nan, t61 * (A_32 * A_21 - A_22 * A_31) / t64)
+    t78 = ops.select(failed, ops.nan, -(t68 * (A_11 * A_32 - A_12 * A_31) / t64))
+    t79 = ops.select(failed, ops.nan, t72 * (A_11 * A_22 - A_12 * A_21) / t64)
+    A_11_above = t47 + t52
+    A_12_above = t54 + t56
+    t80 = t57 - t59
+    t81 = t41 * A_11_above + t53 * A_12_above - t5 * t80
+    A_22_above = t11 + A_12_above
+    t82 = v_z + t80
+    t83 = u_z + t80
+    A_32_above = t17 + A_12_above
+    t84 = t81 * (A_22_above * t82 - t83 * A_32_above) / t64
+    A_21_above = t10 + A_11_above
+    t85 = t66 * A_21_above + t67 * A_22_above - t8 * t83
+    t86 = t85 * (A_12_above * t82 - t80 * A_32_above) / t64
+    A_31_above = t23 + A_11_above
+    t87 = t70 * A_31_above + t71 * A_32_above - t15 * t82
+    t88 = t87 * (A_12_above * t83 - t80 * A_22_above) / t64
+    t89 = t81 * (t82 * A_21_above - t83 * A_31_above) / t64
+    t90 = t85 * (A_11_above * t82 - t80 * A_31_above) / t64
+    t91 = t87 * (A_11_above * t83 - t80 * A_21_above) / t64
+    t92 = A_32_above * A_21_above - A_22_above * A_31_above
+    t93 = ops.select(failed, ops.nan, -(t81 * t92 / t64))
+    t94 = A_11_above * A_32_above - A_12_above * A_31_above
+    t95 = A_11_above * A_22_above - A_12_above * A_21_above
+    t96 = ops.select(failed, ops.nan, -(t87 * t95 / t64))
     return (
-        t64,
+        t65,
         t69,
+        t73,
         t74,
         t75,
         t76,
         t77,
         t78,
         t79,
-        t80,
-        t87,
-        t90,
-        ops.select(failed, ops.nan, t93),
-        t94,
-        ops.select(failed, ops.nan, t95),
+        ops.select(failed, ops.nan, t84),
+        ops.select(failed, ops.nan, -t86),
+        ops.select(failed, ops.nan, t88),
+        ops.select(failed, ops.nan, -t89),
+        ops.select(failed, ops.nan, t90),
+        ops.select(failed, ops.nan, -t91),
+        t93,
+        ops.select(failed, ops.nan, t85 * t94 / t64),
         t96,
-        t97,
-        ops.select(failed, ops.nan, t98),
-        ops.select(failed, ops.nan, -t99),
     )
 
 
@@ -1218,104 +1232,108 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t4 = L * s2
     u_z = t3 - t4
     t5 = L * c1
-    t6 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t5
-    t7 = L * c2
-    t8 = t6 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t7)
-    t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
-    t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
-    u_u = u_z * u_z + t8 * t8 + t10 * t10
+    t6 = f - e
+    t7 = t5 + t6
+    c1_x = c_alpha1 * t7
+    t8 = L * c2
+    t9 = t8 + t6
+    t10 = c1_x - c_alpha2 * t9
+    c1_y = s_alpha1 * t7
+    t11 = c1_y - s_alpha2 * t9
+    u_u = u_z * u_z + t10 * t10 + t11 * t11
     size = f + e + L + l
-    t11 = size * size
-    t12 = ops.vanishing * ops.vanishing
-    t13 = t11 * t12
-    same = u_u <= t13
-    t14 = L * c3
-    t15 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t14)
-    t16 = ops.select(same, t15, t10)
-    t17 = L * s3
-    v_z = t3 - t17
-    t18 = ops.select(same, u_z, v_z)
-    t19 = ops.select(same, t10, t15)
+    t12 = size * size
+    t13 = ops.vanishing * ops.vanishing
+    t14 = t12 * t13
+    same = u_u <= t14
+    t15 = L * c3
+    t16 = t15 + t6
+    t17 = c1_y - s_alpha3 * t16
+    t18 = ops.select(same, t17, t11)
+    t19 = L * s3
+    v_z = t3 - t19
+    t20 = ops.select(same, u_z, v_z)
+    t21 = ops.select(same, t11, t17)
     d_z = ops.select(same, v_z, u_z)
-    t20 = t16 * t18 - t19 * d_z
-    t21 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t14)
-    v_v = v_z * v_z + t21 * t21 + t15 * t15
-    all_same = u_u + v_v <= t13
+    t22 = t18 * t20 - t21 * d_z
+    t23 = c1_x - c_alpha3 * t16
+    v_v = v_z * v_z + t23 * t23 + t17 * t17
+    all_same = u_u + v_v <= t14
     whole = ops.select((size == 0.0), 1.0, size)
-    d_x = ops.select(same, t21, t8)
-    a_x = ops.select(all_same, whole, d_x)
-    t22 = ops.select(same, t8, t21)
-    t23 = a_x * t18 - t22 * d_z
-    t24 = a_x * t19 - t16 * t22
-    m_m = t20 * t20 + t23 * t23 + t24 * t24
+    t24 = ops.select(same, t23, t10)
+    a_x = ops.select(all_same, whole, -t24)
+    t25 = ops.select(same, t10, t23)
+    t26 = a_x * t20 + t25 * d_z
+    t27 = a_x * t21 + t18 * t25
+    product_2 = t22 * t22 + t26 * t26 + t27 * t27
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t25 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t25 * 0.000244140625 <= ops.vanishing * t25
-    t26 = t16 * t24 + d_z * t23
-    t27 = a_x * t24 - d_z * t20
-    n_z = a_x * t23 + t16 * t20
-    t28 = t26 * t26 + t27 * t27 + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t28, m_m)
-    in_line = mu_nu <= t12 * (t11 * mu)
-    t29 = t22 * (d_x - t22) + t19 * (t16 - t19) + t18 * (d_z - t18)
-    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t11 * ops.feasibility
-    t31 = 0.9375 * (l * size)
-    t32 = l * l
+    t28 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t28 * 0.000244140625 <= ops.vanishing * t28
+    t29 = t18 * t27 + d_z * t26
+    t30 = a_x * t27 - d_z * t22
+    n_z = a_x * t26 + t18 * t22
+    t31 = t29 * t29 + t30 * t30 + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t31, product_2)
+    in_line = m_m <= t13 * (t12 * mu)
+    t32 = t25 * (t24 - t25) + t21 * (t18 - t21) + t20 * (d_z - t20)
+    t33 = ops.abs(ops.select(in_line, -t32, 0.0)) <= t12 * ops.feasibility
+    t34 = 0.9375 * (l * size)
+    t35 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(t16 * a_x)
-    t33 = whole * (t16 + a_x * s_w)
-    t34 = 2.0 * (g_1 * g_1) + t33 * t33
-    w_w = ops.select(in_line, t34, mu_nu)
-    t35 = ops.select(in_line, 0.0, 1.0 / w_w * t29 * 0.5)
-    t36 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t35 * t35)))
-    t37 = t32 - t36
-    unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t37))
+    s_w = ops.sign(-(t18 * a_x))
+    t36 = whole * (t18 - a_x * s_w)
+    t37 = 2.0 * (g_1 * g_1) + t36 * t36
+    w_w = ops.select(in_line, t37, m_m)
+    t38 = ops.select(in_line, 0.0, 1.0 / w_w * t32 * 0.5)
+    t39 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t38 * t38)))
+    t40 = t35 - t39
+    unreachable = ops.opposite(t33 & (-(ops.feasibility * t34) <= t40))
     failed = invalid | unreachable
-    t38 = c_alpha1 * t3
-    t39 = ops.opposite(failed)
-    t40 = ops.opposite(in_line)
-    over = 1.0 / ops.select(t39 & t40 & slim, mu, 1.0)
-    m_again_x = ops.select(slim, over * (t16 * n_z - d_z * t27), t20)
-    touching = ops.max(t37, 0.0) <= ops.vanishing * t31
-    t41 = t39 & ops.opposite(touching)
-    t42 = t41 | ((t39 | (t41 & ops.opposite(all_same))) & t40)
-    w_w_2 = ops.select(in_line, t34, ops.select(slim, over * t28, m_m))
-    part = 1.0 / ops.select(t42, w_w_2, 1.0)
-    t43 = ops.select(in_line, 0.0, part * t29 * 0.5)
-    t44 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t43 * t43)))
-    t45 = ops.select(t41, ops.max(t32 - t44, 0.0), 1.0)
-    t46 = ops.sqrt(ops.select(t41, part, 1.0)) * ops.sqrt(t45)
-    h = ops.select(touching, 0.0, t46)
-    t47 = ops.select(in_line, g_1 * s_w, m_again_x) * h
-    t48 = t26 * t43 + d_x * 0.5
-    t49 = t47 - t48
-    t50 = s_alpha1 * t3
-    t51 = ops.select(slim, over * (a_x * n_z + d_z * t26), t23)
-    t52 = h * ops.select(in_line, g_1, -t51)
-    t53 = t27 * t43 - t16 * 0.5
-    t54 = t52 + t53
-    m_again_z = ops.select(slim, over * (a_x * t27 + t16 * t26), t24)
-    t55 = h * ops.select(in_line, -t33, m_again_z)
-    t56 = n_z * t43 - d_z * 0.5
-    t57 = t55 + t56
-    t58 = c_alpha2 * t4
-    t59 = s_alpha2 * t4
-    t60 = t58 * (t8 + t49) + t59 * (t10 + t54) + t7 * (u_z + t57)
-    t61 = c_alpha3 * t17
-    t62 = s_alpha3 * t17
-    t63 = t61 * (t21 + t49) + t62 * (t15 + t54) + t14 * (v_z + t57)
-    t64 = (t38 * t49 + t50 * t54 + t5 * t57) * t60 * t63
-    t65 = ops.select(t39, w_w_2 * h, 1.0)
-    A_11_above = t47 + t48
-    A_12_above = t52 - t53
-    t66 = t55 - t56
-    t67 = t38 * A_11_above + t50 * A_12_above + t5 * t66
-    t68 = t58 * (t8 - A_11_above) + t59 * (t10 - A_12_above)
-    t69 = t61 * (t21 - A_11_above) + t62 * (t15 - A_12_above)
-    t70 = t67 * (t68 + t7 * (u_z - t66)) * (t69 + t14 * (v_z - t66))
+    t41 = c_alpha1 * t3
+    t42 = ops.opposite(failed)
+    touching = ops.max(t40, 0.0) <= ops.vanishing * t34
+    t43 = t42 & ops.opposite(touching)
+    t44 = ops.opposite(in_line)
+    t45 = t43 | ((t42 | (t43 & ops.opposite(all_same))) & t44)
+    over = 1.0 / ops.select(t42 & t44 & slim, mu, 1.0)
+    w_w_2 = ops.select(in_line, t37, ops.select(slim, over * t31, product_2))
+    part = 1.0 / ops.select(t45, w_w_2, 1.0)
+    t46 = ops.select(in_line, 0.0, part * t32 * 0.5)
+    t47 = t29 * t46 - t24 * 0.5
+    t48 = ops.select(slim, over * (t18 * n_z - d_z * t30), t22)
+    t49 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t46 * t46)))
+    t50 = ops.select(t43, ops.max(t35 - t49, 0.0), 1.0)
+    t51 = ops.sqrt(ops.select(t43, part, 1.0)) * ops.sqrt(t50)
+    h = ops.select(touching, 0.0, t51)
+    t52 = ops.select(in_line, g_1 * s_w, -t48) * h
+    A_11 = t47 - t52
+    t53 = s_alpha1 * t3
+    t54 = t30 * t46 - t18 * 0.5
+    t55 = ops.select(slim, over * (a_x * n_z + d_z * t29), t26)
+    t56 = h * ops.select(in_line, g_1, -t55)
+    A_12 = t54 - t56
+    t57 = n_z * t46 - d_z * 0.5
+    t58 = ops.select(slim, over * (a_x * t30 + t18 * t29), t27)
+    t59 = h * ops.select(in_line, t36, -t58)
+    t60 = t57 + t59
+    t61 = c_alpha2 * t4
+    t62 = s_alpha2 * t4
+    t63 = t61 * (t10 + A_11) + t62 * (t11 + A_12) - t8 * (u_z + t60)
+    t64 = c_alpha3 * t19
+    t65 = s_alpha3 * t19
+    t66 = t64 * (t23 + A_11) + t65 * (t17 + A_12) - t15 * (v_z + t60)
+    t67 = (t41 * A_11 + t53 * A_12 - t5 * t60) * t63 * t66
+    t68 = ops.select(t42, w_w_2 * h, 1.0)
+    A_11_above = t47 + t52
+    A_12_above = t54 + t56
+    t69 = t57 - t59
+    t70 = t41 * A_11_above + t53 * A_12_above - t5 * t69
+    t71 = t61 * (t10 + A_11_above) + t62 * (t11 + A_12_above)
+    t72 = t64 * (t23 + A_11_above) + t65 * (t17 + A_12_above)
+    t73 = t70 * (t71 - t8 * (u_z + t69)) * (t72 - t15 * (v_z + t69))
     return (
-        ops.select(failed, ops.nan, -(t64 / t65)),
-        ops.select(failed, ops.nan, -(t70 / t65)),
+        ops.select(failed, ops.nan, t67 / t68),
+        ops.select(failed, ops.nan, -(t73 / t68)),
     )
 
 
@@ -1362,18 +1380,18 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
 
 def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
-    s_alpha1 = ops.sin(alpha1)
-    c_alpha1 = ops.cos(alpha1)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
     s2 = ops.sin(theta2)
     c2 = ops.cos(theta2)
+    s_alpha1 = ops.sin(alpha1)
+    c_alpha1 = ops.cos(alpha1)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
     s3 = ops.sin(theta3)
     c3 = ops.cos(theta3)
+    s_alpha3 = ops.sin(alpha3)
+    c_alpha3 = ops.cos(alpha3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
@@ -1381,110 +1399,114 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t4 = L * s2
     u_z = t3 - t4
     t5 = L * c1
-    t6 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t5
-    t7 = L * c2
-    t8 = t6 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t7)
-    t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
-    t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
-    u_u = u_z * u_z + t8 * t8 + t10 * t10
+    t6 = f - e
+    t7 = t5 + t6
+    c1_x = c_alpha1 * t7
+    t8 = L * c2
+    t9 = t8 + t6
+    t10 = c1_x - c_alpha2 * t9
+    c1_y = s_alpha1 * t7
+    t11 = c1_y - s_alpha2 * t9
+    u_u = u_z * u_z + t10 * t10 + t11 * t11
     size = f + e + L + l
-    t11 = size * size
-    t12 = ops.vanishing * ops.vanishing
-    t13 = t11 * t12
-    same = u_u <= t13
-    t14 = L * c3
-    t15 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t14)
-    t16 = ops.select(same, t15, t10)
-    t17 = L * s3
-    v_z = t3 - t17
-    t18 = ops.select(same, u_z, v_z)
-    t19 = ops.select(same, t10, t15)
+    t12 = size * size
+    t13 = ops.vanishing * ops.vanishing
+    t14 = t12 * t13
+    same = u_u <= t14
+    t15 = L * c3
+    t16 = t15 + t6
+    t17 = c1_y - s_alpha3 * t16
+    t18 = ops.select(same, t17, t11)
+    t19 = L * s3
+    v_z = t3 - t19
+    t20 = ops.select(same, u_z, v_z)
+    t21 = ops.select(same, t11, t17)
     d_z = ops.select(same, v_z, u_z)
-    t20 = t16 * t18 - t19 * d_z
-    t21 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t14)
-    v_v = v_z * v_z + t21 * t21 + t15 * t15
-    all_same = u_u + v_v <= t13
+    t22 = t18 * t20 - t21 * d_z
+    t23 = c1_x - c_alpha3 * t16
+    v_v = v_z * v_z + t23 * t23 + t17 * t17
+    all_same = u_u + v_v <= t14
     whole = ops.select((size == 0.0), 1.0, size)
-    d_x = ops.select(same, t21, t8)
-    a_x = ops.select(all_same, whole, d_x)
-    t22 = ops.select(same, t8, t21)
-    t23 = a_x * t18 - t22 * d_z
-    t24 = a_x * t19 - t16 * t22
-    m_m = t20 * t20 + t23 * t23 + t24 * t24
+    t24 = ops.select(same, t23, t10)
+    a_x = ops.select(all_same, whole, -t24)
+    t25 = ops.select(same, t10, t23)
+    t26 = a_x * t20 + t25 * d_z
+    t27 = a_x * t21 + t18 * t25
+    product_2 = t22 * t22 + t26 * t26 + t27 * t27
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t25 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t25 * 0.000244140625 <= ops.vanishing * t25
-    t26 = t16 * t24 + d_z * t23
-    t27 = a_x * t24 - d_z * t20
-    n_z = a_x * t23 + t16 * t20
-    t28 = t26 * t26 + t27 * t27 + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t28, m_m)
-    in_line = mu_nu <= t12 * (t11 * mu)
-    t29 = t22 * (d_x - t22) + t19 * (t16 - t19) + t18 * (d_z - t18)
-    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t11 * ops.feasibility
-    t31 = 0.9375 * (l * size)
-    t32 = l * l
+    t28 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t28 * 0.000244140625 <= ops.vanishing * t28
+    t29 = t18 * t27 + d_z * t26
+    t30 = a_x * t27 - d_z * t22
+    n_z = a_x * t26 + t18 * t22
+    t31 = t29 * t29 + t30 * t30 + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t31, product_2)
+    in_line = m_m <= t13 * (t12 * mu)
+    t32 = t25 * (t24 - t25) + t21 * (t18 - t21) + t20 * (d_z - t20)
+    t33 = ops.abs(ops.select(in_line, -t32, 0.0)) <= t12 * ops.feasibility
+    t34 = 0.9375 * (l * size)
+    t35 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(t16 * a_x)
-    t33 = whole * (t16 + a_x * s_w)
-    t34 = 2.0 * (g_1 * g_1) + t33 * t33
-    w_w = ops.select(in_line, t34, mu_nu)
-    t35 = ops.select(in_line, 0.0, 1.0 / w_w * t29 * 0.5)
-    t36 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t35 * t35)))
-    t37 = t32 - t36
-    unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t37))
+    s_w = ops.sign(-(t18 * a_x))
+    t36 = whole * (t18 - a_x * s_w)
+    t37 = 2.0 * (g_1 * g_1) + t36 * t36
+    w_w = ops.select(in_line, t37, m_m)
+    t38 = ops.select(in_line, 0.0, 1.0 / w_w * t32 * 0.5)
+    t39 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t38 * t38)))
+    t40 = t35 - t39
+    unreachable = ops.opposite(t33 & (-(ops.feasibility * t34) <= t40))
     failed = invalid | unreachable
-    t38 = c_alpha1 * t3
-    t39 = ops.opposite(failed)
-    t40 = ops.opposite(in_line)
-    over = 1.0 / ops.select(t39 & t40 & slim, mu, 1.0)
-    m_again_x = ops.select(slim, over * (t16 * n_z - d_z * t27), t20)
-    touching = ops.max(t37, 0.0) <= ops.vanishing * t31
-    t41 = t39 & ops.opposite(touching)
-    t42 = t41 | ((t39 | (t41 & ops.opposite(all_same))) & t40)
-    w_w_2 = ops.select(in_line, t34, ops.select(slim, over * t28, m_m))
-    part = 1.0 / ops.select(t42, w_w_2, 1.0)
-    t43 = ops.select(in_line, 0.0, part * t29 * 0.5)
-    t44 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t43 * t43)))
-    t45 = ops.select(t41, ops.max(t32 - t44, 0.0), 1.0)
-    t46 = ops.sqrt(ops.select(t41, part, 1.0)) * ops.sqrt(t45)
-    h = ops.select(touching, 0.0, t46)
-    t47 = ops.select(in_line, g_1 * s_w, m_again_x) * h
-    t48 = t26 * t43 + d_x * 0.5
-    t49 = t47 - t48
-    t50 = s_alpha1 * t3
-    t51 = ops.select(slim, over * (a_x * n_z + d_z * t26), t23)
-    t52 = h * ops.select(in_line, g_1, -t51)
-    t53 = t27 * t43 - t16 * 0.5
-    t54 = t52 + t53
-    m_again_z = ops.select(slim, over * (a_x * t27 + t16 * t26), t24)
-    t55 = h * ops.select(in_line, -t33, m_again_z)
-    t56 = n_z * t43 - d_z * 0.5
-    t57 = t55 + t56
-    t58 = ops.select(failed, ops.nan, t38 * t49 + t50 * t54 + t5 * t57)
-    t59 = c_alpha2 * t4
-    t60 = s_alpha2 * t4
-    B_22 = t59 * (t8 + t49) + t60 * (t10 + t54) + t7 * (u_z + t57)
-    t61 = c_alpha3 * t17
-    t62 = s_alpha3 * t17
-    B_33 = t61 * (t21 + t49) + t62 * (t15 + t54) + t14 * (v_z + t57)
+    t41 = ops.opposite(failed)
+    touching = ops.max(t40, 0.0) <= ops.vanishing * t34
+    t42 = t41 & ops.opposite(touching)
+    t43 = ops.opposite(in_line)
+    t44 = t42 | ((t41 | (t42 & ops.opposite(all_same))) & t43)
+    over = 1.0 / ops.select(t41 & t43 & slim, mu, 1.0)
+    w_w_2 = ops.select(in_line, t37, ops.select(slim, over * t31, product_2))
+    part = 1.0 / ops.select(t44, w_w_2, 1.0)
+    t45 = ops.select(in_line, 0.0, part * t32 * 0.5)
+    t46 = n_z * t45 - d_z * 0.5
+    t47 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t45 * t45)))
+    t48 = ops.select(t42, ops.max(t35 - t47, 0.0), 1.0)
+    t49 = ops.sqrt(ops.select(t42, part, 1.0)) * ops.sqrt(t48)
+    h = ops.select(touching, 0.0, t49)
+    t50 = ops.select(slim, over * (a_x * t30 + t18 * t29), t27)
+    t51 = h * ops.select(in_line, t36, -t50)
+    t52 = t46 + t51
+    t53 = c_alpha1 * t3
+    t54 = t29 * t45 - t24 * 0.5
+    t55 = ops.select(slim, over * (t18 * n_z - d_z * t30), t22)
+    t56 = ops.select(in_line, g_1 * s_w, -t55) * h
+    A_11 = t54 - t56
+    t57 = s_alpha1 * t3
+    t58 = t30 * t45 - t18 * 0.5
+    t59 = ops.select(slim, over * (a_x * n_z + d_z * t29), t26)
+    t60 = h * ops.select(in_line, g_1, -t59)
+    A_12 = t58 - t60
+    t61 = ops.select(failed, ops.nan, t5 * t52 - (t53 * A_11 + t57 * A_12))
+    t62 = c_alpha2 * t4
+    t63 = s_alpha2 * t4
+    B_22 = t8 * (u_z + t52) - (t62 * (t10 + A_11) + t63 * (t11 + A_12))
+    t64 = c_alpha3 * t19
+    t65 = s_alpha3 * t19
+    B_33 = t15 * (v_z + t52) - (t64 * (t23 + A_11) + t65 * (t17 + A_12))
     Delta = w_w_2 * h
-    A_11_above = t47 + t48
-    A_12_above = t52 - t53
-    t63 = t55 - t56
-    t64 = t38 * A_11_above + t50 * A_12_above + t5 * t63
-    t65 = t59 * (t8 - A_11_above) + t60 * (t10 - A_12_above)
-    t66 = ops.select(failed, ops.nan, t65 + t7 * (u_z - t63))
-    t67 = t61 * (t21 - A_11_above) + t62 * (t15 - A_12_above)
-    t68 = ops.select(failed, ops.nan, t67 + t14 * (v_z - t63))
+    t66 = t46 - t51
+    A_11_above = t54 + t56
+    A_12_above = t58 + t60
+    B_11_above = t5 * t66 - (t53 * A_11_above + t57 * A_12_above)
+    t67 = t62 * (t10 + A_11_above) + t63 * (t11 + A_12_above)
+    t68 = ops.select(failed, ops.nan, t8 * (u_z + t66) - t67)
+    t69 = t64 * (t23 + A_11_above) + t65 * (t17 + A_12_above)
+    t70 = ops.select(failed, ops.nan, t15 * (v_z + t66) - t69)
     return (
-        t58,
+        t61,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, B_33),
         ops.select(failed, ops.nan, -Delta),
-        ops.select(failed, ops.nan, -t64),
-        t66,
+        ops.select(failed, ops.nan, B_11_above),
         t68,
+        t70,
         ops.select(failed, ops.nan, Delta),
     )
 
@@ -1549,132 +1571,136 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
     t3 = L * s1
     u_z = t3 - L * s2
-    t4 = L * c1
-    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
-    t6 = L * c2
-    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
-    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
-    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    u_u = u_z * u_z + t7 * t7 + t9 * t9
+    t4 = f - e
+    t5 = L * c1 + t4
+    c1_x = c_alpha1 * t5
+    t6 = L * c2 + t4
+    t7 = c1_x - c_alpha2 * t6
+    c1_y = s_alpha1 * t5
+    t8 = c1_y - s_alpha2 * t6
+    u_u = u_z * u_z + t7 * t7 + t8 * t8
     size = f + e + L + l
-    t10 = size * size
-    t11 = ops.vanishing * ops.vanishing
-    t12 = t10 * t11
-    same = u_u <= t12
-    t13 = L * c3
-    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
-    t15 = ops.select(same, t14, t9)
+    t9 = size * size
+    t10 = ops.vanishing * ops.vanishing
+    t11 = t9 * t10
+    same = u_u <= t11
+    t12 = L * c3 + t4
+    t13 = c1_y - s_alpha3 * t12
+    t14 = ops.select(same, t13, t8)
     v_z = t3 - L * s3
-    t16 = ops.select(same, u_z, v_z)
-    t17 = ops.select(same, t9, t14)
+    t15 = ops.select(same, u_z, v_z)
+    t16 = ops.select(same, t8, t13)
     d_z = ops.select(same, v_z, u_z)
-    t18 = t15 * t16 - t17 * d_z
-    t19 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
-    v_v = v_z * v_z + t19 * t19 + t14 * t14
-    all_same = u_u + v_v <= t12
+    t17 = t14 * t15 - t16 * d_z
+    t18 = c1_x - c_alpha3 * t12
+    v_v = v_z * v_z + t18 * t18 + t13 * t13
+    all_same = u_u + v_v <= t11
     whole = ops.select((size == 0.0), 1.0, size)
-    d_x = ops.select(same, t19, t7)
-    a_x = ops.select(all_same, whole, d_x)
-    t20 = ops.select(same, t7, t19)
-    t21 = a_x * t16 - t20 * d_z
-    t22 = a_x * t17 - t15 * t20
-    m_m = t18 * t18 + t21 * t21 + t22 * t22
+    t19 = ops.select(same, t18, t7)
+    a_x = ops.select(all_same, whole, -t19)
+    t20 = ops.select(same, t7, t18)
+    t21 = a_x * t15 + t20 * d_z
+    t22 = a_x * t16 + t14 * t20
+    product_2 = t17 * t17 + t21 * t21 + t22 * t22
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t23 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t23 * 0.000244140625 <= ops.vanishing * t23
-    t24 = t15 * t22 + d_z * t21
-    t25 = a_x * t22 - d_z * t18
-    n_z = a_x * t21 + t15 * t18
+    slim = product_2 - t23 * 0.000244140625 <= ops.vanishing * t23
+    t24 = t14 * t22 + d_z * t21
+    t25 = a_x * t22 - d_z * t17
+    n_z = a_x * t21 + t14 * t17
     t26 = t24 * t24 + t25 * t25 + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t26, m_m)
-    in_line = mu_nu <= t11 * (t10 * mu)
-    t27 = t20 * (d_x - t20) + t17 * (t15 - t17) + t16 * (d_z - t16)
-    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t10 * ops.feasibility
+    m_m = ops.select(slim, 1.0 / mu * t26, product_2)
+    in_line = m_m <= t10 * (t9 * mu)
+    t27 = t20 * (t19 - t20) + t16 * (t14 - t16) + t15 * (d_z - t15)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t9 * ops.feasibility
     t29 = 0.9375 * (l * size)
     t30 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(t15 * a_x)
-    t31 = whole * (t15 + a_x * s_w)
+    s_w = ops.sign(-(t14 * a_x))
+    t31 = whole * (t14 - a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    w_w = ops.select(in_line, t32, mu_nu)
+    w_w = ops.select(in_line, t32, m_m)
     t33 = ops.select(in_line, 0.0, 1.0 / w_w * t27 * 0.5)
     t34 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t33 * t33)))
     t35 = t30 - t34
     unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t35))
     failed = invalid | unreachable
     t36 = ops.opposite(failed)
-    t37 = ops.opposite(in_line)
-    over = 1.0 / ops.select(t36 & t37 & slim, mu, 1.0)
-    m_again_x = ops.select(slim, over * (t15 * n_z - d_z * t25), t18)
     touching = ops.max(t35, 0.0) <= ops.vanishing * t29
-    t38 = t36 & ops.opposite(touching)
-    t39 = t38 | ((t36 | (t38 & ops.opposite(all_same))) & t37)
-    w_w_2 = ops.select(in_line, t32, ops.select(slim, over * t26, m_m))
+    t37 = t36 & ops.opposite(touching)
+    t38 = ops.opposite(in_line)
+    t39 = t37 | ((t36 | (t37 & ops.opposite(all_same))) & t38)
+    over = 1.0 / ops.select(t36 & t38 & slim, mu, 1.0)
+    w_w_2 = ops.select(in_line, t32, ops.select(slim, over * t26, product_2))
     part = 1.0 / ops.select(t39, w_w_2, 1.0)
     t40 = ops.select(in_line, 0.0, part * t27 * 0.5)
-    t41 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t40 * t40)))
-    t42 = ops.select(t38, ops.max(t30 - t41, 0.0), 1.0)
-    t43 = ops.sqrt(ops.select(t38, part, 1.0)) * ops.sqrt(t42)
-    h = ops.select(touching, 0.0, t43)
-    t44 = ops.select(in_line, g_1 * s_w, m_again_x) * h
-    t45 = t24 * t40 + d_x * 0.5
-    t46 = t44 - t45
-    t47 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
-    t48 = h * ops.select(in_line, g_1, -t47)
-    t49 = t25 * t40 - t15 * 0.5
-    t50 = t48 + t49
-    m_again_z = ops.select(slim, over * (a_x * t25 + t15 * t24), t22)
-    t51 = h * ops.select(in_line, -t31, m_again_z)
-    t52 = n_z * t40 - d_z * 0.5
-    t53 = t51 + t52
-    t54 = t7 + t46
-    t55 = t9 + t50
-    t56 = u_z + t53
-    t57 = t46 * t46 + t50 * t50 + t53 * t53 + (t54 * t54 + t55 * t55 + t56 * t56)
-    t58 = t19 + t46
-    t59 = t14 + t50
-    t60 = v_z + t53
-    t61 = t46 * t55 - t50 * t54
-    t62 = t46 * t56 - t53 * t54
-    t63 = t46 * t59 - t50 * t58
-    t64 = t46 * t60 - t53 * t58
-    t65 = t61 * t61 + t62 * t62 + t63 * t63 + t64 * t64
-    t66 = t50 * t56 - t53 * t55
-    t67 = t50 * t60 - t53 * t59
-    t68 = t54 * t59 - t55 * t58
-    t69 = t54 * t60 - t56 * t58
-    t70 = t65 + t66 * t66 + t67 * t67 + t68 * t68 + t69 * t69
-    t71 = t55 * t60 - t56 * t59
-    t72 = (t57 + (t58 * t58 + t59 * t59 + t60 * t60)) * (t70 + t71 * t71)
-    t73 = ops.select(t36, 3.0 * (w_w_2 * h), 1.0)
-    t74 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t36, t72, 1.0)) / t73)
-    A_11_above = t44 + t45
-    A_12_above = t48 - t49
-    t75 = A_11_above * A_11_above + A_12_above * A_12_above
-    t76 = t51 - t52
-    t77 = t7 - A_11_above
-    t78 = t9 - A_12_above
-    t79 = u_z - t76
-    t80 = t75 + t76 * t76 + (t77 * t77 + t78 * t78 + t79 * t79)
-    t81 = t19 - A_11_above
-    t82 = t14 - A_12_above
-    t83 = v_z - t76
-    t84 = A_11_above * t78 - A_12_above * t77
-    t85 = A_11_above * t79 - t76 * t77
-    t86 = A_11_above * t82 - A_12_above * t81
-    t87 = A_11_above * t83 - t76 * t81
-    t88 = t84 * t84 + t85 * t85 + t86 * t86 + t87 * t87
-    t89 = A_12_above * t79 - t76 * t78
-    t90 = A_12_above * t83 - t76 * t82
-    t91 = t77 * t82 - t78 * t81
-    t92 = t77 * t83 - t79 * t81
-    t93 = t88 + t89 * t89 + t90 * t90 + t91 * t91 + t92 * t92
-    t94 = t78 * t83 - t79 * t82
-    t95 = (t80 + (t81 * t81 + t82 * t82 + t83 * t83)) * (t93 + t94 * t94)
-    t96 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t36, t95, 1.0)) / t73)
+    t41 = t24 * t40 - t19 * 0.5
+    t42 = ops.select(slim, over * (t14 * n_z - d_z * t25), t17)
+    t43 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t40 * t40)))
+    t44 = ops.select(t37, ops.max(t30 - t43, 0.0), 1.0)
+    t45 = ops.sqrt(ops.select(t37, part, 1.0)) * ops.sqrt(t44)
+    h = ops.select(touching, 0.0, t45)
+    t46 = ops.select(in_line, g_1 * s_w, -t42) * h
+    A_11 = t41 - t46
+    t47 = t25 * t40 - t14 * 0.5
+    t48 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
+    t49 = h * ops.select(in_line, g_1, -t48)
+    A_12 = t47 - t49
+    t50 = n_z * t40 - d_z * 0.5
+    t51 = ops.select(slim, over * (a_x * t25 + t14 * t24), t22)
+    t52 = h * ops.select(in_line, t31, -t51)
+    t53 = t50 + t52
+    A_21 = t7 + A_11
+    A_22 = t8 + A_12
+    t54 = u_z + t53
+    t55 = A_11 * A_11 + A_12 * A_12 + t53 * t53 + (A_21 * A_21 + A_22 * A_22 + t54 * t54)
+    A_31 = t18 + A_11
+    A_32 = t13 + A_12
+    t56 = v_z + t53
+    t57 = t55 + (A_31 * A_31 + A_32 * A_32 + t56 * t56)
+    t58 = A_11 * A_22 - A_12 * A_21
+    t59 = A_11 * t54 - t53 * A_21
+    t60 = A_11 * A_32 - A_12 * A_31
+    t61 = A_11 * t56 - t53 * A_31
+    t62 = t58 * t58 + t59 * t59 + t60 * t60 + t61 * t61
+    t63 = A_12 * t54 - t53 * A_22
+    t64 = A_12 * t56 - t53 * A_32
+    t65 = A_21 * A_32 - A_22 * A_31
+    t66 = A_21 * t56 - t54 * A_31
+    t67 = t62 + t63 * t63 + t64 * t64 + t65 * t65 + t66 * t66
+    t68 = A_22 * t56 - t54 * A_32
+    t69 = ops.select(t36, t57 * (t67 + t68 * t68), 1.0)
+    t70 = ops.select(t36, 3.0 * (w_w_2 * h), 1.0)
+    t71 = ops.select(failed, ops.nan, ops.sqrt(t69) / t70)
+    A_11_above = t41 + t46
+    A_12_above = t47 + t49
+    t72 = A_11_above * A_11_above + A_12_above * A_12_above
+    t73 = t50 - t52
+    A_21_above = t7 + A_11_above
+    A_22_above = t8 + A_12_above
+    t74 = A_21_above * A_21_above + A_22_above * A_22_above
+    t75 = u_z + t73
+    A_31_above = t18 + A_11_above
+    A_32_above = t13 + A_12_above
+    t76 = A_31_above * A_31_above + A_32_above * A_32_above
+    t77 = v_z + t73
+    t78 = t72 + t73 * t73 + (t74 + t75 * t75) + (t76 + t77 * t77)
+    t79 = A_11_above * A_22_above - A_12_above * A_21_above
+    t80 = A_11_above * t75 - t73 * A_21_above
+    t81 = A_11_above * A_32_above - A_12_above * A_31_above
+    t82 = A_11_above * t77 - t73 * A_31_above
+    t83 = t79 * t79 + t80 * t80 + t81 * t81 + t82 * t82
+    t84 = A_12_above * t75 - t73 * A_22_above
+    t85 = A_12_above * t77 - t73 * A_32_above
+    t86 = A_21_above * A_32_above - A_22_above * A_31_above
+    t87 = A_21_above * t77 - t75 * A_31_above
+    t88 = t83 + t84 * t84 + t85 * t85 + t86 * t86 + t87 * t87
+    t89 = A_22_above * t77 - t75 * A_32_above
+    t90 = ops.select(t36, t78 * (t88 + t89 * t89), 1.0)
+    t91 = ops.select(failed, ops.nan, ops.sqrt(t90) / t70)
     return (
-        t74,
-        t96,
+        t71,
+        t91,
     )
 
 
@@ -1722,12 +1748,12 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
 
 def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    s_alpha3 = ops.sin(alpha3)
+    c_alpha3 = ops.cos(alpha3)
     s_alpha1 = ops.sin(alpha1)
     c_alpha1 = ops.cos(alpha1)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
     s2 = ops.sin(theta2)
@@ -1739,130 +1765,131 @@ def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
     t3 = L * s1
     u_z = t3 - L * s2
-    t4 = L * c1
-    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
-    t6 = L * c2
-    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
-    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
-    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    u_u = u_z * u_z + t7 * t7 + t9 * t9
+    t4 = f - e
+    t5 = L * c1 + t4
+    c1_x = c_alpha1 * t5
+    t6 = L * c2 + t4
+    t7 = c1_x - c_alpha2 * t6
+    c1_y = s_alpha1 * t5
+    t8 = c1_y - s_alpha2 * t6
+    u_u = u_z * u_z + t7 * t7 + t8 * t8
     size = f + e + L + l
-    t10 = size * size
-    t11 = ops.vanishing * ops.vanishing
-    t12 = t10 * t11
-    same = u_u <= t12
-    t13 = L * c3
-    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
-    t15 = ops.select(same, t14, t9)
+    t9 = size * size
+    t10 = ops.vanishing * ops.vanishing
+    t11 = t9 * t10
+    same = u_u <= t11
+    t12 = L * c3 + t4
+    t13 = c1_y - s_alpha3 * t12
+    t14 = ops.select(same, t13, t8)
     v_z = t3 - L * s3
-    t16 = ops.select(same, u_z, v_z)
-    t17 = ops.select(same, t9, t14)
+    t15 = ops.select(same, u_z, v_z)
+    t16 = ops.select(same, t8, t13)
     d_z = ops.select(same, v_z, u_z)
-    t18 = t15 * t16 - t17 * d_z
-    t19 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
-    v_v = v_z * v_z + t19 * t19 + t14 * t14
-    all_same = u_u + v_v <= t12
+    t17 = t14 * t15 - t16 * d_z
+    t18 = c1_x - c_alpha3 * t12
+    v_v = v_z * v_z + t18 * t18 + t13 * t13
+    all_same = u_u + v_v <= t11
     whole = ops.select((size == 0.0), 1.0, size)
-    d_x = ops.select(same, t19, t7)
-    a_x = ops.select(all_same, whole, d_x)
-    t20 = ops.select(same, t7, t19)
-    t21 = a_x * t16 - t20 * d_z
-    t22 = a_x * t17 - t15 * t20
-    m_m = t18 * t18 + t21 * t21 + t22 * t22
+    t19 = ops.select(same, t18, t7)
+    a_x = ops.select(all_same, whole, -t19)
+    t20 = ops.select(same, t7, t18)
+    t21 = a_x * t15 + t20 * d_z
+    t22 = a_x * t16 + t14 * t20
+    product_2 = t17 * t17 + t21 * t21 + t22 * t22
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t23 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t23 * 0.000244140625 <= ops.vanishing * t23
-    t24 = t15 * t22 + d_z * t21
-    t25 = a_x * t22 - d_z * t18
-    n_z = a_x * t21 + t15 * t18
+    slim = product_2 - t23 * 0.000244140625 <= ops.vanishing * t23
+    t24 = t14 * t22 + d_z * t21
+    t25 = a_x * t22 - d_z * t17
+    n_z = a_x * t21 + t14 * t17
     t26 = t24 * t24 + t25 * t25 + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t26, m_m)
-    in_line = mu_nu <= t11 * (t10 * mu)
-    t27 = t20 * (d_x - t20) + t17 * (t15 - t17) + t16 * (d_z - t16)
-    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t10 * ops.feasibility
+    m_m = ops.select(slim, 1.0 / mu * t26, product_2)
+    in_line = m_m <= t10 * (t9 * mu)
+    t27 = t20 * (t19 - t20) + t16 * (t14 - t16) + t15 * (d_z - t15)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t9 * ops.feasibility
     t29 = 0.9375 * (l * size)
     t30 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(t15 * a_x)
-    t31 = whole * (t15 + a_x * s_w)
+    s_w = ops.sign(-(t14 * a_x))
+    t31 = whole * (t14 - a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    w_w = ops.select(in_line, t32, mu_nu)
+    w_w = ops.select(in_line, t32, m_m)
     t33 = ops.select(in_line, 0.0, 1.0 / w_w * t27 * 0.5)
     t34 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t33 * t33)))
     t35 = t30 - t34
     unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t35))
     failed = invalid | unreachable
     t36 = c_alpha1 * s_alpha2
+    t37 = c_alpha3 * t36
+    t38 = ops.opposite(failed)
     touching = ops.max(t35, 0.0) <= ops.vanishing * t29
-    t37 = ops.opposite(failed)
-    t38 = t37 & ops.opposite(touching)
-    t39 = ops.opposite(in_line)
-    t40 = t38 | ((t37 | (t38 & ops.opposite(all_same))) & t39)
-    t41 = ops.select((t37 & t39 & slim) | (t40 & t39 & slim), mu, 1.0)
-    over = 1.0 / t41
-    w_w_2 = ops.select(in_line, t32, ops.select(slim, over * t26, m_m))
-    part = 1.0 / ops.select(t40, w_w_2, 1.0)
-    t42 = ops.select(in_line, 0.0, part * t27 * 0.5)
-    t43 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t42 * t42)))
-    t44 = ops.select(t38, ops.max(t30 - t43, 0.0), 1.0)
-    t45 = ops.sqrt(ops.select(t38, part, 1.0)) * ops.sqrt(t44)
-    h = ops.select(touching, 0.0, t45)
-    m_again_z = ops.select(slim, over * (a_x * t25 + t15 * t24), t22)
-    t46 = h * ops.select(in_line, -t31, m_again_z)
-    t47 = n_z * t42 - d_z * 0.5
-    t48 = t46 + t47
-    t49 = s_alpha3 * t48
-    t50 = t36 * t49
-    t51 = u_z + t48
-    t52 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
-    t53 = h * ops.select(in_line, g_1, -t52)
-    t54 = t25 * t42 - t15 * 0.5
-    t55 = t53 + t54
-    t56 = t51 * (t14 + t55)
-    t57 = c_alpha3 * t36
-    m_again_x = ops.select(slim, over * (t15 * n_z - d_z * t25), t18)
-    t58 = ops.select(in_line, g_1 * s_w, m_again_x) * h
-    t59 = t24 * t42 + d_x * 0.5
-    t60 = t58 - t59
-    t61 = v_z + t48
-    t62 = t51 * t61
-    t63 = t60 * t62
-    t64 = c_alpha1 * c_alpha2
-    t65 = s_alpha3 * t64
-    t66 = s_alpha1 * s_alpha2
-    t67 = c_alpha3 * t66
-    t68 = t62 * t55
-    t69 = s_alpha1 * c_alpha2
-    t70 = s_alpha3 * t69
-    t71 = t57 * t63 - t65 * t63 + t67 * t68 - t70 * t68
-    t72 = c_alpha3 * t48
-    t73 = t69 * t72
-    t74 = t61 * (t7 + t60)
-    t75 = t61 * (t9 + t55)
-    t76 = t71 - t73 * t74 + t64 * t74 * t49 - t66 * t72 * t75
-    t77 = t51 * (t19 + t60)
-    t78 = t76 + t75 * t50 + t73 * t77 - t36 * t72 * t77
-    t79 = ops.select(failed, ops.nan, t50 * t56 - (t78 + t69 * t49 * t56))
-    A_11_above = t58 + t59
-    t80 = t46 - t47
-    t81 = u_z - t80
-    t82 = v_z - t80
+    t39 = t38 & ops.opposite(touching)
+    t40 = ops.opposite(in_line)
+    t41 = t39 | ((t38 | (t39 & ops.opposite(all_same))) & t40)
+    t42 = ops.select((t38 & t40 & slim) | (t41 & t40 & slim), mu, 1.0)
+    over = 1.0 / t42
+    w_w_2 = ops.select(in_line, t32, ops.select(slim, over * t26, product_2))
+    part = 1.0 / ops.select(t41, w_w_2, 1.0)
+    t43 = ops.select(in_line, 0.0, part * t27 * 0.5)
+    t44 = t24 * t43 - t19 * 0.5
+    t45 = ops.select(slim, over * (t14 * n_z - d_z * t25), t17)
+    t46 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t43 * t43)))
+    t47 = ops.select(t39, ops.max(t30 - t46, 0.0), 1.0)
+    t48 = ops.sqrt(ops.select(t39, part, 1.0)) * ops.sqrt(t47)
+    h = ops.select(touching, 0.0, t48)
+    t49 = ops.select(in_line, g_1 * s_w, -t45) * h
+    A_11 = t44 - t49
+    t50 = n_z * t43 - d_z * 0.5
+    t51 = ops.select(slim, over * (a_x * t25 + t14 * t24), t22)
+    t52 = h * ops.select(in_line, t31, -t51)
+    t53 = t50 + t52
+    t54 = u_z + t53
+    t55 = v_z + t53
+    t56 = t54 * t55
+    t57 = A_11 * t56
+    t58 = c_alpha1 * c_alpha2
+    t59 = s_alpha3 * t58
+    t60 = s_alpha1 * s_alpha2
+    t61 = c_alpha3 * t60
+    t62 = t25 * t43 - t14 * 0.5
+    t63 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
+    t64 = h * ops.select(in_line, g_1, -t63)
+    A_12 = t62 - t64
+    t65 = t56 * A_12
+    t66 = s_alpha1 * c_alpha2
+    t67 = s_alpha3 * t66
+    t68 = t37 * t57 - t59 * t57 + t61 * t65 - t67 * t65
+    t69 = c_alpha3 * t53
+    t70 = t66 * t69
+    t71 = t55 * (t7 + A_11)
+    t72 = s_alpha3 * t53
+    t73 = t55 * (t8 + A_12)
+    t74 = t68 - t70 * t71 + t58 * t71 * t72 - t60 * t69 * t73
+    t75 = t36 * t72
+    t76 = t54 * (t18 + A_11)
+    t77 = t74 + t73 * t75 + t70 * t76 - t36 * t69 * t76
+    t78 = t54 * (t13 + A_12)
+    t79 = ops.select(failed, ops.nan, t77 + t66 * t72 * t78 - t75 * t78)
+    A_11_above = t44 + t49
+    t80 = t50 - t52
+    t81 = u_z + t80
+    t82 = v_z + t80
     t83 = t81 * t82
     t84 = A_11_above * t83
-    A_12_above = t53 - t54
+    A_12_above = t62 + t64
     t85 = t83 * A_12_above
-    t86 = t57 * t84 - t65 * t84 + t67 * t85 - t70 * t85
+    t86 = t37 * t84 - t59 * t84 + t61 * t85 - t67 * t85
     t87 = c_alpha3 * t80
-    t88 = t69 * t87
-    t89 = t82 * (t7 - A_11_above)
+    t88 = t66 * t87
+    t89 = t82 * (t7 + A_11_above)
     t90 = s_alpha3 * t80
-    t91 = t82 * (t9 - A_12_above)
-    t92 = t86 - t88 * t89 + t64 * t89 * t90 - t66 * t87 * t91
+    t91 = t82 * (t8 + A_12_above)
+    t92 = t86 - t88 * t89 + t58 * t89 * t90 - t60 * t87 * t91
     t93 = t36 * t90
-    t94 = t81 * (t19 - A_11_above)
+    t94 = t81 * (t18 + A_11_above)
     t95 = t92 + t91 * t93 + t88 * t94 - t36 * t87 * t94
-    t96 = t81 * (t14 - A_12_above)
-    t97 = ops.select(failed, ops.nan, t95 + t69 * t90 * t96 - t93 * t96)
+    t96 = t81 * (t13 + A_12_above)
+    t97 = ops.select(failed, ops.nan, t95 + t66 * t90 * t96 - t93 * t96)
     return (
         t79,
         t97,

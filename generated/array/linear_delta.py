@@ -2,15 +2,15 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 78 compare and select, 49 add, 14 divide, 74 multiply, 2 sqrt
-#   skeleton: 117 compare and select, 83 add, 16 divide, 74 multiply, 2 sqrt
-#   jacobian_parallel: 87 compare and select, 57 add, 14 divide, 74 multiply, 2 sqrt
-#   jacobian_serial: 73 compare and select, 43 add, 12 divide, 63 multiply, 2 sqrt
-#   jacobian: 87 compare and select, 75 add, 32 divide, 125 multiply, 2 sqrt
-#   determinant: 67 compare and select, 43 add, 14 divide, 68 multiply, 2 sqrt
-#   singularities: 72 compare and select, 43 add, 12 divide, 64 multiply, 2 sqrt
-#   condition_number: 73 compare and select, 107 add, 16 divide, 144 multiply, 4 sqrt
-#   constraint: 73 compare and select, 65 add, 20 divide, 98 multiply, 2 sqrt
+#   fk: 78 compare and select, 47 add, 12 divide, 73 multiply, 2 sqrt
+#   skeleton: 117 compare and select, 81 add, 18 divide, 75 multiply, 2 sqrt
+#   jacobian_parallel: 87 compare and select, 55 add, 12 divide, 73 multiply, 2 sqrt
+#   jacobian_serial: 73 compare and select, 41 add, 10 divide, 62 multiply, 2 sqrt
+#   jacobian: 87 compare and select, 73 add, 30 divide, 124 multiply, 2 sqrt
+#   determinant: 67 compare and select, 41 add, 12 divide, 67 multiply, 2 sqrt
+#   singularities: 72 compare and select, 41 add, 10 divide, 63 multiply, 2 sqrt
+#   condition_number: 73 compare and select, 105 add, 14 divide, 143 multiply, 4 sqrt
+#   constraint: 73 compare and select, 63 add, 18 divide, 97 multiply, 2 sqrt
 #   ik: 78 compare and select, 69 add, 5 divide, 47 multiply, 12 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
@@ -142,37 +142,37 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     invalid = ops.opposite(t2)
     t3 = rho1 - rho2
     c1_x = f - e
-    t4 = c1_x - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t4 * t4 + c3_y * c3_y
+    t4 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    t5 = t4 * t4 + c2_y * c2_y
     u_u = t3 * t3 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t6 = size * size
     t7 = ops.vanishing * ops.vanishing
     t8 = t6 * t7
     same = u_u <= t8
-    d_y = ops.select(same, c3_y, -c3_y)
+    d_y = ops.select(same, -c2_y, c2_y)
     t9 = rho1 - rho3
     t10 = ops.select(same, t3, t9)
-    t11 = ops.select(same, -c3_y, c3_y)
+    t11 = ops.select(same, c2_y, -c2_y)
     t12 = ops.select(same, t9, t3)
     t13 = d_y * t10 - t11 * t12
     v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -t4)
-    m_y = a_x * t10 + t4 * t12
-    m_z = a_x * t11 + t4 * d_y
-    m_m = t13 * t13 + m_y * m_y + m_z * m_z
+    product_y = a_x * t10 + t4 * t12
+    product_z = a_x * t11 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t14 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t14 * 0.000244140625 <= ops.vanishing * t14
-    t15 = d_y * m_z + t12 * m_y
-    n_y = a_x * m_z - t12 * t13
-    t16 = a_x * m_y + d_y * t13
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t12 * product_y
+    n_y = a_x * product_z - t12 * t13
+    t16 = a_x * product_y + d_y * t13
     t17 = t15 * t15 + n_y * n_y + t16 * t16
-    mu_nu = ops.select(slim, 1.0 / mu * t17, m_m)
-    in_line = mu_nu <= t7 * (t6 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
     t18 = t11 * (d_y - t11) + t10 * (t12 - t10)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = l * size * 0.1875
@@ -181,7 +181,7 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    w_w = ops.select(in_line, t23, mu_nu)
+    w_w = ops.select(in_line, t23, m_m)
     t24 = ops.select(in_line, 0.0, 1.0 / w_w * t18 * 0.5)
     t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t24 * t24)))
     t26 = t21 - t25
@@ -194,7 +194,7 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     t30 = t28 | ((t27 | (t28 & ops.opposite(all_same))) & t29)
     t31 = ops.select((t27 & t29 & slim) | (t30 & t29 & slim), mu, 1.0)
     over = 1.0 / t31
-    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, m_m))
+    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
     part = 1.0 / ops.select(t30, w_w_2, 1.0)
     t32 = ops.select(in_line, 0.0, part * t18 * 0.5)
     t33 = c1_x - t4 * 0.5 + t15 * t32
@@ -205,11 +205,11 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     h = ops.select(touching, 0.0, t37)
     t38 = ops.select(in_line, t22 * s_w, t34) * h
     t39 = n_y * t32 - d_y * 0.5
-    m_again_y = ops.select(slim, over * (a_x * t16 + t12 * t15), m_y)
-    t40 = h * ops.select(in_line, -t22, m_again_y)
+    m_y = ops.select(slim, over * (a_x * t16 + t12 * t15), product_y)
+    t40 = h * ops.select(in_line, -t22, m_y)
     t41 = t12 * 0.5 - (rho1 + t16 * t32)
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t15), m_z)
-    t42 = h * ops.select(in_line, -g_2, m_again_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
+    t42 = h * ops.select(in_line, -g_2, m_z)
     t43 = ops.status(invalid, unreachable, in_line)
     return (
         ops.select(failed, ops.nan, t33 + t38),
@@ -280,173 +280,173 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
     t3 = rho1 - rho2
     c1_x = f - e
-    t4 = e * 0.5
-    t5 = f * 0.5
-    t6 = c1_x - (t4 - t5)
-    t7 = e * 1.7320508075688772
-    t8 = t7 * 0.5
-    t9 = f * 1.7320508075688772 * 0.5
-    c3_y = t8 - t9
-    t10 = t6 * t6 + c3_y * c3_y
-    u_u = t3 * t3 + t10
+    t4 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    t5 = t4 * t4 + c2_y * c2_y
+    u_u = t3 * t3 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t11 = size * size
-    t12 = ops.vanishing * ops.vanishing
-    t13 = t11 * t12
-    same = u_u <= t13
-    d_y = ops.select(same, c3_y, -c3_y)
-    t14 = rho1 - rho3
-    t15 = ops.select(same, t3, t14)
-    t16 = ops.select(same, t14, t3)
-    t17 = ops.select(same, -c3_y, c3_y)
-    t18 = d_y * t15 - t16 * t17
-    v_v = t14 * t14 + t10
-    all_same = u_u + v_v <= t13
+    t6 = size * size
+    t7 = ops.vanishing * ops.vanishing
+    t8 = t6 * t7
+    same = u_u <= t8
+    d_y = ops.select(same, -c2_y, c2_y)
+    t9 = rho1 - rho3
+    t10 = ops.select(same, t3, t9)
+    t11 = ops.select(same, t9, t3)
+    t12 = ops.select(same, c2_y, -c2_y)
+    t13 = d_y * t10 - t11 * t12
+    v_v = t9 * t9 + t5
+    all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
-    a_x = ops.select(all_same, whole, -t6)
-    m_y = t15 * a_x + t6 * t16
-    m_z = t17 * a_x + t6 * d_y
-    m_m = t18 * t18 + m_y * m_y + m_z * m_z
+    a_x = ops.select(all_same, whole, -t4)
+    product_y = t10 * a_x + t4 * t11
+    product_z = t12 * a_x + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t19 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t19 * 0.000244140625 <= ops.vanishing * t19
-    t20 = d_y * m_z + t16 * m_y
-    n_y = a_x * m_z - t16 * t18
-    t21 = a_x * m_y + d_y * t18
-    t22 = t20 * t20 + n_y * n_y + t21 * t21
-    mu_nu = ops.select(slim, 1.0 / mu * t22, m_m)
-    in_line = mu_nu <= t12 * (t11 * mu)
-    t23 = t17 * (d_y - t17) - t15 * (t15 - t16)
-    t24 = ops.abs(ops.select(in_line, -t23, 0.0)) <= t11 * ops.feasibility
-    t25 = 0.234375 * (l * size)
-    t26 = l * l
-    t27 = whole * t16
+    t14 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t11 * product_y
+    n_y = a_x * product_z - t11 * t13
+    t16 = a_x * product_y + d_y * t13
+    t17 = t15 * t15 + n_y * n_y + t16 * t16
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
+    t18 = t12 * (d_y - t12) - t10 * (t10 - t11)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
+    t20 = 0.234375 * (l * size)
+    t21 = l * l
+    t22 = whole * t11
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t28 = 2.0 * (t27 * t27) + g_2 * g_2
-    w_w = ops.select(in_line, t28, mu_nu)
-    t29 = ops.select(in_line, 0.0, t23 * (1.0 / w_w) * 0.5)
-    t30 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t29 * t29)))
-    t31 = t26 - t30
-    unreachable = ops.opposite(t24 & (-(ops.feasibility * t25) <= t31))
+    t23 = 2.0 * (t22 * t22) + g_2 * g_2
+    w_w = ops.select(in_line, t23, m_m)
+    t24 = ops.select(in_line, 0.0, t18 * (1.0 / w_w) * 0.5)
+    t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t24 * t24)))
+    t26 = t21 - t25
+    unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t26))
     failed = ops.opposite(t2) | unreachable
-    t32 = ops.select(failed, ops.nan, f)
-    t33 = ops.select(failed, ops.nan, 0.0)
-    t34 = ops.select(failed, ops.nan, rho1)
-    t35 = e + c1_x
-    t36 = ops.opposite(failed)
-    touching = ops.max(t31, 0.0) <= ops.vanishing * t25
-    t37 = t36 & ops.opposite(touching)
-    t38 = ops.opposite(in_line)
-    t39 = t37 | ((t36 | (t37 & ops.opposite(all_same))) & t38)
-    t40 = ops.select((t36 & t38 & slim) | (t39 & t38 & slim), mu, 1.0)
-    over = 1.0 / t40
-    w_w_2 = ops.select(in_line, t28, ops.select(slim, over * t22, m_m))
-    part = 1.0 / ops.select(t39, w_w_2, 1.0)
-    t41 = ops.select(in_line, 0.0, t23 * part * 0.5)
-    t42 = t6 * 0.5 - t20 * t41
-    t43 = ops.select(slim, over * (d_y * t21 - t16 * n_y), t18)
-    t44 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t41 * t41)))
-    t45 = ops.select(t37, ops.max(t26 - t44, 0.0), 1.0)
-    t46 = ops.sqrt(ops.select(t37, part, 1.0)) * ops.sqrt(t45)
-    h = ops.select(touching, 0.0, t46)
-    t47 = ops.select(in_line, t27 * s_w, t43) * h
-    t48 = t42 - t47
-    t49 = ops.select(failed, ops.nan, t35 - t48)
-    t50 = n_y * t41 - d_y * 0.5
-    m_again_y = ops.select(slim, over * (a_x * t21 + t16 * t20), m_y)
-    t51 = h * ops.select(in_line, -t27, m_again_y)
-    t52 = t50 + t51
-    t53 = ops.select(failed, ops.nan, -t52)
-    t54 = t21 * t41 - t16 * 0.5
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t20), m_z)
-    t55 = h * ops.select(in_line, -g_2, m_again_z)
-    t56 = ops.select(failed, ops.nan, rho1 + (t54 - t55))
-    t57 = ops.select(failed, ops.nan, t4)
-    t58 = ops.select(failed, ops.nan, -t4)
-    t59 = ops.select(failed, ops.nan, -t5)
-    t60 = ops.select(failed, ops.nan, t9)
-    t61 = ops.select(failed, ops.nan, rho2)
-    t62 = c1_x - t4
-    t63 = t62 - t48
-    t64 = ops.select(failed, ops.nan, t63)
-    t65 = t7 * 0.25
-    t66 = ops.select(failed, ops.nan, -(t5 + t65))
+    t27 = ops.select(failed, ops.nan, f)
+    t28 = ops.select(failed, ops.nan, 0.0)
+    t29 = ops.select(failed, ops.nan, rho1)
+    t30 = e + c1_x
+    t31 = ops.opposite(failed)
+    touching = ops.max(t26, 0.0) <= ops.vanishing * t20
+    t32 = t31 & ops.opposite(touching)
+    t33 = ops.opposite(in_line)
+    t34 = t32 | ((t31 | (t32 & ops.opposite(all_same))) & t33)
+    t35 = ops.select((t31 & t33 & slim) | (t34 & t33 & slim), mu, 1.0)
+    over = 1.0 / t35
+    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
+    part = 1.0 / ops.select(t34, w_w_2, 1.0)
+    t36 = ops.select(in_line, 0.0, t18 * part * 0.5)
+    t37 = t4 * 0.5 - t15 * t36
+    t38 = ops.select(slim, over * (d_y * t16 - t11 * n_y), t13)
+    t39 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t36 * t36)))
+    t40 = ops.select(t32, ops.max(t21 - t39, 0.0), 1.0)
+    t41 = ops.sqrt(ops.select(t32, part, 1.0)) * ops.sqrt(t40)
+    h = ops.select(touching, 0.0, t41)
+    t42 = ops.select(in_line, t22 * s_w, t38) * h
+    t43 = t37 - t42
+    t44 = ops.select(failed, ops.nan, t30 - t43)
+    t45 = n_y * t36 - d_y * 0.5
+    m_y = ops.select(slim, over * (a_x * t16 + t11 * t15), product_y)
+    t46 = h * ops.select(in_line, -t22, m_y)
+    t47 = t45 + t46
+    t48 = ops.select(failed, ops.nan, -t47)
+    t49 = t16 * t36 - t11 * 0.5
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
+    t50 = h * ops.select(in_line, -g_2, m_z)
+    t51 = ops.select(failed, ops.nan, rho1 + (t49 - t50))
+    t52 = e * 0.5
+    t53 = ops.select(failed, ops.nan, t52)
+    t54 = ops.select(failed, ops.nan, -t52)
+    t55 = f * 0.5
+    t56 = ops.select(failed, ops.nan, -t55)
+    t57 = f * 1.7320508075688772 * 0.5
+    t58 = ops.select(failed, ops.nan, t57)
+    t59 = ops.select(failed, ops.nan, rho2)
+    t60 = c1_x - t52
+    t61 = t60 - t43
+    t62 = ops.select(failed, ops.nan, t61)
+    t63 = e * 1.7320508075688772
+    t64 = t63 * 0.5
+    t65 = t63 * 0.25
+    t66 = ops.select(failed, ops.nan, -(t55 + t65))
     t67 = e * 0.25
-    t68 = t9 - t67
+    t68 = t57 - t67
     t69 = ops.select(failed, ops.nan, t68)
-    t70 = ops.select(failed, ops.nan, t65 - t5)
-    t71 = t9 + t67
+    t70 = ops.select(failed, ops.nan, t65 - t55)
+    t71 = t57 + t67
     t72 = ops.select(failed, ops.nan, t71)
-    t73 = ops.select(failed, ops.nan, t63 - t65)
-    t74 = t8 - t67
-    t75 = ops.select(failed, ops.nan, t65 + t63)
-    t76 = t8 + t67
-    t77 = ops.select(failed, ops.nan, -t9)
+    t73 = ops.select(failed, ops.nan, t61 - t65)
+    t74 = t64 - t67
+    t75 = ops.select(failed, ops.nan, t65 + t61)
+    t76 = t64 + t67
+    t77 = ops.select(failed, ops.nan, -t57)
     t78 = ops.select(failed, ops.nan, rho3)
     t79 = ops.select(failed, ops.nan, -t71)
     t80 = ops.select(failed, ops.nan, -t68)
-    t81 = t42 + t47
-    t82 = ops.select(failed, ops.nan, t35 - t81)
-    t83 = t50 - t51
+    t81 = t37 + t42
+    t82 = ops.select(failed, ops.nan, t30 - t81)
+    t83 = t45 - t46
     t84 = ops.select(failed, ops.nan, -t83)
-    t85 = ops.select(failed, ops.nan, rho1 + (t54 + t55))
-    t86 = t62 - t81
+    t85 = ops.select(failed, ops.nan, rho1 + (t49 + t50))
+    t86 = t60 - t81
     t87 = ops.select(failed, ops.nan, t86)
     t88 = ops.select(failed, ops.nan, t86 - t65)
     t89 = ops.select(failed, ops.nan, t65 + t86)
     return (
-        t32,
-        t33,
-        t33,
-        t32,
-        t33,
-        t34,
-        t49,
+        t27,
+        t28,
+        t28,
+        t27,
+        t28,
+        t29,
+        t44,
+        t48,
+        t51,
+        t27,
         t53,
+        t29,
+        t27,
+        t54,
+        t29,
+        t44,
+        ops.select(failed, ops.nan, t52 - t47),
+        t51,
+        t44,
+        ops.select(failed, ops.nan, -(t52 + t47)),
+        t51,
         t56,
-        t32,
-        t57,
-        t34,
-        t32,
         t58,
-        t34,
-        t49,
-        ops.select(failed, ops.nan, t4 - t52),
+        t28,
         t56,
-        t49,
-        ops.select(failed, ops.nan, -(t4 + t52)),
-        t56,
+        t58,
         t59,
-        t60,
-        t33,
-        t59,
-        t60,
-        t61,
-        t64,
-        ops.select(failed, ops.nan, t8 - t52),
-        t56,
+        t62,
+        ops.select(failed, ops.nan, t64 - t47),
+        t51,
         t66,
         t69,
-        t61,
+        t59,
         t70,
         t72,
-        t61,
+        t59,
         t73,
-        ops.select(failed, ops.nan, t74 - t52),
-        t56,
+        ops.select(failed, ops.nan, t74 - t47),
+        t51,
         t75,
-        ops.select(failed, ops.nan, t76 - t52),
+        ops.select(failed, ops.nan, t76 - t47),
+        t51,
         t56,
-        t59,
         t77,
-        t33,
-        t59,
+        t28,
+        t56,
         t77,
         t78,
-        t64,
-        ops.select(failed, ops.nan, -(t8 + t52)),
-        t56,
+        t62,
+        ops.select(failed, ops.nan, -(t64 + t47)),
+        t51,
         t70,
         t79,
         t78,
@@ -454,64 +454,64 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
         t80,
         t78,
         t75,
-        ops.select(failed, ops.nan, -(t76 + t52)),
-        t56,
+        ops.select(failed, ops.nan, -(t76 + t47)),
+        t51,
         t73,
-        ops.select(failed, ops.nan, -(t74 + t52)),
-        t56,
-        ops.select(failed, ops.nan, c1_x - t48),
-        t53,
-        t56,
-        t32,
-        t33,
-        t33,
-        t32,
-        t33,
-        t34,
+        ops.select(failed, ops.nan, -(t74 + t47)),
+        t51,
+        ops.select(failed, ops.nan, c1_x - t43),
+        t48,
+        t51,
+        t27,
+        t28,
+        t28,
+        t27,
+        t28,
+        t29,
         t82,
         t84,
         t85,
-        t32,
-        t57,
-        t34,
-        t32,
+        t27,
+        t53,
+        t29,
+        t27,
+        t54,
+        t29,
+        t82,
+        ops.select(failed, ops.nan, t52 - t83),
+        t85,
+        t82,
+        ops.select(failed, ops.nan, -(t52 + t83)),
+        t85,
+        t56,
         t58,
-        t34,
-        t82,
-        ops.select(failed, ops.nan, t4 - t83),
-        t85,
-        t82,
-        ops.select(failed, ops.nan, -(t4 + t83)),
-        t85,
+        t28,
+        t56,
+        t58,
         t59,
-        t60,
-        t33,
-        t59,
-        t60,
-        t61,
         t87,
-        ops.select(failed, ops.nan, t8 - t83),
+        ops.select(failed, ops.nan, t64 - t83),
         t85,
         t66,
         t69,
-        t61,
+        t59,
         t70,
         t72,
-        t61,
+        t59,
         t88,
         ops.select(failed, ops.nan, t74 - t83),
         t85,
         t89,
         ops.select(failed, ops.nan, t76 - t83),
         t85,
-        t59,
+        t56,
         t77,
-        t33,
-        t59,
+        t28,
+        t56,
         t77,
         t78,
         t87,
-        ops.select(failed, ops.nan, -(t8 + t83)),
+        ops.select(failed, ops.nan, -(t64 + t83)),
         t85,
         t70,
         t79,
@@ -579,37 +579,38 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
     t3 = rho1 - rho2
-    t4 = f - e - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t4 * t4 + c3_y * c3_y
+    c1_x = f - e
+    t4 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    t5 = t4 * t4 + c2_y * c2_y
     u_u = t3 * t3 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t6 = size * size
     t7 = ops.vanishing * ops.vanishing
     t8 = t6 * t7
     same = u_u <= t8
-    d_y = ops.select(same, c3_y, -c3_y)
+    d_y = ops.select(same, -c2_y, c2_y)
     t9 = rho1 - rho3
     t10 = ops.select(same, t3, t9)
-    t11 = ops.select(same, -c3_y, c3_y)
+    t11 = ops.select(same, c2_y, -c2_y)
     t12 = ops.select(same, t9, t3)
     t13 = d_y * t10 - t11 * t12
     v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -t4)
-    m_y = a_x * t10 + t4 * t12
-    m_z = a_x * t11 + t4 * d_y
-    m_m = t13 * t13 + m_y * m_y + m_z * m_z
+    product_y = a_x * t10 + t4 * t12
+    product_z = a_x * t11 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t14 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t14 * 0.000244140625 <= ops.vanishing * t14
-    t15 = d_y * m_z + t12 * m_y
-    n_y = a_x * m_z - t12 * t13
-    t16 = a_x * m_y + d_y * t13
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t12 * product_y
+    n_y = a_x * product_z - t12 * t13
+    t16 = a_x * product_y + d_y * t13
     t17 = t15 * t15 + n_y * n_y + t16 * t16
-    mu_nu = ops.select(slim, 1.0 / mu * t17, m_m)
-    in_line = mu_nu <= t7 * (t6 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
     t18 = t11 * (d_y - t11) + t10 * (t12 - t10)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
@@ -618,7 +619,7 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    w_w = ops.select(in_line, t23, mu_nu)
+    w_w = ops.select(in_line, t23, m_m)
     t24 = ops.select(in_line, 0.0, 1.0 / w_w * t18 * 0.5)
     t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t24 * t24)))
     t26 = t21 - t25
@@ -631,7 +632,7 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     t30 = t28 | ((t27 | (t28 & ops.opposite(all_same))) & t29)
     t31 = ops.select((t27 & t29 & slim) | (t30 & t29 & slim), mu, 1.0)
     over = 1.0 / t31
-    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, m_m))
+    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
     part = 1.0 / ops.select(t30, w_w_2, 1.0)
     t32 = ops.select(in_line, 0.0, part * t18 * 0.5)
     t33 = t4 * 0.5 - t15 * t32
@@ -643,12 +644,12 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     t38 = ops.select(in_line, t22 * s_w, t34) * h
     t39 = t33 - t38
     t40 = n_y * t32 - d_y * 0.5
-    m_again_y = ops.select(slim, over * (a_x * t16 + t12 * t15), m_y)
-    t41 = h * ops.select(in_line, -t22, m_again_y)
+    m_y = ops.select(slim, over * (a_x * t16 + t12 * t15), product_y)
+    t41 = h * ops.select(in_line, -t22, m_y)
     t42 = t40 + t41
     t43 = t16 * t32 - t12 * 0.5
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t15), m_z)
-    t44 = h * ops.select(in_line, -g_2, m_again_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
+    t44 = h * ops.select(in_line, -g_2, m_z)
     A_13 = t43 - t44
     t45 = ops.select(failed, ops.nan, t4 - t39)
     t46 = t33 + t38
@@ -660,19 +661,19 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
         ops.select(failed, ops.nan, -t42),
         ops.select(failed, ops.nan, A_13),
         t45,
-        ops.select(failed, ops.nan, c3_y - t42),
+        ops.select(failed, ops.nan, -(c2_y + t42)),
         ops.select(failed, ops.nan, t3 + A_13),
         t45,
-        ops.select(failed, ops.nan, -(c3_y + t42)),
+        ops.select(failed, ops.nan, c2_y - t42),
         ops.select(failed, ops.nan, t9 + A_13),
         ops.select(failed, ops.nan, -t46),
         ops.select(failed, ops.nan, -t47),
         ops.select(failed, ops.nan, A_13_above),
         t48,
-        ops.select(failed, ops.nan, c3_y - t47),
+        ops.select(failed, ops.nan, -(c2_y + t47)),
         ops.select(failed, ops.nan, t3 + A_13_above),
         t48,
-        ops.select(failed, ops.nan, -(c3_y + t47)),
+        ops.select(failed, ops.nan, c2_y - t47),
         ops.select(failed, ops.nan, t9 + A_13_above),
     )
 
@@ -723,9 +724,10 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
     t3 = rho1 - rho2
-    t4 = f - e - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t4 * t4 + c3_y * c3_y
+    c1_x = f - e
+    t4 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    t5 = t4 * t4 + c2_y * c2_y
     u_u = t3 * t3 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t6 = size * size
@@ -734,26 +736,26 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     same = u_u <= t8
     t9 = rho1 - rho3
     t10 = ops.select(same, t3, t9)
-    d_y = ops.select(same, c3_y, -c3_y)
+    d_y = ops.select(same, -c2_y, c2_y)
     t11 = ops.select(same, t9, t3)
-    t12 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, c2_y, -c2_y)
     t13 = t10 * d_y - t11 * t12
     v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -t4)
-    m_y = a_x * t10 + t4 * t11
-    m_z = a_x * t12 + t4 * d_y
-    m_m = t13 * t13 + m_y * m_y + m_z * m_z
+    product_y = a_x * t10 + t4 * t11
+    product_z = a_x * t12 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t14 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t14 * 0.000244140625 <= ops.vanishing * t14
-    t15 = d_y * m_z + t11 * m_y
-    n_y = a_x * m_z - t11 * t13
-    t16 = a_x * m_y + d_y * t13
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t11 * product_y
+    n_y = a_x * product_z - t11 * t13
+    t16 = a_x * product_y + d_y * t13
     t17 = t15 * t15 + n_y * n_y + t16 * t16
-    mu_nu = ops.select(slim, 1.0 / mu * t17, m_m)
-    in_line = mu_nu <= t7 * (t6 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
     t18 = t12 * (d_y - t12) - t10 * (t10 - t11)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
@@ -761,7 +763,7 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     t22 = whole * t11
     g_2 = whole * (d_y + a_x * ops.sign(a_x * d_y))
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    w_w = ops.select(in_line, t23, mu_nu)
+    w_w = ops.select(in_line, t23, m_m)
     t24 = ops.select(in_line, 0.0, 1.0 / w_w * t18 * 0.5)
     t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t24 * t24)))
     t26 = t21 - t25
@@ -774,15 +776,15 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     t30 = t28 | ((t27 | (t28 & ops.opposite(all_same))) & t29)
     t31 = ops.select((t27 & t29 & slim) | (t30 & t29 & slim), mu, 1.0)
     over = 1.0 / t31
-    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, m_m))
+    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
     part = 1.0 / ops.select(t30, w_w_2, 1.0)
     t32 = ops.select(in_line, 0.0, part * t18 * 0.5)
     t33 = t16 * t32 - t11 * 0.5
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t15), m_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
     t34 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t32 * t32)))
     t35 = ops.select(t28, ops.max(t21 - t34, 0.0), 1.0)
     t36 = ops.sqrt(ops.select(t28, part, 1.0)) * ops.sqrt(t35)
-    t37 = ops.select(in_line, -g_2, m_again_z) * ops.select(touching, 0.0, t36)
+    t37 = ops.select(in_line, -g_2, m_z) * ops.select(touching, 0.0, t36)
     A_13 = t33 - t37
     A_13_above = t33 + t37
     return (
@@ -841,9 +843,10 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
     t3 = rho1 - rho2
-    t4 = f - e - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t4 * t4 + c3_y * c3_y
+    c1_x = f - e
+    t4 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    t5 = t4 * t4 + c2_y * c2_y
     u_u = t3 * t3 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t6 = size * size
@@ -852,26 +855,26 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     same = u_u <= t8
     t9 = rho1 - rho3
     t10 = ops.select(same, t3, t9)
-    d_y = ops.select(same, c3_y, -c3_y)
+    d_y = ops.select(same, -c2_y, c2_y)
     t11 = ops.select(same, t9, t3)
-    t12 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, c2_y, -c2_y)
     t13 = t10 * d_y - t11 * t12
     v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -t4)
-    m_y = a_x * t10 + t4 * t11
-    m_z = a_x * t12 + t4 * d_y
-    m_m = t13 * t13 + m_y * m_y + m_z * m_z
+    product_y = a_x * t10 + t4 * t11
+    product_z = a_x * t12 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t14 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t14 * 0.000244140625 <= ops.vanishing * t14
-    t15 = d_y * m_z + t11 * m_y
-    n_y = a_x * m_z - t11 * t13
-    t16 = a_x * m_y + d_y * t13
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t11 * product_y
+    n_y = a_x * product_z - t11 * t13
+    t16 = a_x * product_y + d_y * t13
     t17 = t15 * t15 + n_y * n_y + t16 * t16
-    mu_nu = ops.select(slim, 1.0 / mu * t17, m_m)
-    in_line = mu_nu <= t7 * (t6 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
     t18 = t12 * (d_y - t12) - t10 * (t10 - t11)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
@@ -880,7 +883,7 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     s_w = ops.sign(a_x * d_y)
     g_2 = whole * (d_y + a_x * s_w)
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    w_w = ops.select(in_line, t23, mu_nu)
+    w_w = ops.select(in_line, t23, m_m)
     t24 = ops.select(in_line, 0.0, 1.0 / w_w * t18 * 0.5)
     t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t24 * t24)))
     t26 = t21 - t25
@@ -892,29 +895,29 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t29 = ops.opposite(in_line)
     t30 = t28 | ((t27 | (t28 & ops.opposite(all_same))) & t29)
     over = 1.0 / ops.select(t27 & t29 & slim, mu, 1.0)
-    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, m_m))
+    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
     part = 1.0 / ops.select(t30, w_w_2, 1.0)
     t31 = ops.select(in_line, 0.0, part * t18 * 0.5)
     t32 = t16 * t31 - t11 * 0.5
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t15), m_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
     t33 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t31 * t31)))
     t34 = ops.select(t28, ops.max(t21 - t33, 0.0), 1.0)
     t35 = ops.sqrt(ops.select(t28, part, 1.0)) * ops.sqrt(t34)
     h = ops.select(touching, 0.0, t35)
-    t36 = ops.select(in_line, -g_2, m_again_z) * h
+    t36 = ops.select(in_line, -g_2, m_z) * h
     A_13 = t32 - t36
     t37 = n_y * t31 - d_y * 0.5
-    m_again_y = ops.select(slim, over * (a_x * t16 + t11 * t15), m_y)
-    t38 = h * ops.select(in_line, -t22, m_again_y)
+    m_y = ops.select(slim, over * (a_x * t16 + t11 * t15), product_y)
+    t38 = h * ops.select(in_line, -t22, m_y)
     t39 = t37 + t38
-    A_22 = c3_y - t39
+    t40 = c2_y + t39
     A_33 = t9 + A_13
     A_23 = t3 + A_13
-    t40 = c3_y + t39
+    A_32 = c2_y - t39
     t41 = ops.select(t27, w_w_2 * h, 1.0)
-    t42 = ops.select(failed, ops.nan, -(A_13 * (A_22 * A_33 + A_23 * t40) / t41))
-    t43 = ops.select(failed, ops.nan, -(A_23 * (t39 * A_33 - A_13 * t40) / t41))
-    t44 = ops.select(failed, ops.nan, A_33 * (t39 * A_23 + A_13 * A_22) / t41)
+    t42 = ops.select(failed, ops.nan, A_13 * (t40 * A_33 + A_23 * A_32) / t41)
+    t43 = ops.select(failed, ops.nan, -(A_23 * (t39 * A_33 + A_13 * A_32) / t41))
+    t44 = ops.select(failed, ops.nan, A_33 * (t39 * A_23 - A_13 * t40) / t41)
     t45 = t4 * 0.5 - t15 * t31
     t46 = ops.select(slim, over * (d_y * t16 - t11 * n_y), t13)
     t47 = h * ops.select(in_line, t22 * s_w, t46)
@@ -924,19 +927,19 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t50 = A_13 * A_21
     t51 = ops.select(failed, ops.nan, A_23 * (A_33 * t48 + t50) / t41)
     t52 = ops.select(failed, ops.nan, -(A_33 * (t50 + A_23 * t48) / t41))
-    t53 = ops.select(failed, ops.nan, A_13 * (t40 * A_21 + A_22 * A_21) / t41)
+    t53 = ops.select(failed, ops.nan, -(A_13 * (A_32 * A_21 + t40 * A_21) / t41))
     t54 = t39 * A_21
-    t55 = ops.select(failed, ops.nan, A_23 * (t40 * t48 + t54) / t41)
-    t56 = ops.select(failed, ops.nan, -(A_33 * (t54 - A_22 * t48) / t41))
+    t55 = ops.select(failed, ops.nan, -(A_23 * (A_32 * t48 - t54) / t41))
+    t56 = ops.select(failed, ops.nan, -(A_33 * (t54 + t40 * t48) / t41))
     A_13_above = t32 + t36
     t57 = t37 - t38
-    A_22_above = c3_y - t57
+    t58 = c2_y + t57
     A_33_above = t9 + A_13_above
     A_23_above = t3 + A_13_above
-    t58 = c3_y + t57
-    t59 = A_13_above * (A_22_above * A_33_above + A_23_above * t58)
-    t60 = A_23_above * (t57 * A_33_above - A_13_above * t58)
-    t61 = A_33_above * (t57 * A_23_above + A_13_above * A_22_above)
+    A_32_above = c2_y - t57
+    t59 = A_13_above * (t58 * A_33_above + A_23_above * A_32_above)
+    t60 = A_23_above * (t57 * A_33_above + A_13_above * A_32_above)
+    t61 = A_33_above * (t57 * A_23_above - A_13_above * t58)
     t62 = t45 + t47
     A_21_above = t4 - t62
     t63 = A_33_above * A_21_above - A_23_above * A_21_above
@@ -944,10 +947,10 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t65 = A_13_above * A_21_above
     t66 = -(A_23_above * (A_33_above * t62 + t65) / t41)
     t67 = ops.select(failed, ops.nan, A_33_above * (t65 + A_23_above * t62) / t41)
-    t68 = A_13_above * (t58 * A_21_above + A_22_above * A_21_above)
+    t68 = A_13_above * (A_32_above * A_21_above + t58 * A_21_above)
     t69 = t57 * A_21_above
-    t70 = ops.select(failed, ops.nan, -(A_23_above * (t58 * t62 + t69) / t41))
-    t71 = ops.select(failed, ops.nan, A_33_above * (t69 - A_22_above * t62) / t41)
+    t70 = ops.select(failed, ops.nan, A_23_above * (A_32_above * t62 - t69) / t41)
+    t71 = ops.select(failed, ops.nan, A_33_above * (t69 + t58 * t62) / t41)
     return (
         t42,
         t43,
@@ -958,13 +961,13 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
         t53,
         t55,
         t56,
-        ops.select(failed, ops.nan, t59 / t41),
+        ops.select(failed, ops.nan, -(t59 / t41)),
         ops.select(failed, ops.nan, t60 / t41),
         ops.select(failed, ops.nan, -(t61 / t41)),
         t64,
         ops.select(failed, ops.nan, t66),
         t67,
-        ops.select(failed, ops.nan, -(t68 / t41)),
+        ops.select(failed, ops.nan, t68 / t41),
         t70,
         t71,
     )
@@ -1017,9 +1020,10 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
     t3 = rho1 - rho2
-    t4 = f - e - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t4 * t4 + c3_y * c3_y
+    c1_x = f - e
+    t4 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    t5 = t4 * t4 + c2_y * c2_y
     u_u = t3 * t3 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t6 = size * size
@@ -1028,26 +1032,26 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     same = u_u <= t8
     t9 = rho1 - rho3
     t10 = ops.select(same, t3, t9)
-    d_y = ops.select(same, c3_y, -c3_y)
+    d_y = ops.select(same, -c2_y, c2_y)
     t11 = ops.select(same, t9, t3)
-    t12 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, c2_y, -c2_y)
     t13 = t10 * d_y - t11 * t12
     v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -t4)
-    m_y = a_x * t10 + t4 * t11
-    m_z = a_x * t12 + t4 * d_y
-    m_m = t13 * t13 + m_y * m_y + m_z * m_z
+    product_y = a_x * t10 + t4 * t11
+    product_z = a_x * t12 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t14 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t14 * 0.000244140625 <= ops.vanishing * t14
-    t15 = d_y * m_z + t11 * m_y
-    n_y = a_x * m_z - t11 * t13
-    t16 = a_x * m_y + d_y * t13
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t11 * product_y
+    n_y = a_x * product_z - t11 * t13
+    t16 = a_x * product_y + d_y * t13
     t17 = t15 * t15 + n_y * n_y + t16 * t16
-    mu_nu = ops.select(slim, 1.0 / mu * t17, m_m)
-    in_line = mu_nu <= t7 * (t6 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
     t18 = t12 * (d_y - t12) - t10 * (t10 - t11)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
@@ -1055,7 +1059,7 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     t22 = whole * t11
     g_2 = whole * (d_y + a_x * ops.sign(a_x * d_y))
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    w_w = ops.select(in_line, t23, mu_nu)
+    w_w = ops.select(in_line, t23, m_m)
     t24 = ops.select(in_line, 0.0, 1.0 / w_w * t18 * 0.5)
     t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t24 * t24)))
     t26 = t21 - t25
@@ -1067,16 +1071,16 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     t29 = ops.opposite(in_line)
     t30 = t28 | ((t27 | (t28 & ops.opposite(all_same))) & t29)
     over = 1.0 / ops.select(t27 & t29 & slim, mu, 1.0)
-    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, m_m))
+    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
     part = 1.0 / ops.select(t30, w_w_2, 1.0)
     t31 = ops.select(in_line, 0.0, part * t18 * 0.5)
     t32 = t16 * t31 - t11 * 0.5
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t15), m_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
     t33 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t31 * t31)))
     t34 = ops.select(t28, ops.max(t21 - t33, 0.0), 1.0)
     t35 = ops.sqrt(ops.select(t28, part, 1.0)) * ops.sqrt(t34)
     h = ops.select(touching, 0.0, t35)
-    t36 = ops.select(in_line, -g_2, m_again_z) * h
+    t36 = ops.select(in_line, -g_2, m_z) * h
     A_13 = t32 - t36
     t37 = ops.select(t27, w_w_2 * h, 1.0)
     t38 = ops.select(failed, ops.nan, -(A_13 * (t3 + A_13) * (t9 + A_13) / t37))
@@ -1134,9 +1138,10 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
     t3 = rho1 - rho2
-    t4 = f - e - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t4 * t4 + c3_y * c3_y
+    c1_x = f - e
+    t4 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    t5 = t4 * t4 + c2_y * c2_y
     u_u = t3 * t3 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t6 = size * size
@@ -1145,26 +1150,26 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     same = u_u <= t8
     t9 = rho1 - rho3
     t10 = ops.select(same, t3, t9)
-    d_y = ops.select(same, c3_y, -c3_y)
+    d_y = ops.select(same, -c2_y, c2_y)
     t11 = ops.select(same, t9, t3)
-    t12 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, c2_y, -c2_y)
     t13 = t10 * d_y - t11 * t12
     v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -t4)
-    m_y = a_x * t10 + t4 * t11
-    m_z = a_x * t12 + t4 * d_y
-    m_m = t13 * t13 + m_y * m_y + m_z * m_z
+    product_y = a_x * t10 + t4 * t11
+    product_z = a_x * t12 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t14 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t14 * 0.000244140625 <= ops.vanishing * t14
-    t15 = d_y * m_z + t11 * m_y
-    n_y = a_x * m_z - t11 * t13
-    t16 = a_x * m_y + d_y * t13
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t11 * product_y
+    n_y = a_x * product_z - t11 * t13
+    t16 = a_x * product_y + d_y * t13
     t17 = t15 * t15 + n_y * n_y + t16 * t16
-    mu_nu = ops.select(slim, 1.0 / mu * t17, m_m)
-    in_line = mu_nu <= t7 * (t6 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
     t18 = t12 * (d_y - t12) - t10 * (t10 - t11)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
@@ -1172,7 +1177,7 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     t22 = whole * t11
     g_2 = whole * (d_y + a_x * ops.sign(a_x * d_y))
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    w_w = ops.select(in_line, t23, mu_nu)
+    w_w = ops.select(in_line, t23, m_m)
     t24 = ops.select(in_line, 0.0, 1.0 / w_w * t18 * 0.5)
     t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t24 * t24)))
     t26 = t21 - t25
@@ -1184,16 +1189,16 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     t29 = ops.opposite(in_line)
     t30 = t28 | ((t27 | (t28 & ops.opposite(all_same))) & t29)
     over = 1.0 / ops.select(t27 & t29 & slim, mu, 1.0)
-    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, m_m))
+    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
     part = 1.0 / ops.select(t30, w_w_2, 1.0)
     t31 = ops.select(in_line, 0.0, part * t18 * 0.5)
     t32 = t16 * t31 - t11 * 0.5
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t15), m_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
     t33 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t31 * t31)))
     t34 = ops.select(t28, ops.max(t21 - t33, 0.0), 1.0)
     t35 = ops.sqrt(ops.select(t28, part, 1.0)) * ops.sqrt(t34)
     h = ops.select(touching, 0.0, t35)
-    t36 = ops.select(in_line, -g_2, m_again_z) * h
+    t36 = ops.select(in_line, -g_2, m_z) * h
     A_13 = t32 - t36
     Delta = w_w_2 * h
     A_13_above = t32 + t36
@@ -1255,37 +1260,38 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
     t3 = rho1 - rho2
-    t4 = f - e - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t4 * t4 + c3_y * c3_y
+    c1_x = f - e
+    t4 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    t5 = t4 * t4 + c2_y * c2_y
     u_u = t3 * t3 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t6 = size * size
     t7 = ops.vanishing * ops.vanishing
     t8 = t6 * t7
     same = u_u <= t8
-    d_y = ops.select(same, c3_y, -c3_y)
+    d_y = ops.select(same, -c2_y, c2_y)
     t9 = rho1 - rho3
     t10 = ops.select(same, t3, t9)
-    t11 = ops.select(same, -c3_y, c3_y)
+    t11 = ops.select(same, c2_y, -c2_y)
     t12 = ops.select(same, t9, t3)
     t13 = d_y * t10 - t11 * t12
     v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -t4)
-    m_y = a_x * t10 + t4 * t12
-    m_z = a_x * t11 + t4 * d_y
-    m_m = t13 * t13 + m_y * m_y + m_z * m_z
+    product_y = a_x * t10 + t4 * t12
+    product_z = a_x * t11 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t14 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t14 * 0.000244140625 <= ops.vanishing * t14
-    t15 = d_y * m_z + t12 * m_y
-    n_y = a_x * m_z - t12 * t13
-    t16 = a_x * m_y + d_y * t13
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t12 * product_y
+    n_y = a_x * product_z - t12 * t13
+    t16 = a_x * product_y + d_y * t13
     t17 = t15 * t15 + n_y * n_y + t16 * t16
-    mu_nu = ops.select(slim, 1.0 / mu * t17, m_m)
-    in_line = mu_nu <= t7 * (t6 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
     t18 = t11 * (d_y - t11) + t10 * (t12 - t10)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
@@ -1294,7 +1300,7 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    w_w = ops.select(in_line, t23, mu_nu)
+    w_w = ops.select(in_line, t23, m_m)
     t24 = ops.select(in_line, 0.0, 1.0 / w_w * t18 * 0.5)
     t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t24 * t24)))
     t26 = t21 - t25
@@ -1306,7 +1312,7 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     t29 = ops.opposite(in_line)
     t30 = t28 | ((t27 | (t28 & ops.opposite(all_same))) & t29)
     over = 1.0 / ops.select(t27 & t29 & slim, mu, 1.0)
-    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, m_m))
+    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
     part = 1.0 / ops.select(t30, w_w_2, 1.0)
     t31 = ops.select(in_line, 0.0, part * t18 * 0.5)
     t32 = t4 * 0.5 - t15 * t31
@@ -1318,34 +1324,34 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     t37 = ops.select(in_line, t22 * s_w, t33) * h
     t38 = t32 - t37
     t39 = n_y * t31 - d_y * 0.5
-    m_again_y = ops.select(slim, over * (a_x * t16 + t12 * t15), m_y)
-    t40 = h * ops.select(in_line, -t22, m_again_y)
+    m_y = ops.select(slim, over * (a_x * t16 + t12 * t15), product_y)
+    t40 = h * ops.select(in_line, -t22, m_y)
     t41 = t39 + t40
     t42 = t16 * t31 - t12 * 0.5
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t15), m_z)
-    t43 = h * ops.select(in_line, -g_2, m_again_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
+    t43 = h * ops.select(in_line, -g_2, m_z)
     A_13 = t42 - t43
     A_21 = t4 - t38
     t44 = A_21 * A_21
-    A_22 = c3_y - t41
+    t45 = c2_y + t41
     A_23 = t3 + A_13
-    t45 = t38 * t38 + t41 * t41 + A_13 * A_13 + (t44 + A_22 * A_22 + A_23 * A_23)
-    t46 = c3_y + t41
+    t46 = t38 * t38 + t41 * t41 + A_13 * A_13 + (t44 + t45 * t45 + A_23 * A_23)
+    A_32 = c2_y - t41
     A_33 = t9 + A_13
     t47 = t41 * A_21
-    t48 = t38 * A_22 - t47
+    t48 = t38 * t45 + t47
     t49 = A_13 * A_21
     t50 = t38 * A_23 + t49
-    t51 = t47 + t38 * t46
+    t51 = t47 - t38 * A_32
     t52 = t49 + t38 * A_33
     t53 = t48 * t48 + t50 * t50 + t51 * t51 + t52 * t52
-    t54 = t41 * A_23 + A_13 * A_22
-    t55 = t41 * A_33 - A_13 * t46
-    t56 = A_21 * t46 + A_21 * A_22
+    t54 = t41 * A_23 - A_13 * t45
+    t55 = t41 * A_33 + A_13 * A_32
+    t56 = A_21 * A_32 + A_21 * t45
     t57 = A_21 * A_33 - A_21 * A_23
     t58 = t53 + t54 * t54 + t55 * t55 + t56 * t56 + t57 * t57
-    t59 = A_22 * A_33 + A_23 * t46
-    t60 = (t45 + (t44 + t46 * t46 + A_33 * A_33)) * (t58 + t59 * t59)
+    t59 = t45 * A_33 + A_23 * A_32
+    t60 = (t46 + (t44 + A_32 * A_32 + A_33 * A_33)) * (t58 + t59 * t59)
     t61 = ops.select(t27, 3.0 * (w_w_2 * h), 1.0)
     t62 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t27, t60, 1.0)) / t61)
     t63 = t32 + t37
@@ -1354,26 +1360,26 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     square1_above = t63 * t63 + t64 * t64 + A_13_above * A_13_above
     A_21_above = t4 - t63
     t65 = A_21_above * A_21_above
-    A_22_above = c3_y - t64
+    t66 = c2_y + t64
     A_23_above = t3 + A_13_above
-    square2_above = t65 + A_22_above * A_22_above + A_23_above * A_23_above
-    t66 = c3_y + t64
+    t67 = square1_above + (t65 + t66 * t66 + A_23_above * A_23_above)
+    A_32_above = c2_y - t64
     A_33_above = t9 + A_13_above
-    t67 = square1_above + square2_above + (t65 + t66 * t66 + A_33_above * A_33_above)
+    square3_above = t65 + A_32_above * A_32_above + A_33_above * A_33_above
     t68 = t64 * A_21_above
-    t69 = t63 * A_22_above - t68
+    t69 = t63 * t66 + t68
     t70 = A_13_above * A_21_above
     t71 = t63 * A_23_above + t70
-    t72 = t68 + t63 * t66
+    t72 = t68 - t63 * A_32_above
     t73 = t70 + t63 * A_33_above
     t74 = t69 * t69 + t71 * t71 + t72 * t72 + t73 * t73
-    t75 = t64 * A_23_above + A_13_above * A_22_above
-    t76 = t64 * A_33_above - A_13_above * t66
-    t77 = A_21_above * t66 + A_21_above * A_22_above
+    t75 = t64 * A_23_above - A_13_above * t66
+    t76 = t64 * A_33_above + A_13_above * A_32_above
+    t77 = A_21_above * A_32_above + A_21_above * t66
     t78 = A_21_above * A_33_above - A_21_above * A_23_above
     t79 = t74 + t75 * t75 + t76 * t76 + t77 * t77 + t78 * t78
-    t80 = A_22_above * A_33_above + A_23_above * t66
-    t81 = ops.select(t27, t67 * (t79 + t80 * t80), 1.0)
+    t80 = t66 * A_33_above + A_23_above * A_32_above
+    t81 = ops.select(t27, (t67 + square3_above) * (t79 + t80 * t80), 1.0)
     t82 = ops.select(failed, ops.nan, ops.sqrt(t81) / t61)
     return (
         t62,
@@ -1428,37 +1434,38 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
     t3 = rho1 - rho2
-    t4 = f - e - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = t4 * t4 + c3_y * c3_y
+    c1_x = f - e
+    t4 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    t5 = t4 * t4 + c2_y * c2_y
     u_u = t3 * t3 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t6 = size * size
     t7 = ops.vanishing * ops.vanishing
     t8 = t6 * t7
     same = u_u <= t8
-    d_y = ops.select(same, c3_y, -c3_y)
+    d_y = ops.select(same, -c2_y, c2_y)
     t9 = rho1 - rho3
     t10 = ops.select(same, t3, t9)
-    t11 = ops.select(same, -c3_y, c3_y)
+    t11 = ops.select(same, c2_y, -c2_y)
     t12 = ops.select(same, t9, t3)
     t13 = d_y * t10 - t11 * t12
     v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -t4)
-    m_y = a_x * t10 + t4 * t12
-    m_z = a_x * t11 + t4 * d_y
-    m_m = t13 * t13 + m_y * m_y + m_z * m_z
+    product_y = a_x * t10 + t4 * t12
+    product_z = a_x * t11 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t14 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t14 * 0.000244140625 <= ops.vanishing * t14
-    t15 = d_y * m_z + t12 * m_y
-    n_y = a_x * m_z - t12 * t13
-    t16 = a_x * m_y + d_y * t13
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t12 * product_y
+    n_y = a_x * product_z - t12 * t13
+    t16 = a_x * product_y + d_y * t13
     t17 = t15 * t15 + n_y * n_y + t16 * t16
-    mu_nu = ops.select(slim, 1.0 / mu * t17, m_m)
-    in_line = mu_nu <= t7 * (t6 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
     t18 = t11 * (d_y - t11) + t10 * (t12 - t10)
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
@@ -1467,7 +1474,7 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    w_w = ops.select(in_line, t23, mu_nu)
+    w_w = ops.select(in_line, t23, m_m)
     t24 = ops.select(in_line, 0.0, 1.0 / w_w * t18 * 0.5)
     t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t24 * t24)))
     t26 = t21 - t25
@@ -1480,7 +1487,7 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     t30 = t28 | ((t27 | (t28 & ops.opposite(all_same))) & t29)
     t31 = ops.select((t27 & t29 & slim) | (t30 & t29 & slim), mu, 1.0)
     over = 1.0 / t31
-    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, m_m))
+    w_w_2 = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
     part = 1.0 / ops.select(t30, w_w_2, 1.0)
     t32 = ops.select(in_line, 0.0, part * t18 * 0.5)
     t33 = t4 * 0.5 - t15 * t32
@@ -1492,8 +1499,8 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     t38 = ops.select(in_line, t22 * s_w, t34) * h
     t39 = t33 - t38
     t40 = t16 * t32 - t12 * 0.5
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t15), m_z)
-    t41 = h * ops.select(in_line, -g_2, m_again_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
+    t41 = h * ops.select(in_line, -g_2, m_z)
     A_13 = t40 - t41
     A_23 = t3 + A_13
     A_33 = t9 + A_13
@@ -1501,11 +1508,11 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     t43 = 1.7320508075688772 * t39 * A_23 * A_33 * 0.5 + A_33 * t42 * 0.25
     t44 = 0.75 * A_13
     t45 = n_y * t32 - d_y * 0.5
-    m_again_y = ops.select(slim, over * (a_x * t16 + t12 * t15), m_y)
-    t46 = h * ops.select(in_line, -t22, m_again_y)
+    m_y = ops.select(slim, over * (a_x * t16 + t12 * t15), product_y)
+    t46 = h * ops.select(in_line, -t22, m_y)
     t47 = t45 + t46
-    t48 = t43 - A_33 * t44 * (c3_y - t47) + A_23 * t42 * 0.25
-    t49 = ops.select(failed, ops.nan, t48 - A_23 * t44 * (c3_y + t47))
+    t48 = t43 + A_33 * t44 * (c2_y + t47) + A_23 * t42 * 0.25
+    t49 = ops.select(failed, ops.nan, t48 + A_23 * t44 * (c2_y - t47))
     t50 = t33 + t38
     A_13_above = t40 + t41
     A_23_above = t3 + A_13_above
@@ -1514,8 +1521,8 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     t52 = (t4 - t50) * (1.7320508075688772 * A_13_above)
     t53 = 0.75 * A_13_above
     t54 = t45 - t46
-    t55 = t51 * 0.5 + A_33_above * t52 * 0.25 - A_33_above * t53 * (c3_y - t54)
-    t56 = t55 + A_23_above * t52 * 0.25 - A_23_above * t53 * (c3_y + t54)
+    t55 = t51 * 0.5 + A_33_above * t52 * 0.25 + A_33_above * t53 * (c2_y + t54)
+    t56 = t55 + A_23_above * t52 * 0.25 + A_23_above * t53 * (c2_y - t54)
     return (
         t49,
         ops.select(failed, ops.nan, t56),

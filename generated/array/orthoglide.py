@@ -140,23 +140,23 @@ def _fk(ops, rho1, rho2, rho3, L):
     t6 = ops.select(same, 0.0, rho3)
     t7 = ops.select(same, rho2, 0.0)
     d_z = ops.select(same, rho3, 0.0)
-    m_x = d_y * t6 - t7 * d_z
+    product_x = d_y * t6 - t7 * d_z
     v_v = t2 + rho3 * rho3
     all_same = u_u + v_v <= t5
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -rho1)
     t8 = a_x * t6 + rho1 * d_z
-    m_z = a_x * t7 + rho1 * d_y
-    m_m = m_x * m_x + t8 * t8 + m_z * m_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t9 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * m_z + d_z * t8
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t8 + d_y * m_x
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
     t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t11, m_m)
-    in_line = mu_nu <= t4 * (t3 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
     t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 0.1875
@@ -165,7 +165,7 @@ def _fk(ops, rho1, rho2, rho3, L):
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, mu_nu)
+    w_w = ops.select(in_line, t16, m_m)
     t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
     t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
     t19 = t15 - t18
@@ -178,21 +178,21 @@ def _fk(ops, rho1, rho2, rho3, L):
     t23 = t22 | ((t20 | (t22 & ops.opposite(all_same))) & t21)
     t24 = ops.select((t20 & t21 & slim) | (t23 & t21 & slim), mu, 1.0)
     over = 1.0 / t24
-    m_again_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, m_m))
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
     part = 1.0 / ops.select(t23, w_w_2, 1.0)
     t25 = ops.select(in_line, 0.0, part * t12 * 0.5)
     t26 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t25 * t25)))
     t27 = ops.select(t22, ops.max(t15 - t26, 0.0), 1.0)
     t28 = ops.sqrt(ops.select(t22, part, 1.0)) * ops.sqrt(t27)
     h = ops.select(touching, 0.0, t28)
-    t29 = ops.select(in_line, g_1 * s_w, m_again_x) * h
+    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
     t30 = t10 * t25 + (rho1 - rho1 * 0.5)
     t31 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
     t32 = h * ops.select(in_line, g_1, -t31)
     t33 = n_y * t25 - d_y * 0.5
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t10), m_z)
-    t34 = h * ops.select(in_line, -g_2, m_again_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t34 = h * ops.select(in_line, -g_2, m_z)
     t35 = n_z * t25 - d_z * 0.5
     t36 = ops.status(invalid, unreachable, in_line)
     return (
@@ -272,23 +272,23 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     t6 = ops.select(same, 0.0, rho3)
     d_z = ops.select(same, rho3, 0.0)
     t7 = ops.select(same, rho2, 0.0)
-    m_x = d_y * t6 - d_z * t7
+    product_x = d_y * t6 - d_z * t7
     v_v = t2 + rho3 * rho3
     all_same = u_u + v_v <= t5
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -rho1)
     t8 = t6 * a_x + rho1 * d_z
-    m_z = t7 * a_x + rho1 * d_y
-    m_m = m_x * m_x + t8 * t8 + m_z * m_z
+    product_z = t7 * a_x + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t9 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * m_z + d_z * t8
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t8 + d_y * m_x
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
     t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t11, m_m)
-    in_line = mu_nu <= t4 * (t3 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
     t12 = t7 * (d_y - t7) - t6 * (t6 - d_z)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
@@ -297,7 +297,7 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, mu_nu)
+    w_w = ops.select(in_line, t16, m_m)
     t17 = ops.select(in_line, 0.0, t12 * (1.0 / w_w) * 0.5)
     t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
     t19 = t15 - t18
@@ -315,15 +315,15 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     t28 = t27 | ((t25 | (t27 & ops.opposite(all_same))) & t26)
     t29 = ops.select((t25 & t26 & slim) | (t28 & t26 & slim), mu, 1.0)
     over = 1.0 / t29
-    m_again_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, m_m))
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
     part = 1.0 / ops.select(t28, w_w_2, 1.0)
     t30 = ops.select(in_line, 0.0, t12 * part * 0.5)
     t31 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t30 * t30)))
     t32 = ops.select(t27, ops.max(t15 - t31, 0.0), 1.0)
     t33 = ops.sqrt(ops.select(t27, part, 1.0)) * ops.sqrt(t32)
     h = ops.select(touching, 0.0, t33)
-    t34 = ops.select(in_line, g_1 * s_w, m_again_x) * h
+    t34 = ops.select(in_line, g_1 * s_w, m_x) * h
     t35 = rho1 * 0.5 - t10 * t30
     t36 = rho1 + (t34 - t35)
     t37 = ops.select(failed, ops.nan, t36)
@@ -331,8 +331,8 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     t39 = h * ops.select(in_line, g_1, -t38)
     t40 = n_y * t30 - d_y * 0.5
     A_12 = t39 - t40
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t10), m_z)
-    t41 = h * ops.select(in_line, -g_2, m_again_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t41 = h * ops.select(in_line, -g_2, m_z)
     t42 = n_z * t30 - d_z * 0.5
     A_13 = t41 - t42
     t43 = ops.select(failed, ops.nan, A_13)
@@ -520,23 +520,23 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     t6 = ops.select(same, 0.0, rho3)
     t7 = ops.select(same, rho2, 0.0)
     d_z = ops.select(same, rho3, 0.0)
-    m_x = d_y * t6 - t7 * d_z
+    product_x = d_y * t6 - t7 * d_z
     v_v = t2 + rho3 * rho3
     all_same = u_u + v_v <= t5
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -rho1)
     t8 = a_x * t6 + rho1 * d_z
-    m_z = a_x * t7 + rho1 * d_y
-    m_m = m_x * m_x + t8 * t8 + m_z * m_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t9 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * m_z + d_z * t8
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t8 + d_y * m_x
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
     t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t11, m_m)
-    in_line = mu_nu <= t4 * (t3 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
     t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
@@ -545,7 +545,7 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, mu_nu)
+    w_w = ops.select(in_line, t16, m_m)
     t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
     t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
     t19 = t15 - t18
@@ -558,15 +558,15 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     t23 = t22 | ((t20 | (t22 & ops.opposite(all_same))) & t21)
     t24 = ops.select((t20 & t21 & slim) | (t23 & t21 & slim), mu, 1.0)
     over = 1.0 / t24
-    m_again_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, m_m))
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
     part = 1.0 / ops.select(t23, w_w_2, 1.0)
     t25 = ops.select(in_line, 0.0, part * t12 * 0.5)
     t26 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t25 * t25)))
     t27 = ops.select(t22, ops.max(t15 - t26, 0.0), 1.0)
     t28 = ops.sqrt(ops.select(t22, part, 1.0)) * ops.sqrt(t27)
     h = ops.select(touching, 0.0, t28)
-    t29 = ops.select(in_line, g_1 * s_w, m_again_x) * h
+    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
     t30 = rho1 * 0.5 - t10 * t25
     A_11 = t29 - t30
     t31 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
@@ -574,8 +574,8 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     t33 = n_y * t25 - d_y * 0.5
     A_12 = t32 - t33
     t34 = ops.select(failed, ops.nan, A_12)
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t10), m_z)
-    t35 = h * ops.select(in_line, -g_2, m_again_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t35 = h * ops.select(in_line, -g_2, m_z)
     t36 = n_z * t25 - d_z * 0.5
     A_13 = t35 - t36
     t37 = ops.select(failed, ops.nan, A_13)
@@ -663,23 +663,23 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     t6 = ops.select(same, 0.0, rho3)
     t7 = ops.select(same, rho2, 0.0)
     d_z = ops.select(same, rho3, 0.0)
-    m_x = d_y * t6 - t7 * d_z
+    product_x = d_y * t6 - t7 * d_z
     v_v = t2 + rho3 * rho3
     all_same = u_u + v_v <= t5
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -rho1)
     t8 = a_x * t6 + rho1 * d_z
-    m_z = a_x * t7 + rho1 * d_y
-    m_m = m_x * m_x + t8 * t8 + m_z * m_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t9 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * m_z + d_z * t8
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t8 + d_y * m_x
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
     t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t11, m_m)
-    in_line = mu_nu <= t4 * (t3 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
     t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
@@ -688,7 +688,7 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, mu_nu)
+    w_w = ops.select(in_line, t16, m_m)
     t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
     t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
     t19 = t15 - t18
@@ -701,22 +701,22 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     t23 = t22 | ((t20 | (t22 & ops.opposite(all_same))) & t21)
     t24 = ops.select((t20 & t21 & slim) | (t23 & t21 & slim), mu, 1.0)
     over = 1.0 / t24
-    m_again_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, m_m))
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
     part = 1.0 / ops.select(t23, w_w_2, 1.0)
     t25 = ops.select(in_line, 0.0, part * t12 * 0.5)
     t26 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t25 * t25)))
     t27 = ops.select(t22, ops.max(t15 - t26, 0.0), 1.0)
     t28 = ops.sqrt(ops.select(t22, part, 1.0)) * ops.sqrt(t27)
     h = ops.select(touching, 0.0, t28)
-    t29 = ops.select(in_line, g_1 * s_w, m_again_x) * h
+    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
     t30 = rho1 * 0.5 - t10 * t25
     t31 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
     t32 = h * ops.select(in_line, g_1, -t31)
     t33 = n_y * t25 - d_y * 0.5
     t34 = ops.select(failed, ops.nan, t32 - t33 - rho2)
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t10), m_z)
-    t35 = h * ops.select(in_line, -g_2, m_again_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t35 = h * ops.select(in_line, -g_2, m_z)
     t36 = n_z * t25 - d_z * 0.5
     t37 = ops.select(failed, ops.nan, t35 - t36 - rho3)
     t38 = ops.select(failed, ops.nan, -(rho2 + (t32 + t33)))
@@ -786,23 +786,23 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     t6 = ops.select(same, 0.0, rho3)
     t7 = ops.select(same, rho2, 0.0)
     d_z = ops.select(same, rho3, 0.0)
-    m_x = d_y * t6 - t7 * d_z
+    product_x = d_y * t6 - t7 * d_z
     v_v = t2 + rho3 * rho3
     all_same = u_u + v_v <= t5
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -rho1)
     t8 = a_x * t6 + rho1 * d_z
-    m_z = a_x * t7 + rho1 * d_y
-    m_m = m_x * m_x + t8 * t8 + m_z * m_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t9 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * m_z + d_z * t8
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t8 + d_y * m_x
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
     t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t11, m_m)
-    in_line = mu_nu <= t4 * (t3 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
     t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
@@ -811,7 +811,7 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, mu_nu)
+    w_w = ops.select(in_line, t16, m_m)
     t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
     t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
     t19 = t15 - t18
@@ -820,26 +820,26 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     t20 = ops.opposite(failed)
     t21 = ops.opposite(in_line)
     over = 1.0 / ops.select(t20 & t21 & slim, mu, 1.0)
-    m_again_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     touching = ops.max(t19, 0.0) <= ops.vanishing * t14
     t22 = t20 & ops.opposite(touching)
     t23 = t22 | ((t20 | (t22 & ops.opposite(all_same))) & t21)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, m_m))
+    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
     part = 1.0 / ops.select(t23, w_w_2, 1.0)
     t24 = ops.select(in_line, 0.0, part * t12 * 0.5)
     t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t24 * t24)))
     t26 = ops.select(t22, ops.max(t15 - t25, 0.0), 1.0)
     t27 = ops.sqrt(ops.select(t22, part, 1.0)) * ops.sqrt(t26)
     h = ops.select(touching, 0.0, t27)
-    t28 = ops.select(in_line, g_1 * s_w, m_again_x) * h
+    t28 = ops.select(in_line, g_1 * s_w, m_x) * h
     t29 = rho1 * 0.5 - t10 * t24
     A_11 = t28 - t29
     t30 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
     t31 = h * ops.select(in_line, g_1, -t30)
     t32 = n_y * t24 - d_y * 0.5
     t33 = t31 - t32
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t10), m_z)
-    t34 = h * ops.select(in_line, -g_2, m_again_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t34 = h * ops.select(in_line, -g_2, m_z)
     t35 = n_z * t24 - d_z * 0.5
     t36 = t34 - t35
     t37 = t33 * t36
@@ -954,23 +954,23 @@ def _determinant(ops, rho1, rho2, rho3, L):
     t6 = ops.select(same, 0.0, rho3)
     t7 = ops.select(same, rho2, 0.0)
     d_z = ops.select(same, rho3, 0.0)
-    m_x = d_y * t6 - t7 * d_z
+    product_x = d_y * t6 - t7 * d_z
     v_v = t2 + rho3 * rho3
     all_same = u_u + v_v <= t5
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -rho1)
     t8 = a_x * t6 + rho1 * d_z
-    m_z = a_x * t7 + rho1 * d_y
-    m_m = m_x * m_x + t8 * t8 + m_z * m_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t9 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * m_z + d_z * t8
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t8 + d_y * m_x
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
     t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t11, m_m)
-    in_line = mu_nu <= t4 * (t3 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
     t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
@@ -979,7 +979,7 @@ def _determinant(ops, rho1, rho2, rho3, L):
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, mu_nu)
+    w_w = ops.select(in_line, t16, m_m)
     t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
     t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
     t19 = t15 - t18
@@ -988,24 +988,24 @@ def _determinant(ops, rho1, rho2, rho3, L):
     t20 = ops.opposite(failed)
     t21 = ops.opposite(in_line)
     over = 1.0 / ops.select(t20 & t21 & slim, mu, 1.0)
-    m_again_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     touching = ops.max(t19, 0.0) <= ops.vanishing * t14
     t22 = t20 & ops.opposite(touching)
     t23 = t22 | ((t20 | (t22 & ops.opposite(all_same))) & t21)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, m_m))
+    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
     part = 1.0 / ops.select(t23, w_w_2, 1.0)
     t24 = ops.select(in_line, 0.0, part * t12 * 0.5)
     t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t24 * t24)))
     t26 = ops.select(t22, ops.max(t15 - t25, 0.0), 1.0)
     t27 = ops.sqrt(ops.select(t22, part, 1.0)) * ops.sqrt(t26)
     h = ops.select(touching, 0.0, t27)
-    t28 = ops.select(in_line, g_1 * s_w, m_again_x) * h
+    t28 = ops.select(in_line, g_1 * s_w, m_x) * h
     t29 = rho1 * 0.5 - t10 * t24
     t30 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
     t31 = h * ops.select(in_line, g_1, -t30)
     t32 = n_y * t24 - d_y * 0.5
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t10), m_z)
-    t33 = h * ops.select(in_line, -g_2, m_again_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t33 = h * ops.select(in_line, -g_2, m_z)
     t34 = n_z * t24 - d_z * 0.5
     t35 = (t28 - t29) * (rho2 - (t31 - t32)) * (rho3 - (t33 - t34))
     t36 = ops.select(t20, w_w_2 * h, 1.0)
@@ -1071,23 +1071,23 @@ def _singularities(ops, rho1, rho2, rho3, L):
     t6 = ops.select(same, 0.0, rho3)
     t7 = ops.select(same, rho2, 0.0)
     d_z = ops.select(same, rho3, 0.0)
-    m_x = d_y * t6 - t7 * d_z
+    product_x = d_y * t6 - t7 * d_z
     v_v = t2 + rho3 * rho3
     all_same = u_u + v_v <= t5
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -rho1)
     t8 = a_x * t6 + rho1 * d_z
-    m_z = a_x * t7 + rho1 * d_y
-    m_m = m_x * m_x + t8 * t8 + m_z * m_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t9 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * m_z + d_z * t8
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t8 + d_y * m_x
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
     t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t11, m_m)
-    in_line = mu_nu <= t4 * (t3 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
     t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
@@ -1096,7 +1096,7 @@ def _singularities(ops, rho1, rho2, rho3, L):
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, mu_nu)
+    w_w = ops.select(in_line, t16, m_m)
     t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
     t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
     t19 = t15 - t18
@@ -1105,25 +1105,25 @@ def _singularities(ops, rho1, rho2, rho3, L):
     t20 = ops.opposite(failed)
     t21 = ops.opposite(in_line)
     over = 1.0 / ops.select(t20 & t21 & slim, mu, 1.0)
-    m_again_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     touching = ops.max(t19, 0.0) <= ops.vanishing * t14
     t22 = t20 & ops.opposite(touching)
     t23 = t22 | ((t20 | (t22 & ops.opposite(all_same))) & t21)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, m_m))
+    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
     part = 1.0 / ops.select(t23, w_w_2, 1.0)
     t24 = ops.select(in_line, 0.0, part * t12 * 0.5)
     t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t24 * t24)))
     t26 = ops.select(t22, ops.max(t15 - t25, 0.0), 1.0)
     t27 = ops.sqrt(ops.select(t22, part, 1.0)) * ops.sqrt(t26)
     h = ops.select(touching, 0.0, t27)
-    t28 = ops.select(in_line, g_1 * s_w, m_again_x) * h
+    t28 = ops.select(in_line, g_1 * s_w, m_x) * h
     t29 = rho1 * 0.5 - t10 * t24
     t30 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
     t31 = h * ops.select(in_line, g_1, -t30)
     t32 = n_y * t24 - d_y * 0.5
     t33 = ops.select(failed, ops.nan, t31 - t32 - rho2)
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t10), m_z)
-    t34 = h * ops.select(in_line, -g_2, m_again_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t34 = h * ops.select(in_line, -g_2, m_z)
     t35 = n_z * t24 - d_z * 0.5
     t36 = ops.select(failed, ops.nan, t34 - t35 - rho3)
     Delta = w_w_2 * h
@@ -1196,23 +1196,23 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     t6 = ops.select(same, 0.0, rho3)
     t7 = ops.select(same, rho2, 0.0)
     d_z = ops.select(same, rho3, 0.0)
-    m_x = d_y * t6 - t7 * d_z
+    product_x = d_y * t6 - t7 * d_z
     v_v = t2 + rho3 * rho3
     all_same = u_u + v_v <= t5
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -rho1)
     t8 = a_x * t6 + rho1 * d_z
-    m_z = a_x * t7 + rho1 * d_y
-    m_m = m_x * m_x + t8 * t8 + m_z * m_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t9 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * m_z + d_z * t8
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t8 + d_y * m_x
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
     t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t11, m_m)
-    in_line = mu_nu <= t4 * (t3 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
     t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
@@ -1221,7 +1221,7 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, mu_nu)
+    w_w = ops.select(in_line, t16, m_m)
     t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
     t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
     t19 = t15 - t18
@@ -1230,18 +1230,18 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     t20 = ops.opposite(failed)
     t21 = ops.opposite(in_line)
     over = 1.0 / ops.select(t20 & t21 & slim, mu, 1.0)
-    m_again_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     touching = ops.max(t19, 0.0) <= ops.vanishing * t14
     t22 = t20 & ops.opposite(touching)
     t23 = t22 | ((t20 | (t22 & ops.opposite(all_same))) & t21)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, m_m))
+    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
     part = 1.0 / ops.select(t23, w_w_2, 1.0)
     t24 = ops.select(in_line, 0.0, part * t12 * 0.5)
     t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t24 * t24)))
     t26 = ops.select(t22, ops.max(t15 - t25, 0.0), 1.0)
     t27 = ops.sqrt(ops.select(t22, part, 1.0)) * ops.sqrt(t26)
     h = ops.select(touching, 0.0, t27)
-    t28 = ops.select(in_line, g_1 * s_w, m_again_x) * h
+    t28 = ops.select(in_line, g_1 * s_w, m_x) * h
     t29 = rho1 * 0.5 - t10 * t24
     A_11 = t28 - t29
     t30 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
@@ -1249,8 +1249,8 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     t32 = n_y * t24 - d_y * 0.5
     t33 = t31 - t32
     t34 = t33 * t33
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t10), m_z)
-    t35 = h * ops.select(in_line, -g_2, m_again_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t35 = h * ops.select(in_line, -g_2, m_z)
     t36 = n_z * t24 - d_z * 0.5
     t37 = t35 - t36
     t38 = t37 * t37
@@ -1364,23 +1364,23 @@ def _constraint(ops, rho1, rho2, rho3, L):
     t6 = ops.select(same, 0.0, rho3)
     t7 = ops.select(same, rho2, 0.0)
     d_z = ops.select(same, rho3, 0.0)
-    m_x = d_y * t6 - t7 * d_z
+    product_x = d_y * t6 - t7 * d_z
     v_v = t2 + rho3 * rho3
     all_same = u_u + v_v <= t5
     whole = ops.select((size == 0.0), 1.0, size)
     a_x = ops.select(all_same, whole, -rho1)
     t8 = a_x * t6 + rho1 * d_z
-    m_z = a_x * t7 + rho1 * d_y
-    m_m = m_x * m_x + t8 * t8 + m_z * m_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     t9 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * m_z + d_z * t8
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t8 + d_y * m_x
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
     t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    mu_nu = ops.select(slim, 1.0 / mu * t11, m_m)
-    in_line = mu_nu <= t4 * (t3 * mu)
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
     t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
@@ -1389,7 +1389,7 @@ def _constraint(ops, rho1, rho2, rho3, L):
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, mu_nu)
+    w_w = ops.select(in_line, t16, m_m)
     t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
     t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
     t19 = t15 - t18
@@ -1402,7 +1402,7 @@ def _constraint(ops, rho1, rho2, rho3, L):
     t23 = t21 | ((t20 | (t21 & ops.opposite(all_same))) & t22)
     t24 = ops.select((t20 & t22 & slim) | (t23 & t22 & slim), mu, 1.0)
     over = 1.0 / t24
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, m_m))
+    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
     part = 1.0 / ops.select(t23, w_w_2, 1.0)
     t25 = ops.select(in_line, 0.0, part * t12 * 0.5)
     t26 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t25 * t25)))
@@ -1413,12 +1413,12 @@ def _constraint(ops, rho1, rho2, rho3, L):
     t30 = h * ops.select(in_line, g_1, -t29)
     t31 = n_y * t25 - d_y * 0.5
     t32 = t30 - t31
-    m_again_z = ops.select(slim, over * (a_x * n_y + d_y * t10), m_z)
-    t33 = h * ops.select(in_line, -g_2, m_again_z)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t33 = h * ops.select(in_line, -g_2, m_z)
     t34 = n_z * t25 - d_z * 0.5
     t35 = t33 - t34
-    m_again_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
-    t36 = ops.select(in_line, g_1 * s_w, m_again_x) * h
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    t36 = ops.select(in_line, g_1 * s_w, m_x) * h
     t37 = rho1 * 0.5 - t10 * t25
     A_11 = t36 - t37
     t38 = t32 * t35 * (rho1 + A_11) - A_11 * (rho2 - t32) * (rho3 - t35)

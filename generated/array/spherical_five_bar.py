@@ -2,13 +2,13 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 114 compare and select, 76 add, 18 divide, 118 multiply, 7 sincos, 7 sqrt
-#   skeleton: 122 compare and select, 79 add, 16 divide, 120 multiply, 7 sincos, 7 sqrt
-#   jacobian_parallel: 125 compare and select, 85 add, 16 divide, 120 multiply, 7 sincos, 7 sqrt
-#   jacobian_serial: 111 compare and select, 85 add, 16 divide, 132 multiply, 7 sincos, 7 sqrt
-#   jacobian: 120 compare and select, 103 add, 28 divide, 169 multiply, 7 sincos, 7 sqrt
-#   singularities: 113 compare and select, 85 add, 16 divide, 133 multiply, 7 sincos, 7 sqrt
-#   condition_number: 120 compare and select, 129 add, 24 divide, 178 multiply, 7 sincos, 11 sqrt
+#   fk: 111 compare and select, 76 add, 17 divide, 121 multiply, 7 sincos, 7 sqrt
+#   skeleton: 119 compare and select, 81 add, 17 divide, 127 multiply, 7 sincos, 7 sqrt
+#   jacobian_parallel: 122 compare and select, 85 add, 17 divide, 121 multiply, 7 sincos, 7 sqrt
+#   jacobian_serial: 108 compare and select, 85 add, 17 divide, 134 multiply, 7 sincos, 7 sqrt
+#   jacobian: 117 compare and select, 103 add, 29 divide, 171 multiply, 7 sincos, 7 sqrt
+#   singularities: 110 compare and select, 85 add, 17 divide, 135 multiply, 7 sincos, 7 sqrt
+#   condition_number: 117 compare and select, 129 add, 25 divide, 179 multiply, 7 sincos, 11 sqrt
 #   ik: 149 compare and select, 107 add, 4 atan2, 14 divide, 133 multiply, 5 sincos, 14 sqrt
 #   workspace_contains: 53 compare and select, 26 add, 8 divide, 31 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -119,10 +119,10 @@ def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c_alpha1 = ops.cos(alpha1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
-    s2 = ops.sin(theta2)
-    c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
+    s2 = ops.sin(theta2)
+    c2 = ops.cos(theta2)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
     s_beta2_half = ops.sin(beta2 * 0.5)
@@ -133,136 +133,137 @@ def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
     t4 = -(ops.feasibility * (r * 0.25))
     c1_x = r * c_alpha1
-    t5 = r * ops.abs(s_alpha2)
+    t5 = ops.abs(s_alpha2)
     t6 = c2 * t5
-    t7 = r * c_alpha2
-    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
-    t9 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t9
-    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
-    c1_z = s1 * t9
-    t11 = c1_z - s2 * t5
-    u_u = t8 * t8 + t10 * t10 + t11 * t11
-    t12 = r * r
-    t13 = ops.vanishing * ops.vanishing
-    t14 = t12 * t13
-    same = u_u <= t14
-    t15 = r * 2.0
-    r_2 = ops.abs(s_beta2_half) * t15
-    t16 = ops.select(same, r, r_2)
+    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t6)
+    t8 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t8
+    t9 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t6)
+    c1_z = s1 * t8
+    t10 = r * s2 * t5 - c1_z
+    u_u = t7 * t7 + t9 * t9 + t10 * t10
+    t11 = r * r
+    t12 = ops.vanishing * ops.vanishing
+    t13 = t11 * t12
+    same = u_u <= t13
+    t14 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t14
+    t15 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t14
+    all_same = u_u + v_v <= t13
     whole = ops.select((r == 0.0), 1.0, r)
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
-    r_1 = ops.abs(s_beta1_half) * t15
-    t17 = D - r_1
-    t18 = t16 - t17
-    t19 = D + r_1
-    t20 = t19 - t16
-    t21 = t16 + t17
-    t22 = ops.select(same, r_2, r)
-    t23 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t22) * 0.5)
-    t24 = ops.select(same, c1_y, t10)
-    t25 = ops.select(same, t11, c1_z)
-    t26 = ops.select(same, t10, c1_y)
-    t27 = ops.select(same, c1_z, t11)
-    m_x = t24 * t25 - t26 * t27
-    t28 = ops.select(same, c1_x, t8)
-    a_x = ops.select(all_same, whole, -t28)
-    t29 = ops.select(same, t8, c1_x)
-    m_y = a_x * t25 + t29 * t27
-    t30 = a_x * t26 + t24 * t29
-    m_m = m_x * m_x + m_y * m_y + t30 * t30
+    r_1 = ops.abs(s_beta1_half) * t14
+    t16 = D - r_1
+    t17 = t15 - t16
+    t18 = D + r_1
+    t19 = t18 - t15
+    t20 = t15 + t16
+    t21 = ops.select(same, r_2, r)
+    t22 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t21) * 0.5)
+    over = 1.0 / mu
+    t23 = ops.select(same, c1_y, t9)
+    t24 = ops.select(same, -t10, c1_z)
+    t25 = ops.select(same, c1_z, -t10)
+    t26 = ops.select(same, t9, c1_y)
+    product_x = t23 * t24 - t25 * t26
+    t27 = ops.select(same, c1_x, t7)
+    a_x = ops.select(all_same, whole, -t27)
+    t28 = ops.select(same, t7, c1_x)
+    product_y = t24 * a_x + t25 * t28
+    t29 = product_x * product_x + product_y * product_y
+    t30 = t26 * a_x + t23 * t28
+    product_2 = t29 + t30 * t30
     t31 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t31 * 0.000244140625 <= ops.vanishing * t31
-    t32 = t24 * t30 + t27 * m_y
-    t33 = a_x * t30 - t27 * m_x
-    t34 = a_x * m_y + t24 * m_x
+    slim = product_2 - t31 * 0.000244140625 <= ops.vanishing * t31
+    t32 = t23 * t30 + t25 * product_y
+    t33 = a_x * t30 - t25 * product_x
+    t34 = a_x * product_y + t23 * product_x
     t35 = t32 * t32 + t33 * t33 + t34 * t34
-    mu_nu = ops.select(slim, 1.0 / mu * t35, m_m)
-    in_line = mu_nu <= t13 * (t12 * mu)
-    over_a = 1.0 / length_a
-    t36 = whole * t27
-    s_w = ops.sign(-(t24 * a_x))
-    t37 = whole * (t24 - a_x * s_w)
+    m_m = ops.select(slim, over * t35, product_2)
+    in_line = m_m <= t12 * (t11 * mu)
+    t36 = whole * t25
+    s_w = ops.sign(-(t23 * a_x))
+    t37 = whole * (t23 - a_x * s_w)
     t38 = 2.0 * (t36 * t36) + t37 * t37
-    over_n = over_a * ops.sqrt(ops.select(in_line, t38, mu_nu))
-    j = ops.select(in_line, 0.0, over_n)
-    t39 = ops.select(same, r_2 * r_2, t12)
-    t40 = a_x * t29 - t24 * t26 - t27 * t25
-    outer = ops.max(t20, 0.0)
-    inner = ops.max(t21, 0.0)
+    nu = over * ops.select(in_line, t38, m_m)
+    t39 = ops.select(same, r_2 * r_2, t11)
+    outer = ops.max(t19, 0.0)
+    inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t18, 0.0)
-    t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t42 = over_a * t40 + ops.select(all_same, 0.0, t41)
-    t43 = ops.sqrt(outer * inner * slack * (t16 + t19))
-    rho = ops.select(all_same, r_1, share * t43)
-    left = j * j - t39 + t42 * t42 + rho * rho
-    t44 = 2.0 * j * rho
-    t45 = left + t44
-    t46 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (-t23 <= t45)
-    t47 = t44 - left
-    unreachable = ops.opposite(t46 & (-t23 <= t47))
+    slack = ops.max(t17, 0.0)
+    t40 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t40)
+    beside_a = ops.sqrt(nu)
+    t41 = a_x * t28 - t23 * t26 - t24 * t25
+    t42 = beside_a * (1.0 / (length_a * beside_a)) * t41
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    left = nu - t39 + rho * rho + t44 * t44
+    t45 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    t46 = left + t45
+    t47 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t46)
+    t48 = t45 - left
+    unreachable = ops.opposite(t47 & (-t22 <= t48))
     failed = invalid | unreachable
-    t48 = ops.opposite(failed)
-    t49 = ops.opposite(in_line)
-    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t22)
-    t50 = flat | in_line
-    t51 = t48 & ops.opposite(t50)
-    t52 = t48 | (t51 & t49)
-    t53 = ops.select((t48 & t49 & slim) | (t52 & t49 & slim), mu, 1.0)
-    over = 1.0 / t53
-    m_again_x = ops.select(slim, over * (t24 * t34 - t27 * t33), m_x)
-    w_w = ops.select(in_line, t38, ops.select(slim, over * t35, m_m))
-    length_m = ops.sqrt(ops.select(t52, w_w, 1.0))
-    part = 1.0 / ops.select(t48, length_m, 1.0)
-    t54 = ops.opposite(all_same)
-    t55 = t48 & t54
-    length_a_2 = ops.sqrt(ops.select(t48 | (t55 & t54), mu, 1.0))
+    t49 = ops.opposite(failed)
+    t50 = ops.opposite(in_line)
+    t51 = ops.select(t49 | (t49 & t50 & slim), mu, 1.0)
+    over_2 = 1.0 / t51
+    m_x = ops.select(slim, over_2 * (t23 * t34 - t25 * t33), product_x)
+    t52 = ops.opposite(all_same)
+    t53 = t49 & t52
+    length_a_2 = ops.sqrt(ops.select(t49 | (t53 & t52), mu, 1.0))
+    flat = ops.max(t46, 0.0) + ops.max(t48, 0.0) <= ops.vanishing * (r * t21)
+    t54 = flat | in_line
+    t55 = t49 & ops.opposite(t54)
+    w_w = ops.select(in_line, t38, ops.select(slim, over_2 * t35, product_2))
+    nu_2 = over_2 * w_w
+    beside_a_2 = ops.sqrt(ops.select(t49 | (t55 & t50), nu_2, 1.0))
+    t56 = ops.select(t49, length_a_2 * beside_a_2, 1.0)
+    part = 1.0 / t56
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t56 = D_2 + r_1
-    outer_2 = ops.max(t56 - t16, 0.0)
-    t57 = D_2 - r_1
-    inner_2 = ops.max(t16 + t57, 0.0)
-    share_2 = 1.0 / ops.select(t55, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t16 - t57, 0.0)
-    t58 = ops.select(t55, outer_2 * inner_2 * slack_2 * (t16 + t56), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t58))
-    over_a_2 = 1.0 / ops.select(t48, length_a_2, 1.0)
-    j_2 = ops.select(in_line, 0.0, over_a_2 * length_m)
-    t59 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t59 * 0.5)
-    t60 = over_a_2 * t40 + along
-    left_2 = j_2 * j_2 - t39 + t60 * t60 + rho_2 * rho_2
-    t61 = 2.0 * j_2 * rho_2
-    upper = ops.max(left_2 + t61, 0.0)
-    lower = ops.max(t61 - left_2, 0.0)
-    half = rho_2 / ops.select(t51, upper + lower, 1.0)
-    t62 = ops.sqrt(ops.select(t51, upper * lower, 1.0))
-    h = part * ops.select(t50, rho_2, 2.0 * half * t62)
-    t63 = ops.select(in_line, -(t36 * s_w), m_again_x) * h
-    Y = ops.select(t50, 0.0, over_a_2 * part * half * (upper - lower))
-    X = over_a_2 * along
-    t64 = t32 * Y - (c1_x - t28 * X)
-    m_again_y = ops.select(slim, over * (a_x * t34 + t27 * t32), m_y)
-    t65 = ops.select(in_line, -t36, m_again_y) * h
-    t66 = t33 * Y - (c1_y - t24 * X)
-    t67 = ops.select(slim, over * (a_x * t33 + t24 * t32), t30)
-    t68 = ops.select(in_line, t37, -t67) * h
-    t69 = t34 * Y - (c1_z - t27 * X)
-    t70 = ops.status(invalid, unreachable, in_line)
+    t57 = D_2 + r_1
+    outer_2 = ops.max(t57 - t15, 0.0)
+    t58 = D_2 - r_1
+    inner_2 = ops.max(t15 + t58, 0.0)
+    share_2 = 1.0 / ops.select(t53, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t58, 0.0)
+    t59 = ops.select(t53, outer_2 * inner_2 * slack_2 * (t15 + t57), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t59))
+    over_a = beside_a_2 * part
+    t60 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t60 * 0.5)
+    t61 = over_a * t41 + along
+    left_2 = nu_2 - t39 + rho_2 * rho_2 + t61 * t61
+    t62 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
+    upper = ops.max(left_2 + t62, 0.0)
+    lower = ops.max(t62 - left_2, 0.0)
+    half = rho_2 / ops.select(t55, upper + lower, 1.0)
+    t63 = ops.sqrt(ops.select(t55, upper * lower, 1.0))
+    h = part * ops.select(t54, rho_2, 2.0 * half * t63)
+    t64 = ops.select(in_line, -(t36 * s_w), m_x) * h
+    Y = ops.select(t54, 0.0, part * over_a * half * (upper - lower))
+    X = over_a * along
+    t65 = t32 * Y - (c1_x - t27 * X)
+    m_y = ops.select(slim, over_2 * (a_x * t34 + t25 * t32), product_y)
+    t66 = ops.select(in_line, -t36, m_y) * h
+    t67 = t33 * Y - (c1_y - t23 * X)
+    t68 = ops.select(slim, over_2 * (a_x * t33 + t23 * t32), t30)
+    t69 = ops.select(in_line, t37, -t68) * h
+    t70 = t34 * Y - (c1_z - t25 * X)
+    t71 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t63 - t64),
-        ops.select(failed, ops.nan, t65 - t66),
-        ops.select(failed, ops.nan, t68 - t69),
-        ops.select(failed, ops.nan, -(t64 + t63)),
-        ops.select(failed, ops.nan, -(t66 + t65)),
-        ops.select(failed, ops.nan, -(t69 + t68)),
-        t70,
-        t70,
+        ops.select(failed, ops.nan, t64 - t65),
+        ops.select(failed, ops.nan, t66 - t67),
+        ops.select(failed, ops.nan, t69 - t70),
+        ops.select(failed, ops.nan, -(t65 + t64)),
+        ops.select(failed, ops.nan, -(t67 + t66)),
+        ops.select(failed, ops.nan, -(t70 + t69)),
+        t71,
+        t71,
     )
 
 
@@ -321,10 +322,10 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c_alpha1 = ops.cos(alpha1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
-    s2 = ops.sin(theta2)
-    c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
+    s2 = ops.sin(theta2)
+    c2 = ops.cos(theta2)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
     s_beta2_half = ops.sin(beta2 * 0.5)
@@ -335,183 +336,182 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
     t4 = -(ops.feasibility * (r * 0.3125))
     c1_x = r * c_alpha1
-    t5 = r * ops.abs(s_alpha2)
+    t5 = ops.abs(s_alpha2)
     t6 = c2 * t5
-    t7 = r * c_alpha2
-    t8 = c_gamma * t7
-    t9 = s_gamma * t6 - t8
-    t10 = c1_x + t9
-    t11 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t11
-    t12 = s_gamma * t7
-    c2_y = t12 + c_gamma * t6
-    t13 = c1_y - c2_y
-    c1_z = s1 * t11
-    c2_z = s2 * t5
-    t14 = c1_z - c2_z
-    u_u = t10 * t10 + t13 * t13 + t14 * t14
-    t15 = r * r
-    t16 = ops.vanishing * ops.vanishing
-    t17 = t15 * t16
-    same = u_u <= t17
-    t18 = r * 2.0
-    r_2 = ops.abs(s_beta2_half) * t18
-    t19 = ops.select(same, r, r_2)
-    r_1 = ops.abs(s_beta1_half) * t18
+    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t6)
+    t8 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t8
+    t9 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t6)
+    c2_z = r * s2 * t5
+    c1_z = s1 * t8
+    t10 = c2_z - c1_z
+    u_u = t7 * t7 + t9 * t9 + t10 * t10
+    t11 = r * r
+    t12 = ops.vanishing * ops.vanishing
+    t13 = t11 * t12
+    same = u_u <= t13
+    t14 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t14
+    t15 = ops.select(same, r, r_2)
+    r_1 = ops.abs(s_beta1_half) * t14
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t17
+    all_same = u_u + v_v <= t13
     whole = ops.select((r == 0.0), 1.0, r)
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
-    t20 = r_1 - D
-    t21 = t19 + t20
-    t22 = r_1 + D
-    t23 = t22 - t19
-    t24 = t19 - t20
-    t25 = ops.select(same, r_2, r)
-    t26 = 0.625 * (r * (r * 2.2737367544323206e-13 + t25))
-    t27 = -(ops.feasibility * t26)
-    t28 = ops.select(same, c1_y, t13)
-    t29 = ops.select(same, t14, c1_z)
-    t30 = ops.select(same, c1_z, t14)
-    t31 = ops.select(same, t13, c1_y)
-    m_x = t28 * t29 - t30 * t31
-    t32 = ops.select(same, c1_x, t10)
-    a_x = ops.select(all_same, whole, -t32)
-    t33 = ops.select(same, t10, c1_x)
-    m_y = t29 * a_x + t30 * t33
-    t34 = t31 * a_x + t28 * t33
-    m_m = m_x * m_x + m_y * m_y + t34 * t34
-    t35 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t35 * 0.000244140625 <= ops.vanishing * t35
-    t36 = t28 * t34 + t30 * m_y
-    t37 = a_x * t34 - t30 * m_x
-    t38 = a_x * m_y + t28 * m_x
-    t39 = t36 * t36 + t37 * t37 + t38 * t38
-    mu_nu = ops.select(slim, 1.0 / mu * t39, m_m)
-    in_line = mu_nu <= t16 * (t15 * mu)
-    t40 = whole * t30
-    s_w = ops.sign(-(t28 * a_x))
-    t41 = whole * (t28 - a_x * s_w)
-    t42 = 2.0 * (t40 * t40) + t41 * t41
-    over_a = 1.0 / length_a
-    over_n = ops.sqrt(ops.select(in_line, t42, mu_nu)) * over_a
-    j = ops.select(in_line, 0.0, over_n)
-    t43 = ops.select(same, r_2 * r_2, t15)
-    t44 = a_x * t33 - t28 * t31 - t29 * t30
-    outer = ops.max(t23, 0.0)
-    inner = ops.max(t24, 0.0)
+    t16 = r_1 - D
+    t17 = t15 + t16
+    t18 = r_1 + D
+    t19 = t18 - t15
+    t20 = t15 - t16
+    t21 = ops.select(same, r_2, r)
+    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
+    t23 = -(ops.feasibility * t22)
+    t24 = ops.select(same, c1_y, t9)
+    t25 = ops.select(same, -t10, c1_z)
+    t26 = ops.select(same, c1_z, -t10)
+    t27 = ops.select(same, t9, c1_y)
+    product_x = t24 * t25 - t26 * t27
+    t28 = ops.select(same, c1_x, t7)
+    a_x = ops.select(all_same, whole, -t28)
+    t29 = ops.select(same, t7, c1_x)
+    product_y = t25 * a_x + t26 * t29
+    t30 = product_x * product_x + product_y * product_y
+    t31 = t27 * a_x + t24 * t29
+    product_2 = t30 + t31 * t31
+    t32 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t32 * 0.000244140625 <= ops.vanishing * t32
+    t33 = t24 * t31 + t26 * product_y
+    t34 = a_x * t31 - t26 * product_x
+    t35 = a_x * product_y + t24 * product_x
+    t36 = t33 * t33 + t34 * t34 + t35 * t35
+    m_m = ops.select(slim, 1.0 / mu * t36, product_2)
+    in_line = m_m <= t12 * (t11 * mu)
+    t37 = whole * t26
+    s_w = ops.sign(-(t24 * a_x))
+    t38 = whole * (t24 - a_x * s_w)
+    t39 = 2.0 * (t37 * t37) + t38 * t38
+    nu = ops.select(in_line, t39, m_m) / mu
+    t40 = ops.select(same, r_2 * r_2, t11)
+    beside_a = ops.sqrt(nu)
+    t41 = a_x * t29 - t24 * t27 - t25 * t26
+    t42 = beside_a * (1.0 / (length_a * beside_a)) * t41
+    outer = ops.max(t19, 0.0)
+    inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t21, 0.0)
-    t45 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t46 = over_a * t44 + ops.select(all_same, 0.0, t45)
-    t47 = ops.sqrt(outer * inner * slack * (t19 + t22))
-    rho = ops.select(all_same, r_1, share * t47)
-    left = j * j - t43 + t46 * t46 + rho * rho
-    t48 = 2.0 * j * rho
-    t49 = left + t48
-    t50 = (t4 <= t21) & (t4 <= t23) & (t4 <= t24) & (t27 <= t49)
-    t51 = t48 - left
-    failed = invalid | ops.opposite(t50 & (t27 <= t51))
-    t52 = ops.select(failed, ops.nan, 0.0)
-    t53 = ops.select(failed, ops.nan, c1_x)
-    t54 = ops.select(failed, ops.nan, c1_y)
-    t55 = ops.select(failed, ops.nan, c1_z)
-    t56 = ops.select(failed, ops.nan, t8)
-    t57 = ops.select(failed, ops.nan, t12)
-    t58 = ops.select(failed, ops.nan, -t9)
-    t59 = ops.select(failed, ops.nan, c2_y)
-    t60 = ops.select(failed, ops.nan, c2_z)
-    t61 = ops.opposite(failed)
-    t62 = ops.opposite(all_same)
-    t63 = t61 & t62
-    length_a_2 = ops.sqrt(ops.select(t61 | (t63 & t62), mu, 1.0))
-    over_a_2 = 1.0 / ops.select(t61, length_a_2, 1.0)
+    slack = ops.max(t17, 0.0)
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t40 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (t23 <= t49))
+    t50 = ops.select(failed, ops.nan, 0.0)
+    t51 = ops.select(failed, ops.nan, c1_x)
+    t52 = ops.select(failed, ops.nan, c1_y)
+    t53 = ops.select(failed, ops.nan, c1_z)
+    t54 = r * c_gamma
+    t55 = c_alpha2 * t54
+    t56 = ops.select(failed, ops.nan, t55)
+    t57 = r * s_gamma
+    t58 = c_alpha2 * t57
+    t59 = ops.select(failed, ops.nan, t58)
+    t60 = ops.select(failed, ops.nan, t55 - t6 * t57)
+    t61 = ops.select(failed, ops.nan, t58 + t6 * t54)
+    t62 = ops.select(failed, ops.nan, c2_z)
+    t63 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t64 = flat | in_line
+    t65 = t63 & ops.opposite(t64)
+    t66 = ops.opposite(in_line)
+    over = 1.0 / ops.select(t63 & t66 & slim, mu, 1.0)
+    w_w = ops.select(in_line, t39, ops.select(slim, over * t36, product_2))
+    nu_2 = w_w / ops.select(t63, mu, 1.0)
+    beside_a_2 = ops.sqrt(ops.select(t63 | (t65 & t66), nu_2, 1.0))
+    t67 = ops.opposite(all_same)
+    t68 = t63 & t67
+    length_a_2 = ops.sqrt(ops.select(t63 | (t68 & t67), mu, 1.0))
+    t69 = ops.select(t63, length_a_2 * beside_a_2, 1.0)
+    part = 1.0 / t69
+    over_a = beside_a_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t64 = r_1 + D_2
-    outer_2 = ops.max(t64 - t19, 0.0)
-    t65 = r_1 - D_2
-    inner_2 = ops.max(t19 - t65, 0.0)
-    share_2 = 1.0 / ops.select(t63, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t19 + t65, 0.0)
-    t66 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t66 * 0.5)
-    X = over_a_2 * along
-    flat = ops.max(t49, 0.0) + ops.max(t51, 0.0) <= ops.vanishing * (r * t25)
-    t67 = flat | in_line
-    t68 = t61 & ops.opposite(t67)
-    t69 = ops.opposite(in_line)
-    t70 = t61 | (t68 & t69)
-    t71 = ops.select((t61 & t69 & slim) | (t70 & t69 & slim), mu, 1.0)
-    over = 1.0 / t71
-    w_w = ops.select(in_line, t42, ops.select(slim, over * t39, m_m))
-    length_m = ops.sqrt(ops.select(t70, w_w, 1.0))
-    part = 1.0 / ops.select(t61, length_m, 1.0)
-    t72 = ops.select(t63, outer_2 * inner_2 * slack_2 * (t19 + t64), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t72))
-    j_2 = ops.select(in_line, 0.0, length_m * over_a_2)
-    t73 = over_a_2 * t44 + along
-    left_2 = j_2 * j_2 - t43 + t73 * t73 + rho_2 * rho_2
-    t74 = 2.0 * j_2 * rho_2
-    upper = ops.max(left_2 + t74, 0.0)
-    lower = ops.max(t74 - left_2, 0.0)
-    half = rho_2 / ops.select(t68, upper + lower, 1.0)
-    Y = ops.select(t67, 0.0, over_a_2 * part * half * (upper - lower))
-    t75 = t32 * X + t36 * Y
-    m_again_x = ops.select(slim, over * (t28 * t38 - t30 * t37), m_x)
-    t76 = ops.sqrt(ops.select(t68, upper * lower, 1.0))
-    h = part * ops.select(t67, rho_2, 2.0 * half * t76)
-    t77 = ops.select(in_line, -(t40 * s_w), m_again_x) * h
-    t78 = ops.select(failed, ops.nan, c1_x - (t75 - t77))
-    t79 = t28 * X + t37 * Y
-    m_again_y = ops.select(slim, over * (a_x * t38 + t30 * t36), m_y)
-    t80 = ops.select(in_line, -t40, m_again_y) * h
-    t81 = ops.select(failed, ops.nan, c1_y - (t79 - t80))
-    t82 = t30 * X + t38 * Y
-    t83 = ops.select(slim, over * (a_x * t37 + t28 * t36), t34)
-    t84 = ops.select(in_line, t41, -t83) * h
-    t85 = ops.select(failed, ops.nan, c1_z - (t82 - t84))
-    t86 = ops.select(failed, ops.nan, c1_x - (t75 + t77))
-    t87 = ops.select(failed, ops.nan, c1_y - (t79 + t80))
-    t88 = ops.select(failed, ops.nan, c1_z - (t82 + t84))
+    t70 = r_1 + D_2
+    outer_2 = ops.max(t70 - t15, 0.0)
+    t71 = r_1 - D_2
+    inner_2 = ops.max(t15 - t71, 0.0)
+    share_2 = 1.0 / ops.select(t68, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 + t71, 0.0)
+    t72 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t72 * 0.5)
+    X = over_a * along
+    t73 = ops.select(t68, outer_2 * inner_2 * slack_2 * (t15 + t70), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t73))
+    t74 = over_a * t41 + along
+    left_2 = nu_2 - t40 + t74 * t74 + rho_2 * rho_2
+    t75 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
+    upper = ops.max(left_2 + t75, 0.0)
+    lower = ops.max(t75 - left_2, 0.0)
+    half = rho_2 / ops.select(t65, upper + lower, 1.0)
+    Y = ops.select(t64, 0.0, part * over_a * half * (upper - lower))
+    t76 = t28 * X + t33 * Y
+    m_x = ops.select(slim, over * (t24 * t35 - t26 * t34), product_x)
+    t77 = ops.sqrt(ops.select(t65, upper * lower, 1.0))
+    h = part * ops.select(t64, rho_2, 2.0 * half * t77)
+    t78 = ops.select(in_line, -(t37 * s_w), m_x) * h
+    t79 = ops.select(failed, ops.nan, c1_x - (t76 - t78))
+    t80 = t24 * X + t34 * Y
+    m_y = ops.select(slim, over * (a_x * t35 + t26 * t33), product_y)
+    t81 = ops.select(in_line, -t37, m_y) * h
+    t82 = ops.select(failed, ops.nan, c1_y - (t80 - t81))
+    t83 = t26 * X + t35 * Y
+    t84 = ops.select(slim, over * (a_x * t34 + t24 * t33), t31)
+    t85 = ops.select(in_line, t38, -t84) * h
+    t86 = ops.select(failed, ops.nan, c1_z - (t83 - t85))
+    t87 = ops.select(failed, ops.nan, c1_x - (t76 + t78))
+    t88 = ops.select(failed, ops.nan, c1_y - (t80 + t81))
+    t89 = ops.select(failed, ops.nan, c1_z - (t83 + t85))
     return (
-        t52,
-        t52,
+        t50,
+        t50,
+        t50,
+        t51,
+        t50,
+        t50,
+        t51,
         t52,
         t53,
-        t52,
-        t52,
-        t53,
-        t54,
-        t55,
         t56,
-        t57,
-        t52,
-        t58,
         t59,
+        t50,
         t60,
-        t78,
-        t81,
-        t85,
-        t52,
-        t52,
-        t52,
-        t53,
-        t52,
-        t52,
-        t53,
-        t54,
-        t55,
-        t56,
-        t57,
-        t52,
-        t58,
-        t59,
-        t60,
+        t61,
+        t62,
+        t79,
+        t82,
         t86,
+        t50,
+        t50,
+        t50,
+        t51,
+        t50,
+        t50,
+        t51,
+        t52,
+        t53,
+        t56,
+        t59,
+        t50,
+        t60,
+        t61,
+        t62,
         t87,
         t88,
+        t89,
     )
 
 
@@ -563,10 +563,10 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     c_alpha1 = ops.cos(alpha1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
-    s2 = ops.sin(theta2)
-    c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
+    s2 = ops.sin(theta2)
+    c2 = ops.cos(theta2)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
     s_beta1_half = ops.sin(beta1 * 0.5)
@@ -577,127 +577,126 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
     t4 = -(ops.feasibility * (r * 0.3125))
     c1_x = r * c_alpha1
-    t5 = r * ops.abs(s_alpha2)
+    t5 = ops.abs(s_alpha2)
     t6 = c2 * t5
-    t7 = r * c_alpha2
-    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
-    t9 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t9
-    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
-    c1_z = s1 * t9
-    t11 = c1_z - s2 * t5
-    u_u = t8 * t8 + t10 * t10 + t11 * t11
-    t12 = r * r
-    t13 = ops.vanishing * ops.vanishing
-    t14 = t12 * t13
-    same = u_u <= t14
-    t15 = r * 2.0
-    r_2 = ops.abs(s_beta2_half) * t15
-    t16 = ops.select(same, r, r_2)
+    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t6)
+    t8 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t8
+    t9 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t6)
+    c1_z = s1 * t8
+    t10 = r * s2 * t5 - c1_z
+    u_u = t7 * t7 + t9 * t9 + t10 * t10
+    t11 = r * r
+    t12 = ops.vanishing * ops.vanishing
+    t13 = t11 * t12
+    same = u_u <= t13
+    t14 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t14
+    t15 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t14
+    all_same = u_u + v_v <= t13
     whole = ops.select((r == 0.0), 1.0, r)
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
-    r_1 = ops.abs(s_beta1_half) * t15
-    t17 = D - r_1
-    t18 = t16 - t17
-    t19 = D + r_1
-    t20 = t19 - t16
-    t21 = t16 + t17
-    t22 = ops.select(same, r_2, r)
-    t23 = 0.625 * (r * (r * 2.2737367544323206e-13 + t22))
-    t24 = -(ops.feasibility * t23)
-    t25 = ops.select(same, c1_y, t10)
-    t26 = ops.select(same, t11, c1_z)
-    t27 = ops.select(same, t10, c1_y)
-    t28 = ops.select(same, c1_z, t11)
-    m_x = t25 * t26 - t27 * t28
-    t29 = ops.select(same, c1_x, t8)
-    a_x = ops.select(all_same, whole, -t29)
-    t30 = ops.select(same, t8, c1_x)
-    m_y = a_x * t26 + t30 * t28
-    t31 = a_x * t27 + t25 * t30
-    m_m = m_x * m_x + m_y * m_y + t31 * t31
+    r_1 = ops.abs(s_beta1_half) * t14
+    t16 = D - r_1
+    t17 = t15 - t16
+    t18 = D + r_1
+    t19 = t18 - t15
+    t20 = t15 + t16
+    t21 = ops.select(same, r_2, r)
+    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
+    t23 = -(ops.feasibility * t22)
+    t24 = ops.select(same, c1_y, t9)
+    t25 = ops.select(same, -t10, c1_z)
+    t26 = ops.select(same, c1_z, -t10)
+    t27 = ops.select(same, t9, c1_y)
+    product_x = t24 * t25 - t26 * t27
+    t28 = ops.select(same, c1_x, t7)
+    a_x = ops.select(all_same, whole, -t28)
+    t29 = ops.select(same, t7, c1_x)
+    product_y = t25 * a_x + t26 * t29
+    t30 = product_x * product_x + product_y * product_y
+    t31 = t27 * a_x + t24 * t29
+    product_2 = t30 + t31 * t31
     t32 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t32 * 0.000244140625 <= ops.vanishing * t32
-    t33 = t25 * t31 + t28 * m_y
-    t34 = a_x * t31 - t28 * m_x
-    t35 = a_x * m_y + t25 * m_x
+    slim = product_2 - t32 * 0.000244140625 <= ops.vanishing * t32
+    t33 = t24 * t31 + t26 * product_y
+    t34 = a_x * t31 - t26 * product_x
+    t35 = a_x * product_y + t24 * product_x
     t36 = t33 * t33 + t34 * t34 + t35 * t35
-    mu_nu = ops.select(slim, 1.0 / mu * t36, m_m)
-    in_line = mu_nu <= t13 * (t12 * mu)
-    over_a = 1.0 / length_a
-    t37 = whole * t28
-    s_w = ops.sign(-(t25 * a_x))
-    t38 = whole * (t25 - a_x * s_w)
+    m_m = ops.select(slim, 1.0 / mu * t36, product_2)
+    in_line = m_m <= t12 * (t11 * mu)
+    t37 = whole * t26
+    s_w = ops.sign(-(t24 * a_x))
+    t38 = whole * (t24 - a_x * s_w)
     t39 = 2.0 * (t37 * t37) + t38 * t38
-    over_n = over_a * ops.sqrt(ops.select(in_line, t39, mu_nu))
-    j = ops.select(in_line, 0.0, over_n)
-    t40 = ops.select(same, r_2 * r_2, t12)
-    t41 = a_x * t30 - t25 * t27 - t28 * t26
-    outer = ops.max(t20, 0.0)
-    inner = ops.max(t21, 0.0)
+    nu = ops.select(in_line, t39, m_m) / mu
+    t40 = ops.select(same, r_2 * r_2, t11)
+    beside_a = ops.sqrt(nu)
+    t41 = a_x * t29 - t24 * t27 - t25 * t26
+    t42 = beside_a * (1.0 / (length_a * beside_a)) * t41
+    outer = ops.max(t19, 0.0)
+    inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t18, 0.0)
-    t42 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t43 = over_a * t41 + ops.select(all_same, 0.0, t42)
-    t44 = ops.sqrt(outer * inner * slack * (t16 + t19))
-    rho = ops.select(all_same, r_1, share * t44)
-    left = j * j - t40 + t43 * t43 + rho * rho
-    t45 = 2.0 * j * rho
-    t46 = left + t45
-    t47 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t46)
-    t48 = t45 - left
-    failed = invalid | ops.opposite(t47 & (t24 <= t48))
-    t49 = ops.opposite(failed)
-    t50 = ops.opposite(all_same)
-    t51 = t49 & t50
-    length_a_2 = ops.sqrt(ops.select(t49 | (t51 & t50), mu, 1.0))
-    over_a_2 = 1.0 / ops.select(t49, length_a_2, 1.0)
+    slack = ops.max(t17, 0.0)
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t40 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (t23 <= t49))
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = ops.opposite(in_line)
+    over = 1.0 / ops.select(t50 & t53 & slim, mu, 1.0)
+    w_w = ops.select(in_line, t39, ops.select(slim, over * t36, product_2))
+    nu_2 = w_w / ops.select(t50, mu, 1.0)
+    beside_a_2 = ops.sqrt(ops.select(t50 | (t52 & t53), nu_2, 1.0))
+    t54 = ops.opposite(all_same)
+    t55 = t50 & t54
+    length_a_2 = ops.sqrt(ops.select(t50 | (t55 & t54), mu, 1.0))
+    t56 = ops.select(t50, length_a_2 * beside_a_2, 1.0)
+    part = 1.0 / t56
+    over_a = beside_a_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t52 = D_2 + r_1
-    outer_2 = ops.max(t52 - t16, 0.0)
-    t53 = D_2 - r_1
-    inner_2 = ops.max(t16 + t53, 0.0)
-    share_2 = 1.0 / ops.select(t51, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t16 - t53, 0.0)
-    t54 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t54 * 0.5)
-    X = over_a_2 * along
-    flat = ops.max(t46, 0.0) + ops.max(t48, 0.0) <= ops.vanishing * (r * t22)
-    t55 = flat | in_line
-    t56 = t49 & ops.opposite(t55)
-    t57 = ops.opposite(in_line)
-    t58 = t49 | (t56 & t57)
-    t59 = ops.select((t49 & t57 & slim) | (t58 & t57 & slim), mu, 1.0)
-    over = 1.0 / t59
-    w_w = ops.select(in_line, t39, ops.select(slim, over * t36, m_m))
-    length_m = ops.sqrt(ops.select(t58, w_w, 1.0))
-    part = 1.0 / ops.select(t49, length_m, 1.0)
-    t60 = ops.select(t51, outer_2 * inner_2 * slack_2 * (t16 + t52), 1.0)
+    t57 = D_2 + r_1
+    outer_2 = ops.max(t57 - t15, 0.0)
+    t58 = D_2 - r_1
+    inner_2 = ops.max(t15 + t58, 0.0)
+    share_2 = 1.0 / ops.select(t55, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t58, 0.0)
+    t59 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t59 * 0.5)
+    X = over_a * along
+    t60 = ops.select(t55, outer_2 * inner_2 * slack_2 * (t15 + t57), 1.0)
     rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t60))
-    j_2 = ops.select(in_line, 0.0, over_a_2 * length_m)
-    t61 = over_a_2 * t41 + along
-    left_2 = j_2 * j_2 - t40 + t61 * t61 + rho_2 * rho_2
-    t62 = 2.0 * j_2 * rho_2
+    t61 = over_a * t41 + along
+    left_2 = nu_2 - t40 + t61 * t61 + rho_2 * rho_2
+    t62 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
     upper = ops.max(left_2 + t62, 0.0)
     lower = ops.max(t62 - left_2, 0.0)
-    half = rho_2 / ops.select(t56, upper + lower, 1.0)
-    Y = ops.select(t55, 0.0, over_a_2 * part * half * (upper - lower))
-    t63 = t29 * X + t33 * Y
-    m_again_x = ops.select(slim, over * (t25 * t35 - t28 * t34), m_x)
-    t64 = ops.sqrt(ops.select(t56, upper * lower, 1.0))
-    h = part * ops.select(t55, rho_2, 2.0 * half * t64)
-    t65 = ops.select(in_line, -(t37 * s_w), m_again_x) * h
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    Y = ops.select(t51, 0.0, part * over_a * half * (upper - lower))
+    t63 = t28 * X + t33 * Y
+    m_x = ops.select(slim, over * (t24 * t35 - t26 * t34), product_x)
+    t64 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t64)
+    t65 = ops.select(in_line, -(t37 * s_w), m_x) * h
     t66 = t63 - t65
-    t67 = t25 * X + t34 * Y
-    m_again_y = ops.select(slim, over * (a_x * t35 + t28 * t33), m_y)
-    t68 = ops.select(in_line, -t37, m_again_y) * h
+    t67 = t24 * X + t34 * Y
+    m_y = ops.select(slim, over * (a_x * t35 + t26 * t33), product_y)
+    t68 = ops.select(in_line, -t37, m_y) * h
     t69 = t67 - t68
-    t70 = t28 * X + t35 * Y
-    t71 = ops.select(slim, over * (a_x * t34 + t25 * t33), t31)
+    t70 = t26 * X + t35 * Y
+    t71 = ops.select(slim, over * (a_x * t34 + t24 * t33), t31)
     t72 = ops.select(in_line, t38, -t71) * h
     t73 = t70 - t72
     t74 = t63 + t65
@@ -710,18 +709,18 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
         ops.select(failed, ops.nan, -t66),
         ops.select(failed, ops.nan, -t69),
         ops.select(failed, ops.nan, -t73),
-        ops.select(failed, ops.nan, t8 - t66),
-        ops.select(failed, ops.nan, t10 - t69),
-        ops.select(failed, ops.nan, t11 - t73),
+        ops.select(failed, ops.nan, t7 - t66),
+        ops.select(failed, ops.nan, t9 - t69),
+        ops.select(failed, ops.nan, -(t10 + t73)),
         ops.select(failed, ops.nan, c1_x - t74),
         ops.select(failed, ops.nan, c1_y - t75),
         ops.select(failed, ops.nan, c1_z - t76),
         ops.select(failed, ops.nan, -t74),
         ops.select(failed, ops.nan, -t75),
         ops.select(failed, ops.nan, -t76),
-        ops.select(failed, ops.nan, t8 - t74),
-        ops.select(failed, ops.nan, t10 - t75),
-        ops.select(failed, ops.nan, t11 - t76),
+        ops.select(failed, ops.nan, t7 - t74),
+        ops.select(failed, ops.nan, t9 - t75),
+        ops.select(failed, ops.nan, -(t10 + t76)),
     )
 
 
@@ -774,10 +773,10 @@ def _jacobian_serial(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     c_alpha1 = ops.cos(alpha1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
-    s2 = ops.sin(theta2)
-    c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
+    s2 = ops.sin(theta2)
+    c2 = ops.cos(theta2)
     s_beta1_half = ops.sin(beta1 * 0.5)
     s_beta2_half = ops.sin(beta2 * 0.5)
     t1 = ops.finite(r, gamma, alpha1, alpha2, beta1, beta2)
@@ -786,17 +785,17 @@ def _jacobian_serial(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
     t4 = -(ops.feasibility * (r * 0.3125))
     c1_x = r * c_alpha1
-    t5 = r * ops.abs(s_alpha2)
+    t5 = ops.abs(s_alpha2)
     t6 = c2 * t5
-    t7 = r * c_alpha2
-    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
-    t9 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t9
-    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
-    c2_z = s2 * t5
-    c1_z = s1 * t9
+    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t6)
+    t8 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t8
+    t9 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t6)
+    t10 = r * t5
+    c2_z = s2 * t10
+    c1_z = s1 * t8
     t11 = c2_z - c1_z
-    u_u = t8 * t8 + t10 * t10 + t11 * t11
+    u_u = t7 * t7 + t9 * t9 + t11 * t11
     t12 = r * r
     t13 = ops.vanishing * ops.vanishing
     t14 = t12 * t13
@@ -819,108 +818,109 @@ def _jacobian_serial(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     t22 = ops.select(same, r_2, r)
     t23 = 0.625 * (r * (r * 2.2737367544323206e-13 + t22))
     t24 = -(ops.feasibility * t23)
-    t25 = ops.select(same, c1_y, t10)
+    t25 = ops.select(same, c1_y, t9)
     t26 = ops.select(same, -t11, c1_z)
-    t27 = ops.select(same, t10, c1_y)
-    t28 = ops.select(same, c1_z, -t11)
-    m_x = t25 * t26 - t27 * t28
-    t29 = ops.select(same, c1_x, t8)
+    t27 = ops.select(same, c1_z, -t11)
+    t28 = ops.select(same, t9, c1_y)
+    product_x = t25 * t26 - t27 * t28
+    t29 = ops.select(same, c1_x, t7)
     a_x = ops.select(all_same, whole, -t29)
-    t30 = ops.select(same, t8, c1_x)
-    m_y = a_x * t26 + t30 * t28
-    t31 = a_x * t27 + t25 * t30
-    m_m = m_x * m_x + m_y * m_y + t31 * t31
-    t32 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t32 * 0.000244140625 <= ops.vanishing * t32
-    t33 = t25 * t31 + t28 * m_y
-    t34 = a_x * t31 - t28 * m_x
-    t35 = a_x * m_y + t25 * m_x
-    t36 = t33 * t33 + t34 * t34 + t35 * t35
-    mu_nu = ops.select(slim, 1.0 / mu * t36, m_m)
-    in_line = mu_nu <= t13 * (t12 * mu)
-    over_a = 1.0 / length_a
-    t37 = whole * t28
+    t30 = ops.select(same, t7, c1_x)
+    product_y = t26 * a_x + t27 * t30
+    t31 = product_x * product_x + product_y * product_y
+    t32 = t28 * a_x + t25 * t30
+    product_2 = t31 + t32 * t32
+    t33 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t33 * 0.000244140625 <= ops.vanishing * t33
+    t34 = t25 * t32 + t27 * product_y
+    t35 = a_x * t32 - t27 * product_x
+    t36 = a_x * product_y + t25 * product_x
+    t37 = t34 * t34 + t35 * t35 + t36 * t36
+    m_m = ops.select(slim, 1.0 / mu * t37, product_2)
+    in_line = m_m <= t13 * (t12 * mu)
+    t38 = whole * t27
     s_w = ops.sign(-(t25 * a_x))
-    t38 = whole * (t25 - a_x * s_w)
-    t39 = 2.0 * (t37 * t37) + t38 * t38
-    over_n = over_a * ops.sqrt(ops.select(in_line, t39, mu_nu))
-    j = ops.select(in_line, 0.0, over_n)
-    t40 = ops.select(same, r_2 * r_2, t12)
-    t41 = a_x * t30 - t25 * t27 - t28 * t26
+    t39 = whole * (t25 - a_x * s_w)
+    t40 = 2.0 * (t38 * t38) + t39 * t39
+    nu = ops.select(in_line, t40, m_m) / mu
+    t41 = ops.select(same, r_2 * r_2, t12)
+    beside_a = ops.sqrt(nu)
+    t42 = a_x * t30 - t25 * t28 - t26 * t27
+    t43 = beside_a * (1.0 / (length_a * beside_a)) * t42
     outer = ops.max(t20, 0.0)
     inner = ops.max(t21, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t18, 0.0)
-    t42 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t43 = over_a * t41 + ops.select(all_same, 0.0, t42)
-    t44 = ops.sqrt(outer * inner * slack * (t16 + t19))
-    rho = ops.select(all_same, r_1, share * t44)
-    left = j * j - t40 + t43 * t43 + rho * rho
-    t45 = 2.0 * j * rho
-    t46 = left + t45
-    t47 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t46)
-    t48 = t45 - left
-    failed = invalid | ops.opposite(t47 & (t24 <= t48))
-    t49 = ops.opposite(failed)
-    t50 = ops.opposite(all_same)
-    t51 = t49 & t50
-    length_a_2 = ops.sqrt(ops.select(t49 | (t51 & t50), mu, 1.0))
-    over_a_2 = 1.0 / ops.select(t49, length_a_2, 1.0)
+    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t45 = t43 + ops.select(all_same, 0.0, t44)
+    t46 = ops.sqrt(outer * inner * slack * (t16 + t19))
+    rho = ops.select(all_same, r_1, share * t46)
+    left = nu - t41 + t45 * t45 + rho * rho
+    t47 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    t48 = left + t47
+    t49 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t48)
+    t50 = t47 - left
+    failed = invalid | ops.opposite(t49 & (t24 <= t50))
+    t51 = ops.opposite(failed)
+    flat = ops.max(t48, 0.0) + ops.max(t50, 0.0) <= ops.vanishing * (r * t22)
+    t52 = flat | in_line
+    t53 = t51 & ops.opposite(t52)
+    t54 = ops.opposite(in_line)
+    over = 1.0 / ops.select(t51 & t54 & slim, mu, 1.0)
+    w_w = ops.select(in_line, t40, ops.select(slim, over * t37, product_2))
+    nu_2 = w_w / ops.select(t51, mu, 1.0)
+    beside_a_2 = ops.sqrt(ops.select(t51 | (t53 & t54), nu_2, 1.0))
+    t55 = ops.opposite(all_same)
+    t56 = t51 & t55
+    length_a_2 = ops.sqrt(ops.select(t51 | (t56 & t55), mu, 1.0))
+    t57 = ops.select(t51, length_a_2 * beside_a_2, 1.0)
+    part = 1.0 / t57
+    over_a = beside_a_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t52 = D_2 + r_1
-    outer_2 = ops.max(t52 - t16, 0.0)
-    t53 = D_2 - r_1
-    inner_2 = ops.max(t16 + t53, 0.0)
-    share_2 = 1.0 / ops.select(t51, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t16 - t53, 0.0)
-    t54 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t54 * 0.5)
-    X = over_a_2 * along
-    flat = ops.max(t46, 0.0) + ops.max(t48, 0.0) <= ops.vanishing * (r * t22)
-    t55 = flat | in_line
-    t56 = t49 & ops.opposite(t55)
-    t57 = ops.opposite(in_line)
-    t58 = t49 | (t56 & t57)
-    t59 = ops.select((t49 & t57 & slim) | (t58 & t57 & slim), mu, 1.0)
-    over = 1.0 / t59
-    w_w = ops.select(in_line, t39, ops.select(slim, over * t36, m_m))
-    length_m = ops.sqrt(ops.select(t58, w_w, 1.0))
-    part = 1.0 / ops.select(t49, length_m, 1.0)
-    t60 = ops.select(t51, outer_2 * inner_2 * slack_2 * (t16 + t52), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t60))
-    j_2 = ops.select(in_line, 0.0, over_a_2 * length_m)
-    t61 = over_a_2 * t41 + along
-    left_2 = j_2 * j_2 - t40 + t61 * t61 + rho_2 * rho_2
-    t62 = 2.0 * j_2 * rho_2
-    upper = ops.max(left_2 + t62, 0.0)
-    lower = ops.max(t62 - left_2, 0.0)
-    half = rho_2 / ops.select(t56, upper + lower, 1.0)
-    Y = ops.select(t55, 0.0, over_a_2 * part * half * (upper - lower))
-    t63 = t25 * X + t34 * Y
-    m_again_y = ops.select(slim, over * (a_x * t35 + t28 * t33), m_y)
-    t64 = ops.sqrt(ops.select(t56, upper * lower, 1.0))
-    h = part * ops.select(t55, rho_2, 2.0 * half * t64)
-    t65 = ops.select(in_line, -t37, m_again_y) * h
-    t66 = t63 - t65
-    t67 = t28 * X + t35 * Y
-    t68 = ops.select(slim, over * (a_x * t34 + t25 * t33), t31)
-    t69 = ops.select(in_line, t38, -t68) * h
-    t70 = t67 - t69
-    t71 = ops.select(failed, ops.nan, c1_z * t66 - c1_y * t70)
-    t72 = s_gamma * c2_z
-    t73 = t29 * X + t33 * Y
-    m_again_x = ops.select(slim, over * (t25 * t35 - t28 * t34), m_x)
-    t74 = ops.select(in_line, -(t37 * s_w), m_again_x) * h
-    t75 = c_gamma * c2_z
-    B_22 = t72 * (t8 - (t73 - t74)) - t75 * (t10 - t66) - t6 * (t11 + t70)
-    t76 = t63 + t65
-    t77 = t67 + t69
-    t78 = ops.select(failed, ops.nan, c1_z * t76 - c1_y * t77)
-    B_22_below = t72 * (t8 - (t73 + t74)) - t75 * (t10 - t76) - t6 * (t11 + t77)
+    t58 = D_2 + r_1
+    outer_2 = ops.max(t58 - t16, 0.0)
+    t59 = D_2 - r_1
+    inner_2 = ops.max(t16 + t59, 0.0)
+    share_2 = 1.0 / ops.select(t56, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t16 - t59, 0.0)
+    t60 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t60 * 0.5)
+    X = over_a * along
+    t61 = ops.select(t56, outer_2 * inner_2 * slack_2 * (t16 + t58), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t61))
+    t62 = over_a * t42 + along
+    left_2 = nu_2 - t41 + t62 * t62 + rho_2 * rho_2
+    t63 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
+    upper = ops.max(left_2 + t63, 0.0)
+    lower = ops.max(t63 - left_2, 0.0)
+    half = rho_2 / ops.select(t53, upper + lower, 1.0)
+    Y = ops.select(t52, 0.0, part * over_a * half * (upper - lower))
+    t64 = t25 * X + t35 * Y
+    m_y = ops.select(slim, over * (a_x * t36 + t27 * t34), product_y)
+    t65 = ops.sqrt(ops.select(t53, upper * lower, 1.0))
+    h = part * ops.select(t52, rho_2, 2.0 * half * t65)
+    t66 = ops.select(in_line, -t38, m_y) * h
+    t67 = t64 - t66
+    t68 = t27 * X + t36 * Y
+    t69 = ops.select(slim, over * (a_x * t35 + t25 * t34), t32)
+    t70 = ops.select(in_line, t39, -t69) * h
+    t71 = t68 - t70
+    t72 = ops.select(failed, ops.nan, c1_z * t67 - c1_y * t71)
+    t73 = s_gamma * c2_z
+    t74 = t29 * X + t34 * Y
+    m_x = ops.select(slim, over * (t25 * t36 - t27 * t35), product_x)
+    t75 = ops.select(in_line, -(t38 * s_w), m_x) * h
+    t76 = c_gamma * c2_z
+    t77 = c2 * t10
+    B_22 = t73 * (t7 - (t74 - t75)) - t76 * (t9 - t67) - t77 * (t11 + t71)
+    t78 = t64 + t66
+    t79 = t68 + t70
+    t80 = ops.select(failed, ops.nan, c1_z * t78 - c1_y * t79)
+    B_22_below = t73 * (t7 - (t74 + t75)) - t76 * (t9 - t78) - t77 * (t11 + t79)
     return (
-        t71,
+        t72,
         ops.select(failed, ops.nan, B_22),
-        t78,
+        t80,
         ops.select(failed, ops.nan, B_22_below),
     )
 
@@ -974,10 +974,10 @@ def _jacobian(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c_alpha1 = ops.cos(alpha1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
-    s2 = ops.sin(theta2)
-    c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
+    s2 = ops.sin(theta2)
+    c2 = ops.cos(theta2)
     s_beta1_half = ops.sin(beta1 * 0.5)
     s_beta2_half = ops.sin(beta2 * 0.5)
     t1 = ops.finite(r, gamma, alpha1, alpha2, beta1, beta2)
@@ -986,17 +986,17 @@ def _jacobian(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
     t4 = -(ops.feasibility * (r * 0.3125))
     c1_x = r * c_alpha1
-    t5 = r * ops.abs(s_alpha2)
+    t5 = ops.abs(s_alpha2)
     t6 = c2 * t5
-    t7 = r * c_alpha2
-    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
-    t9 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t9
-    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
-    c2_z = s2 * t5
-    c1_z = s1 * t9
+    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t6)
+    t8 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t8
+    t9 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t6)
+    t10 = r * t5
+    c2_z = s2 * t10
+    c1_z = s1 * t8
     t11 = c2_z - c1_z
-    u_u = t8 * t8 + t10 * t10 + t11 * t11
+    u_u = t7 * t7 + t9 * t9 + t11 * t11
     t12 = r * r
     t13 = ops.vanishing * ops.vanishing
     t14 = t12 * t13
@@ -1019,145 +1019,146 @@ def _jacobian(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t22 = ops.select(same, r_2, r)
     t23 = 0.625 * (r * (r * 2.2737367544323206e-13 + t22))
     t24 = -(ops.feasibility * t23)
-    t25 = ops.select(same, c1_y, t10)
+    t25 = ops.select(same, c1_y, t9)
     t26 = ops.select(same, -t11, c1_z)
-    t27 = ops.select(same, t10, c1_y)
-    t28 = ops.select(same, c1_z, -t11)
-    m_x = t25 * t26 - t27 * t28
-    t29 = ops.select(same, c1_x, t8)
+    t27 = ops.select(same, c1_z, -t11)
+    t28 = ops.select(same, t9, c1_y)
+    product_x = t25 * t26 - t27 * t28
+    t29 = ops.select(same, c1_x, t7)
     a_x = ops.select(all_same, whole, -t29)
-    t30 = ops.select(same, t8, c1_x)
-    m_y = a_x * t26 + t30 * t28
-    t31 = a_x * t27 + t25 * t30
-    m_m = m_x * m_x + m_y * m_y + t31 * t31
-    t32 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t32 * 0.000244140625 <= ops.vanishing * t32
-    t33 = t25 * t31 + t28 * m_y
-    t34 = a_x * t31 - t28 * m_x
-    t35 = a_x * m_y + t25 * m_x
-    t36 = t33 * t33 + t34 * t34 + t35 * t35
-    mu_nu = ops.select(slim, 1.0 / mu * t36, m_m)
-    in_line = mu_nu <= t13 * (t12 * mu)
-    over_a = 1.0 / length_a
-    t37 = whole * t28
+    t30 = ops.select(same, t7, c1_x)
+    product_y = t26 * a_x + t27 * t30
+    t31 = product_x * product_x + product_y * product_y
+    t32 = t28 * a_x + t25 * t30
+    product_2 = t31 + t32 * t32
+    t33 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t33 * 0.000244140625 <= ops.vanishing * t33
+    t34 = t25 * t32 + t27 * product_y
+    t35 = a_x * t32 - t27 * product_x
+    t36 = a_x * product_y + t25 * product_x
+    t37 = t34 * t34 + t35 * t35 + t36 * t36
+    m_m = ops.select(slim, 1.0 / mu * t37, product_2)
+    in_line = m_m <= t13 * (t12 * mu)
+    t38 = whole * t27
     s_w = ops.sign(-(t25 * a_x))
-    t38 = whole * (t25 - a_x * s_w)
-    t39 = 2.0 * (t37 * t37) + t38 * t38
-    over_n = over_a * ops.sqrt(ops.select(in_line, t39, mu_nu))
-    j = ops.select(in_line, 0.0, over_n)
-    t40 = ops.select(same, r_2 * r_2, t12)
-    t41 = a_x * t30 - t25 * t27 - t28 * t26
+    t39 = whole * (t25 - a_x * s_w)
+    t40 = 2.0 * (t38 * t38) + t39 * t39
+    nu = ops.select(in_line, t40, m_m) / mu
+    t41 = ops.select(same, r_2 * r_2, t12)
+    beside_a = ops.sqrt(nu)
+    t42 = a_x * t30 - t25 * t28 - t26 * t27
+    t43 = beside_a * (1.0 / (length_a * beside_a)) * t42
     outer = ops.max(t20, 0.0)
     inner = ops.max(t21, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t18, 0.0)
-    t42 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t43 = over_a * t41 + ops.select(all_same, 0.0, t42)
-    t44 = ops.sqrt(outer * inner * slack * (t16 + t19))
-    rho = ops.select(all_same, r_1, share * t44)
-    left = j * j - t40 + t43 * t43 + rho * rho
-    t45 = 2.0 * j * rho
-    t46 = left + t45
-    t47 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t46)
-    t48 = t45 - left
-    failed = invalid | ops.opposite(t47 & (t24 <= t48))
-    t49 = ops.opposite(failed)
-    t50 = ops.opposite(all_same)
-    t51 = t49 & t50
-    length_a_2 = ops.sqrt(ops.select(t49 | (t51 & t50), mu, 1.0))
-    over_a_2 = 1.0 / ops.select(t49, length_a_2, 1.0)
+    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t45 = t43 + ops.select(all_same, 0.0, t44)
+    t46 = ops.sqrt(outer * inner * slack * (t16 + t19))
+    rho = ops.select(all_same, r_1, share * t46)
+    left = nu - t41 + t45 * t45 + rho * rho
+    t47 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    t48 = left + t47
+    t49 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t48)
+    t50 = t47 - left
+    failed = invalid | ops.opposite(t49 & (t24 <= t50))
+    t51 = ops.opposite(failed)
+    flat = ops.max(t48, 0.0) + ops.max(t50, 0.0) <= ops.vanishing * (r * t22)
+    t52 = flat | in_line
+    t53 = t51 & ops.opposite(t52)
+    t54 = ops.opposite(in_line)
+    over = 1.0 / ops.select(t51 & t54 & slim, mu, 1.0)
+    w_w = ops.select(in_line, t40, ops.select(slim, over * t37, product_2))
+    nu_2 = w_w / ops.select(t51, mu, 1.0)
+    beside_a_2 = ops.sqrt(ops.select(t51 | (t53 & t54), nu_2, 1.0))
+    t55 = ops.opposite(all_same)
+    t56 = t51 & t55
+    length_a_2 = ops.sqrt(ops.select(t51 | (t56 & t55), mu, 1.0))
+    t57 = ops.select(t51, length_a_2 * beside_a_2, 1.0)
+    part = 1.0 / t57
+    over_a = beside_a_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t52 = D_2 + r_1
-    outer_2 = ops.max(t52 - t16, 0.0)
-    t53 = D_2 - r_1
-    inner_2 = ops.max(t16 + t53, 0.0)
-    share_2 = 1.0 / ops.select(t51, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t16 - t53, 0.0)
-    t54 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t54 * 0.5)
-    X = over_a_2 * along
-    flat = ops.max(t46, 0.0) + ops.max(t48, 0.0) <= ops.vanishing * (r * t22)
-    t55 = flat | in_line
-    t56 = t49 & ops.opposite(t55)
-    t57 = ops.opposite(in_line)
-    t58 = t49 | (t56 & t57)
-    t59 = ops.select((t49 & t57 & slim) | (t58 & t57 & slim), mu, 1.0)
-    over = 1.0 / t59
-    w_w = ops.select(in_line, t39, ops.select(slim, over * t36, m_m))
-    length_m = ops.sqrt(ops.select(t58, w_w, 1.0))
-    part = 1.0 / ops.select(t49, length_m, 1.0)
-    t60 = ops.select(t51, outer_2 * inner_2 * slack_2 * (t16 + t52), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t60))
-    j_2 = ops.select(in_line, 0.0, over_a_2 * length_m)
-    t61 = over_a_2 * t41 + along
-    left_2 = j_2 * j_2 - t40 + t61 * t61 + rho_2 * rho_2
-    t62 = 2.0 * j_2 * rho_2
-    upper = ops.max(left_2 + t62, 0.0)
-    lower = ops.max(t62 - left_2, 0.0)
-    half = rho_2 / ops.select(t56, upper + lower, 1.0)
-    Y = ops.select(t55, 0.0, over_a_2 * part * half * (upper - lower))
-    t63 = t25 * X + t34 * Y
-    m_again_y = ops.select(slim, over * (a_x * t35 + t28 * t33), m_y)
-    t64 = ops.sqrt(ops.select(t56, upper * lower, 1.0))
-    h = part * ops.select(t55, rho_2, 2.0 * half * t64)
-    t65 = ops.select(in_line, -t37, m_again_y) * h
-    t66 = t63 - t65
-    t67 = t28 * X + t35 * Y
-    t68 = ops.select(slim, over * (a_x * t34 + t25 * t33), t31)
-    t69 = ops.select(in_line, t38, -t68) * h
-    t70 = t67 - t69
-    B_11 = c1_z * t66 - c1_y * t70
-    A_02 = c1_y - t66
-    t71 = t11 + t70
-    A_03 = c1_z - t70
-    A_22 = t10 - t66
-    t72 = ops.select(t49, w_w * h, 1.0)
-    t73 = ops.select(failed, ops.nan, B_11 * (A_02 * t71 + A_03 * A_22) / t72)
-    t74 = s_gamma * c2_z
-    t75 = t29 * X + t33 * Y
-    m_again_x = ops.select(slim, over * (t25 * t35 - t28 * t34), m_x)
-    t76 = ops.select(in_line, -(t37 * s_w), m_again_x) * h
-    t77 = t75 - t76
-    A_21 = t8 - t77
-    t78 = c_gamma * c2_z
-    B_22 = t74 * A_21 - t78 * A_22 - t6 * t71
-    t79 = ops.select(failed, ops.nan, -(B_22 * (t70 * A_02 - t66 * A_03) / t72))
-    A_01 = c1_x - t77
-    t80 = ops.select(failed, ops.nan, -(B_11 * (t71 * A_01 + A_03 * A_21) / t72))
-    t81 = ops.select(failed, ops.nan, B_22 * (t70 * A_01 - A_03 * t77) / t72)
-    t82 = ops.select(failed, ops.nan, -(B_11 * (A_22 * A_01 - A_02 * A_21) / t72))
-    t83 = ops.select(failed, ops.nan, -(B_22 * (t66 * A_01 - A_02 * t77) / t72))
-    t84 = t63 + t65
-    t85 = t67 + t69
-    B_11_below = c1_z * t84 - c1_y * t85
-    A_02_below = c1_y - t84
-    t86 = t11 + t85
-    A_03_below = c1_z - t85
-    A_22_below = t10 - t84
-    t87 = B_11_below * (A_02_below * t86 + A_03_below * A_22_below)
-    t88 = t75 + t76
-    A_21_below = t8 - t88
-    B_22_below = t74 * A_21_below - t78 * A_22_below - t6 * t86
-    t89 = B_22_below * (t85 * A_02_below - t84 * A_03_below)
-    A_01_below = c1_x - t88
-    t90 = B_11_below * (t86 * A_01_below + A_03_below * A_21_below)
-    t91 = B_22_below * (t85 * A_01_below - A_03_below * t88)
-    t92 = A_22_below * A_01_below - A_02_below * A_21_below
-    t93 = ops.select(failed, ops.nan, B_11_below * t92 / t72)
-    t94 = B_22_below * (t84 * A_01_below - A_02_below * t88)
+    t58 = D_2 + r_1
+    outer_2 = ops.max(t58 - t16, 0.0)
+    t59 = D_2 - r_1
+    inner_2 = ops.max(t16 + t59, 0.0)
+    share_2 = 1.0 / ops.select(t56, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t16 - t59, 0.0)
+    t60 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t60 * 0.5)
+    X = over_a * along
+    t61 = ops.select(t56, outer_2 * inner_2 * slack_2 * (t16 + t58), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t61))
+    t62 = over_a * t42 + along
+    left_2 = nu_2 - t41 + t62 * t62 + rho_2 * rho_2
+    t63 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
+    upper = ops.max(left_2 + t63, 0.0)
+    lower = ops.max(t63 - left_2, 0.0)
+    half = rho_2 / ops.select(t53, upper + lower, 1.0)
+    Y = ops.select(t52, 0.0, part * over_a * half * (upper - lower))
+    t64 = t25 * X + t35 * Y
+    m_y = ops.select(slim, over * (a_x * t36 + t27 * t34), product_y)
+    t65 = ops.sqrt(ops.select(t53, upper * lower, 1.0))
+    h = part * ops.select(t52, rho_2, 2.0 * half * t65)
+    t66 = ops.select(in_line, -t38, m_y) * h
+    t67 = t64 - t66
+    t68 = t27 * X + t36 * Y
+    t69 = ops.select(slim, over * (a_x * t35 + t25 * t34), t32)
+    t70 = ops.select(in_line, t39, -t69) * h
+    t71 = t68 - t70
+    B_11 = c1_z * t67 - c1_y * t71
+    A_02 = c1_y - t67
+    t72 = t11 + t71
+    A_03 = c1_z - t71
+    A_22 = t9 - t67
+    t73 = ops.select(t51, w_w * h, 1.0)
+    t74 = ops.select(failed, ops.nan, B_11 * (A_02 * t72 + A_03 * A_22) / t73)
+    t75 = s_gamma * c2_z
+    t76 = t29 * X + t34 * Y
+    m_x = ops.select(slim, over * (t25 * t36 - t27 * t35), product_x)
+    t77 = ops.select(in_line, -(t38 * s_w), m_x) * h
+    t78 = t76 - t77
+    A_21 = t7 - t78
+    t79 = c_gamma * c2_z
+    t80 = c2 * t10
+    B_22 = t75 * A_21 - t79 * A_22 - t80 * t72
+    t81 = ops.select(failed, ops.nan, -(B_22 * (t71 * A_02 - t67 * A_03) / t73))
+    A_01 = c1_x - t78
+    t82 = ops.select(failed, ops.nan, -(B_11 * (t72 * A_01 + A_03 * A_21) / t73))
+    t83 = ops.select(failed, ops.nan, B_22 * (t71 * A_01 - A_03 * t78) / t73)
+    t84 = ops.select(failed, ops.nan, -(B_11 * (A_22 * A_01 - A_02 * A_21) / t73))
+    t85 = ops.select(failed, ops.nan, -(B_22 * (t67 * A_01 - A_02 * t78) / t73))
+    t86 = t64 + t66
+    t87 = t68 + t70
+    B_11_below = c1_z * t86 - c1_y * t87
+    A_02_below = c1_y - t86
+    t88 = t11 + t87
+    A_03_below = c1_z - t87
+    A_22_below = t9 - t86
+    t89 = B_11_below * (A_02_below * t88 + A_03_below * A_22_below)
+    t90 = t76 + t77
+    A_21_below = t7 - t90
+    B_22_below = t75 * A_21_below - t79 * A_22_below - t80 * t88
+    t91 = B_22_below * (t87 * A_02_below - t86 * A_03_below)
+    A_01_below = c1_x - t90
+    t92 = B_11_below * (t88 * A_01_below + A_03_below * A_21_below)
+    t93 = B_22_below * (t87 * A_01_below - A_03_below * t90)
+    t94 = A_22_below * A_01_below - A_02_below * A_21_below
+    t95 = ops.select(failed, ops.nan, B_11_below * t94 / t73)
+    t96 = B_22_below * (t86 * A_01_below - A_02_below * t90)
     return (
-        t73,
-        t79,
-        t80,
+        t74,
         t81,
         t82,
         t83,
-        ops.select(failed, ops.nan, -(t87 / t72)),
-        ops.select(failed, ops.nan, t89 / t72),
-        ops.select(failed, ops.nan, t90 / t72),
-        ops.select(failed, ops.nan, -(t91 / t72)),
-        t93,
-        ops.select(failed, ops.nan, t94 / t72),
+        t84,
+        t85,
+        ops.select(failed, ops.nan, -(t89 / t73)),
+        ops.select(failed, ops.nan, t91 / t73),
+        ops.select(failed, ops.nan, t92 / t73),
+        ops.select(failed, ops.nan, -(t93 / t73)),
+        t95,
+        ops.select(failed, ops.nan, t96 / t73),
     )
 
 
@@ -1211,10 +1212,10 @@ def _singularities(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c_alpha1 = ops.cos(alpha1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
-    s2 = ops.sin(theta2)
-    c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
+    s2 = ops.sin(theta2)
+    c2 = ops.cos(theta2)
     s_beta1_half = ops.sin(beta1 * 0.5)
     s_beta2_half = ops.sin(beta2 * 0.5)
     t1 = ops.finite(r, gamma, alpha1, alpha2, beta1, beta2)
@@ -1223,17 +1224,17 @@ def _singularities(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
     t4 = -(ops.feasibility * (r * 0.3125))
     c1_x = r * c_alpha1
-    t5 = r * ops.abs(s_alpha2)
+    t5 = ops.abs(s_alpha2)
     t6 = c2 * t5
-    t7 = r * c_alpha2
-    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
-    t9 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t9
-    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
-    c2_z = s2 * t5
-    c1_z = s1 * t9
+    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t6)
+    t8 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t8
+    t9 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t6)
+    t10 = r * t5
+    c2_z = s2 * t10
+    c1_z = s1 * t8
     t11 = c2_z - c1_z
-    u_u = t8 * t8 + t10 * t10 + t11 * t11
+    u_u = t7 * t7 + t9 * t9 + t11 * t11
     t12 = r * r
     t13 = ops.vanishing * ops.vanishing
     t14 = t12 * t13
@@ -1256,110 +1257,111 @@ def _singularities(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t22 = ops.select(same, r_2, r)
     t23 = 0.625 * (r * (r * 2.2737367544323206e-13 + t22))
     t24 = -(ops.feasibility * t23)
-    t25 = ops.select(same, c1_y, t10)
+    t25 = ops.select(same, c1_y, t9)
     t26 = ops.select(same, -t11, c1_z)
-    t27 = ops.select(same, t10, c1_y)
-    t28 = ops.select(same, c1_z, -t11)
-    m_x = t25 * t26 - t27 * t28
-    t29 = ops.select(same, c1_x, t8)
+    t27 = ops.select(same, c1_z, -t11)
+    t28 = ops.select(same, t9, c1_y)
+    product_x = t25 * t26 - t27 * t28
+    t29 = ops.select(same, c1_x, t7)
     a_x = ops.select(all_same, whole, -t29)
-    t30 = ops.select(same, t8, c1_x)
-    m_y = a_x * t26 + t30 * t28
-    t31 = a_x * t27 + t25 * t30
-    m_m = m_x * m_x + m_y * m_y + t31 * t31
-    t32 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t32 * 0.000244140625 <= ops.vanishing * t32
-    t33 = t25 * t31 + t28 * m_y
-    t34 = a_x * t31 - t28 * m_x
-    t35 = a_x * m_y + t25 * m_x
-    t36 = t33 * t33 + t34 * t34 + t35 * t35
-    mu_nu = ops.select(slim, 1.0 / mu * t36, m_m)
-    in_line = mu_nu <= t13 * (t12 * mu)
-    over_a = 1.0 / length_a
-    t37 = whole * t28
+    t30 = ops.select(same, t7, c1_x)
+    product_y = t26 * a_x + t27 * t30
+    t31 = product_x * product_x + product_y * product_y
+    t32 = t28 * a_x + t25 * t30
+    product_2 = t31 + t32 * t32
+    t33 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t33 * 0.000244140625 <= ops.vanishing * t33
+    t34 = t25 * t32 + t27 * product_y
+    t35 = a_x * t32 - t27 * product_x
+    t36 = a_x * product_y + t25 * product_x
+    t37 = t34 * t34 + t35 * t35 + t36 * t36
+    m_m = ops.select(slim, 1.0 / mu * t37, product_2)
+    in_line = m_m <= t13 * (t12 * mu)
+    t38 = whole * t27
     s_w = ops.sign(-(t25 * a_x))
-    t38 = whole * (t25 - a_x * s_w)
-    t39 = 2.0 * (t37 * t37) + t38 * t38
-    over_n = over_a * ops.sqrt(ops.select(in_line, t39, mu_nu))
-    j = ops.select(in_line, 0.0, over_n)
-    t40 = ops.select(same, r_2 * r_2, t12)
-    t41 = a_x * t30 - t25 * t27 - t28 * t26
+    t39 = whole * (t25 - a_x * s_w)
+    t40 = 2.0 * (t38 * t38) + t39 * t39
+    nu = ops.select(in_line, t40, m_m) / mu
+    t41 = ops.select(same, r_2 * r_2, t12)
+    beside_a = ops.sqrt(nu)
+    t42 = a_x * t30 - t25 * t28 - t26 * t27
+    t43 = beside_a * (1.0 / (length_a * beside_a)) * t42
     outer = ops.max(t20, 0.0)
     inner = ops.max(t21, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t18, 0.0)
-    t42 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t43 = over_a * t41 + ops.select(all_same, 0.0, t42)
-    t44 = ops.sqrt(outer * inner * slack * (t16 + t19))
-    rho = ops.select(all_same, r_1, share * t44)
-    left = j * j - t40 + t43 * t43 + rho * rho
-    t45 = 2.0 * j * rho
-    t46 = left + t45
-    t47 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t46)
-    t48 = t45 - left
-    failed = invalid | ops.opposite(t47 & (t24 <= t48))
-    t49 = ops.opposite(failed)
-    t50 = ops.opposite(all_same)
-    t51 = t49 & t50
-    length_a_2 = ops.sqrt(ops.select(t49 | (t51 & t50), mu, 1.0))
-    over_a_2 = 1.0 / ops.select(t49, length_a_2, 1.0)
+    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t45 = t43 + ops.select(all_same, 0.0, t44)
+    t46 = ops.sqrt(outer * inner * slack * (t16 + t19))
+    rho = ops.select(all_same, r_1, share * t46)
+    left = nu - t41 + t45 * t45 + rho * rho
+    t47 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    t48 = left + t47
+    t49 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t48)
+    t50 = t47 - left
+    failed = invalid | ops.opposite(t49 & (t24 <= t50))
+    t51 = ops.opposite(failed)
+    flat = ops.max(t48, 0.0) + ops.max(t50, 0.0) <= ops.vanishing * (r * t22)
+    t52 = flat | in_line
+    t53 = t51 & ops.opposite(t52)
+    t54 = ops.opposite(in_line)
+    over = 1.0 / ops.select(t51 & t54 & slim, mu, 1.0)
+    w_w = ops.select(in_line, t40, ops.select(slim, over * t37, product_2))
+    nu_2 = w_w / ops.select(t51, mu, 1.0)
+    beside_a_2 = ops.sqrt(ops.select(t51 | (t53 & t54), nu_2, 1.0))
+    t55 = ops.opposite(all_same)
+    t56 = t51 & t55
+    length_a_2 = ops.sqrt(ops.select(t51 | (t56 & t55), mu, 1.0))
+    t57 = ops.select(t51, length_a_2 * beside_a_2, 1.0)
+    part = 1.0 / t57
+    over_a = beside_a_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t52 = D_2 + r_1
-    outer_2 = ops.max(t52 - t16, 0.0)
-    t53 = D_2 - r_1
-    inner_2 = ops.max(t16 + t53, 0.0)
-    share_2 = 1.0 / ops.select(t51, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t16 - t53, 0.0)
-    t54 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t54 * 0.5)
-    X = over_a_2 * along
-    flat = ops.max(t46, 0.0) + ops.max(t48, 0.0) <= ops.vanishing * (r * t22)
-    t55 = flat | in_line
-    t56 = t49 & ops.opposite(t55)
-    t57 = ops.opposite(in_line)
-    t58 = t49 | (t56 & t57)
-    t59 = ops.select((t49 & t57 & slim) | (t58 & t57 & slim), mu, 1.0)
-    over = 1.0 / t59
-    w_w = ops.select(in_line, t39, ops.select(slim, over * t36, m_m))
-    length_m = ops.sqrt(ops.select(t58, w_w, 1.0))
-    part = 1.0 / ops.select(t49, length_m, 1.0)
-    t60 = ops.select(t51, outer_2 * inner_2 * slack_2 * (t16 + t52), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t60))
-    j_2 = ops.select(in_line, 0.0, over_a_2 * length_m)
-    t61 = over_a_2 * t41 + along
-    left_2 = j_2 * j_2 - t40 + t61 * t61 + rho_2 * rho_2
-    t62 = 2.0 * j_2 * rho_2
-    upper = ops.max(left_2 + t62, 0.0)
-    lower = ops.max(t62 - left_2, 0.0)
-    half = rho_2 / ops.select(t56, upper + lower, 1.0)
-    Y = ops.select(t55, 0.0, over_a_2 * part * half * (upper - lower))
-    t63 = t25 * X + t34 * Y
-    m_again_y = ops.select(slim, over * (a_x * t35 + t28 * t33), m_y)
-    t64 = ops.sqrt(ops.select(t56, upper * lower, 1.0))
-    h = part * ops.select(t55, rho_2, 2.0 * half * t64)
-    t65 = ops.select(in_line, -t37, m_again_y) * h
-    t66 = t63 - t65
-    t67 = t28 * X + t35 * Y
-    t68 = ops.select(slim, over * (a_x * t34 + t25 * t33), t31)
-    t69 = ops.select(in_line, t38, -t68) * h
-    t70 = t67 - t69
-    t71 = ops.select(failed, ops.nan, c1_z * t66 - c1_y * t70)
-    t72 = s_gamma * c2_z
-    t73 = t29 * X + t33 * Y
-    m_again_x = ops.select(slim, over * (t25 * t35 - t28 * t34), m_x)
-    t74 = ops.select(in_line, -(t37 * s_w), m_again_x) * h
-    t75 = c_gamma * c2_z
-    B_22 = t72 * (t8 - (t73 - t74)) - t75 * (t10 - t66) - t6 * (t11 + t70)
+    t58 = D_2 + r_1
+    outer_2 = ops.max(t58 - t16, 0.0)
+    t59 = D_2 - r_1
+    inner_2 = ops.max(t16 + t59, 0.0)
+    share_2 = 1.0 / ops.select(t56, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t16 - t59, 0.0)
+    t60 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t60 * 0.5)
+    X = over_a * along
+    t61 = ops.select(t56, outer_2 * inner_2 * slack_2 * (t16 + t58), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t61))
+    t62 = over_a * t42 + along
+    left_2 = nu_2 - t41 + t62 * t62 + rho_2 * rho_2
+    t63 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
+    upper = ops.max(left_2 + t63, 0.0)
+    lower = ops.max(t63 - left_2, 0.0)
+    half = rho_2 / ops.select(t53, upper + lower, 1.0)
+    Y = ops.select(t52, 0.0, part * over_a * half * (upper - lower))
+    t64 = t25 * X + t35 * Y
+    m_y = ops.select(slim, over * (a_x * t36 + t27 * t34), product_y)
+    t65 = ops.sqrt(ops.select(t53, upper * lower, 1.0))
+    h = part * ops.select(t52, rho_2, 2.0 * half * t65)
+    t66 = ops.select(in_line, -t38, m_y) * h
+    t67 = t64 - t66
+    t68 = t27 * X + t36 * Y
+    t69 = ops.select(slim, over * (a_x * t35 + t25 * t34), t32)
+    t70 = ops.select(in_line, t39, -t69) * h
+    t71 = t68 - t70
+    t72 = ops.select(failed, ops.nan, c1_z * t67 - c1_y * t71)
+    t73 = s_gamma * c2_z
+    t74 = t29 * X + t34 * Y
+    m_x = ops.select(slim, over * (t25 * t36 - t27 * t35), product_x)
+    t75 = ops.select(in_line, -(t38 * s_w), m_x) * h
+    t76 = c_gamma * c2_z
+    t77 = c2 * t10
+    B_22 = t73 * (t7 - (t74 - t75)) - t76 * (t9 - t67) - t77 * (t11 + t71)
     Delta = w_w * h
-    t76 = t63 + t65
-    t77 = t67 + t69
-    t78 = ops.select(failed, ops.nan, c1_z * t76 - c1_y * t77)
-    B_22_below = t72 * (t8 - (t73 + t74)) - t75 * (t10 - t76) - t6 * (t11 + t77)
+    t78 = t64 + t66
+    t79 = t68 + t70
+    t80 = ops.select(failed, ops.nan, c1_z * t78 - c1_y * t79)
+    B_22_below = t73 * (t7 - (t74 + t75)) - t76 * (t9 - t78) - t77 * (t11 + t79)
     return (
-        t71,
+        t72,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, Delta),
-        t78,
+        t80,
         ops.select(failed, ops.nan, B_22_below),
         ops.select(failed, ops.nan, -Delta),
     )
@@ -1412,10 +1414,10 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     c_alpha1 = ops.cos(alpha1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
-    s2 = ops.sin(theta2)
-    c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
+    s2 = ops.sin(theta2)
+    c2 = ops.cos(theta2)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
     s_beta1_half = ops.sin(beta1 * 0.5)
@@ -1426,135 +1428,134 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
     t4 = -(ops.feasibility * (r * 0.3125))
     c1_x = r * c_alpha1
-    t5 = r * ops.abs(s_alpha2)
+    t5 = ops.abs(s_alpha2)
     t6 = c2 * t5
-    t7 = r * c_alpha2
-    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
-    t9 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t9
-    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
-    c1_z = s1 * t9
-    t11 = c1_z - s2 * t5
-    u_u = t8 * t8 + t10 * t10 + t11 * t11
-    t12 = r * r
-    t13 = ops.vanishing * ops.vanishing
-    t14 = t12 * t13
-    same = u_u <= t14
-    t15 = r * 2.0
-    r_2 = ops.abs(s_beta2_half) * t15
-    t16 = ops.select(same, r, r_2)
+    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t6)
+    t8 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t8
+    t9 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t6)
+    c1_z = s1 * t8
+    t10 = r * s2 * t5 - c1_z
+    u_u = t7 * t7 + t9 * t9 + t10 * t10
+    t11 = r * r
+    t12 = ops.vanishing * ops.vanishing
+    t13 = t11 * t12
+    same = u_u <= t13
+    t14 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t14
+    t15 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t14
+    all_same = u_u + v_v <= t13
     whole = ops.select((r == 0.0), 1.0, r)
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
-    r_1 = ops.abs(s_beta1_half) * t15
-    t17 = D - r_1
-    t18 = t16 - t17
-    t19 = D + r_1
-    t20 = t19 - t16
-    t21 = t16 + t17
-    t22 = ops.select(same, r_2, r)
-    t23 = 0.625 * (r * (r * 2.2737367544323206e-13 + t22))
-    t24 = -(ops.feasibility * t23)
-    t25 = ops.select(same, c1_y, t10)
-    t26 = ops.select(same, t11, c1_z)
-    t27 = ops.select(same, t10, c1_y)
-    t28 = ops.select(same, c1_z, t11)
-    m_x = t25 * t26 - t27 * t28
-    t29 = ops.select(same, c1_x, t8)
-    a_x = ops.select(all_same, whole, -t29)
-    t30 = ops.select(same, t8, c1_x)
-    m_y = a_x * t26 + t30 * t28
-    t31 = a_x * t27 + t25 * t30
-    m_m = m_x * m_x + m_y * m_y + t31 * t31
+    r_1 = ops.abs(s_beta1_half) * t14
+    t16 = D - r_1
+    t17 = t15 - t16
+    t18 = D + r_1
+    t19 = t18 - t15
+    t20 = t15 + t16
+    t21 = ops.select(same, r_2, r)
+    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
+    t23 = -(ops.feasibility * t22)
+    t24 = ops.select(same, c1_y, t9)
+    t25 = ops.select(same, -t10, c1_z)
+    t26 = ops.select(same, c1_z, -t10)
+    t27 = ops.select(same, t9, c1_y)
+    product_x = t24 * t25 - t26 * t27
+    t28 = ops.select(same, c1_x, t7)
+    a_x = ops.select(all_same, whole, -t28)
+    t29 = ops.select(same, t7, c1_x)
+    product_y = t25 * a_x + t26 * t29
+    t30 = product_x * product_x + product_y * product_y
+    t31 = t27 * a_x + t24 * t29
+    product_2 = t30 + t31 * t31
     t32 = mu * ops.select(same, u_u, v_v)
-    slim = m_m - t32 * 0.000244140625 <= ops.vanishing * t32
-    t33 = t25 * t31 + t28 * m_y
-    t34 = a_x * t31 - t28 * m_x
-    t35 = a_x * m_y + t25 * m_x
+    slim = product_2 - t32 * 0.000244140625 <= ops.vanishing * t32
+    t33 = t24 * t31 + t26 * product_y
+    t34 = a_x * t31 - t26 * product_x
+    t35 = a_x * product_y + t24 * product_x
     t36 = t33 * t33 + t34 * t34 + t35 * t35
-    mu_nu = ops.select(slim, 1.0 / mu * t36, m_m)
-    in_line = mu_nu <= t13 * (t12 * mu)
-    over_a = 1.0 / length_a
-    t37 = whole * t28
-    s_w = ops.sign(-(t25 * a_x))
-    t38 = whole * (t25 - a_x * s_w)
+    m_m = ops.select(slim, 1.0 / mu * t36, product_2)
+    in_line = m_m <= t12 * (t11 * mu)
+    t37 = whole * t26
+    s_w = ops.sign(-(t24 * a_x))
+    t38 = whole * (t24 - a_x * s_w)
     t39 = 2.0 * (t37 * t37) + t38 * t38
-    over_n = over_a * ops.sqrt(ops.select(in_line, t39, mu_nu))
-    j = ops.select(in_line, 0.0, over_n)
-    t40 = ops.select(same, r_2 * r_2, t12)
-    t41 = a_x * t30 - t25 * t27 - t28 * t26
-    outer = ops.max(t20, 0.0)
-    inner = ops.max(t21, 0.0)
+    nu = ops.select(in_line, t39, m_m) / mu
+    t40 = ops.select(same, r_2 * r_2, t11)
+    beside_a = ops.sqrt(nu)
+    t41 = a_x * t29 - t24 * t27 - t25 * t26
+    t42 = beside_a * (1.0 / (length_a * beside_a)) * t41
+    outer = ops.max(t19, 0.0)
+    inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t18, 0.0)
-    t42 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t43 = over_a * t41 + ops.select(all_same, 0.0, t42)
-    t44 = ops.sqrt(outer * inner * slack * (t16 + t19))
-    rho = ops.select(all_same, r_1, share * t44)
-    left = j * j - t40 + t43 * t43 + rho * rho
-    t45 = 2.0 * j * rho
-    t46 = left + t45
-    t47 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t46)
-    t48 = t45 - left
-    failed = invalid | ops.opposite(t47 & (t24 <= t48))
-    t49 = ops.opposite(failed)
-    t50 = ops.opposite(all_same)
-    t51 = t49 & t50
-    length_a_2 = ops.sqrt(ops.select(t49 | (t51 & t50), mu, 1.0))
-    over_a_2 = 1.0 / ops.select(t49, length_a_2, 1.0)
+    slack = ops.max(t17, 0.0)
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t40 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (t23 <= t49))
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = ops.opposite(in_line)
+    over = 1.0 / ops.select(t50 & t53 & slim, mu, 1.0)
+    w_w = ops.select(in_line, t39, ops.select(slim, over * t36, product_2))
+    nu_2 = w_w / ops.select(t50, mu, 1.0)
+    beside_a_2 = ops.sqrt(ops.select(t50 | (t52 & t53), nu_2, 1.0))
+    t54 = ops.opposite(all_same)
+    t55 = t50 & t54
+    length_a_2 = ops.sqrt(ops.select(t50 | (t55 & t54), mu, 1.0))
+    t56 = ops.select(t50, length_a_2 * beside_a_2, 1.0)
+    part = 1.0 / t56
+    over_a = beside_a_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t52 = D_2 + r_1
-    outer_2 = ops.max(t52 - t16, 0.0)
-    t53 = D_2 - r_1
-    inner_2 = ops.max(t16 + t53, 0.0)
-    share_2 = 1.0 / ops.select(t51, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t16 - t53, 0.0)
-    t54 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t54 * 0.5)
-    X = over_a_2 * along
-    flat = ops.max(t46, 0.0) + ops.max(t48, 0.0) <= ops.vanishing * (r * t22)
-    t55 = flat | in_line
-    t56 = t49 & ops.opposite(t55)
-    t57 = ops.opposite(in_line)
-    t58 = t49 | (t56 & t57)
-    t59 = ops.select((t49 & t57 & slim) | (t58 & t57 & slim), mu, 1.0)
-    over = 1.0 / t59
-    w_w = ops.select(in_line, t39, ops.select(slim, over * t36, m_m))
-    length_m = ops.sqrt(ops.select(t58, w_w, 1.0))
-    part = 1.0 / ops.select(t49, length_m, 1.0)
-    t60 = ops.select(t51, outer_2 * inner_2 * slack_2 * (t16 + t52), 1.0)
+    t57 = D_2 + r_1
+    outer_2 = ops.max(t57 - t15, 0.0)
+    t58 = D_2 - r_1
+    inner_2 = ops.max(t15 + t58, 0.0)
+    share_2 = 1.0 / ops.select(t55, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t58, 0.0)
+    t59 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t59 * 0.5)
+    X = over_a * along
+    t60 = ops.select(t55, outer_2 * inner_2 * slack_2 * (t15 + t57), 1.0)
     rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t60))
-    j_2 = ops.select(in_line, 0.0, over_a_2 * length_m)
-    t61 = over_a_2 * t41 + along
-    left_2 = j_2 * j_2 - t40 + t61 * t61 + rho_2 * rho_2
-    t62 = 2.0 * j_2 * rho_2
+    t61 = over_a * t41 + along
+    left_2 = nu_2 - t40 + t61 * t61 + rho_2 * rho_2
+    t62 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
     upper = ops.max(left_2 + t62, 0.0)
     lower = ops.max(t62 - left_2, 0.0)
-    half = rho_2 / ops.select(t56, upper + lower, 1.0)
-    Y = ops.select(t55, 0.0, over_a_2 * part * half * (upper - lower))
-    t63 = t29 * X + t33 * Y
-    m_again_x = ops.select(slim, over * (t25 * t35 - t28 * t34), m_x)
-    t64 = ops.sqrt(ops.select(t56, upper * lower, 1.0))
-    h = part * ops.select(t55, rho_2, 2.0 * half * t64)
-    t65 = ops.select(in_line, -(t37 * s_w), m_again_x) * h
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    Y = ops.select(t51, 0.0, part * over_a * half * (upper - lower))
+    t63 = t28 * X + t33 * Y
+    m_x = ops.select(slim, over * (t24 * t35 - t26 * t34), product_x)
+    t64 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t64)
+    t65 = ops.select(in_line, -(t37 * s_w), m_x) * h
     t66 = t63 - t65
     A_01 = c1_x - t66
-    t67 = t25 * X + t34 * Y
-    m_again_y = ops.select(slim, over * (a_x * t35 + t28 * t33), m_y)
-    t68 = ops.select(in_line, -t37, m_again_y) * h
+    t67 = t24 * X + t34 * Y
+    m_y = ops.select(slim, over * (a_x * t35 + t26 * t33), product_y)
+    t68 = ops.select(in_line, -t37, m_y) * h
     t69 = t67 - t68
     A_02 = c1_y - t69
-    t70 = t28 * X + t35 * Y
-    t71 = ops.select(slim, over * (a_x * t34 + t25 * t33), t31)
+    t70 = t26 * X + t35 * Y
+    t71 = ops.select(slim, over * (a_x * t34 + t24 * t33), t31)
     t72 = ops.select(in_line, t38, -t71) * h
     t73 = t70 - t72
     A_03 = c1_z - t73
-    t74 = ops.select(t49, A_01 * A_01 + A_02 * A_02 + A_03 * A_03, 1.0)
+    t74 = ops.select(t50, A_01 * A_01 + A_02 * A_02 + A_03 * A_03, 1.0)
     strut = ops.sqrt(t74)
-    t75 = ops.select(t49, strut, 1.0)
+    t75 = ops.select(t50, strut, 1.0)
     radial_x = A_01 / t75
     radial_y = A_02 / t75
     radial_z = A_03 / t75
@@ -1563,56 +1564,56 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     t78 = t69 - radial_y * t76
     t79 = t73 - radial_z * t76
     square1 = t77 * t77 + t78 * t78 + t79 * t79
-    A_21 = t8 - t66
-    A_22 = t10 - t69
-    A_23 = t11 - t73
-    off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23
+    A_21 = t7 - t66
+    A_22 = t9 - t69
+    t80 = t10 + t73
+    off2 = radial_x * A_21 + radial_y * A_22 - radial_z * t80
     t2_x = A_21 - radial_x * off2
     t2_y = A_22 - radial_y * off2
-    t2_z = A_23 - radial_z * off2
-    square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z
-    t80 = square1 - square2
-    t81 = t77 * t2_x + t78 * t2_y + t79 * t2_z
-    t82 = ops.select(t49, t80 * t80, 1.0) + 4.0 * ops.select(t49, t81 * t81, 1.0)
-    t83 = square1 + square2 + ops.sqrt(ops.select(t49, t82, 1.0))
-    t84 = ops.select(t49, 2.0 * (w_w * h), 1.0)
-    t85 = ops.select(failed, ops.nan, strut * t83 / t84)
-    t86 = t63 + t65
-    A_01_below = c1_x - t86
-    t87 = t67 + t68
-    A_02_below = c1_y - t87
-    t88 = A_01_below * A_01_below + A_02_below * A_02_below
-    t89 = t70 + t72
-    A_03_below = c1_z - t89
-    t90 = ops.select(t49, t88 + A_03_below * A_03_below, 1.0)
-    strut_below = ops.sqrt(t90)
-    t91 = ops.select(t49, strut_below, 1.0)
-    radial_x_below = A_01_below / t91
-    radial_y_below = A_02_below / t91
-    radial_z_below = A_03_below / t91
-    t92 = t86 * radial_x_below + t87 * radial_y_below + t89 * radial_z_below
-    t93 = t86 - radial_x_below * t92
-    t94 = t87 - radial_y_below * t92
-    t95 = t89 - radial_z_below * t92
-    square1_below = t93 * t93 + t94 * t94 + t95 * t95
-    A_21_below = t8 - t86
-    A_22_below = t10 - t87
-    t96 = radial_x_below * A_21_below + radial_y_below * A_22_below
-    A_23_below = t11 - t89
-    off2_below = t96 + radial_z_below * A_23_below
+    t81 = t80 + radial_z * off2
+    square2 = t2_x * t2_x + t2_y * t2_y + t81 * t81
+    t82 = square1 - square2
+    t83 = t77 * t2_x + t78 * t2_y - t79 * t81
+    t84 = ops.select(t50, t82 * t82, 1.0) + 4.0 * ops.select(t50, t83 * t83, 1.0)
+    t85 = square1 + square2 + ops.sqrt(ops.select(t50, t84, 1.0))
+    t86 = ops.select(t50, 2.0 * (w_w * h), 1.0)
+    t87 = ops.select(failed, ops.nan, strut * t85 / t86)
+    t88 = t63 + t65
+    A_01_below = c1_x - t88
+    t89 = t67 + t68
+    A_02_below = c1_y - t89
+    t90 = A_01_below * A_01_below + A_02_below * A_02_below
+    t91 = t70 + t72
+    A_03_below = c1_z - t91
+    t92 = ops.select(t50, t90 + A_03_below * A_03_below, 1.0)
+    strut_below = ops.sqrt(t92)
+    t93 = ops.select(t50, strut_below, 1.0)
+    radial_x_below = A_01_below / t93
+    radial_y_below = A_02_below / t93
+    radial_z_below = A_03_below / t93
+    t94 = t88 * radial_x_below + t89 * radial_y_below + t91 * radial_z_below
+    t95 = t88 - radial_x_below * t94
+    t96 = t89 - radial_y_below * t94
+    t97 = t91 - radial_z_below * t94
+    square1_below = t95 * t95 + t96 * t96 + t97 * t97
+    A_21_below = t7 - t88
+    A_22_below = t9 - t89
+    t98 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    t99 = t10 + t91
+    off2_below = t98 - radial_z_below * t99
     t2_x_below = A_21_below - radial_x_below * off2_below
     t2_y_below = A_22_below - radial_y_below * off2_below
-    t97 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
-    t2_z_below = A_23_below - radial_z_below * off2_below
-    square2_below = t97 + t2_z_below * t2_z_below
-    t98 = square1_below - square2_below
-    t99 = t93 * t2_x_below + t94 * t2_y_below + t95 * t2_z_below
-    t100 = ops.select(t49, t98 * t98, 1.0) + 4.0 * ops.select(t49, t99 * t99, 1.0)
-    t101 = square1_below + square2_below + ops.sqrt(ops.select(t49, t100, 1.0))
-    t102 = ops.select(failed, ops.nan, strut_below * t101 / t84)
+    t100 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t101 = t99 + radial_z_below * off2_below
+    square2_below = t100 + t101 * t101
+    t102 = square1_below - square2_below
+    t103 = t95 * t2_x_below + t96 * t2_y_below - t97 * t101
+    t104 = ops.select(t50, t102 * t102, 1.0) + 4.0 * ops.select(t50, t103 * t103, 1.0)
+    t105 = square1_below + square2_below + ops.sqrt(ops.select(t50, t104, 1.0))
+    t106 = ops.select(failed, ops.nan, strut_below * t105 / t86)
     return (
-        t85,
-        t102,
+        t87,
+        t106,
     )
 
 

@@ -3,26 +3,28 @@
  * derivations/delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 51 compare and select, 67 add, 7 divide, 94 multiply, 6 sincos, 2 sqrt
- *   fk where nothing vanishes: 30 compare and select, 60 add, 6 divide, 72 multiply, 6 sincos, 1
+ *   fk: 51 compare and select, 59 add, 7 divide, 82 multiply, 6 sincos, 2 sqrt
+ *   fk where nothing vanishes: 30 compare and select, 52 add, 6 divide, 60 multiply, 6 sincos, 1
  *     sqrt
- *   skeleton: 50 compare and select, 182 add, 13 divide, 94 multiply, 6 sincos, 2 sqrt
- *   jacobian_parallel: 50 compare and select, 88 add, 7 divide, 94 multiply, 6 sincos, 2 sqrt
- *   jacobian_parallel where nothing vanishes: 29 compare and select, 81 add, 6 divide, 72
+ *   skeleton: 50 compare and select, 180 add, 13 divide, 100 multiply, 6 sincos, 2 sqrt
+ *   jacobian_parallel: 50 compare and select, 80 add, 7 divide, 82 multiply, 6 sincos, 2 sqrt
+ *   jacobian_parallel where nothing vanishes: 29 compare and select, 73 add, 6 divide, 60
  *     multiply, 6 sincos, 1 sqrt
- *   jacobian_serial: 50 compare and select, 88 add, 7 divide, 118 multiply, 6 sincos, 2 sqrt
- *   jacobian_serial where nothing vanishes: 29 compare and select, 81 add, 6 divide, 96 multiply,
+ *   jacobian_serial: 50 compare and select, 80 add, 7 divide, 106 multiply, 6 sincos, 2 sqrt
+ *   jacobian_serial where nothing vanishes: 29 compare and select, 73 add, 6 divide, 84 multiply,
  *     6 sincos, 1 sqrt
- *   jacobian: 50 compare and select, 118 add, 25 divide, 173 multiply, 6 sincos, 2 sqrt
- *   determinant: 50 compare and select, 84 add, 9 divide, 123 multiply, 6 sincos, 2 sqrt
- *   determinant where nothing vanishes: 29 compare and select, 77 add, 8 divide, 101 multiply, 6
+ *   jacobian: 50 compare and select, 110 add, 25 divide, 161 multiply, 6 sincos, 2 sqrt
+ *   determinant: 50 compare and select, 76 add, 9 divide, 111 multiply, 6 sincos, 2 sqrt
+ *   determinant where nothing vanishes: 29 compare and select, 69 add, 8 divide, 89 multiply, 6
  *     sincos, 1 sqrt
- *   singularities: 50 compare and select, 90 add, 7 divide, 119 multiply, 6 sincos, 2 sqrt
- *   singularities where nothing vanishes: 29 compare and select, 83 add, 6 divide, 97 multiply, 6
+ *   singularities: 50 compare and select, 82 add, 7 divide, 107 multiply, 6 sincos, 2 sqrt
+ *   singularities where nothing vanishes: 29 compare and select, 75 add, 6 divide, 85 multiply, 6
  *     sincos, 1 sqrt
- *   condition_number: 50 compare and select, 122 add, 9 divide, 170 multiply, 6 sincos, 4 sqrt
- *   constraint: 50 compare and select, 94 add, 7 divide, 156 multiply, 6 sincos, 2 sqrt
- *   constraint where nothing vanishes: 29 compare and select, 87 add, 6 divide, 124 multiply, 6
+ *   condition_number: 50 compare and select, 114 add, 9 divide, 158 multiply, 6 sincos, 4 sqrt
+ *   condition_number where nothing vanishes: 29 compare and select, 107 add, 8 divide, 136
+ *     multiply, 6 sincos, 3 sqrt
+ *   constraint: 50 compare and select, 86 add, 7 divide, 144 multiply, 6 sincos, 2 sqrt
+ *   constraint where nothing vanishes: 29 compare and select, 79 add, 6 divide, 112 multiply, 6
  *     sincos, 1 sqrt
  *   ik: 139 compare and select, 130 add, 6 atan2, 13 divide, 151 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt

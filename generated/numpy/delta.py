@@ -2,26 +2,28 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 51 compare and select, 67 add, 7 divide, 94 multiply, 6 sincos, 2 sqrt
-#   fk where nothing vanishes: 30 compare and select, 60 add, 6 divide, 72 multiply, 6 sincos, 1
+#   fk: 51 compare and select, 59 add, 7 divide, 82 multiply, 6 sincos, 2 sqrt
+#   fk where nothing vanishes: 30 compare and select, 52 add, 6 divide, 60 multiply, 6 sincos, 1
 #     sqrt
-#   skeleton: 50 compare and select, 182 add, 13 divide, 94 multiply, 6 sincos, 2 sqrt
-#   jacobian_parallel: 50 compare and select, 88 add, 7 divide, 94 multiply, 6 sincos, 2 sqrt
-#   jacobian_parallel where nothing vanishes: 29 compare and select, 81 add, 6 divide, 72
+#   skeleton: 50 compare and select, 180 add, 13 divide, 100 multiply, 6 sincos, 2 sqrt
+#   jacobian_parallel: 50 compare and select, 80 add, 7 divide, 82 multiply, 6 sincos, 2 sqrt
+#   jacobian_parallel where nothing vanishes: 29 compare and select, 73 add, 6 divide, 60
 #     multiply, 6 sincos, 1 sqrt
-#   jacobian_serial: 50 compare and select, 88 add, 7 divide, 118 multiply, 6 sincos, 2 sqrt
-#   jacobian_serial where nothing vanishes: 29 compare and select, 81 add, 6 divide, 96 multiply,
+#   jacobian_serial: 50 compare and select, 80 add, 7 divide, 106 multiply, 6 sincos, 2 sqrt
+#   jacobian_serial where nothing vanishes: 29 compare and select, 73 add, 6 divide, 84 multiply,
 #     6 sincos, 1 sqrt
-#   jacobian: 50 compare and select, 118 add, 25 divide, 173 multiply, 6 sincos, 2 sqrt
-#   determinant: 50 compare and select, 84 add, 9 divide, 123 multiply, 6 sincos, 2 sqrt
-#   determinant where nothing vanishes: 29 compare and select, 77 add, 8 divide, 101 multiply, 6
+#   jacobian: 50 compare and select, 110 add, 25 divide, 161 multiply, 6 sincos, 2 sqrt
+#   determinant: 50 compare and select, 76 add, 9 divide, 111 multiply, 6 sincos, 2 sqrt
+#   determinant where nothing vanishes: 29 compare and select, 69 add, 8 divide, 89 multiply, 6
 #     sincos, 1 sqrt
-#   singularities: 50 compare and select, 90 add, 7 divide, 119 multiply, 6 sincos, 2 sqrt
-#   singularities where nothing vanishes: 29 compare and select, 83 add, 6 divide, 97 multiply, 6
+#   singularities: 50 compare and select, 82 add, 7 divide, 107 multiply, 6 sincos, 2 sqrt
+#   singularities where nothing vanishes: 29 compare and select, 75 add, 6 divide, 85 multiply, 6
 #     sincos, 1 sqrt
-#   condition_number: 50 compare and select, 122 add, 9 divide, 170 multiply, 6 sincos, 4 sqrt
-#   constraint: 50 compare and select, 94 add, 7 divide, 156 multiply, 6 sincos, 2 sqrt
-#   constraint where nothing vanishes: 29 compare and select, 87 add, 6 divide, 124 multiply, 6
+#   condition_number: 50 compare and select, 114 add, 9 divide, 158 multiply, 6 sincos, 4 sqrt
+#   condition_number where nothing vanishes: 29 compare and select, 107 add, 8 divide, 136
+#     multiply, 6 sincos, 3 sqrt
+#   constraint: 50 compare and select, 86 add, 7 divide, 144 multiply, 6 sincos, 2 sqrt
+#   constraint where nothing vanishes: 29 compare and select, 79 add, 6 divide, 112 multiply, 6
 #     sincos, 1 sqrt
 #   ik: 139 compare and select, 130 add, 6 atan2, 13 divide, 151 multiply, 3 sincos, 9 sqrt
 #   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
@@ -169,218 +171,218 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del s1
     u_z = t1 - L * s2
     del s2
-    t2 = L * c1
+    t2 = f - e
+    t3 = L * c1 + t2
     del c1
-    t3 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t2
+    c1_x = c_alpha1 * t3
     del c_alpha1
-    t4 = L * c2
+    t4 = L * c2 + t2
     del c2
-    t5 = t3 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t4)
+    t5 = c1_x - c_alpha2 * t4
     del c_alpha2
-    t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t2
-    del s_alpha1, t2
-    t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4)
+    c1_y = s_alpha1 * t3
+    del s_alpha1, t3
+    t6 = c1_y - s_alpha2 * t4
     del s_alpha2, t4
-    u_u = u_z * u_z + t5 * t5 + t7 * t7
+    u_u = u_z * u_z + t5 * t5 + t6 * t6
     size = f + e + L + l
-    t8 = size * size
-    t9 = _runtime.VANISHING * _runtime.VANISHING
-    t10 = t8 * t9
-    same = u_u <= t10
-    t11 = L * c3
-    del c3
-    t12 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11)
+    t7 = size * size
+    t8 = _runtime.VANISHING * _runtime.VANISHING
+    t9 = t7 * t8
+    same = u_u <= t9
+    t10 = L * c3 + t2
+    del c3, t2
+    t11 = c1_x - c_alpha3 * t10
     del c_alpha3
-    d_x = _runtime.select(same, t12, t5)
-    t13 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
-    del s_alpha3, t11
-    t14 = _runtime.select(same, t13, t7)
+    t12 = _runtime.select(same, t11, t5)
+    t13 = c1_y - s_alpha3 * t10
+    del s_alpha3, t10
+    t14 = _runtime.select(same, t13, t6)
     v_z = t1 - L * s3
     del s3
-    v_v = v_z * v_z + t12 * t12 + t13 * t13
-    all_same = u_u + v_v <= t10
-    del t10
+    v_v = v_z * v_z + t11 * t11 + t13 * t13
+    all_same = u_u + v_v <= t9
+    del t9
     whole = _runtime.select(size == 0.0, 1.0, size)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t15 = _runtime.select(same, t7, t13)
-    del t13, t7
-    t16 = _runtime.select(same, t5, t12)
-    del t12, t5
-    t17 = a_x * t15 - t14 * t16
+    a_x = _runtime.select(all_same, whole, -t12)
+    t15 = _runtime.select(same, t6, t13)
+    del t13, t6
+    t16 = _runtime.select(same, t5, t11)
+    del t11, t5
+    t17 = a_x * t15 + t14 * t16
     d_z = _runtime.select(same, v_z, u_z)
     t18 = _runtime.select(same, u_z, v_z)
     del u_z, v_z
-    t19 = a_x * t18 - t16 * d_z
+    t19 = a_x * t18 + t16 * d_z
     t20 = t14 * t17 + d_z * t19
     t21 = t14 * t18 - t15 * d_z
-    m_m = t21 * t21 + t19 * t19 + t17 * t17
+    product_2 = t21 * t21 + t19 * t19 + t17 * t17
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t22 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t22 * 0.000244140625 <= _runtime.VANISHING * t22
+    slim = product_2 - t22 * 0.000244140625 <= _runtime.VANISHING * t22
     del t22
     over = 1.0 / mu
     t23 = a_x * t17 - d_z * t21
     n_z = a_x * t19 + t14 * t21
-    mu_nu = _runtime.select(slim, over * (t20 * t20 + t23 * t23 + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t9 * (t8 * mu)
-    del t9
+    m_m = _runtime.select(slim, over * (t20 * t20 + t23 * t23 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t8 * (t7 * mu)
+    del t8
     g_1 = whole * d_z
-    s_w = _runtime.sign(t14 * a_x)
-    t24 = whole * (t14 + a_x * s_w)
+    s_w = _runtime.sign(-(t14 * a_x))
+    t24 = whole * (t14 - a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t24 * t24, mu_nu)
-    del mu_nu
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t24 * t24, m_m)
+    del m_m
     part = 1.0 / w_w
-    t25 = t16 * (d_x - t16) + t15 * (t14 - t15) + t18 * (d_z - t18)
+    t25 = t16 * (t12 - t16) + t15 * (t14 - t15) + t18 * (d_z - t18)
     del t15, t16, t18
     t26 = _runtime.select(in_line, 0.0, part * t25 * 0.5)
-    t27 = d_x * 0.5 - (t3 - t20 * t26)
-    del d_x, t3
-    m_again_x = _runtime.select(slim, over * (t14 * n_z - d_z * t23), t21)
+    t27 = t12 * 0.5 - (c1_x + t20 * t26)
+    del c1_x, t12
+    t28 = _runtime.select(slim, over * (t14 * n_z - d_z * t23), t21)
     del t21
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x, s_w
-    t28 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t26 * t26)))
+    t29 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t26 * t26)))
     del all_same, mu, w_w
-    t29 = l * l - t28
-    del t28
-    slack = np.maximum(t29, 0.0)
-    t30 = l * size * 0.75
+    t30 = l * l - t29
+    del t29
+    slack = np.maximum(t30, 0.0)
+    t31 = l * size * 0.75
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t30, 0.0, np.sqrt(part) * np.sqrt(slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t31 = w_x * h
-    del w_x
-    t32 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t33 = t32 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t32
-    t34 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    invalid = np.logical_not(t33 & t34)
-    del t33, t34
-    t35 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t8 * _runtime.FEASIBILITY
-    del t25, t8
-    unreachable = np.logical_not(t35 & (-(_runtime.FEASIBILITY * t30) <= t29))
-    del t29, t30, t35
-    t36 = _runtime.poison(invalid | unreachable)
-    t37 = t14 * 0.5 - (t6 + t23 * t26)
-    del t6
-    t38 = _runtime.select(slim, over * (a_x * n_z + d_z * t20), t19)
+    t32 = _runtime.select(in_line, g_1 * s_w, -t28) * h
+    del s_w, t28
+    t33 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t34 = t33 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t33
+    t35 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    invalid = np.logical_not(t34 & t35)
+    del t34, t35
+    t36 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t7 * _runtime.FEASIBILITY
+    del t25, t7
+    unreachable = np.logical_not(t36 & (-(_runtime.FEASIBILITY * t31) <= t30))
+    del t30, t31, t36
+    t37 = _runtime.poison(invalid | unreachable)
+    t38 = t14 * 0.5 - (c1_y + t23 * t26)
+    del c1_y
+    t39 = _runtime.select(slim, over * (a_x * n_z + d_z * t20), t19)
     del t19
-    t39 = h * _runtime.select(in_line, g_1, -t38)
-    del g_1, t38
-    t40 = d_z * 0.5 - (t1 + n_z * t26)
+    t40 = h * _runtime.select(in_line, g_1, -t39)
+    del g_1, t39
+    t41 = d_z * 0.5 - (t1 + n_z * t26)
     del d_z, n_z, t1, t26
-    m_again_z = _runtime.select(slim, over * (a_x * t23 + t14 * t20), t17)
+    t42 = _runtime.select(slim, over * (a_x * t23 + t14 * t20), t17)
     del a_x, over, slim, t14, t17, t20, t23
-    t41 = h * _runtime.select(in_line, -t24, m_again_z)
-    del h, m_again_z, t24
-    t42 = _runtime.status(invalid, unreachable, in_line)
+    t43 = h * _runtime.select(in_line, t24, -t42)
+    del h, t24, t42
+    t44 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t27 - t31 + t36,
-        t37 - t39 + t36,
-        t40 - t41 + t36,
-        t31 + t27 + t36,
-        t39 + t37 + t36,
-        t41 + t40 + t36,
-        t42,
-        t42,
+        -(t27 + t32) + t37,
+        -(t38 + t40) + t37,
+        t41 - t43 + t37,
+        t32 - t27 + t37,
+        t40 - t38 + t37,
+        t41 + t43 + t37,
+        t44,
+        t44,
     )
 
 
 def _fk_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     # Where nothing vanishes; last, whether something does.
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
     s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
     s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
     s2, c2 = _runtime.sincos_as_in_c(theta2)
     s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
-    s3, c3 = _runtime.sincos_as_in_c(theta3)
-    t1 = L * c1
-    del c1
-    t2 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t1
-    del c_alpha1
-    t3 = L * c2
-    del c2
-    t4 = t2 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t3)
-    del c_alpha2
-    t5 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t1
-    del s_alpha1, t1
-    t6 = t5 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t3)
-    del s_alpha2, t3
-    t7 = L * c3
-    del c3
-    t8 = t5 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t7)
-    del s_alpha3
-    t9 = t2 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t7)
-    del c_alpha3, t7
-    m_again_z = t4 * t8 - t6 * t9
-    t10 = L * s1
+    t1 = L * s1
     del s1
-    u_z = t10 - L * s2
-    del s2
-    v_z = t10 - L * s3
+    v_z = t1 - L * s3
     del s3
-    t11 = v_z * t4 - u_z * t9
-    t12 = v_z * t6 - u_z * t8
-    m_m = t12 * t12 + t11 * t11 + m_again_z * m_again_z
-    part = 1.0 / m_m
-    t13 = v_z * (u_z - v_z) + t9 * (t4 - t9) + t8 * (t6 - t8)
-    t14 = part * t13 * 0.5
-    del t13
-    t15 = t4 * 0.5 - (t2 - (t6 * m_again_z + u_z * t11) * t14)
-    del t2
-    u_u = u_z * u_z + t4 * t4 + t6 * t6
-    t16 = l * l - u_u * (0.25 + m_m * (t14 * t14))
-    slack = np.maximum(t16, 0.0)
+    t2 = f - e
+    t3 = L * c1 + t2
+    del c1
+    c1_y = s_alpha1 * t3
+    del s_alpha1
+    t4 = L * c2 + t2
+    del c2
+    t5 = c1_y - s_alpha2 * t4
+    del s_alpha2
+    u_z = t1 - L * s2
+    del s2
+    t6 = L * c3 + t2
+    del c3, t2
+    t7 = c1_y - s_alpha3 * t6
+    del s_alpha3
+    t8 = v_z * t5 - u_z * t7
+    c1_x = c_alpha1 * t3
+    del c_alpha1, t3
+    t9 = c1_x - c_alpha2 * t4
+    del c_alpha2, t4
+    t10 = c1_x - c_alpha3 * t6
+    del c_alpha3, t6
+    m_y = v_z * t9 - u_z * t10
+    m_z = t9 * t7 - t5 * t10
+    product_2 = t8 * t8 + m_y * m_y + m_z * m_z
+    part = 1.0 / product_2
+    u_u = u_z * u_z + t9 * t9 + t5 * t5
+    t11 = v_z * (u_z - v_z) + t10 * (t9 - t10) + t7 * (t5 - t7)
+    t12 = part * t11 * 0.5
+    del t11
+    t13 = l * l - u_u * (0.25 + product_2 * (t12 * t12))
+    slack = np.maximum(t13, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t17 = t12 * h
-    t18 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t19 = t18 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t18
-    t20 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    invalid = np.logical_not(t19 & t20)
-    del t19, t20
-    size = f + e + L + l
-    t21 = size * size
-    t22 = l * size * 0.75
-    del size
-    t23 = (np.abs(0.0) <= t21 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t22) <= t16)
+    t14 = t8 * h
+    t15 = t9 * 0.5 - (c1_x - (t5 * m_z + u_z * m_y) * t12)
+    del c1_x
+    t16 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t17 = t16 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     del t16
-    unreachable = np.logical_not(t23)
-    del t23
-    t24 = _runtime.poison(invalid | unreachable)
-    t25 = t11 * h
-    t26 = t6 * 0.5 - (t5 + t14 * (t4 * m_again_z - u_z * t12))
-    del t5
-    t27 = m_again_z * h
-    del h, m_again_z
-    t28 = t14 * (t4 * t11 + t6 * t12) + (t10 - u_z * 0.5)
-    del t10, t11, t12, t14, t4, t6, u_z
-    t29 = _runtime.status(invalid, unreachable, np.False_)
+    t18 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    invalid = np.logical_not(t17 & t18)
+    del t17, t18
+    size = f + e + L + l
+    t19 = size * size
+    t20 = l * size * 0.75
+    del size
+    t21 = (np.abs(0.0) <= t19 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t20) <= t13)
+    del t13
+    unreachable = np.logical_not(t21)
+    del t21
+    t22 = _runtime.poison(invalid | unreachable)
+    t23 = t5 * 0.5 - (c1_y + t12 * (t9 * m_z - u_z * t8))
+    del c1_y
+    t24 = m_y * h
+    t25 = u_z * 0.5 - (t1 + t12 * (t9 * m_y + t5 * t8))
+    del m_y, t1, t12, t5, t8, t9, u_z
+    t26 = m_z * h
+    del h, m_z
+    t27 = _runtime.status(invalid, unreachable, np.False_)
     del invalid, unreachable
-    t30 = _runtime.VANISHING * _runtime.VANISHING
-    t31 = t21 * t30
-    v_v = v_z * v_z + t9 * t9 + t8 * t8
-    del t8, t9, v_z
-    t32 = u_u * v_v
-    slim = m_m - t32 * 0.000244140625 <= _runtime.VANISHING * t32
-    del t32
-    t33 = (u_u <= t31) | (u_u + v_v <= t31) | slim | (m_m <= t30 * (t21 * u_u))
-    del m_m, slim, t21, t30, t31, u_u, v_v
+    t28 = _runtime.VANISHING * _runtime.VANISHING
+    t29 = t19 * t28
+    v_v = v_z * v_z + t10 * t10 + t7 * t7
+    del t10, t7, v_z
+    t30 = u_u * v_v
+    slim = product_2 - t30 * 0.000244140625 <= _runtime.VANISHING * t30
+    del t30
+    t31 = (u_u <= t29) | (u_u + v_v <= t29) | slim | (product_2 <= t28 * (t19 * u_u))
+    del product_2, slim, t19, t28, t29, u_u, v_v
     return (
-        t15 - t17 + t24,
-        t25 + t26 + t24,
-        -(t27 + t28) + t24,
-        t17 + t15 + t24,
-        t26 - t25 + t24,
-        t27 - t28 + t24,
-        t29,
-        t29,
-        t33 | (slack <= _runtime.VANISHING * t22),
+        t14 - t15 + t22,
+        -(t23 + t24) + t22,
+        t25 - t26 + t22,
+        -(t15 + t14) + t22,
+        t24 - t23 + t22,
+        t25 + t26 + t22,
+        t27,
+        t27,
+        t31 | (slack <= _runtime.VANISHING * t20),
     )
 
 
@@ -456,336 +458,342 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t6 = L * s2
     del s2
     u_z = t5 - t6
-    t7 = e * c_alpha1
-    t8 = L * c1
+    t7 = L * c1
     del c1
-    t9 = t1 + c_alpha1 * t8
-    del c_alpha1
-    t10 = t7 - t9
-    t11 = e * c_alpha2
-    t12 = f * c_alpha2
-    t13 = L * c2
+    t8 = f - e
+    t9 = t7 + t8
+    c1_x = c_alpha1 * t9
+    t10 = L * c2
     del c2
-    t14 = t12 + c_alpha2 * t13
-    del c_alpha2
-    t15 = t10 - (t11 - t14)
-    t16 = e * s_alpha1
-    t17 = f * s_alpha1
-    t18 = t17 + s_alpha1 * t8
-    del s_alpha1, t8
-    t19 = t16 - t18
-    t20 = e * s_alpha2
-    t21 = f * s_alpha2
-    t22 = t21 + s_alpha2 * t13
-    del s_alpha2, t13
-    t23 = t19 - (t20 - t22)
-    u_u = u_z * u_z + t15 * t15 + t23 * t23
+    t11 = t10 + t8
+    t12 = c1_x - c_alpha2 * t11
+    c1_y = s_alpha1 * t9
+    del t9
+    t13 = c1_y - s_alpha2 * t11
+    del t11
+    u_u = u_z * u_z + t12 * t12 + t13 * t13
     size = f + e + L + l
-    t24 = size * size
-    t25 = _runtime.VANISHING * _runtime.VANISHING
-    t26 = t24 * t25
-    same = u_u <= t26
-    t27 = e * s_alpha3
-    t28 = f * s_alpha3
-    t29 = L * c3
+    t14 = size * size
+    t15 = _runtime.VANISHING * _runtime.VANISHING
+    t16 = t14 * t15
+    same = u_u <= t16
+    t17 = L * c3
     del c3
-    t30 = t28 + s_alpha3 * t29
-    del s_alpha3
-    t31 = t19 - (t27 - t30)
-    t32 = _runtime.select(same, t31, t23)
-    t33 = L * s3
+    t18 = t17 + t8
+    del t8
+    t19 = c1_y - s_alpha3 * t18
+    t20 = _runtime.select(same, t19, t13)
+    t21 = L * s3
     del s3
-    v_z = t5 - t33
-    t34 = _runtime.select(same, u_z, v_z)
+    v_z = t5 - t21
+    t22 = _runtime.select(same, u_z, v_z)
     d_z = _runtime.select(same, v_z, u_z)
     del u_z
-    t35 = _runtime.select(same, t23, t31)
-    del t23
-    t36 = t32 * t34 - d_z * t35
-    t37 = e * c_alpha3
-    t38 = f * c_alpha3
-    t39 = t38 + c_alpha3 * t29
-    del c_alpha3, t29
-    t40 = t10 - (t37 - t39)
-    v_v = v_z * v_z + t40 * t40 + t31 * t31
-    del t31, v_z
-    all_same = u_u + v_v <= t26
-    del t26
+    t23 = _runtime.select(same, t13, t19)
+    del t13
+    t24 = t20 * t22 - d_z * t23
+    t25 = c1_x - c_alpha3 * t18
+    del t18
+    v_v = v_z * v_z + t25 * t25 + t19 * t19
+    del t19, v_z
+    all_same = u_u + v_v <= t16
+    del t16
     whole = _runtime.select(size == 0.0, 1.0, size)
-    d_x = _runtime.select(same, t40, t15)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t41 = _runtime.select(same, t15, t40)
-    del t15, t40
-    t42 = t34 * a_x - d_z * t41
-    t43 = t35 * a_x - t32 * t41
-    m_m = t36 * t36 + t42 * t42 + t43 * t43
+    t26 = _runtime.select(same, t25, t12)
+    a_x = _runtime.select(all_same, whole, -t26)
+    t27 = _runtime.select(same, t12, t25)
+    del t12, t25
+    t28 = t22 * a_x + d_z * t27
+    t29 = t23 * a_x + t20 * t27
+    product_2 = t24 * t24 + t28 * t28 + t29 * t29
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t44 = mu * _runtime.select(same, u_u, v_v)
+    t30 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t44 * 0.000244140625 <= _runtime.VANISHING * t44
-    del t44
+    slim = product_2 - t30 * 0.000244140625 <= _runtime.VANISHING * t30
+    del t30
     over = 1.0 / mu
-    t45 = t32 * t43 + d_z * t42
-    t46 = a_x * t43 - d_z * t36
-    n_z = a_x * t42 + t32 * t36
-    mu_nu = _runtime.select(slim, over * (t45 * t45 + t46 * t46 + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t25 * (t24 * mu)
-    del t25
-    t47 = t41 * (d_x - t41) + t35 * (t32 - t35) - t34 * (t34 - d_z)
-    del t34, t35, t41
-    t48 = np.abs(_runtime.select(in_line, -t47, 0.0)) <= t24 * _runtime.FEASIBILITY
-    del t24
-    t49 = 0.9375 * (l * size)
+    t31 = t20 * t29 + d_z * t28
+    t32 = a_x * t29 - d_z * t24
+    n_z = a_x * t28 + t20 * t24
+    m_m = _runtime.select(slim, over * (t31 * t31 + t32 * t32 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t15 * (t14 * mu)
+    del t15
+    t33 = t27 * (t26 - t27) + t23 * (t20 - t23) - t22 * (t22 - d_z)
+    del t22, t23, t27
+    t34 = np.abs(_runtime.select(in_line, -t33, 0.0)) <= t14 * _runtime.FEASIBILITY
+    del t14
+    t35 = 0.9375 * (l * size)
     del size
     g_1 = whole * d_z
-    s_w = _runtime.sign(t32 * a_x)
-    t50 = whole * (t32 + a_x * s_w)
+    s_w = _runtime.sign(-(t20 * a_x))
+    t36 = whole * (t20 - a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t50 * t50, mu_nu)
-    del mu_nu
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t36 * t36, m_m)
+    del m_m
     part = 1.0 / w_w
-    t51 = _runtime.select(in_line, 0.0, t47 * part * 0.5)
-    del t47
-    t52 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t51 * t51)))
-    del all_same, mu, w_w
-    t53 = l * l - t52
-    del t52
-    unreachable = np.logical_not(t48 & (-(_runtime.FEASIBILITY * t49) <= t53))
-    del t48
-    t54 = _runtime.poison(np.logical_not(t3 & t4) | unreachable)
-    del t3, t4, unreachable
-    t55 = t1 + t54
-    del t1
-    t56 = t17 + t54
-    del t17
-    t57 = 0.0 + t54
-    t58 = t9 + t54
-    t59 = t18 + t54
-    t60 = -t5 + t54
-    t61 = t45 * t51 + d_x * 0.5
-    del d_x
-    m_again_x = _runtime.select(slim, over * (t32 * n_z - d_z * t46), t36)
-    del t36
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x, s_w
-    slack = np.maximum(t53, 0.0)
-    del t53
-    h = _runtime.select(slack <= _runtime.VANISHING * t49, 0.0, np.sqrt(part) * np.sqrt(slack))
-    del part, slack, t49
-    t62 = w_x * h
-    del w_x
-    t63 = t10 - (t61 - t62)
-    t64 = t7 - t63
-    t65 = t46 * t51 - t32 * 0.5
-    t66 = _runtime.select(slim, over * (a_x * n_z + d_z * t45), t42)
-    del t42
-    t67 = h * _runtime.select(in_line, g_1, -t66)
-    del g_1, t66
-    t68 = t19 + (t65 + t67)
-    t69 = t16 - t68
-    t70 = n_z * t51 - d_z * 0.5
-    del d_z, n_z, t51
-    m_again_z = _runtime.select(slim, over * (a_x * t46 + t32 * t45), t43)
-    del a_x, over, slim, t32, t43, t45, t46
-    t71 = h * _runtime.select(in_line, -t50, m_again_z)
-    del h, in_line, m_again_z, t50
-    t72 = -(t5 + (t70 + t71)) + t54
-    t73 = t16 * 0.5
-    t74 = t9 - t73 + t54
-    t75 = t7 * 0.5
-    t76 = t75 + t18 + t54
-    t77 = t73 + t9 + t54
-    del t9
-    t78 = t18 - t75 + t54
-    del t18
-    t79 = t12 + t54
-    del t12
-    t80 = t21 + t54
-    del t21
-    t81 = t14 + t54
-    t82 = t22 + t54
-    t83 = -t6 + t54
-    del t6
-    t84 = t11 - t63
-    t85 = t20 - t68
-    t86 = t20 * 0.5
-    t87 = t14 - t86 + t54
-    t88 = t11 * 0.5
-    t89 = t88 + t22 + t54
-    t90 = t86 + t14 + t54
-    del t14
-    t91 = t22 - t88 + t54
-    del t22
-    t92 = t38 + t54
-    del t38
-    t93 = t28 + t54
-    del t28
-    t94 = t39 + t54
-    t95 = t30 + t54
-    t96 = -t33 + t54
+    t37 = _runtime.select(in_line, 0.0, t33 * part * 0.5)
     del t33
-    t97 = t37 - t63
-    t98 = t27 - t68
-    t99 = t27 * 0.5
-    t100 = t39 - t99 + t54
-    t101 = t37 * 0.5
-    t102 = t101 + t30 + t54
-    t103 = t99 + t39 + t54
+    t38 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t37 * t37)))
+    del all_same, mu, w_w
+    t39 = l * l - t38
+    del t38
+    unreachable = np.logical_not(t34 & (-(_runtime.FEASIBILITY * t35) <= t39))
+    del t34
+    t40 = _runtime.poison(np.logical_not(t3 & t4) | unreachable)
+    del t3, t4, unreachable
+    t41 = t1 + t40
+    t42 = f * s_alpha1
+    t43 = t42 + t40
+    t44 = 0.0 + t40
+    t45 = t1 + t7 * c_alpha1
+    del t1
+    t46 = t45 + t40
+    t47 = t42 + t7 * s_alpha1
+    del t42, t7
+    t48 = t47 + t40
+    t49 = -t5 + t40
+    t50 = e * c_alpha1
+    del c_alpha1
+    t51 = t31 * t37 - t26 * 0.5
+    del t26
+    t52 = _runtime.select(slim, over * (t20 * n_z - d_z * t32), t24)
+    del t24
+    slack = np.maximum(t39, 0.0)
     del t39
-    t104 = t30 - t101 + t54
-    del t30
-    t105 = t10 - (t61 + t62)
-    del t10, t61, t62
-    t106 = t7 - t105
-    del t7
-    t107 = t19 + (t65 - t67)
-    del t19, t65, t67
-    t108 = t16 - t107
-    del t16
-    t109 = -(t5 + (t70 - t71)) + t54
-    del t5, t70, t71
-    t110 = t11 - t105
-    del t11
-    t111 = t20 - t107
-    del t20
-    t112 = t37 - t105
-    del t37
-    t113 = t27 - t107
-    del t27
+    h = _runtime.select(slack <= _runtime.VANISHING * t35, 0.0, np.sqrt(part) * np.sqrt(slack))
+    del part, slack, t35
+    t53 = _runtime.select(in_line, g_1 * s_w, -t52) * h
+    del s_w, t52
+    t54 = c1_x + (t51 - t53)
+    t55 = t50 + t54
+    t56 = e * s_alpha1
+    del s_alpha1
+    t57 = t32 * t37 - t20 * 0.5
+    t58 = _runtime.select(slim, over * (a_x * n_z + d_z * t31), t28)
+    del t28
+    t59 = h * _runtime.select(in_line, g_1, -t58)
+    del g_1, t58
+    t60 = c1_y + (t57 - t59)
+    t61 = t56 + t60
+    t62 = n_z * t37 - d_z * 0.5
+    del d_z, n_z, t37
+    t63 = _runtime.select(slim, over * (a_x * t32 + t20 * t31), t29)
+    del a_x, over, slim, t20, t29, t31, t32
+    t64 = h * _runtime.select(in_line, t36, -t63)
+    del h, in_line, t36, t63
+    t65 = -(t5 + (t62 + t64)) + t40
+    t66 = t56 * 0.5
+    t67 = t45 - t66 + t40
+    t68 = t50 * 0.5
+    t69 = t68 + t47 + t40
+    t70 = t66 + t45 + t40
+    del t45
+    t71 = t47 - t68 + t40
+    del t47
+    t72 = f * c_alpha2
+    t73 = t72 + t40
+    t74 = f * s_alpha2
+    t75 = t74 + t40
+    t76 = t72 + t10 * c_alpha2
+    del t72
+    t77 = t76 + t40
+    t78 = t74 + t10 * s_alpha2
+    del t10, t74
+    t79 = t78 + t40
+    t80 = -t6 + t40
+    del t6
+    t81 = e * c_alpha2
+    del c_alpha2
+    t82 = t81 + t54
+    t83 = e * s_alpha2
+    del s_alpha2
+    t84 = t83 + t60
+    t85 = t83 * 0.5
+    t86 = t76 - t85 + t40
+    t87 = t81 * 0.5
+    t88 = t87 + t78 + t40
+    t89 = t85 + t76 + t40
+    del t76
+    t90 = t78 - t87 + t40
+    del t78
+    t91 = f * c_alpha3
+    t92 = t91 + t40
+    t93 = f * s_alpha3
+    t94 = t93 + t40
+    t95 = t91 + t17 * c_alpha3
+    del t91
+    t96 = t95 + t40
+    t97 = t93 + t17 * s_alpha3
+    del t17, t93
+    t98 = t97 + t40
+    t99 = -t21 + t40
+    del t21
+    t100 = e * c_alpha3
+    del c_alpha3
+    t101 = t100 + t54
+    t102 = e * s_alpha3
+    del s_alpha3
+    t103 = t102 + t60
+    t104 = t102 * 0.5
+    t105 = t95 - t104 + t40
+    t106 = t100 * 0.5
+    t107 = t106 + t97 + t40
+    t108 = t104 + t95 + t40
+    del t95
+    t109 = t97 - t106 + t40
+    del t97
+    t110 = c1_x + (t51 + t53)
+    del c1_x, t51, t53
+    t111 = t50 + t110
+    del t50
+    t112 = c1_y + (t57 + t59)
+    del c1_y, t57, t59
+    t113 = t56 + t112
+    del t56
+    t114 = -(t5 + (t62 - t64)) + t40
+    del t5, t62, t64
+    t115 = t81 + t110
+    del t81
+    t116 = t83 + t112
+    del t83
+    t117 = t100 + t110
+    del t100
+    t118 = t102 + t112
+    del t102
     return (
-        t55,
-        t56,
-        t57,
-        t58,
-        t59,
-        t60,
-        t64 + t54,
-        t69 + t54,
-        t72,
-        t74,
-        t76,
-        t60,
+        t41,
+        t43,
+        t44,
+        t46,
+        t48,
+        t49,
+        t55 + t40,
+        t61 + t40,
+        t65,
+        t67,
+        t69,
+        t49,
+        t70,
+        t71,
+        t49,
+        t55 - t66 + t40,
+        t68 + t61 + t40,
+        t65,
+        t66 + t55 + t40,
+        t61 - t68 + t40,
+        t65,
+        t73,
+        t75,
+        t44,
         t77,
-        t78,
-        t60,
-        t64 - t73 + t54,
-        t75 + t69 + t54,
-        t72,
-        t73 + t64 + t54,
-        t69 - t75 + t54,
-        t72,
         t79,
         t80,
-        t57,
-        t81,
-        t82,
-        t83,
-        t84 + t54,
-        t85 + t54,
-        t72,
-        t87,
+        t82 + t40,
+        t84 + t40,
+        t65,
+        t86,
+        t88,
+        t80,
         t89,
-        t83,
         t90,
-        t91,
-        t83,
-        t84 - t86 + t54,
-        t88 + t85 + t54,
-        t72,
-        t86 + t84 + t54,
-        t85 - t88 + t54,
-        t72,
+        t80,
+        t82 - t85 + t40,
+        t87 + t84 + t40,
+        t65,
+        t85 + t82 + t40,
+        t84 - t87 + t40,
+        t65,
         t92,
-        t93,
-        t57,
         t94,
-        t95,
+        t44,
         t96,
-        t97 + t54,
-        t98 + t54,
-        t72,
-        t100,
-        t102,
-        t96,
-        t103,
-        t104,
-        t96,
-        t97 - t99 + t54,
-        t101 + t98 + t54,
-        t72,
-        t99 + t97 + t54,
-        t98 - t101 + t54,
-        t72,
-        -t63 + t54,
-        -t68 + t54,
-        t72,
-        t55,
-        t56,
-        t57,
-        t58,
-        t59,
-        t60,
-        t106 + t54,
-        t108 + t54,
+        t98,
+        t99,
+        t101 + t40,
+        t103 + t40,
+        t65,
+        t105,
+        t107,
+        t99,
+        t108,
         t109,
-        t74,
-        t76,
-        t60,
+        t99,
+        t101 - t104 + t40,
+        t106 + t103 + t40,
+        t65,
+        t104 + t101 + t40,
+        t103 - t106 + t40,
+        t65,
+        t54 + t40,
+        t60 + t40,
+        t65,
+        t41,
+        t43,
+        t44,
+        t46,
+        t48,
+        t49,
+        t111 + t40,
+        t113 + t40,
+        t114,
+        t67,
+        t69,
+        t49,
+        t70,
+        t71,
+        t49,
+        t111 - t66 + t40,
+        t68 + t113 + t40,
+        t114,
+        t66 + t111 + t40,
+        t113 - t68 + t40,
+        t114,
+        t73,
+        t75,
+        t44,
         t77,
-        t78,
-        t60,
-        t106 - t73 + t54,
-        t75 + t108 + t54,
-        t109,
-        t73 + t106 + t54,
-        t108 - t75 + t54,
-        t109,
         t79,
         t80,
-        t57,
-        t81,
-        t82,
-        t83,
-        t110 + t54,
-        t111 + t54,
-        t109,
-        t87,
+        t115 + t40,
+        t116 + t40,
+        t114,
+        t86,
+        t88,
+        t80,
         t89,
-        t83,
         t90,
-        t91,
-        t83,
-        t110 - t86 + t54,
-        t88 + t111 + t54,
-        t109,
-        t86 + t110 + t54,
-        t111 - t88 + t54,
-        t109,
+        t80,
+        t115 - t85 + t40,
+        t87 + t116 + t40,
+        t114,
+        t85 + t115 + t40,
+        t116 - t87 + t40,
+        t114,
         t92,
-        t93,
-        t57,
         t94,
-        t95,
+        t44,
         t96,
-        t112 + t54,
-        t113 + t54,
+        t98,
+        t99,
+        t117 + t40,
+        t118 + t40,
+        t114,
+        t105,
+        t107,
+        t99,
+        t108,
         t109,
-        t100,
-        t102,
-        t96,
-        t103,
-        t104,
-        t96,
-        t112 - t99 + t54,
-        t101 + t113 + t54,
-        t109,
-        t99 + t112 + t54,
-        t113 - t101 + t54,
-        t109,
-        -t105 + t54,
-        -t107 + t54,
-        t109,
+        t99,
+        t117 - t104 + t40,
+        t106 + t118 + t40,
+        t114,
+        t104 + t117 + t40,
+        t118 - t106 + t40,
+        t114,
+        t110 + t40,
+        t112 + t40,
+        t114,
     )
 
 
@@ -846,243 +854,243 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     del s1
     u_z = t1 - L * s2
     del s2
-    t2 = L * c1
+    t2 = f - e
+    t3 = L * c1 + t2
     del c1
-    t3 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t2
+    c1_x = c_alpha1 * t3
     del c_alpha1
-    t4 = L * c2
+    t4 = L * c2 + t2
     del c2
-    t5 = t3 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t4)
+    t5 = c1_x - c_alpha2 * t4
     del c_alpha2
-    t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t2
-    del s_alpha1, t2
-    t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4)
+    c1_y = s_alpha1 * t3
+    del s_alpha1, t3
+    t6 = c1_y - s_alpha2 * t4
     del s_alpha2, t4
-    u_u = u_z * u_z + t5 * t5 + t7 * t7
+    u_u = u_z * u_z + t5 * t5 + t6 * t6
     size = f + e + L + l
-    t8 = size * size
-    t9 = _runtime.VANISHING * _runtime.VANISHING
-    t10 = t8 * t9
-    same = u_u <= t10
-    t11 = L * c3
-    del c3
-    t12 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
-    del s_alpha3, t6
-    t13 = _runtime.select(same, t12, t7)
+    t7 = size * size
+    t8 = _runtime.VANISHING * _runtime.VANISHING
+    t9 = t7 * t8
+    same = u_u <= t9
+    t10 = L * c3 + t2
+    del c3, t2
+    t11 = c1_y - s_alpha3 * t10
+    del c1_y, s_alpha3
+    t12 = _runtime.select(same, t11, t6)
     v_z = t1 - L * s3
     del s3, t1
-    t14 = _runtime.select(same, u_z, v_z)
-    t15 = _runtime.select(same, t7, t12)
-    d_z = _runtime.select(same, v_z, u_z)
-    t16 = t13 * t14 - t15 * d_z
-    t17 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11)
-    del c_alpha3, t11, t3
-    v_v = v_z * v_z + t17 * t17 + t12 * t12
-    all_same = u_u + v_v <= t10
-    del t10
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    d_x = _runtime.select(same, t17, t5)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t18 = _runtime.select(same, t5, t17)
-    t19 = a_x * t14 - t18 * d_z
-    t20 = a_x * t15 - t13 * t18
-    m_m = t16 * t16 + t19 * t19 + t20 * t20
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t21 = mu * _runtime.select(same, u_u, v_v)
-    del same, u_u, v_v
-    slim = m_m - t21 * 0.000244140625 <= _runtime.VANISHING * t21
-    del t21
-    over = 1.0 / mu
-    t22 = t13 * t20 + d_z * t19
-    t23 = a_x * t20 - d_z * t16
-    n_z = a_x * t19 + t13 * t16
-    mu_nu = _runtime.select(slim, over * (t22 * t22 + t23 * t23 + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t9 * (t8 * mu)
+    t13 = c1_x - c_alpha3 * t10
+    del c1_x, c_alpha3, t10
+    v_v = v_z * v_z + t13 * t13 + t11 * t11
+    all_same = u_u + v_v <= t9
     del t9
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    t14 = _runtime.select(same, t13, t5)
+    a_x = _runtime.select(all_same, whole, -t14)
+    t15 = _runtime.select(same, t6, t11)
+    t16 = _runtime.select(same, t5, t13)
+    t17 = a_x * t15 + t12 * t16
+    d_z = _runtime.select(same, v_z, u_z)
+    t18 = _runtime.select(same, u_z, v_z)
+    t19 = a_x * t18 + t16 * d_z
+    t20 = t12 * t17 + d_z * t19
+    t21 = t12 * t18 - t15 * d_z
+    product_2 = t21 * t21 + t19 * t19 + t17 * t17
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t22 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t22 * 0.000244140625 <= _runtime.VANISHING * t22
+    del t22
+    over = 1.0 / mu
+    t23 = a_x * t17 - d_z * t21
+    n_z = a_x * t19 + t12 * t21
+    m_m = _runtime.select(slim, over * (t20 * t20 + t23 * t23 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t8 * (t7 * mu)
+    del t8
     g_1 = whole * d_z
-    s_w = _runtime.sign(t13 * a_x)
-    m_again_x = _runtime.select(slim, over * (t13 * n_z - d_z * t23), t16)
-    del t16
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x
-    t24 = whole * (t13 + a_x * s_w)
-    del s_w, whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t24 * t24, mu_nu)
-    del mu_nu
+    s_w = _runtime.sign(-(t12 * a_x))
+    t24 = whole * (t12 - a_x * s_w)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t24 * t24, m_m)
+    del m_m
     part = 1.0 / w_w
-    t25 = t18 * (d_x - t18) + t15 * (t13 - t15) + t14 * (d_z - t14)
-    del t14, t15, t18
+    t25 = t16 * (t14 - t16) + t15 * (t12 - t15) + t18 * (d_z - t18)
+    del t15, t16, t18
     t26 = _runtime.select(in_line, 0.0, part * t25 * 0.5)
-    t27 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t26 * t26)))
+    t27 = t20 * t26 - t14 * 0.5
+    del t14
+    t28 = _runtime.select(slim, over * (t12 * n_z - d_z * t23), t21)
+    del t21
+    t29 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t26 * t26)))
     del all_same, mu, w_w
-    t28 = l * l - t27
-    del t27
-    slack = np.maximum(t28, 0.0)
-    t29 = 0.9375 * (l * size)
+    t30 = l * l - t29
+    del t29
+    slack = np.maximum(t30, 0.0)
+    t31 = 0.9375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t29, 0.0, np.sqrt(part) * np.sqrt(slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t30 = w_x * h
-    del w_x
-    t31 = t22 * t26 + d_x * 0.5
-    del d_x
-    t32 = t30 - t31
+    t32 = _runtime.select(in_line, g_1 * s_w, -t28) * h
+    del s_w, t28
+    A_11 = t27 - t32
     t33 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
     t34 = t33 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     del t33
     t35 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t36 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t8 * _runtime.FEASIBILITY
-    del t25, t8
-    unreachable = np.logical_not(t36 & (-(_runtime.FEASIBILITY * t29) <= t28))
-    del t28, t29, t36
+    t36 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t7 * _runtime.FEASIBILITY
+    del t25, t7
+    unreachable = np.logical_not(t36 & (-(_runtime.FEASIBILITY * t31) <= t30))
+    del t30, t31, t36
     t37 = _runtime.poison(np.logical_not(t34 & t35) | unreachable)
     del t34, t35, unreachable
-    t38 = _runtime.select(slim, over * (a_x * n_z + d_z * t22), t19)
+    t38 = t23 * t26 - t12 * 0.5
+    t39 = _runtime.select(slim, over * (a_x * n_z + d_z * t20), t19)
     del t19
-    t39 = h * _runtime.select(in_line, g_1, -t38)
-    del g_1, t38
-    t40 = t23 * t26 - t13 * 0.5
-    t41 = t39 + t40
-    m_again_z = _runtime.select(slim, over * (a_x * t23 + t13 * t22), t20)
-    del a_x, over, slim, t13, t20, t22, t23
-    t42 = h * _runtime.select(in_line, -t24, m_again_z)
-    del h, in_line, m_again_z, t24
-    t43 = n_z * t26 - d_z * 0.5
+    t40 = h * _runtime.select(in_line, g_1, -t39)
+    del g_1, t39
+    A_12 = t38 - t40
+    t41 = n_z * t26 - d_z * 0.5
     del d_z, n_z, t26
-    t44 = t42 + t43
-    A_11_above = t30 + t31
-    del t30, t31
-    A_12_above = t39 - t40
-    del t39, t40
-    A_13_above = t42 - t43
-    del t42, t43
+    t42 = _runtime.select(slim, over * (a_x * t23 + t12 * t20), t17)
+    del a_x, over, slim, t12, t17, t20, t23
+    t43 = h * _runtime.select(in_line, t24, -t42)
+    del h, in_line, t24, t42
+    t44 = t41 + t43
+    A_11_above = t27 + t32
+    del t27, t32
+    A_12_above = t38 + t40
+    del t38, t40
+    t45 = t41 - t43
+    del t41, t43
     return (
-        -t32 + t37,
-        -t41 + t37,
+        A_11 + t37,
+        A_12 + t37,
         -t44 + t37,
-        -(t5 + t32) + t37,
-        -(t7 + t41) + t37,
+        t5 + A_11 + t37,
+        t6 + A_12 + t37,
         -(u_z + t44) + t37,
-        -(t17 + t32) + t37,
-        -(t12 + t41) + t37,
+        t13 + A_11 + t37,
+        t11 + A_12 + t37,
         -(v_z + t44) + t37,
         A_11_above + t37,
         A_12_above + t37,
-        A_13_above + t37,
-        A_11_above - t5 + t37,
-        A_12_above - t7 + t37,
-        A_13_above - u_z + t37,
-        A_11_above - t17 + t37,
-        A_12_above - t12 + t37,
-        A_13_above - v_z + t37,
+        -t45 + t37,
+        t5 + A_11_above + t37,
+        t6 + A_12_above + t37,
+        -(u_z + t45) + t37,
+        t13 + A_11_above + t37,
+        t11 + A_12_above + t37,
+        -(v_z + t45) + t37,
     )
 
 
 def _jacobian_parallel_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     # Where nothing vanishes; last, whether something does.
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s3, c3 = _runtime.sincos_as_in_c(theta3)
     s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
     s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
     s2, c2 = _runtime.sincos_as_in_c(theta2)
     s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
-    t1 = L * s1
-    del s1
-    v_z = t1 - L * s3
-    del s3
-    t2 = L * c1
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
+    t1 = f - e
+    t2 = L * c1 + t1
     del c1
-    t3 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t2
+    c1_y = s_alpha1 * t2
     del s_alpha1
-    t4 = L * c2
+    t3 = L * c2 + t1
     del c2
-    t5 = t3 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4)
+    t4 = c1_y - s_alpha2 * t3
     del s_alpha2
-    u_z = t1 - L * s2
-    del s2, t1
-    t6 = L * c3
-    del c3
-    t7 = t3 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t6)
-    del s_alpha3, t3
-    t8 = v_z * t5 - u_z * t7
-    t9 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t2
+    c1_x = c_alpha1 * t2
     del c_alpha1, t2
-    t10 = t9 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t4)
-    del c_alpha2, t4
-    t11 = t9 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t6)
-    del c_alpha3, t6, t9
-    t12 = v_z * t10 - u_z * t11
-    m_again_z = t10 * t7 - t5 * t11
-    m_m = t8 * t8 + t12 * t12 + m_again_z * m_again_z
-    part = 1.0 / m_m
-    u_u = u_z * u_z + t10 * t10 + t5 * t5
-    t13 = v_z * (u_z - v_z) + t11 * (t10 - t11) + t7 * (t5 - t7)
-    t14 = part * t13 * 0.5
-    del t13
-    t15 = l * l - u_u * (0.25 + m_m * (t14 * t14))
-    slack = np.maximum(t15, 0.0)
+    t5 = c1_x - c_alpha2 * t3
+    del c_alpha2, t3
+    t6 = L * c3 + t1
+    del c3, t1
+    t7 = c1_y - s_alpha3 * t6
+    del c1_y, s_alpha3
+    t8 = c1_x - c_alpha3 * t6
+    del c1_x, c_alpha3, t6
+    m_z = t5 * t7 - t4 * t8
+    t9 = L * s1
+    del s1
+    u_z = t9 - L * s2
+    del s2
+    v_z = t9 - L * s3
+    del s3, t9
+    m_y = v_z * t5 - u_z * t8
+    t10 = v_z * t4 - u_z * t7
+    product_2 = t10 * t10 + m_y * m_y + m_z * m_z
+    part = 1.0 / product_2
+    t11 = v_z * (u_z - v_z) + t8 * (t5 - t8) + t7 * (t4 - t7)
+    t12 = part * t11 * 0.5
+    del t11
+    t13 = (t4 * m_z + u_z * m_y) * t12 + t5 * 0.5
+    u_u = u_z * u_z + t5 * t5 + t4 * t4
+    t14 = l * l - u_u * (0.25 + product_2 * (t12 * t12))
+    slack = np.maximum(t14, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t16 = t8 * h
-    t17 = (t5 * m_again_z + u_z * t12) * t14 + t10 * 0.5
-    t18 = t16 - t17
-    t19 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t20 = t19 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t19
-    t21 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t15 = t10 * h
+    t16 = t13 - t15
+    t17 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t18 = t17 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t17
+    t19 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     size = f + e + L + l
-    t22 = size * size
-    t23 = 0.9375 * (l * size)
+    t20 = size * size
+    t21 = 0.9375 * (l * size)
     del size
-    t24 = (np.abs(0.0) <= t22 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t23) <= t15)
-    del t15
-    failed = np.logical_not(t20 & t21) | np.logical_not(t24)
-    del t20, t21, t24
-    t25 = _runtime.poison(failed)
+    t22 = (np.abs(0.0) <= t20 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t21) <= t14)
+    del t14
+    failed = np.logical_not(t18 & t19) | np.logical_not(t22)
+    del t18, t19, t22
+    t23 = _runtime.poison(failed)
     del failed
-    t26 = t12 * h
-    t27 = t14 * (t10 * m_again_z - u_z * t8) - t5 * 0.5
-    A_12 = t26 - t27
-    t28 = m_again_z * h
-    del h, m_again_z
-    t29 = u_z * 0.5 - t14 * (t10 * t12 + t5 * t8)
-    del t12, t14, t8
-    t30 = t28 - t29
-    A_11_above = t16 + t17
-    del t16, t17
-    t31 = t26 + t27
+    t24 = t12 * (t5 * m_z - u_z * t10) - t4 * 0.5
+    t25 = m_y * h
+    A_12 = t24 - t25
+    t26 = u_z * 0.5 - t12 * (t5 * m_y + t4 * t10)
+    del m_y, t10, t12
+    t27 = m_z * h
+    del h, m_z
+    A_13 = t26 - t27
+    t28 = t13 + t15
+    del t13, t15
+    A_12_above = t24 + t25
+    del t24, t25
+    A_13_above = t26 + t27
     del t26, t27
-    A_13_above = t28 + t29
-    del t28, t29
-    t32 = _runtime.VANISHING * _runtime.VANISHING
-    t33 = t22 * t32
-    v_v = v_z * v_z + t11 * t11 + t7 * t7
-    t34 = u_u * v_v
-    slim = m_m - t34 * 0.000244140625 <= _runtime.VANISHING * t34
-    del t34
-    t35 = (u_u <= t33) | (u_u + v_v <= t33) | slim | (m_m <= t32 * (t22 * u_u))
-    del m_m, slim, t22, t32, t33, u_u, v_v
+    t29 = _runtime.VANISHING * _runtime.VANISHING
+    t30 = t20 * t29
+    v_v = v_z * v_z + t8 * t8 + t7 * t7
+    t31 = u_u * v_v
+    slim = product_2 - t31 * 0.000244140625 <= _runtime.VANISHING * t31
+    del t31
+    t32 = (u_u <= t30) | (u_u + v_v <= t30) | slim | (product_2 <= t29 * (t20 * u_u))
+    del product_2, slim, t20, t29, t30, u_u, v_v
     return (
-        -t18 + t25,
-        A_12 + t25,
-        -t30 + t25,
-        -(t10 + t18) + t25,
-        A_12 - t5 + t25,
-        -(u_z + t30) + t25,
-        -(t11 + t18) + t25,
-        A_12 - t7 + t25,
-        -(v_z + t30) + t25,
-        A_11_above + t25,
-        -t31 + t25,
-        A_13_above + t25,
-        A_11_above - t10 + t25,
-        -(t5 + t31) + t25,
-        A_13_above - u_z + t25,
-        A_11_above - t11 + t25,
-        -(t7 + t31) + t25,
-        A_13_above - v_z + t25,
-        t35 | (slack <= _runtime.VANISHING * t23),
+        -t16 + t23,
+        A_12 + t23,
+        A_13 + t23,
+        t5 - t16 + t23,
+        t4 + A_12 + t23,
+        A_13 - u_z + t23,
+        t8 - t16 + t23,
+        t7 + A_12 + t23,
+        A_13 - v_z + t23,
+        -t28 + t23,
+        A_12_above + t23,
+        A_13_above + t23,
+        t5 - t28 + t23,
+        t4 + A_12_above + t23,
+        A_13_above - u_z + t23,
+        t8 - t28 + t23,
+        t7 + A_12_above + t23,
+        A_13_above - v_z + t23,
+        t32 | (slack <= _runtime.VANISHING * t21),
     )
 
 
@@ -1132,151 +1140,156 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 
 
 def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
-    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
+    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     s3, c3 = _runtime.sincos(theta3)
-    t1 = L * s1
+    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
+    t1 = L * c1
+    del c1
+    t2 = L * s1
     del s1
-    t2 = c_alpha1 * t1
     t3 = L * s2
     del s2
-    u_z = t1 - t3
-    t4 = L * c1
-    del c1
-    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
-    del c_alpha1
+    u_z = t2 - t3
+    t4 = f - e
+    t5 = t1 + t4
+    c1_x = c_alpha1 * t5
     t6 = L * c2
     del c2
-    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
-    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
-    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    u_u = u_z * u_z + t7 * t7 + t9 * t9
-    size = f + e + L + l
-    t10 = size * size
-    t11 = _runtime.VANISHING * _runtime.VANISHING
-    t12 = t10 * t11
-    same = u_u <= t12
-    t13 = L * c3
-    del c3
-    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
-    del t8
-    t15 = _runtime.select(same, t14, t9)
-    t16 = L * s3
-    del s3
-    v_z = t1 - t16
-    t17 = _runtime.select(same, u_z, v_z)
-    t18 = _runtime.select(same, t9, t14)
-    d_z = _runtime.select(same, v_z, u_z)
-    t19 = t15 * t17 - t18 * d_z
-    t20 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
+    t7 = t6 + t4
+    t8 = c1_x - c_alpha2 * t7
+    c1_y = s_alpha1 * t5
     del t5
-    v_v = v_z * v_z + t20 * t20 + t14 * t14
-    all_same = u_u + v_v <= t12
-    del t12
+    t9 = c1_y - s_alpha2 * t7
+    del t7
+    u_u = u_z * u_z + t8 * t8 + t9 * t9
+    t10 = L * s3
+    del s3
+    v_z = t2 - t10
+    t11 = L * c3
+    del c3
+    t12 = t11 + t4
+    del t4
+    t13 = c1_x - c_alpha3 * t12
+    del c1_x
+    t14 = c1_y - s_alpha3 * t12
+    del c1_y, t12
+    v_v = v_z * v_z + t13 * t13 + t14 * t14
+    size = f + e + L + l
+    t15 = size * size
+    t16 = _runtime.VANISHING * _runtime.VANISHING
+    t17 = t15 * t16
+    all_same = u_u + v_v <= t17
     whole = _runtime.select(size == 0.0, 1.0, size)
-    d_x = _runtime.select(same, t20, t7)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t21 = _runtime.select(same, t7, t20)
-    t22 = a_x * t17 - t21 * d_z
-    t23 = a_x * t18 - t15 * t21
-    m_m = t19 * t19 + t22 * t22 + t23 * t23
+    same = u_u <= t17
+    del t17
+    t18 = _runtime.select(same, t13, t8)
+    a_x = _runtime.select(all_same, whole, -t18)
+    t19 = _runtime.select(same, u_z, v_z)
+    t20 = _runtime.select(same, t8, t13)
+    d_z = _runtime.select(same, v_z, u_z)
+    t21 = a_x * t19 + t20 * d_z
+    t22 = _runtime.select(same, t14, t9)
+    t23 = _runtime.select(same, t9, t14)
+    t24 = t22 * t19 - t23 * d_z
+    n_z = a_x * t21 + t22 * t24
+    t25 = a_x * t23 + t22 * t20
+    product_2 = t24 * t24 + t21 * t21 + t25 * t25
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t24 = mu * _runtime.select(same, u_u, v_v)
+    t26 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t24 * 0.000244140625 <= _runtime.VANISHING * t24
-    del t24
+    slim = product_2 - t26 * 0.000244140625 <= _runtime.VANISHING * t26
+    del t26
     over = 1.0 / mu
-    t25 = t15 * t23 + d_z * t22
-    t26 = a_x * t23 - d_z * t19
-    n_z = a_x * t22 + t15 * t19
-    mu_nu = _runtime.select(slim, over * (t25 * t25 + t26 * t26 + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t11 * (t10 * mu)
-    del t11
+    t27 = t22 * t25 + d_z * t21
+    t28 = a_x * t25 - d_z * t24
+    m_m = _runtime.select(slim, over * (t27 * t27 + t28 * t28 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t16 * (t15 * mu)
+    del t16
     g_1 = whole * d_z
-    s_w = _runtime.sign(t15 * a_x)
-    m_again_x = _runtime.select(slim, over * (t15 * n_z - d_z * t26), t19)
-    del t19
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x
-    t27 = whole * (t15 + a_x * s_w)
-    del s_w, whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t27 * t27, mu_nu)
-    del mu_nu
+    s_w = _runtime.sign(-(t22 * a_x))
+    t29 = whole * (t22 - a_x * s_w)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t29 * t29, m_m)
+    del m_m
     part = 1.0 / w_w
-    t28 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
-    del t17, t18, t21
-    t29 = _runtime.select(in_line, 0.0, part * t28 * 0.5)
-    t30 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t29 * t29)))
+    t30 = t20 * (t18 - t20) + t23 * (t22 - t23) + t19 * (d_z - t19)
+    del t19, t20, t23
+    t31 = _runtime.select(in_line, 0.0, part * t30 * 0.5)
+    t32 = n_z * t31 - d_z * 0.5
+    t33 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t31 * t31)))
     del all_same, mu, w_w
-    t31 = l * l - t30
-    del t30
-    slack = np.maximum(t31, 0.0)
-    t32 = 0.9375 * (l * size)
+    t34 = l * l - t33
+    del t33
+    slack = np.maximum(t34, 0.0)
+    t35 = 0.9375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t32, 0.0, np.sqrt(part) * np.sqrt(slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t35, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t33 = w_x * h
-    del w_x
-    t34 = t25 * t29 + d_x * 0.5
-    del d_x
-    t35 = t33 - t34
-    t36 = s_alpha1 * t1
-    del s_alpha1, t1
-    t37 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
-    del t22
-    t38 = h * _runtime.select(in_line, g_1, -t37)
-    del g_1, t37
-    t39 = t26 * t29 - t15 * 0.5
-    t40 = t38 + t39
-    m_again_z = _runtime.select(slim, over * (a_x * t26 + t15 * t25), t23)
-    del a_x, over, slim, t15, t23, t25, t26
-    t41 = h * _runtime.select(in_line, -t27, m_again_z)
-    del h, m_again_z, t27
-    t42 = n_z * t29 - d_z * 0.5
-    del d_z, n_z, t29
-    t43 = t41 + t42
-    t44 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t45 = t44 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t44
-    t46 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t47 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= t10 * _runtime.FEASIBILITY
-    del in_line, t10, t28
-    unreachable = np.logical_not(t47 & (-(_runtime.FEASIBILITY * t32) <= t31))
-    del t31, t32, t47
-    t48 = _runtime.poison(np.logical_not(t45 & t46) | unreachable)
-    del t45, t46, unreachable
-    t49 = c_alpha2 * t3
+    t36 = _runtime.select(slim, over * (a_x * t28 + t22 * t27), t25)
+    del t25
+    t37 = h * _runtime.select(in_line, t29, -t36)
+    del t29, t36
+    t38 = t32 + t37
+    t39 = c_alpha1 * t2
+    del c_alpha1
+    t40 = t27 * t31 - t18 * 0.5
+    del t18
+    t41 = _runtime.select(slim, over * (t22 * n_z - d_z * t28), t24)
+    del t24
+    t42 = _runtime.select(in_line, g_1 * s_w, -t41) * h
+    del s_w, t41
+    A_11 = t40 - t42
+    t43 = s_alpha1 * t2
+    del s_alpha1, t2
+    t44 = t28 * t31 - t22 * 0.5
+    del t22, t28, t31
+    t45 = _runtime.select(slim, over * (a_x * n_z + d_z * t27), t21)
+    del a_x, d_z, n_z, over, slim, t21, t27
+    t46 = h * _runtime.select(in_line, g_1, -t45)
+    del g_1, h, t45
+    A_12 = t44 - t46
+    t47 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t48 = t47 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t47
+    t49 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t50 = np.abs(_runtime.select(in_line, -t30, 0.0)) <= t15 * _runtime.FEASIBILITY
+    del in_line, t15, t30
+    unreachable = np.logical_not(t50 & (-(_runtime.FEASIBILITY * t35) <= t34))
+    del t34, t35, t50
+    t51 = _runtime.poison(np.logical_not(t48 & t49) | unreachable)
+    del t48, t49, unreachable
+    t52 = c_alpha2 * t3
     del c_alpha2
-    t50 = s_alpha2 * t3
+    t53 = s_alpha2 * t3
     del s_alpha2, t3
-    B_22 = t49 * (t7 + t35) + t50 * (t9 + t40) + t6 * (u_z + t43)
-    t51 = c_alpha3 * t16
+    B_22 = t6 * (u_z + t38) - (t52 * (t8 + A_11) + t53 * (t9 + A_12))
+    t54 = c_alpha3 * t10
     del c_alpha3
-    t52 = s_alpha3 * t16
-    del s_alpha3, t16
-    B_33 = t51 * (t20 + t35) + t52 * (t14 + t40) + t13 * (v_z + t43)
-    A_11_above = t33 + t34
-    del t33, t34
-    A_12_above = t38 - t39
-    del t38, t39
-    t53 = t41 - t42
-    del t41, t42
-    t54 = t2 * A_11_above + t36 * A_12_above + t4 * t53
-    t55 = t49 * (t7 - A_11_above) + t50 * (t9 - A_12_above)
-    del t49, t50, t7, t9
-    t56 = t51 * (t20 - A_11_above) + t52 * (t14 - A_12_above)
-    del A_11_above, A_12_above, t14, t20, t51, t52
+    t55 = s_alpha3 * t10
+    del s_alpha3, t10
+    B_33 = t11 * (v_z + t38) - (t54 * (t13 + A_11) + t55 * (t14 + A_12))
+    t56 = t32 - t37
+    del t32, t37
+    A_11_above = t40 + t42
+    del t40, t42
+    A_12_above = t44 + t46
+    del t44, t46
+    B_11_above = t1 * t56 - (t39 * A_11_above + t43 * A_12_above)
+    t57 = t52 * (t8 + A_11_above) + t53 * (t9 + A_12_above)
+    del t52, t53, t8, t9
+    t58 = t54 * (t13 + A_11_above) + t55 * (t14 + A_12_above)
+    del A_11_above, A_12_above, t13, t14, t54, t55
     return (
-        t2 * t35 + t36 * t40 + t4 * t43 + t48,
-        B_22 + t48,
-        B_33 + t48,
-        -t54 + t48,
-        t55 + t6 * (u_z - t53) + t48,
-        t56 + t13 * (v_z - t53) + t48,
+        t1 * t38 - (t39 * A_11 + t43 * A_12) + t51,
+        B_22 + t51,
+        B_33 + t51,
+        B_11_above + t51,
+        t6 * (u_z + t56) - t57 + t51,
+        t11 * (v_z + t56) - t58 + t51,
     )
 
 
@@ -1284,112 +1297,117 @@ def _jacobian_serial_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     # Where nothing vanishes; last, whether something does.
     s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
     s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s3, c3 = _runtime.sincos_as_in_c(theta3)
     s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
     s2, c2 = _runtime.sincos_as_in_c(theta2)
     s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
     t1 = L * s1
     del s1
     t2 = c_alpha1 * t1
-    t3 = L * s3
-    del s3
-    v_z = t1 - t3
-    t4 = L * c1
+    t3 = L * c1
     del c1
-    t5 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
+    t4 = f - e
+    t5 = t3 + t4
+    c1_y = s_alpha1 * t5
     t6 = L * c2
     del c2
-    t7 = t5 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    t8 = L * s2
-    del s2
-    u_z = t1 - t8
-    t9 = L * c3
+    t7 = t6 + t4
+    t8 = c1_y - s_alpha2 * t7
+    c1_x = c_alpha1 * t5
+    del c_alpha1, t5
+    t9 = c1_x - c_alpha2 * t7
+    del t7
+    t10 = L * c3
     del c3
-    t10 = t5 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t9)
-    del t5
-    t11 = v_z * t7 - u_z * t10
-    t12 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
-    del c_alpha1
-    t13 = t12 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
-    t14 = t12 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t9)
-    del t12
-    t15 = v_z * t13 - u_z * t14
-    m_again_z = t13 * t10 - t7 * t14
-    m_m = t11 * t11 + t15 * t15 + m_again_z * m_again_z
-    part = 1.0 / m_m
-    u_u = u_z * u_z + t13 * t13 + t7 * t7
-    t16 = v_z * (u_z - v_z) + t14 * (t13 - t14) + t10 * (t7 - t10)
-    t17 = part * t16 * 0.5
-    del t16
-    t18 = l * l - u_u * (0.25 + m_m * (t17 * t17))
-    slack = np.maximum(t18, 0.0)
+    t11 = t10 + t4
+    del t4
+    t12 = c1_y - s_alpha3 * t11
+    del c1_y
+    t13 = c1_x - c_alpha3 * t11
+    del c1_x, t11
+    m_z = t9 * t12 - t8 * t13
+    t14 = L * s2
+    del s2
+    u_z = t1 - t14
+    t15 = L * s3
+    del s3
+    v_z = t1 - t15
+    m_y = v_z * t9 - u_z * t13
+    t16 = v_z * t8 - u_z * t12
+    product_2 = t16 * t16 + m_y * m_y + m_z * m_z
+    part = 1.0 / product_2
+    t17 = v_z * (u_z - v_z) + t13 * (t9 - t13) + t12 * (t8 - t12)
+    t18 = part * t17 * 0.5
+    del t17
+    t19 = (t8 * m_z + u_z * m_y) * t18 + t9 * 0.5
+    u_u = u_z * u_z + t9 * t9 + t8 * t8
+    t20 = l * l - u_u * (0.25 + product_2 * (t18 * t18))
+    slack = np.maximum(t20, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t19 = t11 * h
-    t20 = (t7 * m_again_z + u_z * t15) * t17 + t13 * 0.5
-    t21 = t19 - t20
-    t22 = s_alpha1 * t1
+    t21 = t16 * h
+    t22 = t19 - t21
+    t23 = s_alpha1 * t1
     del s_alpha1, t1
-    t23 = t15 * h
-    t24 = t17 * (t13 * m_again_z - u_z * t11) - t7 * 0.5
-    A_12 = t23 - t24
-    t25 = m_again_z * h
-    del h, m_again_z
-    t26 = u_z * 0.5 - t17 * (t13 * t15 + t7 * t11)
-    del t11, t15, t17
-    t27 = t25 - t26
-    t28 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t29 = t28 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t28
-    t30 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t24 = t18 * (t9 * m_z - u_z * t16) - t8 * 0.5
+    t25 = m_y * h
+    A_12 = t24 - t25
+    t26 = u_z * 0.5 - t18 * (t9 * m_y + t8 * t16)
+    del m_y, t16, t18
+    t27 = m_z * h
+    del h, m_z
+    t28 = t26 - t27
+    t29 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t30 = t29 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t29
+    t31 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     size = f + e + L + l
-    t31 = size * size
-    t32 = 0.9375 * (l * size)
+    t32 = size * size
+    t33 = 0.9375 * (l * size)
     del size
-    t33 = (np.abs(0.0) <= t31 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t32) <= t18)
-    del t18
-    failed = np.logical_not(t29 & t30) | np.logical_not(t33)
-    del t29, t30, t33
-    t34 = _runtime.poison(failed)
+    t34 = (np.abs(0.0) <= t32 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t33) <= t20)
+    del t20
+    failed = np.logical_not(t30 & t31) | np.logical_not(t34)
+    del t30, t31, t34
+    t35 = _runtime.poison(failed)
     del failed
-    t35 = c_alpha2 * t8
+    t36 = c_alpha2 * t14
     del c_alpha2
-    t36 = s_alpha2 * t8
-    del s_alpha2, t8
-    B_22 = t35 * (t13 + t21) + t36 * (t7 - A_12) + t6 * (u_z + t27)
-    t37 = c_alpha3 * t3
+    t37 = s_alpha2 * t14
+    del s_alpha2, t14
+    B_22 = t6 * (u_z - t28) - (t36 * (t9 - t22) + t37 * (t8 + A_12))
+    t38 = c_alpha3 * t15
     del c_alpha3
-    t38 = s_alpha3 * t3
-    del s_alpha3, t3
-    B_33 = t37 * (t14 + t21) + t38 * (t10 - A_12) + t9 * (v_z + t27)
-    A_11_above = t19 + t20
-    del t19, t20
-    t39 = t23 + t24
-    del t23, t24
-    t40 = t25 + t26
-    del t25, t26
-    t41 = -(t2 * A_11_above - t22 * t39 + t4 * t40) + t34
-    B_22_above = t35 * (t13 - A_11_above) + t36 * (t7 + t39) + t6 * (u_z - t40)
-    del t13, t35, t36, t6, t7, u_z
-    B_33_above = t37 * (t14 - A_11_above) + t38 * (t10 + t39) + t9 * (v_z - t40)
-    del A_11_above, t37, t38, t39, t40, t9
+    t39 = s_alpha3 * t15
+    del s_alpha3, t15
+    B_33 = t10 * (v_z - t28) - (t38 * (t13 - t22) + t39 * (t12 + A_12))
+    t40 = t19 + t21
+    del t19, t21
+    A_12_above = t24 + t25
+    del t24, t25
+    t41 = t26 + t27
+    del t26, t27
+    B_22_above = t6 * (u_z - t41) - (t36 * (t9 - t40) + t37 * (t8 + A_12_above))
+    del t36, t37, t6, t8, t9, u_z
+    B_33_above = t10 * (v_z - t41) - (t38 * (t13 - t40) + t39 * (t12 + A_12_above))
+    del t10, t38, t39
     t42 = _runtime.VANISHING * _runtime.VANISHING
-    t43 = t31 * t42
-    v_v = v_z * v_z + t14 * t14 + t10 * t10
-    del t10, t14, v_z
+    t43 = t32 * t42
+    v_v = v_z * v_z + t13 * t13 + t12 * t12
+    del t12, t13, v_z
     t44 = u_u * v_v
-    slim = m_m - t44 * 0.000244140625 <= _runtime.VANISHING * t44
+    slim = product_2 - t44 * 0.000244140625 <= _runtime.VANISHING * t44
     del t44
-    t45 = (u_u <= t43) | (u_u + v_v <= t43) | slim | (m_m <= t42 * (t31 * u_u))
-    del m_m, slim, t31, t42, t43, u_u, v_v
+    t45 = (u_u <= t43) | (u_u + v_v <= t43) | slim | (product_2 <= t42 * (t32 * u_u))
+    del product_2, slim, t32, t42, t43, u_u, v_v
     return (
-        t2 * t21 - t22 * A_12 + t4 * t27 + t34,
-        B_22 + t34,
-        B_33 + t34,
-        t41,
-        B_22_above + t34,
-        B_33_above + t34,
-        t45 | (slack <= _runtime.VANISHING * t32),
+        t2 * t22 - t23 * A_12 - t3 * t28 + t35,
+        B_22 + t35,
+        B_33 + t35,
+        t2 * t40 - t23 * A_12_above - t3 * t41 + t35,
+        B_22_above + t35,
+        B_33_above + t35,
+        t45 | (slack <= _runtime.VANISHING * t33),
     )
 
 
@@ -1453,188 +1471,203 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     u_z = t1 - t3
     t4 = L * c1
     del c1
-    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
+    t5 = f - e
+    t6 = t4 + t5
+    c1_x = c_alpha1 * t6
     del c_alpha1
-    t6 = L * c2
+    t7 = L * c2
     del c2
-    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
-    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
-    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    u_u = u_z * u_z + t7 * t7 + t9 * t9
-    size = f + e + L + l
-    t10 = size * size
-    t11 = _runtime.VANISHING * _runtime.VANISHING
-    t12 = t10 * t11
-    same = u_u <= t12
-    t13 = L * c3
-    del c3
-    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
+    t8 = t7 + t5
+    t9 = c1_x - c_alpha2 * t8
+    c1_y = s_alpha1 * t6
+    del t6
+    t10 = c1_y - s_alpha2 * t8
     del t8
-    t15 = _runtime.select(same, t14, t9)
-    t16 = L * s3
-    del s3
-    v_z = t1 - t16
-    t17 = _runtime.select(same, u_z, v_z)
-    t18 = _runtime.select(same, t9, t14)
-    d_z = _runtime.select(same, v_z, u_z)
-    t19 = t15 * t17 - t18 * d_z
-    t20 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
+    u_u = u_z * u_z + t9 * t9 + t10 * t10
+    size = f + e + L + l
+    t11 = size * size
+    t12 = _runtime.VANISHING * _runtime.VANISHING
+    t13 = t11 * t12
+    same = u_u <= t13
+    t14 = L * c3
+    del c3
+    t15 = t14 + t5
     del t5
-    v_v = v_z * v_z + t20 * t20 + t14 * t14
-    all_same = u_u + v_v <= t12
-    del t12
+    t16 = c1_y - s_alpha3 * t15
+    del c1_y
+    t17 = _runtime.select(same, t16, t10)
+    t18 = L * s3
+    del s3
+    v_z = t1 - t18
+    t19 = c1_x - c_alpha3 * t15
+    del c1_x, t15
+    v_v = v_z * v_z + t19 * t19 + t16 * t16
+    all_same = u_u + v_v <= t13
+    del t13
     whole = _runtime.select(size == 0.0, 1.0, size)
-    d_x = _runtime.select(same, t20, t7)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t21 = _runtime.select(same, t7, t20)
-    t22 = a_x * t17 - t21 * d_z
-    t23 = a_x * t18 - t15 * t21
-    m_m = t19 * t19 + t22 * t22 + t23 * t23
+    t20 = _runtime.select(same, t19, t9)
+    a_x = _runtime.select(all_same, whole, -t20)
+    t21 = _runtime.select(same, t10, t16)
+    t22 = _runtime.select(same, t9, t19)
+    t23 = a_x * t21 + t17 * t22
+    d_z = _runtime.select(same, v_z, u_z)
+    t24 = _runtime.select(same, u_z, v_z)
+    t25 = a_x * t24 + t22 * d_z
+    t26 = t17 * t23 + d_z * t25
+    t27 = t17 * t24 - t21 * d_z
+    product_2 = t27 * t27 + t25 * t25 + t23 * t23
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t24 = mu * _runtime.select(same, u_u, v_v)
+    t28 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t24 * 0.000244140625 <= _runtime.VANISHING * t24
-    del t24
+    slim = product_2 - t28 * 0.000244140625 <= _runtime.VANISHING * t28
+    del t28
     over = 1.0 / mu
-    t25 = t15 * t23 + d_z * t22
-    t26 = a_x * t23 - d_z * t19
-    n_z = a_x * t22 + t15 * t19
-    mu_nu = _runtime.select(slim, over * (t25 * t25 + t26 * t26 + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t11 * (t10 * mu)
-    del t11
+    t29 = a_x * t23 - d_z * t27
+    n_z = a_x * t25 + t17 * t27
+    m_m = _runtime.select(slim, over * (t26 * t26 + t29 * t29 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t12 * (t11 * mu)
+    del t12
     g_1 = whole * d_z
-    s_w = _runtime.sign(t15 * a_x)
-    m_again_x = _runtime.select(slim, over * (t15 * n_z - d_z * t26), t19)
-    del t19
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x
-    t27 = whole * (t15 + a_x * s_w)
-    del s_w, whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t27 * t27, mu_nu)
-    del mu_nu
+    s_w = _runtime.sign(-(t17 * a_x))
+    t30 = whole * (t17 - a_x * s_w)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t30 * t30, m_m)
+    del m_m
     part = 1.0 / w_w
-    t28 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
-    del t17, t18, t21
-    t29 = _runtime.select(in_line, 0.0, part * t28 * 0.5)
-    t30 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t29 * t29)))
+    t31 = t22 * (t20 - t22) + t21 * (t17 - t21) + t24 * (d_z - t24)
+    del t21, t22, t24
+    t32 = _runtime.select(in_line, 0.0, part * t31 * 0.5)
+    t33 = t26 * t32 - t20 * 0.5
+    del t20
+    t34 = _runtime.select(slim, over * (t17 * n_z - d_z * t29), t27)
+    del t27
+    t35 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t32 * t32)))
     del all_same, mu
-    t31 = l * l - t30
-    del t30
-    slack = np.maximum(t31, 0.0)
-    t32 = 0.9375 * (l * size)
+    t36 = l * l - t35
+    del t35
+    slack = np.maximum(t36, 0.0)
+    t37 = 0.9375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t32, 0.0, np.sqrt(part) * np.sqrt(slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t37, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t33 = w_x * h
-    del w_x
-    t34 = t25 * t29 + d_x * 0.5
-    del d_x
-    t35 = t33 - t34
-    t36 = s_alpha1 * t1
+    t38 = _runtime.select(in_line, g_1 * s_w, -t34) * h
+    del s_w, t34
+    A_11 = t33 - t38
+    t39 = s_alpha1 * t1
     del s_alpha1, t1
-    t37 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
-    del t22
-    t38 = h * _runtime.select(in_line, g_1, -t37)
-    del g_1, t37
-    t39 = t26 * t29 - t15 * 0.5
-    t40 = t38 + t39
-    m_again_z = _runtime.select(slim, over * (a_x * t26 + t15 * t25), t23)
-    del a_x, over, slim, t15, t23, t25, t26
-    t41 = h * _runtime.select(in_line, -t27, m_again_z)
-    del m_again_z, t27
-    t42 = n_z * t29 - d_z * 0.5
-    del d_z, n_z, t29
-    t43 = t41 + t42
-    t44 = t2 * t35 + t36 * t40 + t4 * t43
-    t45 = t9 + t40
-    t46 = v_z + t43
-    t47 = u_z + t43
-    t48 = t14 + t40
+    t40 = t29 * t32 - t17 * 0.5
+    t41 = _runtime.select(slim, over * (a_x * n_z + d_z * t26), t25)
+    del t25
+    t42 = h * _runtime.select(in_line, g_1, -t41)
+    del g_1, t41
+    A_12 = t40 - t42
+    t43 = n_z * t32 - d_z * 0.5
+    del d_z, n_z, t32
+    t44 = _runtime.select(slim, over * (a_x * t29 + t17 * t26), t23)
+    del a_x, over, slim, t17, t23, t26, t29
+    t45 = h * _runtime.select(in_line, t30, -t44)
+    del t30, t44
+    t46 = t43 + t45
+    t47 = t2 * A_11 + t39 * A_12 - t4 * t46
+    A_22 = t10 + A_12
+    t48 = v_z + t46
+    t49 = u_z + t46
+    A_32 = t16 + A_12
     Delta = w_w * h
     del h, w_w
-    t49 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t50 = t49 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t49
-    t51 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t52 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= t10 * _runtime.FEASIBILITY
-    del in_line, t10, t28
-    unreachable = np.logical_not(t52 & (-(_runtime.FEASIBILITY * t32) <= t31))
-    del t31, t32, t52
-    t53 = _runtime.poison(np.logical_not(t50 & t51) | unreachable)
-    del t50, t51, unreachable
-    t54 = -(t44 * (t45 * t46 - t47 * t48) / Delta) + t53
-    t55 = c_alpha2 * t3
+    t50 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t51 = t50 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t50
+    t52 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t53 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= t11 * _runtime.FEASIBILITY
+    del in_line, t11, t31
+    unreachable = np.logical_not(t53 & (-(_runtime.FEASIBILITY * t37) <= t36))
+    del t36, t37, t53
+    t54 = _runtime.poison(np.logical_not(t51 & t52) | unreachable)
+    del t51, t52, unreachable
+    t55 = -(t47 * (A_22 * t48 - t49 * A_32) / Delta) + t54
+    t56 = c_alpha2 * t3
     del c_alpha2
-    t56 = t7 + t35
+    A_21 = t9 + A_11
     t57 = s_alpha2 * t3
     del s_alpha2, t3
-    t58 = t55 * t56 + t57 * t45 + t6 * t47
-    t59 = c_alpha3 * t16
+    t58 = t56 * A_21 + t57 * A_22 - t7 * t49
+    t59 = t58 * (A_12 * t48 - t46 * A_32) / Delta + t54
+    t60 = c_alpha3 * t18
     del c_alpha3
-    t60 = t20 + t35
-    t61 = s_alpha3 * t16
-    del s_alpha3, t16
-    t62 = t59 * t60 + t61 * t48 + t13 * t46
-    t63 = -(t62 * (t40 * t47 - t43 * t45) / Delta) + t53
-    t64 = -(t58 * (t35 * t46 - t43 * t60) / Delta) + t53
-    t65 = -(t44 * (t48 * t56 - t45 * t60) / Delta) + t53
-    t66 = -(t62 * (t35 * t45 - t40 * t56) / Delta) + t53
-    del t45
-    A_11_above = t33 + t34
-    del t33, t34
-    A_12_above = t38 - t39
-    del t38, t39
-    t67 = t41 - t42
-    del t41, t42
-    t68 = t2 * A_11_above + t36 * A_12_above + t4 * t67
-    del t2, t36, t4
-    t69 = t9 - A_12_above
-    del t9
-    t70 = v_z - t67
+    A_31 = t19 + A_11
+    t61 = s_alpha3 * t18
+    del s_alpha3, t18
+    t62 = t60 * A_31 + t61 * A_32 - t14 * t48
+    t63 = -(t62 * (A_12 * t49 - t46 * A_22) / Delta) + t54
+    t64 = t47 * (t48 * A_21 - t49 * A_31) / Delta + t54
+    t65 = -(t58 * (A_11 * t48 - t46 * A_31) / Delta) + t54
+    del t48
+    t66 = t62 * (A_11 * t49 - t46 * A_21) / Delta + t54
+    del t46, t49
+    t67 = t47 * (A_32 * A_21 - A_22 * A_31) / Delta + t54
+    del t47
+    t68 = -(t58 * (A_11 * A_32 - A_12 * A_31) / Delta) + t54
+    del A_31, A_32, t58
+    t69 = t62 * (A_11 * A_22 - A_12 * A_21) / Delta + t54
+    del A_11, A_12, A_21, A_22, t62
+    A_11_above = t33 + t38
+    del t33, t38
+    A_12_above = t40 + t42
+    del t40, t42
+    t70 = t43 - t45
+    del t43, t45
+    t71 = t2 * A_11_above + t39 * A_12_above - t4 * t70
+    del t2, t39, t4
+    A_22_above = t10 + A_12_above
+    del t10
+    t72 = v_z + t70
     del v_z
-    t71 = u_z - t67
+    t73 = u_z + t70
     del u_z
-    t72 = t14 - A_12_above
-    del t14
-    t73 = -(t68 * (t69 * t70 - t71 * t72) / Delta) + t53
-    t74 = t7 - A_11_above
-    del t7
-    t75 = t55 * t74 + t57 * t69 + t6 * t71
-    del t55, t57, t6
-    t76 = t75 * (A_12_above * t70 - t67 * t72) / Delta + t53
-    t77 = t20 - A_11_above
-    del t20
-    t78 = t59 * t77 + t61 * t72 + t13 * t70
-    del t13, t59, t61
-    t79 = -(t78 * (A_12_above * t71 - t67 * t69) / Delta)
-    t80 = -(t75 * (A_11_above * t70 - t67 * t77) / Delta)
-    t81 = t78 * (A_11_above * t71 - t67 * t74) / Delta + t53
-    del t67
-    t82 = -(t68 * (t72 * t74 - t69 * t77) / Delta) + t53
-    t83 = t75 * (A_11_above * t72 - A_12_above * t77) / Delta
-    del t72, t75
-    t84 = t78 * (A_11_above * t69 - A_12_above * t74) / Delta
-    del A_11_above, A_12_above, t69, t78
+    A_32_above = t16 + A_12_above
+    del t16
+    t74 = t71 * (A_22_above * t72 - t73 * A_32_above) / Delta
+    A_21_above = t9 + A_11_above
+    del t9
+    t75 = t56 * A_21_above + t57 * A_22_above - t7 * t73
+    del t56, t57, t7
+    t76 = t75 * (A_12_above * t72 - t70 * A_32_above) / Delta
+    A_31_above = t19 + A_11_above
+    del t19
+    t77 = t60 * A_31_above + t61 * A_32_above - t14 * t72
+    del t14, t60, t61
+    t78 = t77 * (A_12_above * t73 - t70 * A_22_above) / Delta
+    t79 = t71 * (t72 * A_21_above - t73 * A_31_above) / Delta
+    t80 = t75 * (A_11_above * t72 - t70 * A_31_above) / Delta
+    del t72
+    t81 = t77 * (A_11_above * t73 - t70 * A_21_above) / Delta
+    del t70, t73
+    t82 = A_32_above * A_21_above - A_22_above * A_31_above
+    t83 = A_11_above * A_32_above - A_12_above * A_31_above
+    del A_31_above, A_32_above
+    t84 = A_11_above * A_22_above - A_12_above * A_21_above
+    del A_11_above, A_12_above, A_21_above, A_22_above
     return (
-        t54,
-        t58 * (t40 * t46 - t43 * t48) / Delta + t53,
+        t55,
+        t59,
         t63,
-        t44 * (t46 * t56 - t47 * t60) / Delta + t53,
         t64,
-        t62 * (t35 * t47 - t43 * t56) / Delta + t53,
         t65,
-        t58 * (t35 * t48 - t40 * t60) / Delta + t53,
         t66,
-        t73,
-        t76,
-        t79 + t53,
-        t68 * (t70 * t74 - t71 * t77) / Delta + t53,
-        t80 + t53,
-        t81,
-        t82,
-        t83 + t53,
-        -t84 + t53,
+        t67,
+        t68,
+        t69,
+        t74 + t54,
+        -t76 + t54,
+        t78 + t54,
+        -t79 + t54,
+        t80 + t54,
+        -t81 + t54,
+        -(t71 * t82 / Delta) + t54,
+        t75 * t83 / Delta + t54,
+        -(t77 * t84 / Delta) + t54,
     )
 
 
@@ -1698,140 +1731,145 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     u_z = t1 - t3
     t4 = L * c1
     del c1
-    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
+    t5 = f - e
+    t6 = t4 + t5
+    c1_x = c_alpha1 * t6
     del c_alpha1
-    t6 = L * c2
+    t7 = L * c2
     del c2
-    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
-    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
-    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    u_u = u_z * u_z + t7 * t7 + t9 * t9
-    size = f + e + L + l
-    t10 = size * size
-    t11 = _runtime.VANISHING * _runtime.VANISHING
-    t12 = t10 * t11
-    same = u_u <= t12
-    t13 = L * c3
-    del c3
-    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
+    t8 = t7 + t5
+    t9 = c1_x - c_alpha2 * t8
+    c1_y = s_alpha1 * t6
+    del t6
+    t10 = c1_y - s_alpha2 * t8
     del t8
-    t15 = _runtime.select(same, t14, t9)
-    t16 = L * s3
-    del s3
-    v_z = t1 - t16
-    t17 = _runtime.select(same, u_z, v_z)
-    t18 = _runtime.select(same, t9, t14)
-    d_z = _runtime.select(same, v_z, u_z)
-    t19 = t15 * t17 - t18 * d_z
-    t20 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
+    u_u = u_z * u_z + t9 * t9 + t10 * t10
+    size = f + e + L + l
+    t11 = size * size
+    t12 = _runtime.VANISHING * _runtime.VANISHING
+    t13 = t11 * t12
+    same = u_u <= t13
+    t14 = L * c3
+    del c3
+    t15 = t14 + t5
     del t5
-    v_v = v_z * v_z + t20 * t20 + t14 * t14
-    all_same = u_u + v_v <= t12
-    del t12
+    t16 = c1_y - s_alpha3 * t15
+    del c1_y
+    t17 = _runtime.select(same, t16, t10)
+    t18 = L * s3
+    del s3
+    v_z = t1 - t18
+    t19 = c1_x - c_alpha3 * t15
+    del c1_x, t15
+    v_v = v_z * v_z + t19 * t19 + t16 * t16
+    all_same = u_u + v_v <= t13
+    del t13
     whole = _runtime.select(size == 0.0, 1.0, size)
-    d_x = _runtime.select(same, t20, t7)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t21 = _runtime.select(same, t7, t20)
-    t22 = a_x * t17 - t21 * d_z
-    t23 = a_x * t18 - t15 * t21
-    m_m = t19 * t19 + t22 * t22 + t23 * t23
+    t20 = _runtime.select(same, t19, t9)
+    a_x = _runtime.select(all_same, whole, -t20)
+    t21 = _runtime.select(same, t10, t16)
+    t22 = _runtime.select(same, t9, t19)
+    t23 = a_x * t21 + t17 * t22
+    d_z = _runtime.select(same, v_z, u_z)
+    t24 = _runtime.select(same, u_z, v_z)
+    t25 = a_x * t24 + t22 * d_z
+    t26 = t17 * t23 + d_z * t25
+    t27 = t17 * t24 - t21 * d_z
+    product_2 = t27 * t27 + t25 * t25 + t23 * t23
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t24 = mu * _runtime.select(same, u_u, v_v)
+    t28 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t24 * 0.000244140625 <= _runtime.VANISHING * t24
-    del t24
+    slim = product_2 - t28 * 0.000244140625 <= _runtime.VANISHING * t28
+    del t28
     over = 1.0 / mu
-    t25 = t15 * t23 + d_z * t22
-    t26 = a_x * t23 - d_z * t19
-    n_z = a_x * t22 + t15 * t19
-    mu_nu = _runtime.select(slim, over * (t25 * t25 + t26 * t26 + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t11 * (t10 * mu)
-    del t11
+    t29 = a_x * t23 - d_z * t27
+    n_z = a_x * t25 + t17 * t27
+    m_m = _runtime.select(slim, over * (t26 * t26 + t29 * t29 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t12 * (t11 * mu)
+    del t12
     g_1 = whole * d_z
-    s_w = _runtime.sign(t15 * a_x)
-    m_again_x = _runtime.select(slim, over * (t15 * n_z - d_z * t26), t19)
-    del t19
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x
-    t27 = whole * (t15 + a_x * s_w)
-    del s_w, whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t27 * t27, mu_nu)
-    del mu_nu
+    s_w = _runtime.sign(-(t17 * a_x))
+    t30 = whole * (t17 - a_x * s_w)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t30 * t30, m_m)
+    del m_m
     part = 1.0 / w_w
-    t28 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
-    del t17, t18, t21
-    t29 = _runtime.select(in_line, 0.0, part * t28 * 0.5)
-    t30 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t29 * t29)))
+    t31 = t22 * (t20 - t22) + t21 * (t17 - t21) + t24 * (d_z - t24)
+    del t21, t22, t24
+    t32 = _runtime.select(in_line, 0.0, part * t31 * 0.5)
+    t33 = t26 * t32 - t20 * 0.5
+    del t20
+    t34 = _runtime.select(slim, over * (t17 * n_z - d_z * t29), t27)
+    del t27
+    t35 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t32 * t32)))
     del all_same, mu
-    t31 = l * l - t30
-    del t30
-    slack = np.maximum(t31, 0.0)
-    t32 = 0.9375 * (l * size)
+    t36 = l * l - t35
+    del t35
+    slack = np.maximum(t36, 0.0)
+    t37 = 0.9375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t32, 0.0, np.sqrt(part) * np.sqrt(slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t37, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t33 = w_x * h
-    del w_x
-    t34 = t25 * t29 + d_x * 0.5
-    del d_x
-    t35 = t33 - t34
-    t36 = s_alpha1 * t1
+    t38 = _runtime.select(in_line, g_1 * s_w, -t34) * h
+    del s_w, t34
+    A_11 = t33 - t38
+    t39 = s_alpha1 * t1
     del s_alpha1, t1
-    t37 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
-    del t22
-    t38 = h * _runtime.select(in_line, g_1, -t37)
-    del g_1, t37
-    t39 = t26 * t29 - t15 * 0.5
-    t40 = t38 + t39
-    m_again_z = _runtime.select(slim, over * (a_x * t26 + t15 * t25), t23)
-    del a_x, over, slim, t15, t23, t25, t26
-    t41 = h * _runtime.select(in_line, -t27, m_again_z)
-    del m_again_z, t27
-    t42 = n_z * t29 - d_z * 0.5
-    del d_z, n_z, t29
-    t43 = t41 + t42
-    t44 = c_alpha2 * t3
+    t40 = t29 * t32 - t17 * 0.5
+    t41 = _runtime.select(slim, over * (a_x * n_z + d_z * t26), t25)
+    del t25
+    t42 = h * _runtime.select(in_line, g_1, -t41)
+    del g_1, t41
+    A_12 = t40 - t42
+    t43 = n_z * t32 - d_z * 0.5
+    del d_z, n_z, t32
+    t44 = _runtime.select(slim, over * (a_x * t29 + t17 * t26), t23)
+    del a_x, over, slim, t17, t23, t26, t29
+    t45 = h * _runtime.select(in_line, t30, -t44)
+    del t30, t44
+    t46 = t43 + t45
+    t47 = c_alpha2 * t3
     del c_alpha2
-    t45 = s_alpha2 * t3
+    t48 = s_alpha2 * t3
     del s_alpha2, t3
-    t46 = t44 * (t7 + t35) + t45 * (t9 + t40) + t6 * (u_z + t43)
-    t47 = c_alpha3 * t16
+    t49 = t47 * (t9 + A_11) + t48 * (t10 + A_12) - t7 * (u_z + t46)
+    t50 = c_alpha3 * t18
     del c_alpha3
-    t48 = s_alpha3 * t16
-    del s_alpha3, t16
-    t49 = t47 * (t20 + t35) + t48 * (t14 + t40) + t13 * (v_z + t43)
-    t50 = (t2 * t35 + t36 * t40 + t4 * t43) * t46 * t49
-    del t35, t40, t43, t46, t49
+    t51 = s_alpha3 * t18
+    del s_alpha3, t18
+    t52 = t50 * (t19 + A_11) + t51 * (t16 + A_12) - t14 * (v_z + t46)
+    t53 = (t2 * A_11 + t39 * A_12 - t4 * t46) * t49 * t52
+    del A_11, A_12, t46, t49, t52
     Delta = w_w * h
     del h, w_w
-    t51 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t52 = t51 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t51
-    t53 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t54 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= t10 * _runtime.FEASIBILITY
-    del in_line, t10, t28
-    unreachable = np.logical_not(t54 & (-(_runtime.FEASIBILITY * t32) <= t31))
-    del t31, t32, t54
-    t55 = _runtime.poison(np.logical_not(t52 & t53) | unreachable)
-    del t52, t53, unreachable
-    A_11_above = t33 + t34
-    del t33, t34
-    A_12_above = t38 - t39
-    del t38, t39
-    t56 = t41 - t42
-    del t41, t42
-    t57 = t2 * A_11_above + t36 * A_12_above + t4 * t56
-    del t2, t36, t4
-    t58 = t44 * (t7 - A_11_above) + t45 * (t9 - A_12_above)
-    del t44, t45, t7, t9
-    t59 = t47 * (t20 - A_11_above) + t48 * (t14 - A_12_above)
-    del A_11_above, A_12_above, t14, t20, t47, t48
-    t60 = t57 * (t58 + t6 * (u_z - t56)) * (t59 + t13 * (v_z - t56))
-    del t13, t56, t57, t58, t59, t6, u_z, v_z
+    t54 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t55 = t54 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t54
+    t56 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t57 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= t11 * _runtime.FEASIBILITY
+    del in_line, t11, t31
+    unreachable = np.logical_not(t57 & (-(_runtime.FEASIBILITY * t37) <= t36))
+    del t36, t37, t57
+    t58 = _runtime.poison(np.logical_not(t55 & t56) | unreachable)
+    del t55, t56, unreachable
+    A_11_above = t33 + t38
+    del t33, t38
+    A_12_above = t40 + t42
+    del t40, t42
+    t59 = t43 - t45
+    del t43, t45
+    t60 = t2 * A_11_above + t39 * A_12_above - t4 * t59
+    del t2, t39, t4
+    t61 = t47 * (t9 + A_11_above) + t48 * (t10 + A_12_above)
+    del t10, t47, t48, t9
+    t62 = t50 * (t19 + A_11_above) + t51 * (t16 + A_12_above)
+    del A_11_above, A_12_above, t16, t19, t50, t51
+    t63 = t60 * (t61 - t7 * (u_z + t59)) * (t62 - t14 * (v_z + t59))
+    del t14, t59, t60, t61, t62, t7, u_z, v_z
     return (
-        -(t50 / Delta) + t55,
-        -(t60 / Delta) + t55,
+        t53 / Delta + t58,
+        -(t63 / Delta) + t58,
     )
 
 
@@ -1839,113 +1877,119 @@ def _determinant_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     # Where nothing vanishes; last, whether something does.
     s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
     s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s3, c3 = _runtime.sincos_as_in_c(theta3)
     s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
     s2, c2 = _runtime.sincos_as_in_c(theta2)
     s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
     t1 = L * s1
     del s1
     t2 = c_alpha1 * t1
-    t3 = L * s3
-    del s3
-    v_z = t1 - t3
-    t4 = L * c1
+    t3 = L * c1
     del c1
-    t5 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
+    t4 = f - e
+    t5 = t3 + t4
+    c1_y = s_alpha1 * t5
     t6 = L * c2
     del c2
-    t7 = t5 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    t8 = L * s2
-    del s2
-    u_z = t1 - t8
-    t9 = L * c3
+    t7 = t6 + t4
+    t8 = c1_y - s_alpha2 * t7
+    c1_x = c_alpha1 * t5
+    del c_alpha1, t5
+    t9 = c1_x - c_alpha2 * t7
+    del t7
+    t10 = L * c3
     del c3
-    t10 = t5 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t9)
-    del t5
-    t11 = v_z * t7 - u_z * t10
-    t12 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
-    del c_alpha1
-    t13 = t12 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
-    t14 = t12 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t9)
-    del t12
-    t15 = v_z * t13 - u_z * t14
-    m_again_z = t13 * t10 - t7 * t14
-    m_m = t11 * t11 + t15 * t15 + m_again_z * m_again_z
-    part = 1.0 / m_m
-    u_u = u_z * u_z + t13 * t13 + t7 * t7
-    t16 = v_z * (u_z - v_z) + t14 * (t13 - t14) + t10 * (t7 - t10)
-    t17 = part * t16 * 0.5
-    del t16
-    t18 = l * l - u_u * (0.25 + m_m * (t17 * t17))
-    slack = np.maximum(t18, 0.0)
+    t11 = t10 + t4
+    del t4
+    t12 = c1_y - s_alpha3 * t11
+    del c1_y
+    t13 = c1_x - c_alpha3 * t11
+    del c1_x, t11
+    m_z = t9 * t12 - t8 * t13
+    t14 = L * s2
+    del s2
+    u_z = t1 - t14
+    t15 = L * s3
+    del s3
+    v_z = t1 - t15
+    m_y = v_z * t9 - u_z * t13
+    t16 = v_z * t8 - u_z * t12
+    product_2 = t16 * t16 + m_y * m_y + m_z * m_z
+    part = 1.0 / product_2
+    t17 = v_z * (u_z - v_z) + t13 * (t9 - t13) + t12 * (t8 - t12)
+    t18 = part * t17 * 0.5
+    del t17
+    t19 = (t8 * m_z + u_z * m_y) * t18 + t9 * 0.5
+    u_u = u_z * u_z + t9 * t9 + t8 * t8
+    t20 = l * l - u_u * (0.25 + product_2 * (t18 * t18))
+    slack = np.maximum(t20, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t19 = t11 * h
-    t20 = (t7 * m_again_z + u_z * t15) * t17 + t13 * 0.5
-    t21 = t19 - t20
-    t22 = s_alpha1 * t1
+    t21 = t16 * h
+    t22 = t19 - t21
+    t23 = s_alpha1 * t1
     del s_alpha1, t1
-    t23 = t15 * h
-    t24 = t17 * (t13 * m_again_z - u_z * t11) - t7 * 0.5
-    A_12 = t23 - t24
-    t25 = m_again_z * h
-    del m_again_z
-    t26 = u_z * 0.5 - t17 * (t13 * t15 + t7 * t11)
-    del t11, t15, t17
-    t27 = t25 - t26
-    t28 = c_alpha2 * t8
+    t24 = t18 * (t9 * m_z - u_z * t16) - t8 * 0.5
+    t25 = m_y * h
+    A_12 = t24 - t25
+    t26 = u_z * 0.5 - t18 * (t9 * m_y + t8 * t16)
+    del m_y, t16, t18
+    t27 = m_z * h
+    del m_z
+    t28 = t26 - t27
+    t29 = c_alpha2 * t14
     del c_alpha2
-    t29 = s_alpha2 * t8
-    del s_alpha2, t8
-    t30 = t28 * (t13 + t21) + t29 * (t7 - A_12) + t6 * (u_z + t27)
-    t31 = c_alpha3 * t3
+    t30 = s_alpha2 * t14
+    del s_alpha2, t14
+    t31 = t29 * (t9 - t22) + t30 * (t8 + A_12) - t6 * (u_z - t28)
+    t32 = c_alpha3 * t15
     del c_alpha3
-    t32 = s_alpha3 * t3
-    del s_alpha3, t3
-    t33 = t31 * (t14 + t21) + t32 * (t10 - A_12) + t9 * (v_z + t27)
-    t34 = (t2 * t21 - t22 * A_12 + t4 * t27) * t30 * t33
-    del A_12, t21, t27, t30, t33
-    Delta = m_m * h
+    t33 = s_alpha3 * t15
+    del s_alpha3, t15
+    t34 = t32 * (t13 - t22) + t33 * (t12 + A_12) - t10 * (v_z - t28)
+    t35 = (t2 * t22 - t23 * A_12 - t3 * t28) * t31 * t34
+    del A_12, t22, t28, t31, t34
+    Delta = product_2 * h
     del h
-    t35 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t36 = t35 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t35
-    t37 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t36 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t37 = t36 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t36
+    t38 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     size = f + e + L + l
-    t38 = size * size
-    t39 = 0.9375 * (l * size)
+    t39 = size * size
+    t40 = 0.9375 * (l * size)
     del size
-    t40 = (np.abs(0.0) <= t38 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t39) <= t18)
-    del t18
-    failed = np.logical_not(t36 & t37) | np.logical_not(t40)
-    del t36, t37, t40
-    t41 = _runtime.poison(failed)
+    t41 = (np.abs(0.0) <= t39 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t40) <= t20)
+    del t20
+    failed = np.logical_not(t37 & t38) | np.logical_not(t41)
+    del t37, t38, t41
+    t42 = _runtime.poison(failed)
     del failed
-    A_11_above = t19 + t20
-    del t19, t20
-    t42 = t23 + t24
-    del t23, t24
-    t43 = t25 + t26
-    del t25, t26
-    t44 = t28 * (t13 - A_11_above) + t29 * (t7 + t42) + t6 * (u_z - t43)
-    del t13, t28, t29, t6, t7, u_z
-    t45 = (t2 * A_11_above - t22 * t42 + t4 * t43) * t44
-    del t2, t22, t4, t44
-    t46 = t31 * (t14 - A_11_above) + t32 * (t10 + t42) + t9 * (v_z - t43)
-    del A_11_above, t31, t32, t42, t43, t9
-    t47 = _runtime.VANISHING * _runtime.VANISHING
-    t48 = t38 * t47
-    v_v = v_z * v_z + t14 * t14 + t10 * t10
-    del t10, t14, v_z
-    t49 = u_u * v_v
-    slim = m_m - t49 * 0.000244140625 <= _runtime.VANISHING * t49
-    del t49
-    t50 = (u_u <= t48) | (u_u + v_v <= t48) | slim | (m_m <= t47 * (t38 * u_u))
-    del m_m, slim, t38, t47, t48, u_u, v_v
+    t43 = t19 + t21
+    del t19, t21
+    A_12_above = t24 + t25
+    del t24, t25
+    t44 = t26 + t27
+    del t26, t27
+    t45 = t29 * (t9 - t43) + t30 * (t8 + A_12_above) - t6 * (u_z - t44)
+    del t29, t30, t6, t8, t9, u_z
+    t46 = (t2 * t43 - t23 * A_12_above - t3 * t44) * t45
+    del t2, t23, t3, t45
+    t47 = t32 * (t13 - t43) + t33 * (t12 + A_12_above) - t10 * (v_z - t44)
+    del A_12_above, t10, t32, t33, t43, t44
+    t48 = _runtime.VANISHING * _runtime.VANISHING
+    t49 = t39 * t48
+    v_v = v_z * v_z + t13 * t13 + t12 * t12
+    del t12, t13, v_z
+    t50 = u_u * v_v
+    slim = product_2 - t50 * 0.000244140625 <= _runtime.VANISHING * t50
+    del t50
+    t51 = (u_u <= t49) | (u_u + v_v <= t49) | slim | (product_2 <= t48 * (t39 * u_u))
+    del product_2, slim, t39, t48, t49, u_u, v_v
     return (
-        -(t34 / Delta) + t41,
-        -(t45 * t46 / Delta) + t41,
-        t50 | (slack <= _runtime.VANISHING * t39),
+        -(t35 / Delta) + t42,
+        t46 * t47 / Delta + t42,
+        t51 | (slack <= _runtime.VANISHING * t40),
     )
 
 
@@ -1995,155 +2039,160 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 
 
 def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
-    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
+    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     s3, c3 = _runtime.sincos(theta3)
-    t1 = L * s1
+    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
+    t1 = L * c1
+    del c1
+    t2 = L * s1
     del s1
-    t2 = c_alpha1 * t1
     t3 = L * s2
     del s2
-    u_z = t1 - t3
-    t4 = L * c1
-    del c1
-    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
-    del c_alpha1
+    u_z = t2 - t3
+    t4 = f - e
+    t5 = t1 + t4
+    c1_x = c_alpha1 * t5
     t6 = L * c2
     del c2
-    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
-    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
-    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    u_u = u_z * u_z + t7 * t7 + t9 * t9
-    size = f + e + L + l
-    t10 = size * size
-    t11 = _runtime.VANISHING * _runtime.VANISHING
-    t12 = t10 * t11
-    same = u_u <= t12
-    t13 = L * c3
-    del c3
-    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
-    del t8
-    t15 = _runtime.select(same, t14, t9)
-    t16 = L * s3
-    del s3
-    v_z = t1 - t16
-    t17 = _runtime.select(same, u_z, v_z)
-    t18 = _runtime.select(same, t9, t14)
-    d_z = _runtime.select(same, v_z, u_z)
-    t19 = t15 * t17 - t18 * d_z
-    t20 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
+    t7 = t6 + t4
+    t8 = c1_x - c_alpha2 * t7
+    c1_y = s_alpha1 * t5
     del t5
-    v_v = v_z * v_z + t20 * t20 + t14 * t14
-    all_same = u_u + v_v <= t12
-    del t12
+    t9 = c1_y - s_alpha2 * t7
+    del t7
+    u_u = u_z * u_z + t8 * t8 + t9 * t9
+    t10 = L * s3
+    del s3
+    v_z = t2 - t10
+    t11 = L * c3
+    del c3
+    t12 = t11 + t4
+    del t4
+    t13 = c1_x - c_alpha3 * t12
+    del c1_x
+    t14 = c1_y - s_alpha3 * t12
+    del c1_y, t12
+    v_v = v_z * v_z + t13 * t13 + t14 * t14
+    size = f + e + L + l
+    t15 = size * size
+    t16 = _runtime.VANISHING * _runtime.VANISHING
+    t17 = t15 * t16
+    all_same = u_u + v_v <= t17
     whole = _runtime.select(size == 0.0, 1.0, size)
-    d_x = _runtime.select(same, t20, t7)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t21 = _runtime.select(same, t7, t20)
-    t22 = a_x * t17 - t21 * d_z
-    t23 = a_x * t18 - t15 * t21
-    m_m = t19 * t19 + t22 * t22 + t23 * t23
+    same = u_u <= t17
+    del t17
+    t18 = _runtime.select(same, t13, t8)
+    a_x = _runtime.select(all_same, whole, -t18)
+    t19 = _runtime.select(same, u_z, v_z)
+    t20 = _runtime.select(same, t8, t13)
+    d_z = _runtime.select(same, v_z, u_z)
+    t21 = a_x * t19 + t20 * d_z
+    t22 = _runtime.select(same, t14, t9)
+    t23 = _runtime.select(same, t9, t14)
+    t24 = t22 * t19 - t23 * d_z
+    n_z = a_x * t21 + t22 * t24
+    t25 = a_x * t23 + t22 * t20
+    product_2 = t24 * t24 + t21 * t21 + t25 * t25
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t24 = mu * _runtime.select(same, u_u, v_v)
+    t26 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t24 * 0.000244140625 <= _runtime.VANISHING * t24
-    del t24
+    slim = product_2 - t26 * 0.000244140625 <= _runtime.VANISHING * t26
+    del t26
     over = 1.0 / mu
-    t25 = t15 * t23 + d_z * t22
-    t26 = a_x * t23 - d_z * t19
-    n_z = a_x * t22 + t15 * t19
-    mu_nu = _runtime.select(slim, over * (t25 * t25 + t26 * t26 + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t11 * (t10 * mu)
-    del t11
+    t27 = t22 * t25 + d_z * t21
+    t28 = a_x * t25 - d_z * t24
+    m_m = _runtime.select(slim, over * (t27 * t27 + t28 * t28 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t16 * (t15 * mu)
+    del t16
     g_1 = whole * d_z
-    s_w = _runtime.sign(t15 * a_x)
-    m_again_x = _runtime.select(slim, over * (t15 * n_z - d_z * t26), t19)
-    del t19
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x
-    t27 = whole * (t15 + a_x * s_w)
-    del s_w, whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t27 * t27, mu_nu)
-    del mu_nu
+    s_w = _runtime.sign(-(t22 * a_x))
+    t29 = whole * (t22 - a_x * s_w)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t29 * t29, m_m)
+    del m_m
     part = 1.0 / w_w
-    t28 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
-    del t17, t18, t21
-    t29 = _runtime.select(in_line, 0.0, part * t28 * 0.5)
-    t30 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t29 * t29)))
+    t30 = t20 * (t18 - t20) + t23 * (t22 - t23) + t19 * (d_z - t19)
+    del t19, t20, t23
+    t31 = _runtime.select(in_line, 0.0, part * t30 * 0.5)
+    t32 = n_z * t31 - d_z * 0.5
+    t33 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t31 * t31)))
     del all_same, mu
-    t31 = l * l - t30
-    del t30
-    slack = np.maximum(t31, 0.0)
-    t32 = 0.9375 * (l * size)
+    t34 = l * l - t33
+    del t33
+    slack = np.maximum(t34, 0.0)
+    t35 = 0.9375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t32, 0.0, np.sqrt(part) * np.sqrt(slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t35, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t33 = w_x * h
-    del w_x
-    t34 = t25 * t29 + d_x * 0.5
-    del d_x
-    t35 = t33 - t34
-    t36 = s_alpha1 * t1
-    del s_alpha1, t1
-    t37 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
-    del t22
-    t38 = h * _runtime.select(in_line, g_1, -t37)
-    del g_1, t37
-    t39 = t26 * t29 - t15 * 0.5
-    t40 = t38 + t39
-    m_again_z = _runtime.select(slim, over * (a_x * t26 + t15 * t25), t23)
-    del a_x, over, slim, t15, t23, t25, t26
-    t41 = h * _runtime.select(in_line, -t27, m_again_z)
-    del m_again_z, t27
-    t42 = n_z * t29 - d_z * 0.5
-    del d_z, n_z, t29
-    t43 = t41 + t42
-    t44 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t45 = t44 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t44
-    t46 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t47 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= t10 * _runtime.FEASIBILITY
-    del in_line, t10, t28
-    unreachable = np.logical_not(t47 & (-(_runtime.FEASIBILITY * t32) <= t31))
-    del t31, t32, t47
-    t48 = _runtime.poison(np.logical_not(t45 & t46) | unreachable)
-    del t45, t46, unreachable
-    t49 = c_alpha2 * t3
+    t36 = _runtime.select(slim, over * (a_x * t28 + t22 * t27), t25)
+    del t25
+    t37 = h * _runtime.select(in_line, t29, -t36)
+    del t29, t36
+    t38 = t32 + t37
+    t39 = c_alpha1 * t2
+    del c_alpha1
+    t40 = t27 * t31 - t18 * 0.5
+    del t18
+    t41 = _runtime.select(slim, over * (t22 * n_z - d_z * t28), t24)
+    del t24
+    t42 = _runtime.select(in_line, g_1 * s_w, -t41) * h
+    del s_w, t41
+    A_11 = t40 - t42
+    t43 = s_alpha1 * t2
+    del s_alpha1, t2
+    t44 = t28 * t31 - t22 * 0.5
+    del t22, t28, t31
+    t45 = _runtime.select(slim, over * (a_x * n_z + d_z * t27), t21)
+    del a_x, d_z, n_z, over, slim, t21, t27
+    t46 = h * _runtime.select(in_line, g_1, -t45)
+    del g_1, t45
+    A_12 = t44 - t46
+    t47 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t48 = t47 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t47
+    t49 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t50 = np.abs(_runtime.select(in_line, -t30, 0.0)) <= t15 * _runtime.FEASIBILITY
+    del in_line, t15, t30
+    unreachable = np.logical_not(t50 & (-(_runtime.FEASIBILITY * t35) <= t34))
+    del t34, t35, t50
+    t51 = _runtime.poison(np.logical_not(t48 & t49) | unreachable)
+    del t48, t49, unreachable
+    t52 = c_alpha2 * t3
     del c_alpha2
-    t50 = s_alpha2 * t3
+    t53 = s_alpha2 * t3
     del s_alpha2, t3
-    B_22 = t49 * (t7 + t35) + t50 * (t9 + t40) + t6 * (u_z + t43)
-    t51 = c_alpha3 * t16
+    B_22 = t6 * (u_z + t38) - (t52 * (t8 + A_11) + t53 * (t9 + A_12))
+    t54 = c_alpha3 * t10
     del c_alpha3
-    t52 = s_alpha3 * t16
-    del s_alpha3, t16
-    B_33 = t51 * (t20 + t35) + t52 * (t14 + t40) + t13 * (v_z + t43)
+    t55 = s_alpha3 * t10
+    del s_alpha3, t10
+    B_33 = t11 * (v_z + t38) - (t54 * (t13 + A_11) + t55 * (t14 + A_12))
     Delta = w_w * h
     del h, w_w
-    A_11_above = t33 + t34
-    del t33, t34
-    A_12_above = t38 - t39
-    del t38, t39
-    t53 = t41 - t42
-    del t41, t42
-    t54 = t2 * A_11_above + t36 * A_12_above + t4 * t53
-    t55 = t49 * (t7 - A_11_above) + t50 * (t9 - A_12_above)
-    del t49, t50, t7, t9
-    t56 = t51 * (t20 - A_11_above) + t52 * (t14 - A_12_above)
-    del A_11_above, A_12_above, t14, t20, t51, t52
+    t56 = t32 - t37
+    del t32, t37
+    A_11_above = t40 + t42
+    del t40, t42
+    A_12_above = t44 + t46
+    del t44, t46
+    B_11_above = t1 * t56 - (t39 * A_11_above + t43 * A_12_above)
+    t57 = t52 * (t8 + A_11_above) + t53 * (t9 + A_12_above)
+    del t52, t53, t8, t9
+    t58 = t54 * (t13 + A_11_above) + t55 * (t14 + A_12_above)
+    del A_11_above, A_12_above, t13, t14, t54, t55
     return (
-        t2 * t35 + t36 * t40 + t4 * t43 + t48,
-        B_22 + t48,
-        B_33 + t48,
-        -Delta + t48,
-        -t54 + t48,
-        t55 + t6 * (u_z - t53) + t48,
-        t56 + t13 * (v_z - t53) + t48,
-        Delta + t48,
+        t1 * t38 - (t39 * A_11 + t43 * A_12) + t51,
+        B_22 + t51,
+        B_33 + t51,
+        -Delta + t51,
+        B_11_above + t51,
+        t6 * (u_z + t56) - t57 + t51,
+        t11 * (v_z + t56) - t58 + t51,
+        Delta + t51,
     )
 
 
@@ -2151,116 +2200,121 @@ def _singularities_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     # Where nothing vanishes; last, whether something does.
     s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
     s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s3, c3 = _runtime.sincos_as_in_c(theta3)
     s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
     s2, c2 = _runtime.sincos_as_in_c(theta2)
     s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
     t1 = L * s1
     del s1
     t2 = c_alpha1 * t1
-    t3 = L * s3
-    del s3
-    v_z = t1 - t3
-    t4 = L * c1
+    t3 = L * c1
     del c1
-    t5 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
+    t4 = f - e
+    t5 = t3 + t4
+    c1_y = s_alpha1 * t5
     t6 = L * c2
     del c2
-    t7 = t5 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
-    t8 = L * s2
-    del s2
-    u_z = t1 - t8
-    t9 = L * c3
+    t7 = t6 + t4
+    t8 = c1_y - s_alpha2 * t7
+    c1_x = c_alpha1 * t5
+    del c_alpha1, t5
+    t9 = c1_x - c_alpha2 * t7
+    del t7
+    t10 = L * c3
     del c3
-    t10 = t5 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t9)
-    del t5
-    t11 = v_z * t7 - u_z * t10
-    t12 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
-    del c_alpha1
-    t13 = t12 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
-    t14 = t12 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t9)
-    del t12
-    t15 = v_z * t13 - u_z * t14
-    m_again_z = t13 * t10 - t7 * t14
-    m_m = t11 * t11 + t15 * t15 + m_again_z * m_again_z
-    part = 1.0 / m_m
-    u_u = u_z * u_z + t13 * t13 + t7 * t7
-    t16 = v_z * (u_z - v_z) + t14 * (t13 - t14) + t10 * (t7 - t10)
-    t17 = part * t16 * 0.5
-    del t16
-    t18 = l * l - u_u * (0.25 + m_m * (t17 * t17))
-    slack = np.maximum(t18, 0.0)
+    t11 = t10 + t4
+    del t4
+    t12 = c1_y - s_alpha3 * t11
+    del c1_y
+    t13 = c1_x - c_alpha3 * t11
+    del c1_x, t11
+    m_z = t9 * t12 - t8 * t13
+    t14 = L * s2
+    del s2
+    u_z = t1 - t14
+    t15 = L * s3
+    del s3
+    v_z = t1 - t15
+    m_y = v_z * t9 - u_z * t13
+    t16 = v_z * t8 - u_z * t12
+    product_2 = t16 * t16 + m_y * m_y + m_z * m_z
+    part = 1.0 / product_2
+    t17 = v_z * (u_z - v_z) + t13 * (t9 - t13) + t12 * (t8 - t12)
+    t18 = part * t17 * 0.5
+    del t17
+    t19 = (t8 * m_z + u_z * m_y) * t18 + t9 * 0.5
+    u_u = u_z * u_z + t9 * t9 + t8 * t8
+    t20 = l * l - u_u * (0.25 + product_2 * (t18 * t18))
+    slack = np.maximum(t20, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t19 = t11 * h
-    t20 = (t7 * m_again_z + u_z * t15) * t17 + t13 * 0.5
-    t21 = t19 - t20
-    t22 = s_alpha1 * t1
+    t21 = t16 * h
+    t22 = t19 - t21
+    t23 = s_alpha1 * t1
     del s_alpha1, t1
-    t23 = t15 * h
-    t24 = t17 * (t13 * m_again_z - u_z * t11) - t7 * 0.5
-    A_12 = t23 - t24
-    t25 = m_again_z * h
-    del m_again_z
-    t26 = u_z * 0.5 - t17 * (t13 * t15 + t7 * t11)
-    del t11, t15, t17
-    t27 = t25 - t26
-    t28 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t29 = t28 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t28
-    t30 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t24 = t18 * (t9 * m_z - u_z * t16) - t8 * 0.5
+    t25 = m_y * h
+    A_12 = t24 - t25
+    t26 = u_z * 0.5 - t18 * (t9 * m_y + t8 * t16)
+    del m_y, t16, t18
+    t27 = m_z * h
+    del m_z
+    t28 = t26 - t27
+    t29 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t30 = t29 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t29
+    t31 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     size = f + e + L + l
-    t31 = size * size
-    t32 = 0.9375 * (l * size)
+    t32 = size * size
+    t33 = 0.9375 * (l * size)
     del size
-    t33 = (np.abs(0.0) <= t31 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t32) <= t18)
-    del t18
-    failed = np.logical_not(t29 & t30) | np.logical_not(t33)
-    del t29, t30, t33
-    t34 = _runtime.poison(failed)
+    t34 = (np.abs(0.0) <= t32 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t33) <= t20)
+    del t20
+    failed = np.logical_not(t30 & t31) | np.logical_not(t34)
+    del t30, t31, t34
+    t35 = _runtime.poison(failed)
     del failed
-    t35 = c_alpha2 * t8
+    t36 = c_alpha2 * t14
     del c_alpha2
-    t36 = s_alpha2 * t8
-    del s_alpha2, t8
-    B_22 = t35 * (t13 + t21) + t36 * (t7 - A_12) + t6 * (u_z + t27)
-    t37 = c_alpha3 * t3
+    t37 = s_alpha2 * t14
+    del s_alpha2, t14
+    B_22 = t6 * (u_z - t28) - (t36 * (t9 - t22) + t37 * (t8 + A_12))
+    t38 = c_alpha3 * t15
     del c_alpha3
-    t38 = s_alpha3 * t3
-    del s_alpha3, t3
-    B_33 = t37 * (t14 + t21) + t38 * (t10 - A_12) + t9 * (v_z + t27)
-    Delta = m_m * h
+    t39 = s_alpha3 * t15
+    del s_alpha3, t15
+    B_33 = t10 * (v_z - t28) - (t38 * (t13 - t22) + t39 * (t12 + A_12))
+    Delta = product_2 * h
     del h
-    A_11_above = t19 + t20
-    del t19, t20
-    t39 = t23 + t24
-    del t23, t24
-    t40 = t25 + t26
-    del t25, t26
-    t41 = -(t2 * A_11_above - t22 * t39 + t4 * t40) + t34
-    B_22_above = t35 * (t13 - A_11_above) + t36 * (t7 + t39) + t6 * (u_z - t40)
-    del t13, t35, t36, t6, t7, u_z
-    B_33_above = t37 * (t14 - A_11_above) + t38 * (t10 + t39) + t9 * (v_z - t40)
-    del A_11_above, t37, t38, t39, t40, t9
+    t40 = t19 + t21
+    del t19, t21
+    A_12_above = t24 + t25
+    del t24, t25
+    t41 = t26 + t27
+    del t26, t27
+    B_22_above = t6 * (u_z - t41) - (t36 * (t9 - t40) + t37 * (t8 + A_12_above))
+    del t36, t37, t6, t8, t9, u_z
+    B_33_above = t10 * (v_z - t41) - (t38 * (t13 - t40) + t39 * (t12 + A_12_above))
+    del t10, t38, t39
     t42 = _runtime.VANISHING * _runtime.VANISHING
-    t43 = t31 * t42
-    v_v = v_z * v_z + t14 * t14 + t10 * t10
-    del t10, t14, v_z
+    t43 = t32 * t42
+    v_v = v_z * v_z + t13 * t13 + t12 * t12
+    del t12, t13, v_z
     t44 = u_u * v_v
-    slim = m_m - t44 * 0.000244140625 <= _runtime.VANISHING * t44
+    slim = product_2 - t44 * 0.000244140625 <= _runtime.VANISHING * t44
     del t44
-    t45 = (u_u <= t43) | (u_u + v_v <= t43) | slim | (m_m <= t42 * (t31 * u_u))
-    del m_m, slim, t31, t42, t43, u_u, v_v
+    t45 = (u_u <= t43) | (u_u + v_v <= t43) | slim | (product_2 <= t42 * (t32 * u_u))
+    del product_2, slim, t32, t42, t43, u_u, v_v
     return (
-        t2 * t21 - t22 * A_12 + t4 * t27 + t34,
-        B_22 + t34,
-        B_33 + t34,
-        -Delta + t34,
-        t41,
-        B_22_above + t34,
-        B_33_above + t34,
-        Delta + t34,
-        t45 | (slack <= _runtime.VANISHING * t32),
+        t2 * t22 - t23 * A_12 - t3 * t28 + t35,
+        B_22 + t35,
+        B_33 + t35,
+        -Delta + t35,
+        t2 * t40 - t23 * A_12_above - t3 * t41 + t35,
+        B_22_above + t35,
+        B_33_above + t35,
+        Delta + t35,
+        t45 | (slack <= _runtime.VANISHING * t33),
     )
 
 
@@ -2320,182 +2374,333 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     del s1
     u_z = t1 - L * s2
     del s2
-    t2 = L * c1
+    t2 = f - e
+    t3 = L * c1 + t2
     del c1
-    t3 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t2
+    c1_x = c_alpha1 * t3
     del c_alpha1
-    t4 = L * c2
+    t4 = L * c2 + t2
     del c2
-    t5 = t3 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t4)
+    t5 = c1_x - c_alpha2 * t4
     del c_alpha2
-    t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t2
-    del s_alpha1, t2
-    t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4)
+    c1_y = s_alpha1 * t3
+    del s_alpha1, t3
+    t6 = c1_y - s_alpha2 * t4
     del s_alpha2, t4
-    u_u = u_z * u_z + t5 * t5 + t7 * t7
+    u_u = u_z * u_z + t5 * t5 + t6 * t6
     size = f + e + L + l
-    t8 = size * size
-    t9 = _runtime.VANISHING * _runtime.VANISHING
-    t10 = t8 * t9
-    same = u_u <= t10
-    t11 = L * c3
-    del c3
-    t12 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
-    del s_alpha3, t6
-    t13 = _runtime.select(same, t12, t7)
+    t7 = size * size
+    t8 = _runtime.VANISHING * _runtime.VANISHING
+    t9 = t7 * t8
+    same = u_u <= t9
+    t10 = L * c3 + t2
+    del c3, t2
+    t11 = c1_y - s_alpha3 * t10
+    del c1_y, s_alpha3
+    t12 = _runtime.select(same, t11, t6)
     v_z = t1 - L * s3
     del s3, t1
-    t14 = _runtime.select(same, u_z, v_z)
-    t15 = _runtime.select(same, t7, t12)
-    d_z = _runtime.select(same, v_z, u_z)
-    t16 = t13 * t14 - t15 * d_z
-    t17 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11)
-    del c_alpha3, t11, t3
-    v_v = v_z * v_z + t17 * t17 + t12 * t12
-    all_same = u_u + v_v <= t10
-    del t10
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    d_x = _runtime.select(same, t17, t5)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t18 = _runtime.select(same, t5, t17)
-    t19 = a_x * t14 - t18 * d_z
-    t20 = a_x * t15 - t13 * t18
-    m_m = t16 * t16 + t19 * t19 + t20 * t20
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t21 = mu * _runtime.select(same, u_u, v_v)
-    del same, u_u, v_v
-    slim = m_m - t21 * 0.000244140625 <= _runtime.VANISHING * t21
-    del t21
-    over = 1.0 / mu
-    t22 = t13 * t20 + d_z * t19
-    t23 = a_x * t20 - d_z * t16
-    n_z = a_x * t19 + t13 * t16
-    mu_nu = _runtime.select(slim, over * (t22 * t22 + t23 * t23 + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t9 * (t8 * mu)
+    t13 = c1_x - c_alpha3 * t10
+    del c1_x, c_alpha3, t10
+    v_v = v_z * v_z + t13 * t13 + t11 * t11
+    all_same = u_u + v_v <= t9
     del t9
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    t14 = _runtime.select(same, t13, t5)
+    a_x = _runtime.select(all_same, whole, -t14)
+    t15 = _runtime.select(same, t6, t11)
+    t16 = _runtime.select(same, t5, t13)
+    t17 = a_x * t15 + t12 * t16
+    d_z = _runtime.select(same, v_z, u_z)
+    t18 = _runtime.select(same, u_z, v_z)
+    t19 = a_x * t18 + t16 * d_z
+    t20 = t12 * t17 + d_z * t19
+    t21 = t12 * t18 - t15 * d_z
+    product_2 = t21 * t21 + t19 * t19 + t17 * t17
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t22 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t22 * 0.000244140625 <= _runtime.VANISHING * t22
+    del t22
+    over = 1.0 / mu
+    t23 = a_x * t17 - d_z * t21
+    n_z = a_x * t19 + t12 * t21
+    m_m = _runtime.select(slim, over * (t20 * t20 + t23 * t23 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t8 * (t7 * mu)
+    del t8
     g_1 = whole * d_z
-    s_w = _runtime.sign(t13 * a_x)
-    m_again_x = _runtime.select(slim, over * (t13 * n_z - d_z * t23), t16)
-    del t16
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x
-    t24 = whole * (t13 + a_x * s_w)
-    del s_w, whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t24 * t24, mu_nu)
-    del mu_nu
+    s_w = _runtime.sign(-(t12 * a_x))
+    t24 = whole * (t12 - a_x * s_w)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t24 * t24, m_m)
+    del m_m
     part = 1.0 / w_w
-    t25 = t18 * (d_x - t18) + t15 * (t13 - t15) + t14 * (d_z - t14)
-    del t14, t15, t18
+    t25 = t16 * (t14 - t16) + t15 * (t12 - t15) + t18 * (d_z - t18)
+    del t15, t16, t18
     t26 = _runtime.select(in_line, 0.0, part * t25 * 0.5)
-    t27 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t26 * t26)))
+    t27 = t20 * t26 - t14 * 0.5
+    del t14
+    t28 = _runtime.select(slim, over * (t12 * n_z - d_z * t23), t21)
+    del t21
+    t29 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t26 * t26)))
     del all_same, mu
-    t28 = l * l - t27
-    del t27
-    slack = np.maximum(t28, 0.0)
-    t29 = 0.9375 * (l * size)
+    t30 = l * l - t29
+    del t29
+    slack = np.maximum(t30, 0.0)
+    t31 = 0.9375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t29, 0.0, np.sqrt(part) * np.sqrt(slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t30 = w_x * h
-    del w_x
-    t31 = t22 * t26 + d_x * 0.5
-    del d_x
-    t32 = t30 - t31
-    t33 = _runtime.select(slim, over * (a_x * n_z + d_z * t22), t19)
+    t32 = _runtime.select(in_line, g_1 * s_w, -t28) * h
+    del s_w, t28
+    A_11 = t27 - t32
+    t33 = t23 * t26 - t12 * 0.5
+    t34 = _runtime.select(slim, over * (a_x * n_z + d_z * t20), t19)
     del t19
-    t34 = h * _runtime.select(in_line, g_1, -t33)
-    del g_1, t33
-    t35 = t23 * t26 - t13 * 0.5
-    t36 = t34 + t35
-    m_again_z = _runtime.select(slim, over * (a_x * t23 + t13 * t22), t20)
-    del a_x, over, slim, t13, t20, t22, t23
-    t37 = h * _runtime.select(in_line, -t24, m_again_z)
-    del m_again_z, t24
-    t38 = n_z * t26 - d_z * 0.5
+    t35 = h * _runtime.select(in_line, g_1, -t34)
+    del g_1, t34
+    A_12 = t33 - t35
+    t36 = n_z * t26 - d_z * 0.5
     del d_z, n_z, t26
-    t39 = t37 + t38
-    t40 = t5 + t32
-    t41 = t7 + t36
-    t42 = u_z + t39
-    t43 = t32 * t32 + t36 * t36 + t39 * t39 + (t40 * t40 + t41 * t41 + t42 * t42)
-    t44 = t17 + t32
-    t45 = t12 + t36
-    t46 = v_z + t39
-    t47 = t32 * t41 - t36 * t40
-    t48 = t32 * t42 - t39 * t40
-    t49 = t32 * t45 - t36 * t44
-    t50 = t32 * t46 - t39 * t44
-    del t32
-    t51 = t47 * t47 + t48 * t48 + t49 * t49 + t50 * t50
-    del t47, t48, t49, t50
-    t52 = t36 * t42 - t39 * t41
-    t53 = t36 * t46 - t39 * t45
-    del t36, t39
-    t54 = t40 * t45 - t41 * t44
-    t55 = t40 * t46 - t42 * t44
-    del t40
-    t56 = t51 + t52 * t52 + t53 * t53 + t54 * t54 + t55 * t55
-    del t51, t52, t53, t54, t55
-    t57 = t41 * t46 - t42 * t45
-    del t41, t42
-    t58 = (t43 + (t44 * t44 + t45 * t45 + t46 * t46)) * (t56 + t57 * t57)
-    del t43, t44, t45, t46, t56, t57
-    t59 = 3.0 * (w_w * h)
+    t37 = _runtime.select(slim, over * (a_x * t23 + t12 * t20), t17)
+    del a_x, over, slim, t12, t17, t20, t23
+    t38 = h * _runtime.select(in_line, t24, -t37)
+    del t24, t37
+    t39 = t36 + t38
+    A_21 = t5 + A_11
+    A_22 = t6 + A_12
+    t40 = u_z + t39
+    t41 = A_11 * A_11 + A_12 * A_12 + t39 * t39 + (A_21 * A_21 + A_22 * A_22 + t40 * t40)
+    A_31 = t13 + A_11
+    A_32 = t11 + A_12
+    t42 = v_z + t39
+    t43 = t41 + (A_31 * A_31 + A_32 * A_32 + t42 * t42)
+    del t41
+    t44 = A_11 * A_22 - A_12 * A_21
+    t45 = A_11 * t40 - t39 * A_21
+    t46 = A_11 * A_32 - A_12 * A_31
+    t47 = A_11 * t42 - t39 * A_31
+    del A_11
+    t48 = t44 * t44 + t45 * t45 + t46 * t46 + t47 * t47
+    del t44, t45, t46, t47
+    t49 = A_12 * t40 - t39 * A_22
+    t50 = A_12 * t42 - t39 * A_32
+    del A_12, t39
+    t51 = A_21 * A_32 - A_22 * A_31
+    t52 = A_21 * t42 - t40 * A_31
+    del A_21, A_31
+    t53 = t48 + t49 * t49 + t50 * t50 + t51 * t51 + t52 * t52
+    del t48, t49, t50, t51, t52
+    t54 = A_22 * t42 - t40 * A_32
+    del A_22, A_32, t40, t42
+    t55 = 3.0 * (w_w * h)
     del h, w_w
-    t60 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t61 = t60 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t60
-    t62 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t63 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t8 * _runtime.FEASIBILITY
-    del in_line, t25, t8
-    unreachable = np.logical_not(t63 & (-(_runtime.FEASIBILITY * t29) <= t28))
-    del t28, t29, t63
-    t64 = _runtime.poison(np.logical_not(t61 & t62) | unreachable)
-    del t61, t62, unreachable
-    A_11_above = t30 + t31
-    del t30, t31
-    A_12_above = t34 - t35
-    del t34, t35
-    t65 = A_11_above * A_11_above + A_12_above * A_12_above
-    t66 = t37 - t38
-    del t37, t38
-    t67 = t5 - A_11_above
+    t56 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t57 = t56 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t56
+    t58 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t59 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t7 * _runtime.FEASIBILITY
+    del in_line, t25, t7
+    unreachable = np.logical_not(t59 & (-(_runtime.FEASIBILITY * t31) <= t30))
+    del t30, t31, t59
+    t60 = _runtime.poison(np.logical_not(t57 & t58) | unreachable)
+    del t57, t58, unreachable
+    A_11_above = t27 + t32
+    del t27, t32
+    A_12_above = t33 + t35
+    del t33, t35
+    t61 = A_11_above * A_11_above + A_12_above * A_12_above
+    t62 = t36 - t38
+    del t36, t38
+    A_21_above = t5 + A_11_above
     del t5
-    t68 = t7 - A_12_above
-    del t7
-    t69 = u_z - t66
+    A_22_above = t6 + A_12_above
+    del t6
+    t63 = A_21_above * A_21_above + A_22_above * A_22_above
+    t64 = u_z + t62
     del u_z
-    t70 = t65 + t66 * t66 + (t67 * t67 + t68 * t68 + t69 * t69)
-    del t65
-    t71 = t17 - A_11_above
-    del t17
-    t72 = t12 - A_12_above
-    del t12
-    t73 = v_z - t66
+    A_31_above = t13 + A_11_above
+    del t13
+    A_32_above = t11 + A_12_above
+    del t11
+    t65 = A_31_above * A_31_above + A_32_above * A_32_above
+    t66 = v_z + t62
     del v_z
-    t74 = A_11_above * t68 - A_12_above * t67
-    t75 = A_11_above * t69 - t66 * t67
-    t76 = A_11_above * t72 - A_12_above * t71
-    t77 = A_11_above * t73 - t66 * t71
+    t67 = t61 + t62 * t62 + (t63 + t64 * t64) + (t65 + t66 * t66)
+    del t61, t63, t65
+    t68 = A_11_above * A_22_above - A_12_above * A_21_above
+    t69 = A_11_above * t64 - t62 * A_21_above
+    t70 = A_11_above * A_32_above - A_12_above * A_31_above
+    t71 = A_11_above * t66 - t62 * A_31_above
     del A_11_above
-    t78 = t74 * t74 + t75 * t75 + t76 * t76 + t77 * t77
-    del t74, t75, t76, t77
-    t79 = A_12_above * t69 - t66 * t68
-    t80 = A_12_above * t73 - t66 * t72
-    del A_12_above, t66
-    t81 = t67 * t72 - t68 * t71
-    t82 = t67 * t73 - t69 * t71
-    del t67
-    t83 = t78 + t79 * t79 + t80 * t80 + t81 * t81 + t82 * t82
-    del t78, t79, t80, t81, t82
-    t84 = t68 * t73 - t69 * t72
-    del t68, t69
-    t85 = (t70 + (t71 * t71 + t72 * t72 + t73 * t73)) * (t83 + t84 * t84)
-    del t70, t71, t72, t73, t83, t84
+    t72 = t68 * t68 + t69 * t69 + t70 * t70 + t71 * t71
+    del t68, t69, t70, t71
+    t73 = A_12_above * t64 - t62 * A_22_above
+    t74 = A_12_above * t66 - t62 * A_32_above
+    del A_12_above, t62
+    t75 = A_21_above * A_32_above - A_22_above * A_31_above
+    t76 = A_21_above * t66 - t64 * A_31_above
+    del A_21_above, A_31_above
+    t77 = t72 + t73 * t73 + t74 * t74 + t75 * t75 + t76 * t76
+    del t72, t73, t74, t75, t76
+    t78 = A_22_above * t66 - t64 * A_32_above
+    del A_22_above, A_32_above, t64, t66
     return (
-        np.sqrt(t58) / t59 + t64,
-        np.sqrt(t85) / t59 + t64,
+        np.sqrt(t43 * (t53 + t54 * t54)) / t55 + t60,
+        np.sqrt(t67 * (t77 + t78 * t78)) / t55 + t60,
+    )
+
+
+def _condition_number_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    # Where nothing vanishes; last, whether something does.
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
+    t1 = f - e
+    t2 = L * c1 + t1
+    del c1
+    c1_y = s_alpha1 * t2
+    del s_alpha1
+    t3 = L * c2 + t1
+    del c2
+    t4 = c1_y - s_alpha2 * t3
+    del s_alpha2
+    c1_x = c_alpha1 * t2
+    del c_alpha1, t2
+    t5 = c1_x - c_alpha2 * t3
+    del c_alpha2, t3
+    t6 = L * c3 + t1
+    del c3, t1
+    t7 = c1_y - s_alpha3 * t6
+    del c1_y, s_alpha3
+    t8 = c1_x - c_alpha3 * t6
+    del c1_x, c_alpha3, t6
+    m_z = t5 * t7 - t4 * t8
+    t9 = L * s1
+    del s1
+    u_z = t9 - L * s2
+    del s2
+    v_z = t9 - L * s3
+    del s3, t9
+    m_y = v_z * t5 - u_z * t8
+    t10 = v_z * t4 - u_z * t7
+    product_2 = t10 * t10 + m_y * m_y + m_z * m_z
+    part = 1.0 / product_2
+    t11 = v_z * (u_z - v_z) + t8 * (t5 - t8) + t7 * (t4 - t7)
+    t12 = part * t11 * 0.5
+    del t11
+    t13 = (t4 * m_z + u_z * m_y) * t12 + t5 * 0.5
+    u_u = u_z * u_z + t5 * t5 + t4 * t4
+    t14 = l * l - u_u * (0.25 + product_2 * (t12 * t12))
+    slack = np.maximum(t14, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t15 = t10 * h
+    t16 = t13 - t15
+    t17 = t12 * (t5 * m_z - u_z * t10) - t4 * 0.5
+    t18 = m_y * h
+    A_12 = t17 - t18
+    t19 = u_z * 0.5 - t12 * (t5 * m_y + t4 * t10)
+    del m_y, t10, t12
+    t20 = m_z * h
+    del m_z
+    t21 = t19 - t20
+    A_21 = t5 - t16
+    A_22 = t4 + A_12
+    t22 = u_z - t21
+    t23 = t16 * t16 + A_12 * A_12 + t21 * t21 + (A_21 * A_21 + A_22 * A_22 + t22 * t22)
+    A_31 = t8 - t16
+    A_32 = t7 + A_12
+    t24 = v_z - t21
+    t25 = t23 + (A_31 * A_31 + A_32 * A_32 + t24 * t24)
+    del t23
+    t26 = t16 * A_22 + A_12 * A_21
+    t27 = t16 * t22 - t21 * A_21
+    t28 = t16 * A_32 + A_12 * A_31
+    t29 = t16 * t24 - t21 * A_31
+    del t16
+    t30 = t26 * t26 + t27 * t27 + t28 * t28 + t29 * t29
+    del t26, t27, t28, t29
+    t31 = A_12 * t22 + t21 * A_22
+    t32 = A_12 * t24 + t21 * A_32
+    del A_12, t21
+    t33 = A_21 * A_32 - A_22 * A_31
+    t34 = A_21 * t24 - t22 * A_31
+    del A_21, A_31
+    t35 = t30 + t31 * t31 + t32 * t32 + t33 * t33 + t34 * t34
+    del t30, t31, t32, t33, t34
+    t36 = A_22 * t24 - t22 * A_32
+    del A_22, A_32, t22, t24
+    t37 = 3.0 * (product_2 * h)
+    del h
+    t38 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t39 = t38 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t38
+    t40 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    size = f + e + L + l
+    t41 = size * size
+    t42 = 0.9375 * (l * size)
+    del size
+    t43 = (np.abs(0.0) <= t41 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t42) <= t14)
+    del t14
+    failed = np.logical_not(t39 & t40) | np.logical_not(t43)
+    del t39, t40, t43
+    t44 = _runtime.poison(failed)
+    del failed
+    t45 = t13 + t15
+    del t13, t15
+    A_12_above = t17 + t18
+    del t17, t18
+    t46 = t19 + t20
+    del t19, t20
+    square1_above = t45 * t45 + A_12_above * A_12_above + t46 * t46
+    A_21_above = t5 - t45
+    del t5
+    A_22_above = t4 + A_12_above
+    del t4
+    t47 = A_21_above * A_21_above + A_22_above * A_22_above
+    t48 = u_z - t46
+    del u_z
+    A_31_above = t8 - t45
+    A_32_above = t7 + A_12_above
+    t49 = A_31_above * A_31_above + A_32_above * A_32_above
+    t50 = v_z - t46
+    t51 = square1_above + (t47 + t48 * t48) + (t49 + t50 * t50)
+    del square1_above, t47, t49
+    t52 = t45 * A_22_above + A_12_above * A_21_above
+    t53 = t45 * t48 - t46 * A_21_above
+    t54 = t45 * A_32_above + A_12_above * A_31_above
+    t55 = t45 * t50 - t46 * A_31_above
+    del t45
+    t56 = t52 * t52 + t53 * t53 + t54 * t54 + t55 * t55
+    del t52, t53, t54, t55
+    t57 = A_12_above * t48 + t46 * A_22_above
+    t58 = A_12_above * t50 + t46 * A_32_above
+    del A_12_above, t46
+    t59 = A_21_above * A_32_above - A_22_above * A_31_above
+    t60 = A_21_above * t50 - t48 * A_31_above
+    del A_21_above, A_31_above
+    t61 = t56 + t57 * t57 + t58 * t58 + t59 * t59 + t60 * t60
+    del t56, t57, t58, t59, t60
+    t62 = A_22_above * t50 - t48 * A_32_above
+    del A_22_above, A_32_above, t48, t50
+    t63 = _runtime.VANISHING * _runtime.VANISHING
+    t64 = t41 * t63
+    v_v = v_z * v_z + t8 * t8 + t7 * t7
+    del t7, t8, v_z
+    t65 = u_u * v_v
+    slim = product_2 - t65 * 0.000244140625 <= _runtime.VANISHING * t65
+    del t65
+    t66 = (u_u <= t64) | (u_u + v_v <= t64) | slim | (product_2 <= t63 * (t41 * u_u))
+    del product_2, slim, t41, t63, t64, u_u, v_v
+    return (
+        np.sqrt(t25 * (t35 + t36 * t36)) / t37 + t44,
+        np.sqrt(t51 * (t61 + t62 * t62)) / t37 + t44,
+        t66 | (slack <= _runtime.VANISHING * t42),
     )
 
 
@@ -2506,6 +2711,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Array("kappa", (2,)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    common=_condition_number_common,
     size=_runtime.Size((3, 4, 5, 6), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
@@ -2545,189 +2751,190 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
 
 
 def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     t1 = c_alpha1 * s_alpha2
-    t2 = L * s1
+    t2 = c_alpha3 * t1
+    t3 = L * s1
     del s1
-    u_z = t2 - L * s2
+    u_z = t3 - L * s2
     del s2
-    t3 = L * c1
+    t4 = f - e
+    t5 = L * c1 + t4
     del c1
-    t4 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t3
-    t5 = L * c2
+    c1_x = c_alpha1 * t5
+    t6 = L * c2 + t4
     del c2
-    t6 = t4 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t5)
-    t7 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t3
-    del t3
-    t8 = t7 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t5)
+    t7 = c1_x - c_alpha2 * t6
+    c1_y = s_alpha1 * t5
     del t5
-    u_u = u_z * u_z + t6 * t6 + t8 * t8
-    v_z = t2 - L * s3
-    del s3, t2
-    t9 = L * c3
-    del c3
-    t10 = t4 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t9)
-    del t4
-    t11 = t7 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t9)
-    del t7, t9
-    v_v = v_z * v_z + t10 * t10 + t11 * t11
+    t8 = c1_y - s_alpha2 * t6
+    del t6
+    u_u = u_z * u_z + t7 * t7 + t8 * t8
     size = f + e + L + l
-    t12 = size * size
-    t13 = _runtime.VANISHING * _runtime.VANISHING
-    t14 = t12 * t13
-    all_same = u_u + v_v <= t14
+    t9 = size * size
+    t10 = _runtime.VANISHING * _runtime.VANISHING
+    t11 = t9 * t10
+    same = u_u <= t11
+    t12 = L * c3 + t4
+    del c3, t4
+    t13 = c1_y - s_alpha3 * t12
+    del c1_y
+    t14 = _runtime.select(same, t13, t8)
+    v_z = t3 - L * s3
+    del s3, t3
+    t15 = c1_x - c_alpha3 * t12
+    del c1_x, t12
+    v_v = v_z * v_z + t15 * t15 + t13 * t13
+    all_same = u_u + v_v <= t11
+    del t11
     whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t14
-    del t14
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t15 = _runtime.select(same, t11, t8)
-    t16 = _runtime.select(same, u_z, v_z)
-    t17 = _runtime.select(same, t8, t11)
+    t16 = _runtime.select(same, t15, t7)
+    a_x = _runtime.select(all_same, whole, -t16)
+    t17 = _runtime.select(same, t8, t13)
+    t18 = _runtime.select(same, t7, t15)
+    t19 = a_x * t17 + t14 * t18
     d_z = _runtime.select(same, v_z, u_z)
-    t18 = t15 * t16 - t17 * d_z
-    d_x = _runtime.select(same, t10, t6)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t19 = _runtime.select(same, t6, t10)
-    t20 = a_x * t16 - t19 * d_z
-    t21 = a_x * t17 - t15 * t19
-    m_m = t18 * t18 + t20 * t20 + t21 * t21
-    t22 = mu * _runtime.select(same, u_u, v_v)
+    t20 = _runtime.select(same, u_z, v_z)
+    t21 = a_x * t20 + t18 * d_z
+    t22 = t14 * t19 + d_z * t21
+    t23 = t14 * t20 - t17 * d_z
+    product_2 = t23 * t23 + t21 * t21 + t19 * t19
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t24 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t22 * 0.000244140625 <= _runtime.VANISHING * t22
-    del t22
+    slim = product_2 - t24 * 0.000244140625 <= _runtime.VANISHING * t24
+    del t24
     over = 1.0 / mu
-    t23 = t15 * t21 + d_z * t20
-    t24 = a_x * t21 - d_z * t18
-    n_z = a_x * t20 + t15 * t18
-    mu_nu = _runtime.select(slim, over * (t23 * t23 + t24 * t24 + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t13 * (t12 * mu)
-    del t13
+    t25 = a_x * t19 - d_z * t23
+    n_z = a_x * t21 + t14 * t23
+    m_m = _runtime.select(slim, over * (t22 * t22 + t25 * t25 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t10 * (t9 * mu)
+    del t10
     g_1 = whole * d_z
-    s_w = _runtime.sign(t15 * a_x)
-    t25 = whole * (t15 + a_x * s_w)
+    s_w = _runtime.sign(-(t14 * a_x))
+    t26 = whole * (t14 - a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t25 * t25, mu_nu)
-    del mu_nu
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t26 * t26, m_m)
+    del m_m
     part = 1.0 / w_w
-    t26 = t19 * (d_x - t19) + t17 * (t15 - t17) + t16 * (d_z - t16)
-    del t16, t17, t19
-    t27 = _runtime.select(in_line, 0.0, part * t26 * 0.5)
-    t28 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t27 * t27)))
+    t27 = t18 * (t16 - t18) + t17 * (t14 - t17) + t20 * (d_z - t20)
+    del t17, t18, t20
+    t28 = _runtime.select(in_line, 0.0, part * t27 * 0.5)
+    t29 = t22 * t28 - t16 * 0.5
+    del t16
+    t30 = _runtime.select(slim, over * (t14 * n_z - d_z * t25), t23)
+    del t23
+    t31 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t28 * t28)))
     del all_same, mu, w_w
-    t29 = l * l - t28
-    del t28
-    slack = np.maximum(t29, 0.0)
-    t30 = 0.9375 * (l * size)
+    t32 = l * l - t31
+    del t31
+    slack = np.maximum(t32, 0.0)
+    t33 = 0.9375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t30, 0.0, np.sqrt(part) * np.sqrt(slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t33, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    m_again_z = _runtime.select(slim, over * (a_x * t24 + t15 * t23), t21)
-    del t21
-    t31 = h * _runtime.select(in_line, -t25, m_again_z)
-    del m_again_z, t25
-    t32 = n_z * t27 - d_z * 0.5
-    t33 = t31 + t32
-    t34 = s_alpha3 * t33
-    t35 = t1 * t34
-    t36 = u_z + t33
-    t37 = _runtime.select(slim, over * (a_x * n_z + d_z * t23), t20)
-    del a_x, t20
-    t38 = h * _runtime.select(in_line, g_1, -t37)
-    del t37
-    t39 = t24 * t27 - t15 * 0.5
-    t40 = t38 + t39
-    t41 = t36 * (t11 + t40)
-    t42 = c_alpha3 * t1
-    m_again_x = _runtime.select(slim, over * (t15 * n_z - d_z * t24), t18)
-    del d_z, n_z, over, slim, t15, t18, t24
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del g_1, m_again_x, s_w
-    t43 = w_x * h
-    del h, w_x
-    t44 = t23 * t27 + d_x * 0.5
-    del d_x, t23, t27
-    t45 = t43 - t44
-    t46 = v_z + t33
-    t47 = t36 * t46
-    t48 = t45 * t47
-    t49 = c_alpha1 * c_alpha2
+    t34 = _runtime.select(in_line, g_1 * s_w, -t30) * h
+    del s_w, t30
+    A_11 = t29 - t34
+    t35 = n_z * t28 - d_z * 0.5
+    t36 = _runtime.select(slim, over * (a_x * t25 + t14 * t22), t19)
+    del t19
+    t37 = h * _runtime.select(in_line, t26, -t36)
+    del t26, t36
+    t38 = t35 + t37
+    t39 = u_z + t38
+    t40 = v_z + t38
+    t41 = t39 * t40
+    t42 = A_11 * t41
+    t43 = c_alpha1 * c_alpha2
     del c_alpha1
-    t50 = s_alpha3 * t49
-    t51 = s_alpha1 * s_alpha2
+    t44 = s_alpha3 * t43
+    t45 = s_alpha1 * s_alpha2
     del s_alpha2
-    t52 = c_alpha3 * t51
-    t53 = t47 * t40
-    del t47
-    t54 = s_alpha1 * c_alpha2
+    t46 = c_alpha3 * t45
+    t47 = t25 * t28 - t14 * 0.5
+    del t14, t25, t28
+    t48 = _runtime.select(slim, over * (a_x * n_z + d_z * t22), t21)
+    del a_x, d_z, n_z, over, slim, t21, t22
+    t49 = h * _runtime.select(in_line, g_1, -t48)
+    del g_1, h, t48
+    A_12 = t47 - t49
+    t50 = t41 * A_12
+    del t41
+    t51 = s_alpha1 * c_alpha2
     del c_alpha2, s_alpha1
-    t55 = s_alpha3 * t54
-    t56 = t42 * t48 - t50 * t48 + t52 * t53 - t55 * t53
-    del t48, t53
-    t57 = c_alpha3 * t33
-    del t33
-    t58 = t54 * t57
-    t59 = t46 * (t6 + t45)
-    t60 = t46 * (t8 + t40)
-    del t40, t46
-    t61 = t56 - t58 * t59 + t49 * t59 * t34 - t51 * t57 * t60
-    del t56, t59
-    t62 = t36 * (t10 + t45)
-    del t36, t45
-    t63 = t61 + t60 * t35 + t58 * t62 - t1 * t57 * t62 + t54 * t34 * t41
-    del t34, t57, t58, t60, t61, t62
+    t52 = s_alpha3 * t51
+    t53 = c_alpha3 * t38
+    t54 = t51 * t53
+    t55 = t40 * (t7 + A_11)
+    t56 = t2 * t42 - t44 * t42 + t46 * t50 - t52 * t50 - t54 * t55
+    del t42, t50
+    t57 = s_alpha3 * t38
+    del t38
+    t58 = t40 * (t8 + A_12)
+    del t40
+    t59 = t1 * t57
+    t60 = t56 + t43 * t55 * t57 - t45 * t53 * t58 + t58 * t59
+    del t55, t56, t58
+    t61 = t39 * (t15 + A_11)
+    del A_11
+    t62 = t39 * (t13 + A_12)
+    del A_12, t39
+    t63 = t60 + t54 * t61 - t1 * t53 * t61 + t51 * t57 * t62
+    del t53, t54, t57, t60, t61
     t64 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
     t65 = t64 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     del t64
     t66 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t67 = np.abs(_runtime.select(in_line, -t26, 0.0)) <= t12 * _runtime.FEASIBILITY
-    del in_line, t12, t26
-    unreachable = np.logical_not(t67 & (-(_runtime.FEASIBILITY * t30) <= t29))
-    del t29, t30, t67
+    t67 = np.abs(_runtime.select(in_line, -t27, 0.0)) <= t9 * _runtime.FEASIBILITY
+    del in_line, t27, t9
+    unreachable = np.logical_not(t67 & (-(_runtime.FEASIBILITY * t33) <= t32))
+    del t32, t33, t67
     t68 = _runtime.poison(np.logical_not(t65 & t66) | unreachable)
     del t65, t66, unreachable
-    A_11_above = t43 + t44
-    del t43, t44
-    t69 = t31 - t32
-    del t31, t32
-    t70 = u_z - t69
+    A_11_above = t29 + t34
+    del t29, t34
+    t69 = t35 - t37
+    del t35, t37
+    t70 = u_z + t69
     del u_z
-    t71 = v_z - t69
+    t71 = v_z + t69
     del v_z
     t72 = t70 * t71
     t73 = A_11_above * t72
-    A_12_above = t38 - t39
-    del t38, t39
+    A_12_above = t47 + t49
+    del t47, t49
     t74 = t72 * A_12_above
     del t72
-    t75 = t42 * t73 - t50 * t73 + t52 * t74 - t55 * t74
-    del t42, t50, t52, t55, t73, t74
-    t76 = c_alpha3 * t69
+    t75 = c_alpha3 * t69
     del c_alpha3
-    t77 = t54 * t76
-    t78 = t71 * (t6 - A_11_above)
-    del t6
+    t76 = t51 * t75
+    t77 = t71 * (t7 + A_11_above)
+    del t7
+    t78 = t2 * t73 - t44 * t73 + t46 * t74 - t52 * t74 - t76 * t77
+    del t2, t44, t46, t52, t73, t74
     t79 = s_alpha3 * t69
     del s_alpha3, t69
-    t80 = t71 * (t8 - A_12_above)
+    t80 = t71 * (t8 + A_12_above)
     del t71, t8
-    t81 = t75 - t77 * t78 + t49 * t78 * t79 - t51 * t76 * t80
-    del t49, t51, t75, t78
-    t82 = t1 * t79
-    t83 = t70 * (t10 - A_11_above)
-    del A_11_above, t10
-    t84 = t70 * (t11 - A_12_above)
-    del A_12_above, t11, t70
-    t85 = t81 + t80 * t82 + t77 * t83 - t1 * t76 * t83 + t54 * t79 * t84
-    del t1, t54, t76, t77, t79, t80, t81, t83
+    t81 = t1 * t79
+    t82 = t78 + t43 * t77 * t79 - t45 * t75 * t80 + t80 * t81
+    del t43, t45, t77, t78, t80
+    t83 = t70 * (t15 + A_11_above)
+    del A_11_above, t15
+    t84 = t70 * (t13 + A_12_above)
+    del A_12_above, t13, t70
+    t85 = t82 + t76 * t83 - t1 * t75 * t83 + t51 * t79 * t84
+    del t1, t51, t75, t76, t79, t82, t83
     return (
-        t35 * t41 - t63 + t68,
-        t85 - t82 * t84 + t68,
+        t63 - t59 * t62 + t68,
+        t85 - t81 * t84 + t68,
     )
 
 
@@ -2741,143 +2948,144 @@ def _constraint_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     s3, c3 = _runtime.sincos_as_in_c(theta3)
     t1 = c_alpha1 * s_alpha2
     t2 = s_alpha3 * t1
-    t3 = L * c1
-    del c1
-    t4 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t3
-    t5 = L * c2
-    del c2
-    t6 = t4 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t5)
-    t7 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t3
-    del t3
-    t8 = L * c3
-    del c3
-    t9 = t7 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8)
-    t10 = t7 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t5)
-    del t5, t7
-    t11 = t4 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8)
-    del t4, t8
-    m_again_z = t6 * t9 - t10 * t11
-    t12 = L * s1
+    t3 = L * s1
     del s1
-    v_z = t12 - L * s3
-    del s3
-    u_z = t12 - L * s2
-    del s2, t12
-    t13 = v_z * t10 - u_z * t9
-    t14 = v_z * t6 - u_z * t11
-    m_m = t13 * t13 + t14 * t14 + m_again_z * m_again_z
-    part = 1.0 / m_m
-    u_u = u_z * u_z + t6 * t6 + t10 * t10
-    t15 = v_z * (u_z - v_z) + t11 * (t6 - t11) + t9 * (t10 - t9)
-    t16 = part * t15 * 0.5
-    del t15
-    t17 = l * l - u_u * (0.25 + m_m * (t16 * t16))
-    slack = np.maximum(t17, 0.0)
+    u_z = t3 - L * s2
+    del s2
+    v_z = t3 - L * s3
+    del s3, t3
+    t4 = f - e
+    t5 = L * c1 + t4
+    del c1
+    c1_y = s_alpha1 * t5
+    t6 = L * c2 + t4
+    del c2
+    t7 = c1_y - s_alpha2 * t6
+    t8 = L * c3 + t4
+    del c3, t4
+    t9 = c1_y - s_alpha3 * t8
+    del c1_y
+    t10 = v_z * t7 - u_z * t9
+    c1_x = c_alpha1 * t5
+    del t5
+    t11 = c1_x - c_alpha2 * t6
+    del t6
+    t12 = c1_x - c_alpha3 * t8
+    del c1_x, t8
+    m_y = v_z * t11 - u_z * t12
+    m_z = t11 * t9 - t7 * t12
+    product_2 = t10 * t10 + m_y * m_y + m_z * m_z
+    part = 1.0 / product_2
+    t13 = v_z * (u_z - v_z) + t12 * (t11 - t12) + t9 * (t7 - t9)
+    t14 = part * t13 * 0.5
+    del t13
+    t15 = u_z * 0.5 - t14 * (t11 * m_y + t7 * t10)
+    u_u = u_z * u_z + t11 * t11 + t7 * t7
+    t16 = l * l - u_u * (0.25 + product_2 * (t14 * t14))
+    slack = np.maximum(t16, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t18 = m_again_z * h
-    t19 = u_z * 0.5 - t16 * (t6 * t14 + t10 * t13)
-    t20 = t18 - t19
-    t21 = u_z + t20
-    t22 = t20 * t21
-    t23 = t14 * h
-    t24 = t16 * (t6 * m_again_z - u_z * t13) - t10 * 0.5
-    A_12 = t23 - t24
-    t25 = t22 * (t9 - A_12)
-    t26 = c_alpha3 * t1
+    t17 = m_z * h
+    t18 = t15 - t17
+    t19 = u_z - t18
+    t20 = t18 * t19
+    t21 = t14 * (t11 * m_z - u_z * t10) - t7 * 0.5
+    t22 = m_y * h
+    A_12 = t21 - t22
+    t23 = t20 * (t9 + A_12)
+    t24 = c_alpha3 * t1
     del t1
-    t27 = t13 * h
-    del h, t13
-    t28 = (t10 * m_again_z + u_z * t14) * t16 + t6 * 0.5
-    del m_again_z, t14, t16
-    t29 = t27 - t28
-    t30 = v_z + t20
-    t31 = t21 * t30
-    del t21
-    t32 = t29 * t31
-    t33 = s_alpha3 * (c_alpha1 * c_alpha2)
+    t25 = (t7 * m_z + u_z * m_y) * t14 + t11 * 0.5
+    del m_y, m_z, t14
+    t26 = t10 * h
+    del h, t10
+    t27 = t25 - t26
+    t28 = v_z - t18
+    t29 = t19 * t28
+    del t19
+    t30 = t27 * t29
+    t31 = s_alpha3 * (c_alpha1 * c_alpha2)
     del c_alpha1
-    t34 = c_alpha3 * (s_alpha1 * s_alpha2)
+    t32 = c_alpha3 * (s_alpha1 * s_alpha2)
     del s_alpha2
-    t35 = t31 * A_12
-    del t31
-    t36 = s_alpha1 * c_alpha2
+    t33 = t29 * A_12
+    del t29
+    t34 = s_alpha1 * c_alpha2
     del c_alpha2, s_alpha1
-    t37 = s_alpha3 * t36
+    t35 = s_alpha3 * t34
     del s_alpha3
-    t38 = t26 * t32 - t33 * t32 - t34 * t35 + t37 * t35
-    del t32, t35
-    t39 = c_alpha3 * t36
-    del c_alpha3, t36
-    t40 = t20 * t30
-    del t20, t30
-    t41 = (t6 + t29) * t40
-    t42 = t40 * (t10 - A_12)
-    del A_12, t40
-    t43 = t38 - t39 * t41 + t33 * t41 - t34 * t42 + t2 * t42
-    del t38, t41, t42
-    t44 = (t11 + t29) * t22
-    del t22, t29
-    t45 = t2 * t25 - (t43 + t39 * t44 - t26 * t44 + t37 * t25)
-    del t25, t43, t44
-    t46 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t47 = t46 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t46
-    t48 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t36 = t24 * t30 - t31 * t30 - t32 * t33 + t35 * t33
+    del t30, t33
+    t37 = c_alpha3 * t34
+    del c_alpha3, t34
+    t38 = t18 * t28
+    del t18, t28
+    t39 = (t11 - t27) * t38
+    t40 = t38 * (t7 + A_12)
+    del A_12, t38
+    t41 = t36 - t37 * t39 + t31 * t39 - t32 * t40 + t2 * t40
+    del t36, t39, t40
+    t42 = (t12 - t27) * t20
+    del t20, t27
+    t43 = t2 * t23 - (t41 + t37 * t42 - t24 * t42 + t35 * t23)
+    del t23, t41, t42
+    t44 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t45 = t44 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t44
+    t46 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
     size = f + e + L + l
-    t49 = size * size
-    t50 = 0.9375 * (l * size)
+    t47 = size * size
+    t48 = 0.9375 * (l * size)
     del size
-    t51 = (np.abs(0.0) <= t49 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t50) <= t17)
-    del t17
-    failed = np.logical_not(t47 & t48) | np.logical_not(t51)
-    del t47, t48, t51
-    t52 = _runtime.poison(failed)
+    t49 = (np.abs(0.0) <= t47 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t48) <= t16)
+    del t16
+    failed = np.logical_not(t45 & t46) | np.logical_not(t49)
+    del t45, t46, t49
+    t50 = _runtime.poison(failed)
     del failed
-    A_11_above = t27 + t28
-    del t27, t28
-    t53 = t18 + t19
-    del t18, t19
-    t54 = u_z - t53
+    t51 = t15 + t17
+    del t15, t17
+    t52 = u_z - t51
     del u_z
-    t55 = v_z - t53
-    t56 = t54 * t55
-    t57 = A_11_above * t56
-    t58 = t23 + t24
-    del t23, t24
-    t59 = t56 * t58
-    del t56
-    t60 = t26 * t57 - t33 * t57 - t34 * t59 + t37 * t59
-    del t57, t59
-    t61 = t53 * t55
-    del t55
-    t62 = (t6 - A_11_above) * t61
-    del t6
-    t63 = t61 * (t10 + t58)
-    del t10, t61
-    t64 = t60 - t39 * t62 + t33 * t62 - t34 * t63 + t2 * t63
-    del t33, t34, t60, t62, t63
-    t65 = t53 * t54
-    del t53, t54
-    t66 = (t11 - A_11_above) * t65
-    del A_11_above
-    t67 = t65 * (t9 + t58)
-    del t58, t65
-    t68 = t64 + t39 * t66 - t26 * t66 + t37 * t67 - t2 * t67
-    del t2, t26, t37, t39, t64, t66, t67
-    t69 = _runtime.VANISHING * _runtime.VANISHING
-    t70 = t49 * t69
-    v_v = v_z * v_z + t11 * t11 + t9 * t9
-    del t11, t9, v_z
-    t71 = u_u * v_v
-    slim = m_m - t71 * 0.000244140625 <= _runtime.VANISHING * t71
-    del t71
-    t72 = (u_u <= t70) | (u_u + v_v <= t70) | slim | (m_m <= t69 * (t49 * u_u))
-    del m_m, slim, t49, t69, t70, u_u, v_v
+    t53 = t51 * t52
+    A_12_above = t21 + t22
+    del t21, t22
+    t54 = t53 * (t9 + A_12_above)
+    t55 = t25 + t26
+    del t25, t26
+    t56 = v_z - t51
+    t57 = t52 * t56
+    del t52
+    t58 = t55 * t57
+    t59 = t57 * A_12_above
+    del t57
+    t60 = t24 * t58 - t31 * t58 - t32 * t59 + t35 * t59
+    del t58, t59
+    t61 = t51 * t56
+    del t51, t56
+    t62 = (t11 - t55) * t61
+    del t11
+    t63 = t61 * (t7 + A_12_above)
+    del A_12_above, t61, t7
+    t64 = t60 - t37 * t62 + t31 * t62 - t32 * t63 + t2 * t63
+    del t31, t32, t60, t62, t63
+    t65 = (t12 - t55) * t53
+    del t53, t55
+    t66 = t2 * t54 - (t64 + t37 * t65 - t24 * t65 + t35 * t54)
+    del t2, t24, t35, t37, t54, t64, t65
+    t67 = _runtime.VANISHING * _runtime.VANISHING
+    t68 = t47 * t67
+    v_v = v_z * v_z + t12 * t12 + t9 * t9
+    del t12, t9, v_z
+    t69 = u_u * v_v
+    slim = product_2 - t69 * 0.000244140625 <= _runtime.VANISHING * t69
+    del t69
+    t70 = (u_u <= t68) | (u_u + v_v <= t68) | slim | (product_2 <= t67 * (t47 * u_u))
+    del product_2, slim, t47, t67, t68, u_u, v_v
     return (
-        t45 + t52,
-        t68 + t52,
-        t72 | (slack <= _runtime.VANISHING * t50),
+        t43 + t50,
+        t66 + t50,
+        t70 | (slack <= _runtime.VANISHING * t48),
     )
 
 

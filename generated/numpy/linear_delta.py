@@ -2,30 +2,30 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 50 compare and select, 53 add, 11 divide, 69 multiply, 2 sqrt
-#   fk where nothing vanishes: 31 compare and select, 46 add, 10 divide, 46 multiply, 1 sqrt
-#   skeleton: 49 compare and select, 127 add, 13 divide, 69 multiply, 2 sqrt
-#   skeleton where nothing vanishes: 30 compare and select, 120 add, 12 divide, 46 multiply, 1
+#   fk: 50 compare and select, 51 add, 9 divide, 68 multiply, 2 sqrt
+#   fk where nothing vanishes: 31 compare and select, 44 add, 8 divide, 45 multiply, 1 sqrt
+#   skeleton: 49 compare and select, 125 add, 15 divide, 70 multiply, 2 sqrt
+#   skeleton where nothing vanishes: 30 compare and select, 118 add, 14 divide, 47 multiply, 1
 #     sqrt
-#   jacobian_parallel: 49 compare and select, 71 add, 11 divide, 69 multiply, 2 sqrt
-#   jacobian_parallel where nothing vanishes: 30 compare and select, 64 add, 10 divide, 46
+#   jacobian_parallel: 49 compare and select, 69 add, 9 divide, 68 multiply, 2 sqrt
+#   jacobian_parallel where nothing vanishes: 30 compare and select, 62 add, 8 divide, 45
 #     multiply, 1 sqrt
-#   jacobian_serial: 45 compare and select, 47 add, 9 divide, 58 multiply, 2 sqrt
-#   jacobian_serial where nothing vanishes: 30 compare and select, 40 add, 8 divide, 38 multiply,
+#   jacobian_serial: 45 compare and select, 45 add, 7 divide, 57 multiply, 2 sqrt
+#   jacobian_serial where nothing vanishes: 30 compare and select, 38 add, 6 divide, 37 multiply,
 #     1 sqrt
-#   jacobian: 49 compare and select, 91 add, 29 divide, 120 multiply, 2 sqrt
-#   jacobian where nothing vanishes: 30 compare and select, 84 add, 28 divide, 97 multiply, 1 sqrt
-#   determinant: 45 compare and select, 43 add, 11 divide, 63 multiply, 2 sqrt
-#   determinant where nothing vanishes: 30 compare and select, 36 add, 10 divide, 43 multiply, 1
+#   jacobian: 49 compare and select, 89 add, 27 divide, 119 multiply, 2 sqrt
+#   jacobian where nothing vanishes: 30 compare and select, 82 add, 26 divide, 96 multiply, 1 sqrt
+#   determinant: 45 compare and select, 41 add, 9 divide, 62 multiply, 2 sqrt
+#   determinant where nothing vanishes: 30 compare and select, 34 add, 8 divide, 42 multiply, 1
 #     sqrt
-#   singularities: 45 compare and select, 49 add, 9 divide, 59 multiply, 2 sqrt
-#   singularities where nothing vanishes: 30 compare and select, 42 add, 8 divide, 39 multiply, 1
+#   singularities: 45 compare and select, 47 add, 7 divide, 58 multiply, 2 sqrt
+#   singularities where nothing vanishes: 30 compare and select, 40 add, 6 divide, 38 multiply, 1
 #     sqrt
-#   condition_number: 49 compare and select, 107 add, 13 divide, 139 multiply, 4 sqrt
-#   condition_number where nothing vanishes: 30 compare and select, 100 add, 12 divide, 116
+#   condition_number: 49 compare and select, 105 add, 11 divide, 138 multiply, 4 sqrt
+#   condition_number where nothing vanishes: 30 compare and select, 98 add, 10 divide, 115
 #     multiply, 3 sqrt
-#   constraint: 49 compare and select, 65 add, 17 divide, 93 multiply, 2 sqrt
-#   constraint where nothing vanishes: 30 compare and select, 58 add, 16 divide, 70 multiply, 1
+#   constraint: 49 compare and select, 63 add, 15 divide, 92 multiply, 2 sqrt
+#   constraint where nothing vanishes: 30 compare and select, 56 add, 14 divide, 69 multiply, 1
 #     sqrt
 #   ik: 60 compare and select, 63 add, 5 divide, 44 multiply, 6 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
@@ -152,17 +152,17 @@ _DEFAULT = Parameters()
 
 def _fk(rho1, rho2, rho3, f, e, l):
     c1_x = f - e
-    t1 = c1_x - (e * 0.5 - f * 0.5)
+    t1 = c1_x + c1_x * 0.5
     t2 = rho1 - rho2
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t3 = t1 * t1 + c3_y * c3_y
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    t3 = t1 * t1 + c2_y * c2_y
     u_u = t2 * t2 + t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t4 = size * size
     t5 = _runtime.VANISHING * _runtime.VANISHING
     t6 = t4 * t5
     same = u_u <= t6
-    d_y = _runtime.select(same, c3_y, -c3_y)
+    d_y = _runtime.select(same, -c2_y, c2_y)
     t7 = rho1 - rho3
     v_v = t7 * t7 + t3
     del t3
@@ -170,34 +170,34 @@ def _fk(rho1, rho2, rho3, f, e, l):
     del t6
     whole = _runtime.select(size == 0.0, 1.0, size)
     a_x = _runtime.select(all_same, whole, -t1)
-    t8 = _runtime.select(same, -c3_y, c3_y)
-    del c3_y
-    m_z = a_x * t8 + t1 * d_y
+    t8 = _runtime.select(same, c2_y, -c2_y)
+    del c2_y
+    product_z = a_x * t8 + t1 * d_y
     t9 = _runtime.select(same, t7, t2)
     t10 = _runtime.select(same, t2, t7)
     del t2, t7
-    m_y = a_x * t10 + t1 * t9
-    t11 = d_y * m_z + t9 * m_y
+    product_y = a_x * t10 + t1 * t9
+    t11 = d_y * product_z + t9 * product_y
     t12 = d_y * t10 - t8 * t9
-    m_m = t12 * t12 + m_y * m_y + m_z * m_z
+    product_2 = t12 * t12 + product_y * product_y + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t13 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t13 * 0.000244140625 <= _runtime.VANISHING * t13
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
     del t13
     over = 1.0 / mu
-    n_y = a_x * m_z - t9 * t12
-    t14 = a_x * m_y + d_y * t12
-    mu_nu = _runtime.select(slim, over * (t11 * t11 + n_y * n_y + t14 * t14), m_m)
-    del m_m
-    in_line = mu_nu <= t5 * (t4 * mu)
+    n_y = a_x * product_z - t9 * t12
+    t14 = a_x * product_y + d_y * t12
+    m_m = _runtime.select(slim, over * (t11 * t11 + n_y * n_y + t14 * t14), product_2)
+    del product_2
+    in_line = m_m <= t5 * (t4 * mu)
     del t5
     t15 = whole * t9
     s_w = _runtime.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, mu_nu)
-    del mu_nu
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    del m_m
     part = 1.0 / w_w
     t16 = t8 * (d_y - t8) + t10 * (t9 - t10)
     del t10, t8
@@ -229,16 +229,16 @@ def _fk(rho1, rho2, rho3, f, e, l):
     del t21, t22, t27
     t28 = _runtime.poison(invalid | unreachable)
     t29 = n_y * t17 - d_y * 0.5
-    m_again_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), m_y)
-    del m_y
-    t30 = h * _runtime.select(in_line, -t15, m_again_y)
-    del m_again_y, t15
+    m_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), product_y)
+    del product_y
+    t30 = h * _runtime.select(in_line, -t15, m_y)
+    del m_y, t15
     t31 = t9 * 0.5 - (rho1 + t14 * t17)
     del t14, t17, t9
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), m_z)
-    del a_x, d_y, m_z, n_y, over, slim, t11
-    t32 = h * _runtime.select(in_line, -g_2, m_again_z)
-    del g_2, h, m_again_z
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t11
+    t32 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, h, m_z
     t33 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
@@ -256,71 +256,71 @@ def _fk(rho1, rho2, rho3, f, e, l):
 def _fk_common(rho1, rho2, rho3, f, e, l):
     # Where nothing vanishes; last, whether something does.
     c1_x = f - e
-    t1 = c1_x - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t2 = c3_y * t1
-    t3 = t2 + t2
+    t1 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    t2 = c2_y * t1
+    product_z = t2 + t2
     del t2
-    t4 = rho1 - rho2
-    t5 = rho1 - rho3
-    t6 = t1 * t5 - t1 * t4
-    t7 = c3_y * t5 + c3_y * t4
-    m_m = t7 * t7 + t6 * t6 + t3 * t3
-    part = 1.0 / m_m
-    t8 = part * (c3_y * (c3_y + c3_y) - t5 * (t4 - t5))
-    t9 = t8 * 0.5
-    del t8
-    t10 = c1_x - t1 * 0.5 - (c3_y * t3 - t4 * t6) * t9
+    t3 = rho1 - rho2
+    t4 = rho1 - rho3
+    t5 = t1 * t4 - t1 * t3
+    t6 = c2_y * t4 + c2_y * t3
+    product_2 = t6 * t6 + t5 * t5 + product_z * product_z
+    part = 1.0 / product_2
+    t7 = part * (c2_y * (c2_y + c2_y) - t4 * (t3 - t4))
+    t8 = t7 * 0.5
+    del t7
+    t9 = c1_x - t1 * 0.5 - (c2_y * product_z - t3 * t5) * t8
     del c1_x
-    t11 = t1 * t1 + c3_y * c3_y
-    u_u = t4 * t4 + t11
-    t12 = l * l - u_u * (0.25 + m_m * (t9 * t9))
-    slack = np.maximum(t12, 0.0)
+    t10 = t1 * t1 + c2_y * c2_y
+    u_u = t3 * t3 + t10
+    t11 = l * l - u_u * (0.25 + product_2 * (t8 * t8))
+    slack = np.maximum(t11, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t13 = t7 * h
-    t14 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t16 = t14 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t15
-    del t14, t15
-    invalid = np.logical_not(t16)
-    del t16
+    t12 = t6 * h
+    t13 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t14 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t15 = t13 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t14
+    del t13, t14
+    invalid = np.logical_not(t15)
+    del t15
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t17 = size * size
-    t18 = l * size * 0.1875
+    t16 = size * size
+    t17 = l * size * 0.1875
     del size
-    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t12)
-    del t12
-    unreachable = np.logical_not(t19)
-    del t19
-    t20 = _runtime.poison(invalid | unreachable)
-    t21 = t9 * (t1 * t3 + t4 * t7) - c3_y * 0.5
-    t22 = t6 * h
-    t23 = t3 * h
-    del h, t3
-    t24 = t4 * 0.5 - (rho1 - t9 * (t1 * t6 + c3_y * t7))
-    del c3_y, t1, t4, t6, t7, t9
-    t25 = _runtime.status(invalid, unreachable, np.False_)
+    t18 = (np.abs(0.0) <= t16 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t17) <= t11)
+    del t11
+    unreachable = np.logical_not(t18)
+    del t18
+    t19 = _runtime.poison(invalid | unreachable)
+    t20 = t5 * h
+    t21 = t8 * (t1 * product_z + t3 * t6) - c2_y * 0.5
+    t22 = t3 * 0.5 - (rho1 - t8 * (t1 * t5 + c2_y * t6))
+    del c2_y, t1, t3, t5, t6, t8
+    t23 = product_z * h
+    del h, product_z
+    t24 = _runtime.status(invalid, unreachable, np.False_)
     del invalid, unreachable
-    t26 = _runtime.VANISHING * _runtime.VANISHING
-    t27 = t17 * t26
-    v_v = t5 * t5 + t11
-    del t11, t5
-    t28 = u_u * v_v
-    slim = m_m - t28 * 0.000244140625 <= _runtime.VANISHING * t28
-    del t28
-    t29 = (u_u <= t27) | (u_u + v_v <= t27) | slim | (m_m <= t26 * (t17 * u_u))
-    del m_m, slim, t17, t26, t27, u_u, v_v
+    t25 = _runtime.VANISHING * _runtime.VANISHING
+    t26 = t16 * t25
+    v_v = t4 * t4 + t10
+    del t10, t4
+    t27 = u_u * v_v
+    slim = product_2 - t27 * 0.000244140625 <= _runtime.VANISHING * t27
+    del t27
+    t28 = (u_u <= t26) | (u_u + v_v <= t26) | slim | (product_2 <= t25 * (t16 * u_u))
+    del product_2, slim, t16, t25, t26, u_u, v_v
     return (
-        t10 - t13 + t20,
-        t21 + t22 + t20,
-        t23 - t24 + t20,
-        t10 + t13 + t20,
-        t21 - t22 + t20,
-        -(t24 + t23) + t20,
-        t25,
-        t25,
-        t29 | (slack <= _runtime.VANISHING * t18),
+        t9 + t12 + t19,
+        t20 - t21 + t19,
+        -(t22 + t23) + t19,
+        t9 - t12 + t19,
+        -(t21 + t20) + t19,
+        t23 - t22 + t19,
+        t24,
+        t24,
+        t28 | (slack <= _runtime.VANISHING * t17),
     )
 
 
@@ -386,201 +386,201 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     del t1, t2
     t4 = rho1 - rho2
     c1_x = f - e
-    t5 = e * 0.5
-    t6 = f * 0.5
-    t7 = c1_x - (t5 - t6)
-    t8 = e * 1.7320508075688772
-    t9 = t8 * 0.5
-    t10 = f * 1.7320508075688772 * 0.5
-    c3_y = t9 - t10
-    t11 = t7 * t7 + c3_y * c3_y
-    u_u = t4 * t4 + t11
+    t5 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    t6 = t5 * t5 + c2_y * c2_y
+    u_u = t4 * t4 + t6
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t12 = size * size
-    t13 = _runtime.VANISHING * _runtime.VANISHING
-    t14 = t12 * t13
-    same = u_u <= t14
-    d_y = _runtime.select(same, c3_y, -c3_y)
-    t15 = rho1 - rho3
-    t16 = _runtime.select(same, t4, t15)
-    t17 = _runtime.select(same, t15, t4)
+    t7 = size * size
+    t8 = _runtime.VANISHING * _runtime.VANISHING
+    t9 = t7 * t8
+    same = u_u <= t9
+    d_y = _runtime.select(same, -c2_y, c2_y)
+    t10 = rho1 - rho3
+    t11 = _runtime.select(same, t4, t10)
+    t12 = _runtime.select(same, t10, t4)
     del t4
-    t18 = _runtime.select(same, -c3_y, c3_y)
-    del c3_y
-    t19 = d_y * t16 - t17 * t18
-    v_v = t15 * t15 + t11
-    del t11, t15
-    all_same = u_u + v_v <= t14
-    del t14
+    t13 = _runtime.select(same, c2_y, -c2_y)
+    del c2_y
+    t14 = d_y * t11 - t12 * t13
+    v_v = t10 * t10 + t6
+    del t10, t6
+    all_same = u_u + v_v <= t9
+    del t9
     whole = _runtime.select(size == 0.0, 1.0, size)
-    a_x = _runtime.select(all_same, whole, -t7)
-    m_y = t16 * a_x + t7 * t17
-    m_z = t18 * a_x + t7 * d_y
-    m_m = t19 * t19 + m_y * m_y + m_z * m_z
+    a_x = _runtime.select(all_same, whole, -t5)
+    product_y = t11 * a_x + t5 * t12
+    product_z = t13 * a_x + t5 * d_y
+    product_2 = t14 * t14 + product_y * product_y + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t20 = mu * _runtime.select(same, u_u, v_v)
+    t15 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t20 * 0.000244140625 <= _runtime.VANISHING * t20
-    del t20
+    slim = product_2 - t15 * 0.000244140625 <= _runtime.VANISHING * t15
+    del t15
     over = 1.0 / mu
-    t21 = d_y * m_z + t17 * m_y
-    n_y = a_x * m_z - t17 * t19
-    t22 = a_x * m_y + d_y * t19
-    mu_nu = _runtime.select(slim, over * (t21 * t21 + n_y * n_y + t22 * t22), m_m)
-    del m_m
-    in_line = mu_nu <= t13 * (t12 * mu)
-    del t13
-    t23 = t18 * (d_y - t18) - t16 * (t16 - t17)
-    del t16, t18
-    t24 = np.abs(_runtime.select(in_line, -t23, 0.0)) <= t12 * _runtime.FEASIBILITY
-    del t12
-    t25 = 0.234375 * (l * size)
+    t16 = d_y * product_z + t12 * product_y
+    n_y = a_x * product_z - t12 * t14
+    t17 = a_x * product_y + d_y * t14
+    m_m = _runtime.select(slim, over * (t16 * t16 + n_y * n_y + t17 * t17), product_2)
+    del product_2
+    in_line = m_m <= t8 * (t7 * mu)
+    del t8
+    t18 = t13 * (d_y - t13) - t11 * (t11 - t12)
+    del t11, t13
+    t19 = np.abs(_runtime.select(in_line, -t18, 0.0)) <= t7 * _runtime.FEASIBILITY
+    del t7
+    t20 = 0.234375 * (l * size)
     del size
-    t26 = whole * t17
+    t21 = whole * t12
     s_w = _runtime.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (t26 * t26) + g_2 * g_2, mu_nu)
-    del mu_nu
+    w_w = _runtime.select(in_line, 2.0 * (t21 * t21) + g_2 * g_2, m_m)
+    del m_m
     part = 1.0 / w_w
-    t27 = _runtime.select(in_line, 0.0, t23 * part * 0.5)
-    del t23
-    t28 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t27 * t27)))
+    t22 = _runtime.select(in_line, 0.0, t18 * part * 0.5)
+    del t18
+    t23 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t22 * t22)))
     del all_same, mu, w_w
-    t29 = l * l - t28
-    del t28
-    unreachable = np.logical_not(t24 & (-(_runtime.FEASIBILITY * t25) <= t29))
-    del t24
-    t30 = _runtime.poison(np.logical_not(t3) | unreachable)
-    del t3, unreachable
-    t31 = f + t30
-    t32 = 0.0 + t30
-    t33 = rho1 + t30
-    t34 = e + c1_x
-    t35 = t7 * 0.5 - t21 * t27
-    del t7
-    t36 = _runtime.select(slim, over * (d_y * t22 - t17 * n_y), t19)
+    t24 = l * l - t23
+    del t23
+    unreachable = np.logical_not(t19 & (-(_runtime.FEASIBILITY * t20) <= t24))
     del t19
-    slack = np.maximum(t29, 0.0)
-    del t29
-    h = _runtime.select(slack <= _runtime.VANISHING * t25, 0.0, np.sqrt(part) * np.sqrt(slack))
-    del part, slack, t25
-    t37 = _runtime.select(in_line, t26 * s_w, t36) * h
-    del s_w, t36
-    t38 = t35 - t37
-    t39 = t34 - t38 + t30
-    t40 = n_y * t27 - d_y * 0.5
-    m_again_y = _runtime.select(slim, over * (a_x * t22 + t17 * t21), m_y)
-    del m_y
-    t41 = h * _runtime.select(in_line, -t26, m_again_y)
-    del m_again_y, t26
-    t42 = t40 + t41
-    t43 = -t42 + t30
-    t44 = t22 * t27 - t17 * 0.5
-    del t17, t22, t27
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t21), m_z)
-    del a_x, d_y, m_z, n_y, over, slim, t21
-    t45 = h * _runtime.select(in_line, -g_2, m_again_z)
-    del g_2, h, in_line, m_again_z
-    t46 = rho1 + (t44 - t45) + t30
-    t47 = t5 + t30
-    t48 = -t5 + t30
-    t49 = -t6 + t30
-    t50 = t10 + t30
-    t51 = rho2 + t30
-    t52 = c1_x - t5
-    t53 = t52 - t38
-    t54 = t53 + t30
-    t55 = t8 * 0.25
-    del t8
-    t56 = -(t6 + t55) + t30
-    t57 = e * 0.25
-    t58 = t10 - t57
-    t59 = t58 + t30
-    t60 = t55 - t6 + t30
-    del t6
-    t61 = t10 + t57
-    t62 = t61 + t30
-    t63 = t53 - t55 + t30
-    t64 = t9 - t57
-    t65 = t55 + t53 + t30
+    t25 = _runtime.poison(np.logical_not(t3) | unreachable)
+    del t3, unreachable
+    t26 = f + t25
+    t27 = 0.0 + t25
+    t28 = rho1 + t25
+    t29 = e + c1_x
+    t30 = t5 * 0.5 - t16 * t22
+    del t5
+    t31 = _runtime.select(slim, over * (d_y * t17 - t12 * n_y), t14)
+    del t14
+    slack = np.maximum(t24, 0.0)
+    del t24
+    h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part) * np.sqrt(slack))
+    del part, slack, t20
+    t32 = _runtime.select(in_line, t21 * s_w, t31) * h
+    del s_w, t31
+    t33 = t30 - t32
+    t34 = t29 - t33 + t25
+    t35 = n_y * t22 - d_y * 0.5
+    m_y = _runtime.select(slim, over * (a_x * t17 + t12 * t16), product_y)
+    del product_y
+    t36 = h * _runtime.select(in_line, -t21, m_y)
+    del m_y, t21
+    t37 = t35 + t36
+    t38 = -t37 + t25
+    t39 = t17 * t22 - t12 * 0.5
+    del t12, t17, t22
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t16), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t16
+    t40 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, h, in_line, m_z
+    t41 = rho1 + (t39 - t40) + t25
+    t42 = e * 0.5
+    t43 = t42 + t25
+    t44 = -t42 + t25
+    t45 = f * 0.5
+    t46 = -t45 + t25
+    t47 = f * 1.7320508075688772 * 0.5
+    t48 = t47 + t25
+    t49 = rho2 + t25
+    t50 = c1_x - t42
+    t51 = t50 - t33
+    t52 = t51 + t25
+    t53 = e * 1.7320508075688772
+    t54 = t53 * 0.5
+    t55 = t53 * 0.25
     del t53
-    t66 = t9 + t57
+    t56 = -(t45 + t55) + t25
+    t57 = e * 0.25
+    t58 = t47 - t57
+    t59 = t58 + t25
+    t60 = t55 - t45 + t25
+    del t45
+    t61 = t47 + t57
+    t62 = t61 + t25
+    t63 = t51 - t55 + t25
+    t64 = t54 - t57
+    t65 = t55 + t51 + t25
+    del t51
+    t66 = t54 + t57
     del t57
-    t67 = -t10 + t30
-    del t10
-    t68 = rho3 + t30
-    t69 = -t61 + t30
+    t67 = -t47 + t25
+    del t47
+    t68 = rho3 + t25
+    t69 = -t61 + t25
     del t61
-    t70 = -t58 + t30
+    t70 = -t58 + t25
     del t58
-    t71 = t35 + t37
-    del t35, t37
-    t72 = t34 - t71 + t30
-    del t34
-    t73 = t40 - t41
-    del t40, t41
-    t74 = -t73 + t30
-    t75 = rho1 + (t44 + t45) + t30
-    del t44, t45
-    t76 = t52 - t71
-    del t52
-    t77 = t76 + t30
-    t78 = t76 - t55 + t30
-    t79 = t55 + t76 + t30
+    t71 = t30 + t32
+    del t30, t32
+    t72 = t29 - t71 + t25
+    del t29
+    t73 = t35 - t36
+    del t35, t36
+    t74 = -t73 + t25
+    t75 = rho1 + (t39 + t40) + t25
+    del t39, t40
+    t76 = t50 - t71
+    del t50
+    t77 = t76 + t25
+    t78 = t76 - t55 + t25
+    t79 = t55 + t76 + t25
     del t55, t76
     return (
-        t31,
-        t32,
-        t32,
-        t31,
-        t32,
-        t33,
-        t39,
+        t26,
+        t27,
+        t27,
+        t26,
+        t27,
+        t28,
+        t34,
+        t38,
+        t41,
+        t26,
         t43,
+        t28,
+        t26,
+        t44,
+        t28,
+        t34,
+        t42 - t37 + t25,
+        t41,
+        t34,
+        -(t42 + t37) + t25,
+        t41,
         t46,
-        t31,
-        t47,
-        t33,
-        t31,
         t48,
-        t33,
-        t39,
-        t5 - t42 + t30,
+        t27,
         t46,
-        t39,
-        -(t5 + t42) + t30,
-        t46,
+        t48,
         t49,
-        t50,
-        t32,
-        t49,
-        t50,
-        t51,
-        t54,
-        t9 - t42 + t30,
-        t46,
+        t52,
+        t54 - t37 + t25,
+        t41,
         t56,
         t59,
-        t51,
+        t49,
         t60,
         t62,
-        t51,
+        t49,
         t63,
-        t64 - t42 + t30,
-        t46,
+        t64 - t37 + t25,
+        t41,
         t65,
-        t66 - t42 + t30,
+        t66 - t37 + t25,
+        t41,
         t46,
-        t49,
         t67,
-        t32,
-        t49,
+        t27,
+        t46,
         t67,
         t68,
-        t54,
-        -(t9 + t42) + t30,
-        t46,
+        t52,
+        -(t54 + t37) + t25,
+        t41,
         t60,
         t69,
         t68,
@@ -588,64 +588,64 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
         t70,
         t68,
         t65,
-        -(t66 + t42) + t30,
-        t46,
+        -(t66 + t37) + t25,
+        t41,
         t63,
-        -(t64 + t42) + t30,
-        t46,
-        c1_x - t38 + t30,
-        t43,
-        t46,
-        t31,
-        t32,
-        t32,
-        t31,
-        t32,
-        t33,
+        -(t64 + t37) + t25,
+        t41,
+        c1_x - t33 + t25,
+        t38,
+        t41,
+        t26,
+        t27,
+        t27,
+        t26,
+        t27,
+        t28,
         t72,
         t74,
         t75,
-        t31,
-        t47,
-        t33,
-        t31,
+        t26,
+        t43,
+        t28,
+        t26,
+        t44,
+        t28,
+        t72,
+        t42 - t73 + t25,
+        t75,
+        t72,
+        -(t42 + t73) + t25,
+        t75,
+        t46,
         t48,
-        t33,
-        t72,
-        t5 - t73 + t30,
-        t75,
-        t72,
-        -(t5 + t73) + t30,
-        t75,
+        t27,
+        t46,
+        t48,
         t49,
-        t50,
-        t32,
-        t49,
-        t50,
-        t51,
         t77,
-        t9 - t73 + t30,
+        t54 - t73 + t25,
         t75,
         t56,
         t59,
-        t51,
+        t49,
         t60,
         t62,
-        t51,
+        t49,
         t78,
-        t64 - t73 + t30,
+        t64 - t73 + t25,
         t75,
         t79,
-        t66 - t73 + t30,
+        t66 - t73 + t25,
         t75,
-        t49,
+        t46,
         t67,
-        t32,
-        t49,
+        t27,
+        t46,
         t67,
         t68,
         t77,
-        -(t9 + t73) + t30,
+        -(t54 + t73) + t25,
         t75,
         t60,
         t69,
@@ -654,12 +654,12 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
         t70,
         t68,
         t79,
-        -(t66 + t73) + t30,
+        -(t66 + t73) + t25,
         t75,
         t78,
-        -(t64 + t73) + t30,
+        -(t64 + t73) + t25,
         t75,
-        c1_x - t71 + t30,
+        c1_x - t71 + t25,
         t74,
         t75,
     )
@@ -677,158 +677,158 @@ def _skeleton_common(rho1, rho2, rho3, f, e, l):
     del size
     t6 = rho1 - rho2
     c1_x = f - e
-    t7 = e * 0.5
-    t8 = f * 0.5
-    t9 = c1_x - (t7 - t8)
-    t10 = e * 1.7320508075688772
-    t11 = t10 * 0.5
-    t12 = f * 1.7320508075688772 * 0.5
-    c3_y = t11 - t12
-    t13 = t9 * t9 + c3_y * c3_y
-    u_u = t6 * t6 + t13
-    t14 = rho1 - rho3
-    t15 = c3_y * t14 + c3_y * t6
-    t16 = t9 * t14 - t9 * t6
-    t17 = c3_y * t9
-    t18 = t17 + t17
-    del t17
-    m_m = t15 * t15 + t16 * t16 + t18 * t18
-    part = 1.0 / m_m
-    t19 = part * (c3_y * (c3_y + c3_y) - t14 * (t6 - t14))
-    t20 = t19 * 0.5
-    del t19
-    t21 = l * l - u_u * (0.25 + m_m * (t20 * t20))
-    t22 = (np.abs(0.0) <= t4 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t5) <= t21)
-    t23 = _runtime.poison(np.logical_not(t3) | np.logical_not(t22))
-    del t22, t3
-    t24 = f + t23
-    t25 = 0.0 + t23
-    t26 = rho1 + t23
-    t27 = e + c1_x
-    t28 = t9 * 0.5 + t20 * (c3_y * t18 - t6 * t16)
-    slack = np.maximum(t21, 0.0)
-    del t21
+    t7 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    t8 = t7 * t7 + c2_y * c2_y
+    u_u = t6 * t6 + t8
+    t9 = rho1 - rho3
+    t10 = c2_y * t9 + c2_y * t6
+    t11 = t7 * t9 - t7 * t6
+    t12 = c2_y * t7
+    product_z = t12 + t12
+    del t12
+    product_2 = t10 * t10 + t11 * t11 + product_z * product_z
+    part = 1.0 / product_2
+    t13 = part * (c2_y * (c2_y + c2_y) - t9 * (t6 - t9))
+    t14 = t13 * 0.5
+    del t13
+    t15 = l * l - u_u * (0.25 + product_2 * (t14 * t14))
+    t16 = (np.abs(0.0) <= t4 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t5) <= t15)
+    t17 = _runtime.poison(np.logical_not(t3) | np.logical_not(t16))
+    del t16, t3
+    t18 = f + t17
+    t19 = 0.0 + t17
+    t20 = rho1 + t17
+    t21 = e + c1_x
+    t22 = t7 * 0.5 + t14 * (c2_y * product_z - t6 * t11)
+    slack = np.maximum(t15, 0.0)
+    del t15
     h = np.sqrt(part * slack)
     del part
-    t29 = t15 * h
-    t30 = t28 + t29
-    t31 = t27 - t30 + t23
-    t32 = t20 * (t9 * t18 + t6 * t15) - c3_y * 0.5
-    t33 = t16 * h
-    A_12 = t32 + t33
-    t34 = A_12 + t23
-    t35 = t20 * (t9 * t16 + c3_y * t15) + t6 * 0.5
-    del c3_y, t15, t16, t20, t6, t9
-    t36 = t18 * h
-    del h, t18
-    t37 = rho1 - (t35 - t36) + t23
-    t38 = t7 + t23
-    t39 = -t7 + t23
-    t40 = -t8 + t23
-    t41 = t12 + t23
-    t42 = rho2 + t23
-    t43 = c1_x - t7
-    t44 = t43 - t30
-    t45 = t44 + t23
-    t46 = t10 * 0.25
-    del t10
-    t47 = -(t8 + t46) + t23
-    t48 = e * 0.25
-    t49 = t12 - t48
-    t50 = t49 + t23
-    t51 = t46 - t8 + t23
-    del t8
-    t52 = t12 + t48
-    t53 = t52 + t23
-    t54 = t44 - t46 + t23
-    t55 = t11 - t48
-    t56 = t46 + t44 + t23
+    t23 = t10 * h
+    t24 = t22 - t23
+    t25 = t21 - t24 + t17
+    t26 = t14 * (t7 * product_z + t6 * t10) - c2_y * 0.5
+    t27 = t11 * h
+    t28 = t26 - t27
+    t29 = -t28 + t17
+    t30 = t14 * (t7 * t11 + c2_y * t10) + t6 * 0.5
+    del c2_y, t10, t11, t14, t6, t7
+    t31 = product_z * h
+    del h, product_z
+    t32 = rho1 - (t30 + t31) + t17
+    t33 = e * 0.5
+    t34 = t33 + t17
+    t35 = -t33 + t17
+    t36 = f * 0.5
+    t37 = -t36 + t17
+    t38 = f * 1.7320508075688772 * 0.5
+    t39 = t38 + t17
+    t40 = rho2 + t17
+    t41 = c1_x - t33
+    t42 = t41 - t24
+    t43 = t42 + t17
+    t44 = e * 1.7320508075688772
+    t45 = t44 * 0.5
+    t46 = t44 * 0.25
     del t44
-    t57 = t11 + t48
+    t47 = -(t36 + t46) + t17
+    t48 = e * 0.25
+    t49 = t38 - t48
+    t50 = t49 + t17
+    t51 = t46 - t36 + t17
+    del t36
+    t52 = t38 + t48
+    t53 = t52 + t17
+    t54 = t42 - t46 + t17
+    t55 = t45 - t48
+    t56 = t46 + t42 + t17
+    del t42
+    t57 = t45 + t48
     del t48
-    t58 = -t12 + t23
-    del t12
-    t59 = rho3 + t23
-    t60 = -t52 + t23
+    t58 = -t38 + t17
+    del t38
+    t59 = rho3 + t17
+    t60 = -t52 + t17
     del t52
-    t61 = -t49 + t23
+    t61 = -t49 + t17
     del t49
-    t62 = t28 - t29
-    del t28, t29
-    t63 = t27 - t62 + t23
-    del t27
-    A_12_above = t32 - t33
-    del t32, t33
-    t64 = A_12_above + t23
-    t65 = rho1 - (t35 + t36) + t23
-    del t35, t36
-    t66 = t43 - t62
-    del t43
-    t67 = t66 + t23
-    t68 = t66 - t46 + t23
-    t69 = t46 + t66 + t23
-    del t46, t66
-    t70 = _runtime.VANISHING * _runtime.VANISHING
-    t71 = t4 * t70
-    v_v = t14 * t14 + t13
-    del t13, t14
-    t72 = u_u * v_v
-    slim = m_m - t72 * 0.000244140625 <= _runtime.VANISHING * t72
-    del t72
-    t73 = (u_u <= t71) | (u_u + v_v <= t71) | slim | (m_m <= t70 * (t4 * u_u))
-    del m_m, slim, t4, t70, t71, u_u, v_v
+    t62 = t22 + t23
+    del t22, t23
+    t63 = t21 - t62 + t17
+    del t21
+    t64 = t26 + t27
+    del t26, t27
+    t65 = -t64 + t17
+    t66 = rho1 - (t30 - t31) + t17
+    del t30, t31
+    t67 = t41 - t62
+    del t41
+    t68 = t67 + t17
+    t69 = t67 - t46 + t17
+    t70 = t46 + t67 + t17
+    del t46, t67
+    t71 = _runtime.VANISHING * _runtime.VANISHING
+    t72 = t4 * t71
+    v_v = t9 * t9 + t8
+    del t8, t9
+    t73 = u_u * v_v
+    slim = product_2 - t73 * 0.000244140625 <= _runtime.VANISHING * t73
+    del t73
+    t74 = (u_u <= t72) | (u_u + v_v <= t72) | slim | (product_2 <= t71 * (t4 * u_u))
+    del product_2, slim, t4, t71, t72, u_u, v_v
     return (
-        t24,
+        t18,
+        t19,
+        t19,
+        t18,
+        t19,
+        t20,
         t25,
-        t25,
-        t24,
-        t25,
-        t26,
-        t31,
+        t29,
+        t32,
+        t18,
         t34,
-        t37,
-        t24,
-        t38,
-        t26,
-        t24,
-        t39,
-        t26,
-        t31,
-        t7 + A_12 + t23,
-        t37,
-        t31,
-        A_12 - t7 + t23,
-        t37,
-        t40,
-        t41,
+        t20,
+        t18,
+        t35,
+        t20,
         t25,
-        t40,
-        t41,
-        t42,
-        t45,
-        t11 + A_12 + t23,
+        t33 - t28 + t17,
+        t32,
+        t25,
+        -(t33 + t28) + t17,
+        t32,
         t37,
+        t39,
+        t19,
+        t37,
+        t39,
+        t40,
+        t43,
+        t45 - t28 + t17,
+        t32,
         t47,
         t50,
-        t42,
+        t40,
         t51,
         t53,
-        t42,
+        t40,
         t54,
-        t55 + A_12 + t23,
-        t37,
+        t55 - t28 + t17,
+        t32,
         t56,
-        t57 + A_12 + t23,
+        t57 - t28 + t17,
+        t32,
         t37,
-        t40,
         t58,
-        t25,
-        t40,
+        t19,
+        t37,
         t58,
         t59,
-        t45,
-        A_12 - t11 + t23,
-        t37,
+        t43,
+        -(t45 + t28) + t17,
+        t32,
         t51,
         t60,
         t59,
@@ -836,81 +836,81 @@ def _skeleton_common(rho1, rho2, rho3, f, e, l):
         t61,
         t59,
         t56,
-        A_12 - t57 + t23,
-        t37,
+        -(t57 + t28) + t17,
+        t32,
         t54,
-        A_12 - t55 + t23,
-        t37,
-        c1_x - t30 + t23,
+        -(t55 + t28) + t17,
+        t32,
+        c1_x - t24 + t17,
+        t29,
+        t32,
+        t18,
+        t19,
+        t19,
+        t18,
+        t19,
+        t20,
+        t63,
+        t65,
+        t66,
+        t18,
         t34,
+        t20,
+        t18,
+        t35,
+        t20,
+        t63,
+        t33 - t64 + t17,
+        t66,
+        t63,
+        -(t33 + t64) + t17,
+        t66,
         t37,
-        t24,
-        t25,
-        t25,
-        t24,
-        t25,
-        t26,
-        t63,
-        t64,
-        t65,
-        t24,
-        t38,
-        t26,
-        t24,
         t39,
-        t26,
-        t63,
-        t7 + A_12_above + t23,
-        t65,
-        t63,
-        A_12_above - t7 + t23,
-        t65,
+        t19,
+        t37,
+        t39,
         t40,
-        t41,
-        t25,
-        t40,
-        t41,
-        t42,
-        t67,
-        t11 + A_12_above + t23,
-        t65,
+        t68,
+        t45 - t64 + t17,
+        t66,
         t47,
         t50,
-        t42,
+        t40,
         t51,
         t53,
-        t42,
-        t68,
-        t55 + A_12_above + t23,
-        t65,
+        t40,
         t69,
-        t57 + A_12_above + t23,
-        t65,
-        t40,
+        t55 - t64 + t17,
+        t66,
+        t70,
+        t57 - t64 + t17,
+        t66,
+        t37,
         t58,
-        t25,
-        t40,
+        t19,
+        t37,
         t58,
         t59,
-        t67,
-        A_12_above - t11 + t23,
-        t65,
+        t68,
+        -(t45 + t64) + t17,
+        t66,
         t51,
         t60,
         t59,
         t47,
         t61,
         t59,
+        t70,
+        -(t57 + t64) + t17,
+        t66,
         t69,
-        A_12_above - t57 + t23,
+        -(t55 + t64) + t17,
+        t66,
+        c1_x - t62 + t17,
         t65,
-        t68,
-        A_12_above - t55 + t23,
-        t65,
-        c1_x - t62 + t23,
-        t64,
-        t65,
-        t73 | (slack <= _runtime.VANISHING * t5),
+        t66,
+        t74 | (slack <= _runtime.VANISHING * t5),
     )
 
 
@@ -962,17 +962,19 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
 
 def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
-    t1 = f - e - (e * 0.5 - f * 0.5)
+    c1_x = f - e
+    t1 = c1_x + c1_x * 0.5
     t2 = rho1 - rho2
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t3 = t1 * t1 + c3_y * c3_y
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    del c1_x
+    t3 = t1 * t1 + c2_y * c2_y
     u_u = t2 * t2 + t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t4 = size * size
     t5 = _runtime.VANISHING * _runtime.VANISHING
     t6 = t4 * t5
     same = u_u <= t6
-    d_y = _runtime.select(same, c3_y, -c3_y)
+    d_y = _runtime.select(same, -c2_y, c2_y)
     t7 = rho1 - rho3
     v_v = t7 * t7 + t3
     del t3
@@ -980,32 +982,32 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     del t6
     whole = _runtime.select(size == 0.0, 1.0, size)
     a_x = _runtime.select(all_same, whole, -t1)
-    t8 = _runtime.select(same, -c3_y, c3_y)
-    m_z = a_x * t8 + t1 * d_y
+    t8 = _runtime.select(same, c2_y, -c2_y)
+    product_z = a_x * t8 + t1 * d_y
     t9 = _runtime.select(same, t7, t2)
     t10 = _runtime.select(same, t2, t7)
-    m_y = a_x * t10 + t1 * t9
-    t11 = d_y * m_z + t9 * m_y
+    product_y = a_x * t10 + t1 * t9
+    t11 = d_y * product_z + t9 * product_y
     t12 = d_y * t10 - t8 * t9
-    m_m = t12 * t12 + m_y * m_y + m_z * m_z
+    product_2 = t12 * t12 + product_y * product_y + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t13 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t13 * 0.000244140625 <= _runtime.VANISHING * t13
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
     del t13
     over = 1.0 / mu
-    n_y = a_x * m_z - t9 * t12
-    t14 = a_x * m_y + d_y * t12
-    mu_nu = _runtime.select(slim, over * (t11 * t11 + n_y * n_y + t14 * t14), m_m)
-    del m_m
-    in_line = mu_nu <= t5 * (t4 * mu)
+    n_y = a_x * product_z - t9 * t12
+    t14 = a_x * product_y + d_y * t12
+    m_m = _runtime.select(slim, over * (t11 * t11 + n_y * n_y + t14 * t14), product_2)
+    del product_2
+    in_line = m_m <= t5 * (t4 * mu)
     del t5
     t15 = whole * t9
     s_w = _runtime.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, mu_nu)
-    del mu_nu
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    del m_m
     part = 1.0 / w_w
     t16 = t8 * (d_y - t8) + t10 * (t9 - t10)
     del t10, t8
@@ -1036,17 +1038,17 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     t29 = _runtime.poison(np.logical_not(t27) | unreachable)
     del t27, unreachable
     t30 = n_y * t17 - d_y * 0.5
-    m_again_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), m_y)
-    del m_y
-    t31 = h * _runtime.select(in_line, -t15, m_again_y)
-    del m_again_y, t15
+    m_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), product_y)
+    del product_y
+    t31 = h * _runtime.select(in_line, -t15, m_y)
+    del m_y, t15
     t32 = t30 + t31
     t33 = t14 * t17 - t9 * 0.5
     del t14, t17, t9
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), m_z)
-    del a_x, d_y, m_z, n_y, over, slim, t11
-    t34 = h * _runtime.select(in_line, -g_2, m_again_z)
-    del g_2, h, in_line, m_again_z
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t11
+    t34 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, h, in_line, m_z
     A_13 = t33 - t34
     t35 = t1 - t24 + t29
     t36 = t18 + t23
@@ -1062,106 +1064,108 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
         -t32 + t29,
         A_13 + t29,
         t35,
-        c3_y - t32 + t29,
+        -(c2_y + t32) + t29,
         t2 + A_13 + t29,
         t35,
-        -(c3_y + t32) + t29,
+        c2_y - t32 + t29,
         t7 + A_13 + t29,
         -t36 + t29,
         -t37 + t29,
         A_13_above + t29,
         t38,
-        c3_y - t37 + t29,
+        -(c2_y + t37) + t29,
         t2 + A_13_above + t29,
         t38,
-        -(c3_y + t37) + t29,
+        c2_y - t37 + t29,
         t7 + A_13_above + t29,
     )
 
 
 def _jacobian_parallel_common(rho1, rho2, rho3, f, e, l):
     # Where nothing vanishes; last, whether something does.
-    t1 = f - e - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t2 = c3_y * t1
-    t3 = t2 + t2
+    c1_x = f - e
+    t1 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    del c1_x
+    t2 = c2_y * t1
+    product_z = t2 + t2
     del t2
-    t4 = rho1 - rho2
-    t5 = rho1 - rho3
-    t6 = t1 * t5 - t1 * t4
-    t7 = c3_y * t5 + c3_y * t4
-    m_m = t7 * t7 + t6 * t6 + t3 * t3
-    part = 1.0 / m_m
-    t8 = part * (c3_y * (c3_y + c3_y) - t5 * (t4 - t5))
-    t9 = t8 * 0.5
-    del t8
-    t10 = t1 * 0.5 + (c3_y * t3 - t4 * t6) * t9
-    t11 = t1 * t1 + c3_y * c3_y
-    u_u = t4 * t4 + t11
-    t12 = l * l - u_u * (0.25 + m_m * (t9 * t9))
-    slack = np.maximum(t12, 0.0)
+    t3 = rho1 - rho2
+    t4 = rho1 - rho3
+    t5 = t1 * t4 - t1 * t3
+    t6 = c2_y * t4 + c2_y * t3
+    product_2 = t6 * t6 + t5 * t5 + product_z * product_z
+    part = 1.0 / product_2
+    t7 = part * (c2_y * (c2_y + c2_y) - t4 * (t3 - t4))
+    t8 = t7 * 0.5
+    del t7
+    t9 = t1 * 0.5 + (c2_y * product_z - t3 * t5) * t8
+    t10 = t1 * t1 + c2_y * c2_y
+    u_u = t3 * t3 + t10
+    t11 = l * l - u_u * (0.25 + product_2 * (t8 * t8))
+    slack = np.maximum(t11, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t13 = t7 * h
-    t14 = t10 + t13
-    t15 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t16 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t17 = t15 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t16
-    del t15, t16
+    t12 = t6 * h
+    t13 = t9 - t12
+    t14 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t16 = t14 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t15
+    del t14, t15
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t18 = size * size
-    t19 = 0.234375 * (l * size)
+    t17 = size * size
+    t18 = 0.234375 * (l * size)
     del size
-    t20 = (np.abs(0.0) <= t18 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t19) <= t12)
-    del t12
-    t21 = _runtime.poison(np.logical_not(t17) | np.logical_not(t20))
-    del t17, t20
-    t22 = t9 * (t1 * t3 + t4 * t7) - c3_y * 0.5
-    t23 = t6 * h
-    A_12 = t22 + t23
-    t24 = t9 * (t1 * t6 + c3_y * t7) + t4 * 0.5
-    del t6, t7, t9
-    t25 = t3 * h
-    del h, t3
-    t26 = t24 - t25
-    t27 = t1 - t14 + t21
-    t28 = t10 - t13
-    del t10, t13
-    A_12_above = t22 - t23
-    del t22, t23
-    t29 = t24 + t25
-    del t24, t25
-    t30 = t1 - t28 + t21
-    del t1
-    t31 = _runtime.VANISHING * _runtime.VANISHING
-    t32 = t18 * t31
-    v_v = t5 * t5 + t11
+    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t11)
     del t11
-    t33 = u_u * v_v
-    slim = m_m - t33 * 0.000244140625 <= _runtime.VANISHING * t33
-    del t33
-    t34 = (u_u <= t32) | (u_u + v_v <= t32) | slim | (m_m <= t31 * (t18 * u_u))
-    del m_m, slim, t18, t31, t32, u_u, v_v
+    t20 = _runtime.poison(np.logical_not(t16) | np.logical_not(t19))
+    del t16, t19
+    t21 = t8 * (t1 * product_z + t3 * t6) - c2_y * 0.5
+    t22 = t5 * h
+    t23 = t21 - t22
+    t24 = t8 * (t1 * t5 + c2_y * t6) + t3 * 0.5
+    del t5, t6, t8
+    t25 = product_z * h
+    del h, product_z
+    t26 = t24 + t25
+    t27 = t1 - t13 + t20
+    t28 = t9 + t12
+    del t12, t9
+    t29 = t21 + t22
+    del t21, t22
+    t30 = t24 - t25
+    del t24, t25
+    t31 = t1 - t28 + t20
+    del t1
+    t32 = _runtime.VANISHING * _runtime.VANISHING
+    t33 = t17 * t32
+    v_v = t4 * t4 + t10
+    del t10
+    t34 = u_u * v_v
+    slim = product_2 - t34 * 0.000244140625 <= _runtime.VANISHING * t34
+    del t34
+    t35 = (u_u <= t33) | (u_u + v_v <= t33) | slim | (product_2 <= t32 * (t17 * u_u))
+    del product_2, slim, t17, t32, t33, u_u, v_v
     return (
-        -t14 + t21,
-        A_12 + t21,
-        -t26 + t21,
+        -t13 + t20,
+        -t23 + t20,
+        -t26 + t20,
         t27,
-        c3_y + A_12 + t21,
-        t4 - t26 + t21,
+        -(c2_y + t23) + t20,
+        t3 - t26 + t20,
         t27,
-        A_12 - c3_y + t21,
-        t5 - t26 + t21,
-        -t28 + t21,
-        A_12_above + t21,
-        -t29 + t21,
-        t30,
-        c3_y + A_12_above + t21,
-        t4 - t29 + t21,
-        t30,
-        A_12_above - c3_y + t21,
-        t5 - t29 + t21,
-        t34 | (slack <= _runtime.VANISHING * t19),
+        c2_y - t23 + t20,
+        t4 - t26 + t20,
+        -t28 + t20,
+        -t29 + t20,
+        -t30 + t20,
+        t31,
+        -(c2_y + t29) + t20,
+        t3 - t30 + t20,
+        t31,
+        c2_y - t29 + t20,
+        t4 - t30 + t20,
+        t35 | (slack <= _runtime.VANISHING * t18),
     )
 
 
@@ -1212,9 +1216,11 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 
 def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     t1 = rho1 - rho2
-    t2 = f - e - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t3 = t2 * t2 + c3_y * c3_y
+    c1_x = f - e
+    t2 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    del c1_x
+    t3 = t2 * t2 + c2_y * c2_y
     u_u = t1 * t1 + t3
     t4 = rho1 - rho3
     v_v = t4 * t4 + t3
@@ -1230,42 +1236,42 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     del t7
     t8 = _runtime.select(same, t1, t4)
     t9 = _runtime.select(same, t4, t1)
-    m_y = a_x * t8 + t2 * t9
-    d_y = _runtime.select(same, c3_y, -c3_y)
-    t10 = _runtime.select(same, -c3_y, c3_y)
-    del c3_y
+    product_y = a_x * t8 + t2 * t9
+    d_y = _runtime.select(same, -c2_y, c2_y)
+    t10 = _runtime.select(same, c2_y, -c2_y)
+    del c2_y
     t11 = t8 * d_y - t9 * t10
-    t12 = a_x * m_y + d_y * t11
-    m_z = a_x * t10 + t2 * d_y
+    t12 = a_x * product_y + d_y * t11
+    product_z = a_x * t10 + t2 * d_y
     del t2
-    m_m = t11 * t11 + m_y * m_y + m_z * m_z
+    product_2 = t11 * t11 + product_y * product_y + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t13 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t13 * 0.000244140625 <= _runtime.VANISHING * t13
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
     del t13
     over = 1.0 / mu
-    t14 = d_y * m_z + t9 * m_y
-    del m_y
-    n_y = a_x * m_z - t9 * t11
+    t14 = d_y * product_z + t9 * product_y
+    del product_y
+    n_y = a_x * product_z - t9 * t11
     del t11
-    mu_nu = _runtime.select(slim, over * (t14 * t14 + n_y * n_y + t12 * t12), m_m)
-    del m_m
-    in_line = mu_nu <= t6 * (t5 * mu)
+    m_m = _runtime.select(slim, over * (t14 * t14 + n_y * n_y + t12 * t12), product_2)
+    del product_2
+    in_line = m_m <= t6 * (t5 * mu)
     del t6
     t15 = whole * t9
     g_2 = whole * (d_y + a_x * _runtime.sign(a_x * d_y))
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, mu_nu)
-    del mu_nu, t15
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    del m_m, t15
     part = 1.0 / w_w
     t16 = t10 * (d_y - t10) - t8 * (t8 - t9)
     del t10, t8
     t17 = _runtime.select(in_line, 0.0, part * t16 * 0.5)
     t18 = t12 * t17 - t9 * 0.5
     del t12, t9
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), m_z)
-    del a_x, d_y, m_z, n_y, over, slim, t14
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t14
     t19 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
     del all_same, mu, t17, w_w
     t20 = l * l - t19
@@ -1275,8 +1281,8 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t21, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t22 = _runtime.select(in_line, -g_2, m_again_z) * h
-    del g_2, h, m_again_z
+    t22 = _runtime.select(in_line, -g_2, m_z) * h
+    del g_2, h, m_z
     A_13 = t18 - t22
     t23 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
     t24 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
@@ -1302,62 +1308,64 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
 
 def _jacobian_serial_common(rho1, rho2, rho3, f, e, l):
     # Where nothing vanishes; last, whether something does.
-    t1 = f - e - (e * 0.5 - f * 0.5)
+    c1_x = f - e
+    t1 = c1_x + c1_x * 0.5
     t2 = rho1 - rho3
     t3 = rho1 - rho2
     t4 = t1 * t2 - t1 * t3
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = c3_y * t2 + c3_y * t3
-    t6 = c3_y * t1
-    t7 = t6 + t6
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    del c1_x
+    t5 = c2_y * t2 + c2_y * t3
+    t6 = c2_y * t1
+    product_z = t6 + t6
     del t6
-    m_m = t5 * t5 + t4 * t4 + t7 * t7
-    part = 1.0 / m_m
-    t8 = part * (c3_y * (c3_y + c3_y) - t2 * (t3 - t2))
-    t9 = t8 * 0.5
-    del t8
-    t10 = (t1 * t4 + c3_y * t5) * t9 + t3 * 0.5
+    product_2 = t5 * t5 + t4 * t4 + product_z * product_z
+    part = 1.0 / product_2
+    t7 = part * (c2_y * (c2_y + c2_y) - t2 * (t3 - t2))
+    t8 = t7 * 0.5
+    del t7
+    t9 = (t1 * t4 + c2_y * t5) * t8 + t3 * 0.5
     del t4, t5
-    t11 = t1 * t1 + c3_y * c3_y
-    del c3_y, t1
-    u_u = t3 * t3 + t11
-    t12 = l * l - u_u * (0.25 + m_m * (t9 * t9))
-    del t9
-    slack = np.maximum(t12, 0.0)
-    t13 = t7 * np.sqrt(part * slack)
-    del part, t7
-    t14 = t10 - t13
-    t15 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t16 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t17 = t15 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t16
-    del t15, t16
+    t10 = t1 * t1 + c2_y * c2_y
+    del c2_y, t1
+    u_u = t3 * t3 + t10
+    t11 = l * l - u_u * (0.25 + product_2 * (t8 * t8))
+    del t8
+    slack = np.maximum(t11, 0.0)
+    t12 = product_z * np.sqrt(part * slack)
+    del part, product_z
+    t13 = t9 + t12
+    t14 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t16 = t14 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t15
+    del t14, t15
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t18 = size * size
-    t19 = 0.234375 * (l * size)
+    t17 = size * size
+    t18 = 0.234375 * (l * size)
     del size
-    t20 = (np.abs(0.0) <= t18 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t19) <= t12)
-    del t12
-    t21 = _runtime.poison(np.logical_not(t17) | np.logical_not(t20))
-    del t17, t20
-    t22 = t10 + t13
-    del t10, t13
-    v_v = t2 * t2 + t11
+    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t11)
     del t11
-    t23 = _runtime.VANISHING * _runtime.VANISHING
-    t24 = t18 * t23
-    t25 = u_u * v_v
-    slim = m_m - t25 * 0.000244140625 <= _runtime.VANISHING * t25
-    del t25
-    t26 = (u_u + v_v <= t24) | (u_u <= t24) | slim | (m_m <= t23 * (t18 * u_u))
-    del m_m, slim, t18, t23, t24, u_u, v_v
+    t20 = _runtime.poison(np.logical_not(t16) | np.logical_not(t19))
+    del t16, t19
+    t21 = t9 - t12
+    del t12, t9
+    v_v = t2 * t2 + t10
+    del t10
+    t22 = _runtime.VANISHING * _runtime.VANISHING
+    t23 = t17 * t22
+    t24 = u_u * v_v
+    slim = product_2 - t24 * 0.000244140625 <= _runtime.VANISHING * t24
+    del t24
+    t25 = (u_u + v_v <= t23) | (u_u <= t23) | slim | (product_2 <= t22 * (t17 * u_u))
+    del product_2, slim, t17, t22, t23, u_u, v_v
     return (
-        -t14 + t21,
-        t3 - t14 + t21,
-        t2 - t14 + t21,
-        -t22 + t21,
-        t3 - t22 + t21,
-        t2 - t22 + t21,
-        t26 | (slack <= _runtime.VANISHING * t19),
+        -t13 + t20,
+        t3 - t13 + t20,
+        t2 - t13 + t20,
+        -t21 + t20,
+        t3 - t21 + t20,
+        t2 - t21 + t20,
+        t25 | (slack <= _runtime.VANISHING * t18),
     )
 
 
@@ -1408,9 +1416,11 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
 
 def _jacobian(rho1, rho2, rho3, f, e, l):
     t1 = rho1 - rho2
-    t2 = f - e - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t3 = t2 * t2 + c3_y * c3_y
+    c1_x = f - e
+    t2 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    del c1_x
+    t3 = t2 * t2 + c2_y * c2_y
     u_u = t1 * t1 + t3
     t4 = rho1 - rho3
     v_v = t4 * t4 + t3
@@ -1426,38 +1436,38 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     del t7
     t8 = _runtime.select(same, t1, t4)
     t9 = _runtime.select(same, t4, t1)
-    m_y = a_x * t8 + t2 * t9
-    d_y = _runtime.select(same, c3_y, -c3_y)
-    t10 = _runtime.select(same, -c3_y, c3_y)
+    product_y = a_x * t8 + t2 * t9
+    d_y = _runtime.select(same, -c2_y, c2_y)
+    t10 = _runtime.select(same, c2_y, -c2_y)
     t11 = t8 * d_y - t9 * t10
-    t12 = a_x * m_y + d_y * t11
-    m_z = a_x * t10 + t2 * d_y
-    m_m = t11 * t11 + m_y * m_y + m_z * m_z
+    t12 = a_x * product_y + d_y * t11
+    product_z = a_x * t10 + t2 * d_y
+    product_2 = t11 * t11 + product_y * product_y + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t13 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t13 * 0.000244140625 <= _runtime.VANISHING * t13
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
     del t13
     over = 1.0 / mu
-    t14 = d_y * m_z + t9 * m_y
-    n_y = a_x * m_z - t9 * t11
-    mu_nu = _runtime.select(slim, over * (t14 * t14 + n_y * n_y + t12 * t12), m_m)
-    del m_m
-    in_line = mu_nu <= t6 * (t5 * mu)
+    t14 = d_y * product_z + t9 * product_y
+    n_y = a_x * product_z - t9 * t11
+    m_m = _runtime.select(slim, over * (t14 * t14 + n_y * n_y + t12 * t12), product_2)
+    del product_2
+    in_line = m_m <= t6 * (t5 * mu)
     del t6
     t15 = whole * t9
     s_w = _runtime.sign(a_x * d_y)
     g_2 = whole * (d_y + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, mu_nu)
-    del mu_nu
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    del m_m
     part = 1.0 / w_w
     t16 = t10 * (d_y - t10) - t8 * (t8 - t9)
     del t10, t8
     t17 = _runtime.select(in_line, 0.0, part * t16 * 0.5)
     t18 = t12 * t17 - t9 * 0.5
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), m_z)
-    del m_z
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), product_z)
+    del product_z
     t19 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
     del all_same, mu
     t20 = l * l - t19
@@ -1467,19 +1477,19 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t21, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t22 = _runtime.select(in_line, -g_2, m_again_z) * h
-    del g_2, m_again_z
+    t22 = _runtime.select(in_line, -g_2, m_z) * h
+    del g_2, m_z
     A_13 = t18 - t22
     t23 = n_y * t17 - d_y * 0.5
-    m_again_y = _runtime.select(slim, over * (a_x * t12 + t9 * t14), m_y)
-    del a_x, m_y
-    t24 = h * _runtime.select(in_line, -t15, m_again_y)
-    del m_again_y
+    m_y = _runtime.select(slim, over * (a_x * t12 + t9 * t14), product_y)
+    del a_x, product_y
+    t24 = h * _runtime.select(in_line, -t15, m_y)
+    del m_y
     t25 = t23 + t24
-    A_22 = c3_y - t25
+    t26 = c2_y + t25
     A_33 = t4 + A_13
     A_23 = t1 + A_13
-    t26 = c3_y + t25
+    A_32 = c2_y - t25
     Delta = w_w * h
     del w_w
     t27 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
@@ -1492,9 +1502,9 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     del t20, t21, t30
     t31 = _runtime.poison(np.logical_not(t29) | unreachable)
     del t29, unreachable
-    t32 = -(A_13 * (A_22 * A_33 + A_23 * t26) / Delta) + t31
-    t33 = -(A_23 * (t25 * A_33 - A_13 * t26) / Delta) + t31
-    t34 = A_33 * (t25 * A_23 + A_13 * A_22) / Delta + t31
+    t32 = A_13 * (t26 * A_33 + A_23 * A_32) / Delta + t31
+    t33 = -(A_23 * (t25 * A_33 + A_13 * A_32) / Delta) + t31
+    t34 = A_33 * (t25 * A_23 - A_13 * t26) / Delta + t31
     t35 = t2 * 0.5 - t14 * t17
     del t14, t17
     t36 = _runtime.select(slim, over * (d_y * t12 - t9 * n_y), t11)
@@ -1505,7 +1515,7 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     A_21 = t2 - t38
     t39 = A_13 * (A_33 * A_21 - A_23 * A_21) / Delta + t31
     t40 = A_13 * A_21
-    t41 = A_13 * (t26 * A_21 + A_22 * A_21) / Delta + t31
+    t41 = -(A_13 * (A_32 * A_21 + t26 * A_21) / Delta) + t31
     del A_13
     t42 = t25 * A_21
     del A_21, t25
@@ -1513,16 +1523,16 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     del t18, t22
     t43 = t23 - t24
     del t23, t24
-    A_22_above = c3_y - t43
+    t44 = c2_y + t43
     A_33_above = t4 + A_13_above
     del t4
     A_23_above = t1 + A_13_above
     del t1
-    t44 = c3_y + t43
-    del c3_y
-    t45 = A_13_above * (A_22_above * A_33_above + A_23_above * t44)
-    t46 = A_23_above * (t43 * A_33_above - A_13_above * t44)
-    t47 = A_33_above * (t43 * A_23_above + A_13_above * A_22_above)
+    A_32_above = c2_y - t43
+    del c2_y
+    t45 = A_13_above * (t44 * A_33_above + A_23_above * A_32_above)
+    t46 = A_23_above * (t43 * A_33_above + A_13_above * A_32_above)
+    t47 = A_33_above * (t43 * A_23_above - A_13_above * t44)
     t48 = t35 + t37
     del t35, t37
     A_21_above = t2 - t48
@@ -1532,13 +1542,11 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     t51 = A_23_above * (A_33_above * t48 + t50) / Delta
     t52 = A_33_above * (t50 + A_23_above * t48) / Delta
     del t50
-    t53 = A_13_above * (t44 * A_21_above + A_22_above * A_21_above)
+    t53 = A_13_above * (A_32_above * A_21_above + t44 * A_21_above)
     t54 = t43 * A_21_above
     del A_21_above, t43
-    t55 = -(A_23_above * (t44 * t48 + t54) / Delta) + t31
-    del A_23_above, t44
-    t56 = A_33_above * (t54 - A_22_above * t48) / Delta
-    del A_22_above, A_33_above, t48, t54
+    t55 = A_23_above * (A_32_above * t48 - t54) / Delta
+    del A_23_above, A_32_above
     return (
         t32,
         t33,
@@ -1547,53 +1555,55 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
         A_23 * (A_33 * t38 + t40) / Delta + t31,
         -(A_33 * (t40 + A_23 * t38) / Delta) + t31,
         t41,
-        A_23 * (t26 * t38 + t42) / Delta + t31,
-        -(A_33 * (t42 - A_22 * t38) / Delta) + t31,
-        t45 / Delta + t31,
+        -(A_23 * (A_32 * t38 - t42) / Delta) + t31,
+        -(A_33 * (t42 + t26 * t38) / Delta) + t31,
+        -(t45 / Delta) + t31,
         t46 / Delta + t31,
         -(t47 / Delta) + t31,
         -(A_13_above * t49 / Delta) + t31,
         -t51 + t31,
         t52 + t31,
-        -(t53 / Delta) + t31,
-        t55,
-        t56 + t31,
+        t53 / Delta + t31,
+        t55 + t31,
+        A_33_above * (t54 + t44 * t48) / Delta + t31,
     )
 
 
 def _jacobian_common(rho1, rho2, rho3, f, e, l):
     # Where nothing vanishes; last, whether something does.
-    t1 = f - e - (e * 0.5 - f * 0.5)
+    c1_x = f - e
+    t1 = c1_x + c1_x * 0.5
     t2 = rho1 - rho3
     t3 = rho1 - rho2
     t4 = t1 * t2 - t1 * t3
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = c3_y * t2 + c3_y * t3
-    t6 = c3_y * t1
-    t7 = t6 + t6
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    del c1_x
+    t5 = c2_y * t2 + c2_y * t3
+    t6 = c2_y * t1
+    product_z = t6 + t6
     del t6
-    m_m = t5 * t5 + t4 * t4 + t7 * t7
-    part = 1.0 / m_m
-    t8 = part * (c3_y * (c3_y + c3_y) - t2 * (t3 - t2))
-    t9 = t8 * 0.5
-    del t8
-    t10 = (t1 * t4 + c3_y * t5) * t9 + t3 * 0.5
-    t11 = t1 * t1 + c3_y * c3_y
-    u_u = t3 * t3 + t11
-    t12 = l * l - u_u * (0.25 + m_m * (t9 * t9))
-    slack = np.maximum(t12, 0.0)
+    product_2 = t5 * t5 + t4 * t4 + product_z * product_z
+    part = 1.0 / product_2
+    t7 = part * (c2_y * (c2_y + c2_y) - t2 * (t3 - t2))
+    t8 = t7 * 0.5
+    del t7
+    t9 = (t1 * t4 + c2_y * t5) * t8 + t3 * 0.5
+    t10 = t1 * t1 + c2_y * c2_y
+    u_u = t3 * t3 + t10
+    t11 = l * l - u_u * (0.25 + product_2 * (t8 * t8))
+    slack = np.maximum(t11, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t13 = t7 * h
-    t14 = t10 - t13
-    t15 = t9 * (t1 * t7 + t3 * t5) - c3_y * 0.5
-    t16 = t4 * h
-    A_12 = t15 + t16
-    A_22 = c3_y + A_12
-    A_33 = t2 - t14
-    A_23 = t3 - t14
-    t17 = c3_y - A_12
-    Delta = m_m * h
+    t12 = product_z * h
+    t13 = t9 + t12
+    t14 = t8 * (t1 * product_z + t3 * t5) - c2_y * 0.5
+    t15 = t4 * h
+    t16 = t14 - t15
+    t17 = c2_y + t16
+    A_33 = t2 - t13
+    A_23 = t3 - t13
+    A_32 = c2_y - t16
+    Delta = product_2 * h
     t18 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
     t19 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     t20 = t18 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t19
@@ -1602,63 +1612,61 @@ def _jacobian_common(rho1, rho2, rho3, f, e, l):
     t21 = size * size
     t22 = 0.234375 * (l * size)
     del size
-    t23 = (np.abs(0.0) <= t21 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t22) <= t12)
-    del t12
+    t23 = (np.abs(0.0) <= t21 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t22) <= t11)
+    del t11
     t24 = _runtime.poison(np.logical_not(t20) | np.logical_not(t23))
     del t20, t23
-    t25 = t14 * (A_22 * A_33 + A_23 * t17) / Delta + t24
-    t26 = A_23 * (A_12 * A_33 - t14 * t17) / Delta + t24
-    t27 = -(A_33 * (A_12 * A_23 + t14 * A_22) / Delta) + t24
-    t28 = t1 * 0.5 + t9 * (c3_y * t7 - t3 * t4)
-    del t4, t7, t9
+    t25 = -(t13 * (t17 * A_33 + A_23 * A_32) / Delta) + t24
+    t26 = -(A_23 * (t16 * A_33 - t13 * A_32) / Delta) + t24
+    t27 = A_33 * (t16 * A_23 + t13 * t17) / Delta + t24
+    t28 = t1 * 0.5 + t8 * (c2_y * product_z - t3 * t4)
+    del product_z, t4, t8
     t29 = t5 * h
     del h, t5
-    t30 = t28 + t29
+    t30 = t28 - t29
     A_21 = t1 - t30
-    t31 = -(t14 * (A_33 * A_21 - A_23 * A_21) / Delta) + t24
-    t32 = t14 * A_21
-    t33 = -(t14 * (t17 * A_21 + A_22 * A_21) / Delta) + t24
-    del t14
-    t34 = A_12 * A_21
-    del A_12, A_21
-    t35 = t10 + t13
-    del t10, t13
-    A_12_above = t15 - t16
-    del t15, t16
-    A_22_above = c3_y + A_12_above
+    t31 = -(t13 * (A_33 * A_21 - A_23 * A_21) / Delta) + t24
+    t32 = t13 * A_21
+    t33 = t13 * (A_32 * A_21 + t17 * A_21) / Delta + t24
+    del t13
+    t34 = t16 * A_21
+    del A_21, t16
+    t35 = t9 - t12
+    del t12, t9
+    t36 = t14 + t15
+    del t14, t15
+    t37 = c2_y + t36
     A_33_above = t2 - t35
     A_23_above = t3 - t35
     del t3
-    t36 = c3_y - A_12_above
-    del c3_y
-    t37 = t35 * (A_22_above * A_33_above + A_23_above * t36)
-    t38 = A_23_above * (A_12_above * A_33_above - t35 * t36)
-    t39 = A_33_above * (A_12_above * A_23_above + t35 * A_22_above)
-    t40 = t28 - t29
+    A_32_above = c2_y - t36
+    del c2_y
+    t38 = t35 * (t37 * A_33_above + A_23_above * A_32_above)
+    t39 = A_23_above * (t36 * A_33_above - t35 * A_32_above)
+    t40 = A_33_above * (t36 * A_23_above + t35 * t37) / Delta
+    t41 = t28 + t29
     del t28, t29
-    A_21_above = t1 - t40
+    A_21_above = t1 - t41
     del t1
-    t41 = A_33_above * A_21_above - A_23_above * A_21_above
-    t42 = t35 * A_21_above
-    t43 = A_23_above * (A_33_above * t40 - t42) / Delta
-    t44 = A_33_above * (t42 - A_23_above * t40) / Delta
-    del t42
-    t45 = t35 * (t36 * A_21_above + A_22_above * A_21_above)
-    t46 = A_12_above * A_21_above
-    del A_12_above, A_21_above
-    t47 = -(A_23_above * (t36 * t40 - t46) / Delta) + t24
-    del A_23_above, t36
-    t48 = A_33_above * (t46 + A_22_above * t40) / Delta
-    del A_22_above, A_33_above, t40, t46
-    v_v = t2 * t2 + t11
-    del t11, t2
+    t42 = A_33_above * A_21_above - A_23_above * A_21_above
+    t43 = t35 * A_21_above
+    t44 = A_23_above * (A_33_above * t41 - t43) / Delta
+    t45 = A_33_above * (t43 - A_23_above * t41) / Delta
+    del t43
+    t46 = t35 * (A_32_above * A_21_above + t37 * A_21_above)
+    t47 = t36 * A_21_above
+    del A_21_above, t36
+    t48 = A_23_above * (A_32_above * t41 - t47) / Delta
+    del A_23_above, A_32_above
+    v_v = t2 * t2 + t10
+    del t10, t2
     t49 = _runtime.VANISHING * _runtime.VANISHING
     t50 = t21 * t49
     t51 = u_u * v_v
-    slim = m_m - t51 * 0.000244140625 <= _runtime.VANISHING * t51
+    slim = product_2 - t51 * 0.000244140625 <= _runtime.VANISHING * t51
     del t51
-    t52 = (u_u + v_v <= t50) | (u_u <= t50) | slim | (m_m <= t49 * (t21 * u_u))
-    del m_m, slim, t21, t49, t50, u_u, v_v
+    t52 = (u_u + v_v <= t50) | (u_u <= t50) | slim | (product_2 <= t49 * (t21 * u_u))
+    del product_2, slim, t21, t49, t50, u_u, v_v
     return (
         t25,
         t26,
@@ -1667,17 +1675,17 @@ def _jacobian_common(rho1, rho2, rho3, f, e, l):
         A_23 * (A_33 * t30 - t32) / Delta + t24,
         A_33 * (t32 - A_23 * t30) / Delta + t24,
         t33,
-        A_23 * (t17 * t30 - t34) / Delta + t24,
-        A_33 * (t34 + A_22 * t30) / Delta + t24,
-        -(t37 / Delta) + t24,
-        -(t38 / Delta) + t24,
+        -(A_23 * (A_32 * t30 - t34) / Delta) + t24,
+        -(A_33 * (t34 + t17 * t30) / Delta) + t24,
+        t38 / Delta + t24,
         t39 / Delta + t24,
-        t35 * t41 / Delta + t24,
-        -t43 + t24,
+        -t40 + t24,
+        t35 * t42 / Delta + t24,
         -t44 + t24,
-        t45 / Delta + t24,
-        t47,
-        -t48 + t24,
+        -t45 + t24,
+        -(t46 / Delta) + t24,
+        t48 + t24,
+        A_33_above * (t47 + t37 * t41) / Delta + t24,
         t52 | (slack <= _runtime.VANISHING * t22),
     )
 
@@ -1730,9 +1738,11 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
 def _determinant(rho1, rho2, rho3, f, e, l):
     t1 = rho1 - rho2
-    t2 = f - e - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t3 = t2 * t2 + c3_y * c3_y
+    c1_x = f - e
+    t2 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    del c1_x
+    t3 = t2 * t2 + c2_y * c2_y
     u_u = t1 * t1 + t3
     t4 = rho1 - rho3
     v_v = t4 * t4 + t3
@@ -1748,42 +1758,42 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     del t7
     t8 = _runtime.select(same, t1, t4)
     t9 = _runtime.select(same, t4, t1)
-    m_y = a_x * t8 + t2 * t9
-    d_y = _runtime.select(same, c3_y, -c3_y)
-    t10 = _runtime.select(same, -c3_y, c3_y)
-    del c3_y
+    product_y = a_x * t8 + t2 * t9
+    d_y = _runtime.select(same, -c2_y, c2_y)
+    t10 = _runtime.select(same, c2_y, -c2_y)
+    del c2_y
     t11 = t8 * d_y - t9 * t10
-    t12 = a_x * m_y + d_y * t11
-    m_z = a_x * t10 + t2 * d_y
+    t12 = a_x * product_y + d_y * t11
+    product_z = a_x * t10 + t2 * d_y
     del t2
-    m_m = t11 * t11 + m_y * m_y + m_z * m_z
+    product_2 = t11 * t11 + product_y * product_y + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t13 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t13 * 0.000244140625 <= _runtime.VANISHING * t13
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
     del t13
     over = 1.0 / mu
-    t14 = d_y * m_z + t9 * m_y
-    del m_y
-    n_y = a_x * m_z - t9 * t11
+    t14 = d_y * product_z + t9 * product_y
+    del product_y
+    n_y = a_x * product_z - t9 * t11
     del t11
-    mu_nu = _runtime.select(slim, over * (t14 * t14 + n_y * n_y + t12 * t12), m_m)
-    del m_m
-    in_line = mu_nu <= t6 * (t5 * mu)
+    m_m = _runtime.select(slim, over * (t14 * t14 + n_y * n_y + t12 * t12), product_2)
+    del product_2
+    in_line = m_m <= t6 * (t5 * mu)
     del t6
     t15 = whole * t9
     g_2 = whole * (d_y + a_x * _runtime.sign(a_x * d_y))
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, mu_nu)
-    del mu_nu, t15
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    del m_m, t15
     part = 1.0 / w_w
     t16 = t10 * (d_y - t10) - t8 * (t8 - t9)
     del t10, t8
     t17 = _runtime.select(in_line, 0.0, part * t16 * 0.5)
     t18 = t12 * t17 - t9 * 0.5
     del t12, t9
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), m_z)
-    del a_x, d_y, m_z, n_y, over, slim, t14
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t14
     t19 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
     del all_same, mu, t17
     t20 = l * l - t19
@@ -1793,8 +1803,8 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t21, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t22 = _runtime.select(in_line, -g_2, m_again_z) * h
-    del g_2, m_again_z
+    t22 = _runtime.select(in_line, -g_2, m_z) * h
+    del g_2, m_z
     A_13 = t18 - t22
     Delta = w_w * h
     del h, w_w
@@ -1822,64 +1832,66 @@ def _determinant(rho1, rho2, rho3, f, e, l):
 
 def _determinant_common(rho1, rho2, rho3, f, e, l):
     # Where nothing vanishes; last, whether something does.
-    t1 = f - e - (e * 0.5 - f * 0.5)
+    c1_x = f - e
+    t1 = c1_x + c1_x * 0.5
     t2 = rho1 - rho3
     t3 = rho1 - rho2
     t4 = t1 * t2 - t1 * t3
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = c3_y * t2 + c3_y * t3
-    t6 = c3_y * t1
-    t7 = t6 + t6
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    del c1_x
+    t5 = c2_y * t2 + c2_y * t3
+    t6 = c2_y * t1
+    product_z = t6 + t6
     del t6
-    m_m = t5 * t5 + t4 * t4 + t7 * t7
-    part = 1.0 / m_m
-    t8 = part * (c3_y * (c3_y + c3_y) - t2 * (t3 - t2))
-    t9 = t8 * 0.5
-    del t8
-    t10 = (t1 * t4 + c3_y * t5) * t9 + t3 * 0.5
+    product_2 = t5 * t5 + t4 * t4 + product_z * product_z
+    part = 1.0 / product_2
+    t7 = part * (c2_y * (c2_y + c2_y) - t2 * (t3 - t2))
+    t8 = t7 * 0.5
+    del t7
+    t9 = (t1 * t4 + c2_y * t5) * t8 + t3 * 0.5
     del t4, t5
-    t11 = t1 * t1 + c3_y * c3_y
-    del c3_y, t1
-    u_u = t3 * t3 + t11
-    t12 = l * l - u_u * (0.25 + m_m * (t9 * t9))
-    del t9
-    slack = np.maximum(t12, 0.0)
+    t10 = t1 * t1 + c2_y * c2_y
+    del c2_y, t1
+    u_u = t3 * t3 + t10
+    t11 = l * l - u_u * (0.25 + product_2 * (t8 * t8))
+    del t8
+    slack = np.maximum(t11, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t13 = t7 * h
-    del t7
-    t14 = t10 - t13
-    Delta = m_m * h
+    t12 = product_z * h
+    del product_z
+    t13 = t9 + t12
+    Delta = product_2 * h
     del h
-    t15 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t16 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t17 = t15 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t16
-    del t15, t16
+    t14 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t16 = t14 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t15
+    del t14, t15
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t18 = size * size
-    t19 = 0.234375 * (l * size)
+    t17 = size * size
+    t18 = 0.234375 * (l * size)
     del size
-    t20 = (np.abs(0.0) <= t18 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t19) <= t12)
-    del t12
-    t21 = _runtime.poison(np.logical_not(t17) | np.logical_not(t20))
-    del t17, t20
-    t22 = t10 + t13
-    del t10, t13
-    t23 = -(t22 * (t3 - t22) * (t2 - t22) / Delta) + t21
-    del t22
-    v_v = t2 * t2 + t11
+    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t11)
     del t11
-    t24 = _runtime.VANISHING * _runtime.VANISHING
-    t25 = t18 * t24
-    t26 = u_u * v_v
-    slim = m_m - t26 * 0.000244140625 <= _runtime.VANISHING * t26
-    del t26
-    t27 = (u_u + v_v <= t25) | (u_u <= t25) | slim | (m_m <= t24 * (t18 * u_u))
-    del m_m, slim, t18, t24, t25, u_u, v_v
+    t20 = _runtime.poison(np.logical_not(t16) | np.logical_not(t19))
+    del t16, t19
+    t21 = t9 - t12
+    del t12, t9
+    t22 = -(t21 * (t3 - t21) * (t2 - t21) / Delta) + t20
+    del t21
+    v_v = t2 * t2 + t10
+    del t10
+    t23 = _runtime.VANISHING * _runtime.VANISHING
+    t24 = t17 * t23
+    t25 = u_u * v_v
+    slim = product_2 - t25 * 0.000244140625 <= _runtime.VANISHING * t25
+    del t25
+    t26 = (u_u + v_v <= t24) | (u_u <= t24) | slim | (product_2 <= t23 * (t17 * u_u))
+    del product_2, slim, t17, t23, t24, u_u, v_v
     return (
-        t14 * (t3 - t14) * (t2 - t14) / Delta + t21,
-        t23,
-        t27 | (slack <= _runtime.VANISHING * t19),
+        t13 * (t3 - t13) * (t2 - t13) / Delta + t20,
+        t22,
+        t26 | (slack <= _runtime.VANISHING * t18),
     )
 
 
@@ -1930,9 +1942,11 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 
 def _singularities(rho1, rho2, rho3, f, e, l):
     t1 = rho1 - rho2
-    t2 = f - e - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t3 = t2 * t2 + c3_y * c3_y
+    c1_x = f - e
+    t2 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    del c1_x
+    t3 = t2 * t2 + c2_y * c2_y
     u_u = t1 * t1 + t3
     t4 = rho1 - rho3
     v_v = t4 * t4 + t3
@@ -1948,42 +1962,42 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     del t7
     t8 = _runtime.select(same, t1, t4)
     t9 = _runtime.select(same, t4, t1)
-    m_y = a_x * t8 + t2 * t9
-    d_y = _runtime.select(same, c3_y, -c3_y)
-    t10 = _runtime.select(same, -c3_y, c3_y)
-    del c3_y
+    product_y = a_x * t8 + t2 * t9
+    d_y = _runtime.select(same, -c2_y, c2_y)
+    t10 = _runtime.select(same, c2_y, -c2_y)
+    del c2_y
     t11 = t8 * d_y - t9 * t10
-    t12 = a_x * m_y + d_y * t11
-    m_z = a_x * t10 + t2 * d_y
+    t12 = a_x * product_y + d_y * t11
+    product_z = a_x * t10 + t2 * d_y
     del t2
-    m_m = t11 * t11 + m_y * m_y + m_z * m_z
+    product_2 = t11 * t11 + product_y * product_y + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t13 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t13 * 0.000244140625 <= _runtime.VANISHING * t13
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
     del t13
     over = 1.0 / mu
-    t14 = d_y * m_z + t9 * m_y
-    del m_y
-    n_y = a_x * m_z - t9 * t11
+    t14 = d_y * product_z + t9 * product_y
+    del product_y
+    n_y = a_x * product_z - t9 * t11
     del t11
-    mu_nu = _runtime.select(slim, over * (t14 * t14 + n_y * n_y + t12 * t12), m_m)
-    del m_m
-    in_line = mu_nu <= t6 * (t5 * mu)
+    m_m = _runtime.select(slim, over * (t14 * t14 + n_y * n_y + t12 * t12), product_2)
+    del product_2
+    in_line = m_m <= t6 * (t5 * mu)
     del t6
     t15 = whole * t9
     g_2 = whole * (d_y + a_x * _runtime.sign(a_x * d_y))
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, mu_nu)
-    del mu_nu, t15
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    del m_m, t15
     part = 1.0 / w_w
     t16 = t10 * (d_y - t10) - t8 * (t8 - t9)
     del t10, t8
     t17 = _runtime.select(in_line, 0.0, part * t16 * 0.5)
     t18 = t12 * t17 - t9 * 0.5
     del t12, t9
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), m_z)
-    del a_x, d_y, m_z, n_y, over, slim, t14
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t14
     t19 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
     del all_same, mu, t17
     t20 = l * l - t19
@@ -1993,8 +2007,8 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t21, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t22 = _runtime.select(in_line, -g_2, m_again_z) * h
-    del g_2, m_again_z
+    t22 = _runtime.select(in_line, -g_2, m_z) * h
+    del g_2, m_z
     A_13 = t18 - t22
     t23 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
     t24 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
@@ -2024,68 +2038,70 @@ def _singularities(rho1, rho2, rho3, f, e, l):
 
 def _singularities_common(rho1, rho2, rho3, f, e, l):
     # Where nothing vanishes; last, whether something does.
-    t1 = f - e - (e * 0.5 - f * 0.5)
+    c1_x = f - e
+    t1 = c1_x + c1_x * 0.5
     t2 = rho1 - rho3
     t3 = rho1 - rho2
     t4 = t1 * t2 - t1 * t3
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = c3_y * t2 + c3_y * t3
-    t6 = c3_y * t1
-    t7 = t6 + t6
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    del c1_x
+    t5 = c2_y * t2 + c2_y * t3
+    t6 = c2_y * t1
+    product_z = t6 + t6
     del t6
-    m_m = t5 * t5 + t4 * t4 + t7 * t7
-    part = 1.0 / m_m
-    t8 = part * (c3_y * (c3_y + c3_y) - t2 * (t3 - t2))
-    t9 = t8 * 0.5
-    del t8
-    t10 = (t1 * t4 + c3_y * t5) * t9 + t3 * 0.5
+    product_2 = t5 * t5 + t4 * t4 + product_z * product_z
+    part = 1.0 / product_2
+    t7 = part * (c2_y * (c2_y + c2_y) - t2 * (t3 - t2))
+    t8 = t7 * 0.5
+    del t7
+    t9 = (t1 * t4 + c2_y * t5) * t8 + t3 * 0.5
     del t4, t5
-    t11 = t1 * t1 + c3_y * c3_y
-    del c3_y, t1
-    u_u = t3 * t3 + t11
-    t12 = l * l - u_u * (0.25 + m_m * (t9 * t9))
-    del t9
-    slack = np.maximum(t12, 0.0)
+    t10 = t1 * t1 + c2_y * c2_y
+    del c2_y, t1
+    u_u = t3 * t3 + t10
+    t11 = l * l - u_u * (0.25 + product_2 * (t8 * t8))
+    del t8
+    slack = np.maximum(t11, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t13 = t7 * h
-    del t7
-    t14 = t10 - t13
-    t15 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t16 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t17 = t15 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t16
-    del t15, t16
+    t12 = product_z * h
+    del product_z
+    t13 = t9 + t12
+    t14 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t16 = t14 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t15
+    del t14, t15
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t18 = size * size
-    t19 = 0.234375 * (l * size)
+    t17 = size * size
+    t18 = 0.234375 * (l * size)
     del size
-    t20 = (np.abs(0.0) <= t18 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t19) <= t12)
-    del t12
-    t21 = _runtime.poison(np.logical_not(t17) | np.logical_not(t20))
-    del t17, t20
-    Delta = m_m * h
-    del h
-    t22 = t10 + t13
-    del t10, t13
-    v_v = t2 * t2 + t11
+    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t11)
     del t11
-    t23 = _runtime.VANISHING * _runtime.VANISHING
-    t24 = t18 * t23
-    t25 = u_u * v_v
-    slim = m_m - t25 * 0.000244140625 <= _runtime.VANISHING * t25
-    del t25
-    t26 = (u_u + v_v <= t24) | (u_u <= t24) | slim | (m_m <= t23 * (t18 * u_u))
-    del m_m, slim, t18, t23, t24, u_u, v_v
+    t20 = _runtime.poison(np.logical_not(t16) | np.logical_not(t19))
+    del t16, t19
+    Delta = product_2 * h
+    del h
+    t21 = t9 - t12
+    del t12, t9
+    v_v = t2 * t2 + t10
+    del t10
+    t22 = _runtime.VANISHING * _runtime.VANISHING
+    t23 = t17 * t22
+    t24 = u_u * v_v
+    slim = product_2 - t24 * 0.000244140625 <= _runtime.VANISHING * t24
+    del t24
+    t25 = (u_u + v_v <= t23) | (u_u <= t23) | slim | (product_2 <= t22 * (t17 * u_u))
+    del product_2, slim, t17, t22, t23, u_u, v_v
     return (
-        -t14 + t21,
-        t3 - t14 + t21,
-        t2 - t14 + t21,
-        -Delta + t21,
-        -t22 + t21,
-        t3 - t22 + t21,
-        t2 - t22 + t21,
-        Delta + t21,
-        t26 | (slack <= _runtime.VANISHING * t19),
+        -t13 + t20,
+        t3 - t13 + t20,
+        t2 - t13 + t20,
+        -Delta + t20,
+        -t21 + t20,
+        t3 - t21 + t20,
+        t2 - t21 + t20,
+        Delta + t20,
+        t25 | (slack <= _runtime.VANISHING * t18),
     )
 
 
@@ -2135,17 +2151,19 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
 
 def _condition_number(rho1, rho2, rho3, f, e, l):
-    t1 = f - e - (e * 0.5 - f * 0.5)
+    c1_x = f - e
+    t1 = c1_x + c1_x * 0.5
     t2 = rho1 - rho2
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t3 = t1 * t1 + c3_y * c3_y
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    del c1_x
+    t3 = t1 * t1 + c2_y * c2_y
     u_u = t2 * t2 + t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t4 = size * size
     t5 = _runtime.VANISHING * _runtime.VANISHING
     t6 = t4 * t5
     same = u_u <= t6
-    d_y = _runtime.select(same, c3_y, -c3_y)
+    d_y = _runtime.select(same, -c2_y, c2_y)
     t7 = rho1 - rho3
     v_v = t7 * t7 + t3
     del t3
@@ -2153,32 +2171,32 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     del t6
     whole = _runtime.select(size == 0.0, 1.0, size)
     a_x = _runtime.select(all_same, whole, -t1)
-    t8 = _runtime.select(same, -c3_y, c3_y)
-    m_z = a_x * t8 + t1 * d_y
+    t8 = _runtime.select(same, c2_y, -c2_y)
+    product_z = a_x * t8 + t1 * d_y
     t9 = _runtime.select(same, t7, t2)
     t10 = _runtime.select(same, t2, t7)
-    m_y = a_x * t10 + t1 * t9
-    t11 = d_y * m_z + t9 * m_y
+    product_y = a_x * t10 + t1 * t9
+    t11 = d_y * product_z + t9 * product_y
     t12 = d_y * t10 - t8 * t9
-    m_m = t12 * t12 + m_y * m_y + m_z * m_z
+    product_2 = t12 * t12 + product_y * product_y + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t13 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t13 * 0.000244140625 <= _runtime.VANISHING * t13
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
     del t13
     over = 1.0 / mu
-    n_y = a_x * m_z - t9 * t12
-    t14 = a_x * m_y + d_y * t12
-    mu_nu = _runtime.select(slim, over * (t11 * t11 + n_y * n_y + t14 * t14), m_m)
-    del m_m
-    in_line = mu_nu <= t5 * (t4 * mu)
+    n_y = a_x * product_z - t9 * t12
+    t14 = a_x * product_y + d_y * t12
+    m_m = _runtime.select(slim, over * (t11 * t11 + n_y * n_y + t14 * t14), product_2)
+    del product_2
+    in_line = m_m <= t5 * (t4 * mu)
     del t5
     t15 = whole * t9
     s_w = _runtime.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, mu_nu)
-    del mu_nu
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    del m_m
     part = 1.0 / w_w
     t16 = t8 * (d_y - t8) + t10 * (t9 - t10)
     del t10, t8
@@ -2199,47 +2217,47 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     del s_w, t19
     t24 = t18 - t23
     t25 = n_y * t17 - d_y * 0.5
-    m_again_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), m_y)
-    del m_y
-    t26 = h * _runtime.select(in_line, -t15, m_again_y)
-    del m_again_y, t15
+    m_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), product_y)
+    del product_y
+    t26 = h * _runtime.select(in_line, -t15, m_y)
+    del m_y, t15
     t27 = t25 + t26
     t28 = t14 * t17 - t9 * 0.5
     del t14, t17, t9
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), m_z)
-    del a_x, d_y, m_z, n_y, over, slim, t11
-    t29 = h * _runtime.select(in_line, -g_2, m_again_z)
-    del g_2, m_again_z
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t11
+    t29 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, m_z
     A_13 = t28 - t29
     A_21 = t1 - t24
     t30 = A_21 * A_21
-    A_22 = c3_y - t27
+    t31 = c2_y + t27
     A_23 = t2 + A_13
-    t31 = t24 * t24 + t27 * t27 + A_13 * A_13 + (t30 + A_22 * A_22 + A_23 * A_23)
-    t32 = c3_y + t27
+    t32 = t24 * t24 + t27 * t27 + A_13 * A_13 + (t30 + t31 * t31 + A_23 * A_23)
+    A_32 = c2_y - t27
     A_33 = t7 + A_13
     t33 = t27 * A_21
-    t34 = t24 * A_22 - t33
+    t34 = t24 * t31 + t33
     t35 = A_13 * A_21
     t36 = t24 * A_23 + t35
-    t37 = t33 + t24 * t32
+    t37 = t33 - t24 * A_32
     del t33
     t38 = t35 + t24 * A_33
     del t24, t35
     t39 = t34 * t34 + t36 * t36 + t37 * t37 + t38 * t38
     del t34, t36, t37, t38
-    t40 = t27 * A_23 + A_13 * A_22
-    t41 = t27 * A_33 - A_13 * t32
+    t40 = t27 * A_23 - A_13 * t31
+    t41 = t27 * A_33 + A_13 * A_32
     del A_13, t27
-    t42 = A_21 * t32 + A_21 * A_22
+    t42 = A_21 * A_32 + A_21 * t31
     t43 = A_21 * A_33 - A_21 * A_23
     del A_21
     t44 = t39 + t40 * t40 + t41 * t41 + t42 * t42 + t43 * t43
     del t39, t40, t41, t42, t43
-    t45 = A_22 * A_33 + A_23 * t32
-    del A_22, A_23
-    t46 = (t31 + (t30 + t32 * t32 + A_33 * A_33)) * (t44 + t45 * t45)
-    del A_33, t30, t31, t32, t44, t45
+    t45 = t31 * A_33 + A_23 * A_32
+    del A_23, t31
+    t46 = (t32 + (t30 + A_32 * A_32 + A_33 * A_33)) * (t44 + t45 * t45)
+    del A_32, A_33, t30, t32, t44, t45
     t47 = 3.0 * (w_w * h)
     del h, w_w
     t48 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
@@ -2262,105 +2280,110 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     A_21_above = t1 - t53
     del t1
     t55 = A_21_above * A_21_above
-    A_22_above = c3_y - t54
+    t56 = c2_y + t54
     A_23_above = t2 + A_13_above
     del t2
-    square2_above = t55 + A_22_above * A_22_above + A_23_above * A_23_above
-    t56 = c3_y + t54
-    del c3_y
+    t57 = square1_above + (t55 + t56 * t56 + A_23_above * A_23_above)
+    del square1_above
+    A_32_above = c2_y - t54
+    del c2_y
     A_33_above = t7 + A_13_above
     del t7
-    t57 = square1_above + square2_above + (t55 + t56 * t56 + A_33_above * A_33_above)
-    del square1_above, square2_above, t55
+    square3_above = t55 + A_32_above * A_32_above + A_33_above * A_33_above
+    del t55
     t58 = t54 * A_21_above
-    t59 = t53 * A_22_above - t58
+    t59 = t53 * t56 + t58
     t60 = A_13_above * A_21_above
     t61 = t53 * A_23_above + t60
-    t62 = t58 + t53 * t56
+    t62 = t58 - t53 * A_32_above
     del t58
     t63 = t60 + t53 * A_33_above
     del t53, t60
     t64 = t59 * t59 + t61 * t61 + t62 * t62 + t63 * t63
     del t59, t61, t62, t63
-    t65 = t54 * A_23_above + A_13_above * A_22_above
-    t66 = t54 * A_33_above - A_13_above * t56
+    t65 = t54 * A_23_above - A_13_above * t56
+    t66 = t54 * A_33_above + A_13_above * A_32_above
     del A_13_above, t54
-    t67 = A_21_above * t56 + A_21_above * A_22_above
+    t67 = A_21_above * A_32_above + A_21_above * t56
     t68 = A_21_above * A_33_above - A_21_above * A_23_above
     del A_21_above
     t69 = t64 + t65 * t65 + t66 * t66 + t67 * t67 + t68 * t68
     del t64, t65, t66, t67, t68
-    t70 = A_22_above * A_33_above + A_23_above * t56
-    del A_22_above, A_23_above, A_33_above, t56
+    t70 = t56 * A_33_above + A_23_above * A_32_above
+    del A_23_above, A_32_above, A_33_above, t56
+    t71 = np.sqrt((t57 + square3_above) * (t69 + t70 * t70))
+    del square3_above, t57, t69, t70
     return (
         np.sqrt(t46) / t47 + t52,
-        np.sqrt(t57 * (t69 + t70 * t70)) / t47 + t52,
+        t71 / t47 + t52,
     )
 
 
 def _condition_number_common(rho1, rho2, rho3, f, e, l):
     # Where nothing vanishes; last, whether something does.
-    t1 = f - e - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t2 = c3_y * t1
-    t3 = t2 + t2
+    c1_x = f - e
+    t1 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    del c1_x
+    t2 = c2_y * t1
+    product_z = t2 + t2
     del t2
-    t4 = rho1 - rho2
-    t5 = rho1 - rho3
-    t6 = t1 * t5 - t1 * t4
-    t7 = c3_y * t5 + c3_y * t4
-    m_m = t7 * t7 + t6 * t6 + t3 * t3
-    part = 1.0 / m_m
-    t8 = part * (c3_y * (c3_y + c3_y) - t5 * (t4 - t5))
-    t9 = t8 * 0.5
-    del t8
-    t10 = t1 * 0.5 + (c3_y * t3 - t4 * t6) * t9
-    t11 = t1 * t1 + c3_y * c3_y
-    u_u = t4 * t4 + t11
-    t12 = l * l - u_u * (0.25 + m_m * (t9 * t9))
-    slack = np.maximum(t12, 0.0)
+    t3 = rho1 - rho2
+    t4 = rho1 - rho3
+    t5 = t1 * t4 - t1 * t3
+    t6 = c2_y * t4 + c2_y * t3
+    product_2 = t6 * t6 + t5 * t5 + product_z * product_z
+    part = 1.0 / product_2
+    t7 = part * (c2_y * (c2_y + c2_y) - t4 * (t3 - t4))
+    t8 = t7 * 0.5
+    del t7
+    t9 = t1 * 0.5 + (c2_y * product_z - t3 * t5) * t8
+    t10 = t1 * t1 + c2_y * c2_y
+    u_u = t3 * t3 + t10
+    t11 = l * l - u_u * (0.25 + product_2 * (t8 * t8))
+    slack = np.maximum(t11, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t13 = t7 * h
-    t14 = t10 + t13
-    t15 = t9 * (t1 * t3 + t4 * t7) - c3_y * 0.5
-    t16 = t6 * h
-    A_12 = t15 + t16
-    t17 = t9 * (t1 * t6 + c3_y * t7) + t4 * 0.5
-    del t6, t7, t9
-    t18 = t3 * h
-    del t3
-    t19 = t17 - t18
-    A_21 = t1 - t14
+    t12 = t6 * h
+    t13 = t9 - t12
+    t14 = t8 * (t1 * product_z + t3 * t6) - c2_y * 0.5
+    t15 = t5 * h
+    t16 = t14 - t15
+    t17 = t8 * (t1 * t5 + c2_y * t6) + t3 * 0.5
+    del t5, t6, t8
+    t18 = product_z * h
+    del product_z
+    t19 = t17 + t18
+    A_21 = t1 - t13
     t20 = A_21 * A_21
-    A_22 = c3_y + A_12
-    A_23 = t4 - t19
-    t21 = t14 * t14 + A_12 * A_12 + t19 * t19 + (t20 + A_22 * A_22 + A_23 * A_23)
-    t22 = c3_y - A_12
-    A_33 = t5 - t19
-    t23 = A_12 * A_21
-    t24 = t14 * A_22 + t23
+    t21 = c2_y + t16
+    A_23 = t3 - t19
+    t22 = t13 * t13 + t16 * t16 + t19 * t19 + (t20 + t21 * t21 + A_23 * A_23)
+    A_32 = c2_y - t16
+    A_33 = t4 - t19
+    t23 = t16 * A_21
+    t24 = t13 * t21 + t23
     t25 = t19 * A_21
-    t26 = t14 * A_23 - t25
-    t27 = t23 - t14 * t22
+    t26 = t13 * A_23 - t25
+    t27 = t23 - t13 * A_32
     del t23
-    t28 = t25 - t14 * A_33
-    del t14, t25
+    t28 = t25 - t13 * A_33
+    del t13, t25
     t29 = t24 * t24 + t26 * t26 + t27 * t27 + t28 * t28
     del t24, t26, t27, t28
-    t30 = A_12 * A_23 + t19 * A_22
-    t31 = A_12 * A_33 - t19 * t22
-    del A_12, t19
-    t32 = A_21 * t22 + A_21 * A_22
+    t30 = t16 * A_23 + t19 * t21
+    t31 = t16 * A_33 - t19 * A_32
+    del t16, t19
+    t32 = A_21 * A_32 + A_21 * t21
     t33 = A_21 * A_33 - A_21 * A_23
     del A_21
     t34 = t29 + t30 * t30 + t31 * t31 + t32 * t32 + t33 * t33
     del t29, t30, t31, t32, t33
-    t35 = A_22 * A_33 + A_23 * t22
-    del A_22, A_23
-    t36 = (t21 + (t20 + t22 * t22 + A_33 * A_33)) * (t34 + t35 * t35)
-    del A_33, t20, t21, t22, t34, t35
-    t37 = 3.0 * (m_m * h)
+    t35 = t21 * A_33 + A_23 * A_32
+    del A_23, t21
+    t36 = (t22 + (t20 + A_32 * A_32 + A_33 * A_33)) * (t34 + t35 * t35)
+    del A_32, A_33, t20, t22, t34, t35
+    t37 = 3.0 * (product_2 * h)
     del h
     t38 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
     t39 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
@@ -2370,62 +2393,63 @@ def _condition_number_common(rho1, rho2, rho3, f, e, l):
     t41 = size * size
     t42 = 0.234375 * (l * size)
     del size
-    t43 = (np.abs(0.0) <= t41 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t42) <= t12)
-    del t12
+    t43 = (np.abs(0.0) <= t41 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t42) <= t11)
+    del t11
     t44 = _runtime.poison(np.logical_not(t40) | np.logical_not(t43))
     del t40, t43
-    t45 = t10 - t13
-    del t10, t13
-    A_12_above = t15 - t16
-    del t15, t16
-    t46 = t17 + t18
+    t45 = t9 + t12
+    del t12, t9
+    t46 = t14 + t15
+    del t14, t15
+    t47 = t17 - t18
     del t17, t18
-    square1_above = t45 * t45 + A_12_above * A_12_above + t46 * t46
     A_21_above = t1 - t45
     del t1
-    t47 = A_21_above * A_21_above
-    A_22_above = c3_y + A_12_above
-    A_23_above = t4 - t46
-    del t4
-    square2_above = t47 + A_22_above * A_22_above + A_23_above * A_23_above
-    t48 = c3_y - A_12_above
-    del c3_y
-    A_33_above = t5 - t46
-    t49 = square1_above + square2_above + (t47 + t48 * t48 + A_33_above * A_33_above)
-    del square1_above, square2_above, t47
-    t50 = A_12_above * A_21_above
-    t51 = t45 * A_22_above + t50
-    t52 = t46 * A_21_above
-    t53 = t45 * A_23_above - t52
-    t54 = t50 - t45 * t48
-    del t50
-    t55 = t52 - t45 * A_33_above
-    del t45, t52
-    t56 = t51 * t51 + t53 * t53 + t54 * t54 + t55 * t55
-    del t51, t53, t54, t55
-    t57 = A_12_above * A_23_above + t46 * A_22_above
-    t58 = A_12_above * A_33_above - t46 * t48
-    del A_12_above, t46
-    t59 = A_21_above * t48 + A_21_above * A_22_above
-    t60 = A_21_above * A_33_above - A_21_above * A_23_above
+    t48 = A_21_above * A_21_above
+    t49 = c2_y + t46
+    A_23_above = t3 - t47
+    del t3
+    t50 = t45 * t45 + t46 * t46 + t47 * t47 + (t48 + t49 * t49 + A_23_above * A_23_above)
+    A_32_above = c2_y - t46
+    del c2_y
+    A_33_above = t4 - t47
+    square3_above = t48 + A_32_above * A_32_above + A_33_above * A_33_above
+    del t48
+    t51 = t46 * A_21_above
+    t52 = t45 * t49 + t51
+    t53 = t47 * A_21_above
+    t54 = t45 * A_23_above - t53
+    t55 = t51 - t45 * A_32_above
+    del t51
+    t56 = t53 - t45 * A_33_above
+    del t45, t53
+    t57 = t52 * t52 + t54 * t54 + t55 * t55 + t56 * t56
+    del t52, t54, t55, t56
+    t58 = t46 * A_23_above + t47 * t49
+    t59 = t46 * A_33_above - t47 * A_32_above
+    del t46, t47
+    t60 = A_21_above * A_32_above + A_21_above * t49
+    t61 = A_21_above * A_33_above - A_21_above * A_23_above
     del A_21_above
-    t61 = t56 + t57 * t57 + t58 * t58 + t59 * t59 + t60 * t60
-    del t56, t57, t58, t59, t60
-    t62 = A_22_above * A_33_above + A_23_above * t48
-    del A_22_above, A_23_above, A_33_above, t48
-    t63 = _runtime.VANISHING * _runtime.VANISHING
-    t64 = t41 * t63
-    v_v = t5 * t5 + t11
-    del t11, t5
-    t65 = u_u * v_v
-    slim = m_m - t65 * 0.000244140625 <= _runtime.VANISHING * t65
-    del t65
-    t66 = (u_u <= t64) | (u_u + v_v <= t64) | slim | (m_m <= t63 * (t41 * u_u))
-    del m_m, slim, t41, t63, t64, u_u, v_v
+    t62 = t57 + t58 * t58 + t59 * t59 + t60 * t60 + t61 * t61
+    del t57, t58, t59, t60, t61
+    t63 = t49 * A_33_above + A_23_above * A_32_above
+    del A_23_above, A_32_above, A_33_above, t49
+    t64 = np.sqrt((t50 + square3_above) * (t62 + t63 * t63))
+    del square3_above, t50, t62, t63
+    t65 = _runtime.VANISHING * _runtime.VANISHING
+    t66 = t41 * t65
+    v_v = t4 * t4 + t10
+    del t10, t4
+    t67 = u_u * v_v
+    slim = product_2 - t67 * 0.000244140625 <= _runtime.VANISHING * t67
+    del t67
+    t68 = (u_u <= t66) | (u_u + v_v <= t66) | slim | (product_2 <= t65 * (t41 * u_u))
+    del product_2, slim, t41, t65, t66, u_u, v_v
     return (
         np.sqrt(t36) / t37 + t44,
-        np.sqrt(t49 * (t61 + t62 * t62)) / t37 + t44,
-        t66 | (slack <= _runtime.VANISHING * t42),
+        t64 / t37 + t44,
+        t68 | (slack <= _runtime.VANISHING * t42),
     )
 
 
@@ -2476,17 +2500,19 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
 
 
 def _constraint(rho1, rho2, rho3, f, e, l):
-    t1 = f - e - (e * 0.5 - f * 0.5)
+    c1_x = f - e
+    t1 = c1_x + c1_x * 0.5
     t2 = rho1 - rho2
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t3 = t1 * t1 + c3_y * c3_y
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    del c1_x
+    t3 = t1 * t1 + c2_y * c2_y
     u_u = t2 * t2 + t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t4 = size * size
     t5 = _runtime.VANISHING * _runtime.VANISHING
     t6 = t4 * t5
     same = u_u <= t6
-    d_y = _runtime.select(same, c3_y, -c3_y)
+    d_y = _runtime.select(same, -c2_y, c2_y)
     t7 = rho1 - rho3
     v_v = t7 * t7 + t3
     del t3
@@ -2494,32 +2520,32 @@ def _constraint(rho1, rho2, rho3, f, e, l):
     del t6
     whole = _runtime.select(size == 0.0, 1.0, size)
     a_x = _runtime.select(all_same, whole, -t1)
-    t8 = _runtime.select(same, -c3_y, c3_y)
-    m_z = a_x * t8 + t1 * d_y
+    t8 = _runtime.select(same, c2_y, -c2_y)
+    product_z = a_x * t8 + t1 * d_y
     t9 = _runtime.select(same, t7, t2)
     t10 = _runtime.select(same, t2, t7)
-    m_y = a_x * t10 + t1 * t9
-    t11 = d_y * m_z + t9 * m_y
+    product_y = a_x * t10 + t1 * t9
+    t11 = d_y * product_z + t9 * product_y
     t12 = d_y * t10 - t8 * t9
-    m_m = t12 * t12 + m_y * m_y + m_z * m_z
+    product_2 = t12 * t12 + product_y * product_y + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t13 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t13 * 0.000244140625 <= _runtime.VANISHING * t13
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
     del t13
     over = 1.0 / mu
-    n_y = a_x * m_z - t9 * t12
-    t14 = a_x * m_y + d_y * t12
-    mu_nu = _runtime.select(slim, over * (t11 * t11 + n_y * n_y + t14 * t14), m_m)
-    del m_m
-    in_line = mu_nu <= t5 * (t4 * mu)
+    n_y = a_x * product_z - t9 * t12
+    t14 = a_x * product_y + d_y * t12
+    m_m = _runtime.select(slim, over * (t11 * t11 + n_y * n_y + t14 * t14), product_2)
+    del product_2
+    in_line = m_m <= t5 * (t4 * mu)
     del t5
     t15 = whole * t9
     s_w = _runtime.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, mu_nu)
-    del mu_nu
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    del m_m
     part = 1.0 / w_w
     t16 = t8 * (d_y - t8) + t10 * (t9 - t10)
     del t10, t8
@@ -2540,10 +2566,10 @@ def _constraint(rho1, rho2, rho3, f, e, l):
     del s_w, t19
     t24 = t18 - t23
     t25 = t14 * t17 - t9 * 0.5
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), m_z)
-    del m_z
-    t26 = h * _runtime.select(in_line, -g_2, m_again_z)
-    del g_2, m_again_z
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), product_z)
+    del product_z
+    t26 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, m_z
     A_13 = t25 - t26
     A_23 = t2 + A_13
     A_33 = t7 + A_13
@@ -2554,12 +2580,12 @@ def _constraint(rho1, rho2, rho3, f, e, l):
     del A_13
     t30 = n_y * t17 - d_y * 0.5
     del d_y, n_y, t17
-    m_again_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), m_y)
-    del a_x, m_y, over, slim, t11, t14, t9
-    t31 = h * _runtime.select(in_line, -t15, m_again_y)
-    del h, m_again_y, t15
+    m_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), product_y)
+    del a_x, over, product_y, slim, t11, t14, t9
+    t31 = h * _runtime.select(in_line, -t15, m_y)
+    del h, m_y, t15
     t32 = t30 + t31
-    t33 = t28 - A_33 * t29 * (c3_y - t32) + A_23 * t27 * 0.25
+    t33 = t28 + A_33 * t29 * (c2_y + t32) + A_23 * t27 * 0.25
     del A_33, t27, t28
     t34 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
     t35 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
@@ -2586,58 +2612,60 @@ def _constraint(rho1, rho2, rho3, f, e, l):
     del A_13_above
     t43 = t30 - t31
     del t30, t31
-    t44 = t40 * 0.5 + A_33_above * t41 * 0.25 - A_33_above * t42 * (c3_y - t43)
+    t44 = t40 * 0.5 + A_33_above * t41 * 0.25 + A_33_above * t42 * (c2_y + t43)
     del A_33_above, t40
-    t45 = t44 + A_23_above * t41 * 0.25 - A_23_above * t42 * (c3_y + t43)
+    t45 = t44 + A_23_above * t41 * 0.25 + A_23_above * t42 * (c2_y - t43)
     del A_23_above, t41, t42, t43, t44
     return (
-        t33 - A_23 * t29 * (c3_y + t32) + t38,
+        t33 + A_23 * t29 * (c2_y - t32) + t38,
         t45 + t38,
     )
 
 
 def _constraint_common(rho1, rho2, rho3, f, e, l):
     # Where nothing vanishes; last, whether something does.
-    t1 = f - e - (e * 0.5 - f * 0.5)
-    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t2 = c3_y * t1
-    t3 = t2 + t2
+    c1_x = f - e
+    t1 = c1_x + c1_x * 0.5
+    c2_y = c1_x * 1.7320508075688772 * 0.5
+    del c1_x
+    t2 = c2_y * t1
+    product_z = t2 + t2
     del t2
-    t4 = rho1 - rho2
-    t5 = rho1 - rho3
-    t6 = t1 * t5 - t1 * t4
-    t7 = c3_y * t5 + c3_y * t4
-    m_m = t7 * t7 + t6 * t6 + t3 * t3
-    part = 1.0 / m_m
-    t8 = part * (c3_y * (c3_y + c3_y) - t5 * (t4 - t5))
-    t9 = t8 * 0.5
-    del t8
-    t10 = t1 * 0.5 + (c3_y * t3 - t4 * t6) * t9
-    t11 = t1 * t1 + c3_y * c3_y
-    u_u = t4 * t4 + t11
-    t12 = l * l - u_u * (0.25 + m_m * (t9 * t9))
-    slack = np.maximum(t12, 0.0)
+    t3 = rho1 - rho2
+    t4 = rho1 - rho3
+    t5 = t1 * t4 - t1 * t3
+    t6 = c2_y * t4 + c2_y * t3
+    product_2 = t6 * t6 + t5 * t5 + product_z * product_z
+    part = 1.0 / product_2
+    t7 = part * (c2_y * (c2_y + c2_y) - t4 * (t3 - t4))
+    t8 = t7 * 0.5
+    del t7
+    t9 = t1 * 0.5 + (c2_y * product_z - t3 * t5) * t8
+    t10 = t1 * t1 + c2_y * c2_y
+    u_u = t3 * t3 + t10
+    t11 = l * l - u_u * (0.25 + product_2 * (t8 * t8))
+    slack = np.maximum(t11, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t13 = t7 * h
-    t14 = t10 + t13
-    t15 = t9 * (t1 * t6 + c3_y * t7) + t4 * 0.5
-    t16 = t3 * h
-    t17 = t15 - t16
-    A_23 = t4 - t17
-    A_33 = t5 - t17
-    t18 = (t1 - t14) * (1.7320508075688772 * t17)
-    t19 = 1.7320508075688772 * t14 * A_23 * A_33 * 0.5 - A_33 * t18 * 0.25
-    del t14
-    t20 = t9 * (t1 * t3 + t4 * t7) - c3_y * 0.5
-    del t3, t7, t9
-    t21 = t6 * h
-    del h, t6
-    A_12 = t20 + t21
-    t22 = 0.75 * t17
-    del t17
-    t23 = t19 + A_33 * (c3_y + A_12) * t22 - A_23 * t18 * 0.25
-    del A_33, t18, t19
+    t12 = t6 * h
+    t13 = t9 - t12
+    t14 = t8 * (t1 * t5 + c2_y * t6) + t3 * 0.5
+    t15 = product_z * h
+    t16 = t14 + t15
+    A_23 = t3 - t16
+    A_33 = t4 - t16
+    t17 = (t1 - t13) * (1.7320508075688772 * t16)
+    t18 = 1.7320508075688772 * t13 * A_23 * A_33 * 0.5 - A_33 * t17 * 0.25
+    del t13
+    t19 = t8 * (t1 * product_z + t3 * t6) - c2_y * 0.5
+    del product_z, t6, t8
+    t20 = t5 * h
+    del h, t5
+    t21 = t19 - t20
+    t22 = 0.75 * t16
+    del t16
+    t23 = t18 - A_33 * (c2_y + t21) * t22 - A_23 * t17 * 0.25
+    del A_33, t17, t18
     t24 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
     t25 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     t26 = t24 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t25
@@ -2646,41 +2674,41 @@ def _constraint_common(rho1, rho2, rho3, f, e, l):
     t27 = size * size
     t28 = 0.234375 * (l * size)
     del size
-    t29 = (np.abs(0.0) <= t27 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t28) <= t12)
-    del t12
+    t29 = (np.abs(0.0) <= t27 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t28) <= t11)
+    del t11
     t30 = _runtime.poison(np.logical_not(t26) | np.logical_not(t29))
     del t26, t29
-    t31 = t10 - t13
-    del t10, t13
-    t32 = t15 + t16
-    del t15, t16
-    A_23_above = t4 - t32
-    del t4
-    A_33_above = t5 - t32
+    t31 = t9 + t12
+    del t12, t9
+    t32 = t14 - t15
+    del t14, t15
+    A_23_above = t3 - t32
+    del t3
+    A_33_above = t4 - t32
     t33 = 1.7320508075688772 * t31 * A_23_above * A_33_above
     t34 = (t1 - t31) * (1.7320508075688772 * t32)
     del t1, t31
-    A_12_above = t20 - t21
-    del t20, t21
-    t35 = 0.75 * t32
+    t35 = t19 + t20
+    del t19, t20
+    t36 = 0.75 * t32
     del t32
-    t36 = t33 * 0.5 - A_33_above * t34 * 0.25 + A_33_above * (c3_y + A_12_above) * t35
+    t37 = t33 * 0.5 - A_33_above * t34 * 0.25 - A_33_above * (c2_y + t35) * t36
     del A_33_above, t33
-    t37 = t36 - A_23_above * t34 * 0.25 + A_23_above * t35 * (c3_y - A_12_above)
-    del A_12_above, A_23_above, t34, t35, t36
-    t38 = _runtime.VANISHING * _runtime.VANISHING
-    t39 = t27 * t38
-    v_v = t5 * t5 + t11
-    del t11, t5
-    t40 = u_u * v_v
-    slim = m_m - t40 * 0.000244140625 <= _runtime.VANISHING * t40
-    del t40
-    t41 = (u_u <= t39) | (u_u + v_v <= t39) | slim | (m_m <= t38 * (t27 * u_u))
-    del m_m, slim, t27, t38, t39, u_u, v_v
+    t38 = t37 - A_23_above * t34 * 0.25 - A_23_above * t36 * (c2_y - t35)
+    del A_23_above, t34, t35, t36, t37
+    t39 = _runtime.VANISHING * _runtime.VANISHING
+    t40 = t27 * t39
+    v_v = t4 * t4 + t10
+    del t10, t4
+    t41 = u_u * v_v
+    slim = product_2 - t41 * 0.000244140625 <= _runtime.VANISHING * t41
+    del t41
+    t42 = (u_u <= t40) | (u_u + v_v <= t40) | slim | (product_2 <= t39 * (t27 * u_u))
+    del product_2, slim, t27, t39, t40, u_u, v_v
     return (
-        t23 + A_23 * t22 * (c3_y - A_12) + t30,
-        t37 + t30,
-        t41 | (slack <= _runtime.VANISHING * t28),
+        t23 - A_23 * t22 * (c2_y - t21) + t30,
+        t38 + t30,
+        t42 | (slack <= _runtime.VANISHING * t28),
     )
 
 

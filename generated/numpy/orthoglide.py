@@ -151,7 +151,7 @@ def _fk(rho1, rho2, rho3, L):
     t5 = _runtime.select(same, 0.0, rho3)
     t6 = _runtime.select(same, rho2, 0.0)
     d_z = _runtime.select(same, rho3, 0.0)
-    m_x = d_y * t5 - t6 * d_z
+    product_x = d_y * t5 - t6 * d_z
     v_v = t1 + rho3 * rho3
     del t1
     all_same = u_u + v_v <= t4
@@ -159,31 +159,29 @@ def _fk(rho1, rho2, rho3, L):
     whole = _runtime.select(size == 0.0, 1.0, size)
     a_x = _runtime.select(all_same, whole, -rho1)
     t7 = a_x * t5 + rho1 * d_z
-    m_z = a_x * t6 + rho1 * d_y
-    m_m = m_x * m_x + t7 * t7 + m_z * m_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t8 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
     del t8
     over = 1.0 / mu
-    t9 = d_y * m_z + d_z * t7
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t7 + d_y * m_x
-    mu_nu = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t3 * (t2 * mu)
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
     g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
-    m_again_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
-    del m_x
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
     g_2 = whole * (d_y + a_x * s_w)
-    del s_w, whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, mu_nu)
-    del mu_nu
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    del m_m
     part = 1.0 / w_w
     t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
     del t5, t6
@@ -197,8 +195,8 @@ def _fk(rho1, rho2, rho3, L):
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t15 = w_x * h
-    del w_x
+    t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
     t16 = t9 * t11 + (rho1 - rho1 * 0.5)
     t17 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t17)
@@ -213,10 +211,10 @@ def _fk(rho1, rho2, rho3, L):
     t21 = h * _runtime.select(in_line, g_1, -t20)
     del g_1, t20
     t22 = n_y * t11 - d_y * 0.5
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), m_z)
-    del a_x, d_y, m_z, n_y, over, slim, t9
-    t23 = h * _runtime.select(in_line, -g_2, m_again_z)
-    del g_2, h, m_again_z
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t9
+    t23 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, h, m_z
     t24 = n_z * t11 - d_z * 0.5
     del d_z, n_z, t11
     t25 = _runtime.status(invalid, unreachable, in_line)
@@ -235,21 +233,21 @@ def _fk(rho1, rho2, rho3, L):
 
 def _fk_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
-    m_x = rho2 * rho3
-    m_again_y = rho1 * rho3
-    m_z = rho1 * rho2
-    m_m = m_x * m_x + m_again_y * m_again_y + m_z * m_z
-    part = 1.0 / m_m
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
     t2 = rho3 * rho3
     t3 = t2 * part * 0.5
-    t4 = L * L - u_u * (0.25 + m_m * (t3 * t3))
+    t4 = L * L - u_u * (0.25 + product_2 * (t3 * t3))
     slack = np.maximum(t4, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t5 = m_x * h
-    t6 = rho1 - rho1 * 0.5 - rho2 * m_z * t3
+    t5 = product_x * h
+    t6 = rho1 - rho1 * 0.5 - rho2 * product_z * t3
     t7 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t7)
     del t7
@@ -262,12 +260,12 @@ def _fk_common(rho1, rho2, rho3, L):
     unreachable = np.logical_not(t10)
     del t10
     t11 = _runtime.poison(invalid | unreachable)
-    t12 = m_again_y * h
-    t13 = t3 * (rho1 * m_z) - rho2 * 0.5
-    t14 = t3 * (rho1 * m_again_y + rho2 * m_x)
-    del m_again_y, m_x, t3
-    t15 = m_z * h
-    del h, m_z
+    t12 = m_y * h
+    t13 = t3 * (rho1 * product_z) - rho2 * 0.5
+    t14 = t3 * (rho1 * m_y + rho2 * product_x)
+    del m_y, product_x, t3
+    t15 = product_z * h
+    del h, product_z
     t16 = _runtime.status(invalid, unreachable, np.False_)
     del invalid, unreachable
     t17 = _runtime.VANISHING * _runtime.VANISHING
@@ -275,10 +273,10 @@ def _fk_common(rho1, rho2, rho3, L):
     v_v = t1 + t2
     del t1, t2
     t19 = u_u * v_v
-    slim = m_m - t19 * 0.000244140625 <= _runtime.VANISHING * t19
+    slim = product_2 - t19 * 0.000244140625 <= _runtime.VANISHING * t19
     del t19
-    t20 = (u_u <= t18) | (u_u + v_v <= t18) | slim | (m_m <= t17 * (u_u * t8))
-    del m_m, slim, t17, t18, t8, u_u, v_v
+    t20 = (u_u <= t18) | (u_u + v_v <= t18) | slim | (product_2 <= t17 * (u_u * t8))
+    del product_2, slim, t17, t18, t8, u_u, v_v
     return (
         t5 + t6 + t11,
         t12 - t13 + t11,
@@ -362,7 +360,7 @@ def _skeleton(rho1, rho2, rho3, L):
     t6 = _runtime.select(same, 0.0, rho3)
     d_z = _runtime.select(same, rho3, 0.0)
     t7 = _runtime.select(same, rho2, 0.0)
-    m_x = d_y * t6 - d_z * t7
+    product_x = d_y * t6 - d_z * t7
     v_v = t2 + rho3 * rho3
     del t2
     all_same = u_u + v_v <= t5
@@ -370,20 +368,20 @@ def _skeleton(rho1, rho2, rho3, L):
     whole = _runtime.select(size == 0.0, 1.0, size)
     a_x = _runtime.select(all_same, whole, -rho1)
     t8 = t6 * a_x + rho1 * d_z
-    m_z = t7 * a_x + rho1 * d_y
-    m_m = m_x * m_x + t8 * t8 + m_z * m_z
+    product_z = t7 * a_x + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t9 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t9 * 0.000244140625 <= _runtime.VANISHING * t9
+    slim = product_2 - t9 * 0.000244140625 <= _runtime.VANISHING * t9
     del t9
     over = 1.0 / mu
-    t10 = d_y * m_z + d_z * t8
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t8 + d_y * m_x
-    mu_nu = _runtime.select(slim, over * (t10 * t10 + n_y * n_y + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t4 * (t3 * mu)
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t10 * t10 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t4 * (t3 * mu)
     del t4
     t11 = t7 * (d_y - t7) - t6 * (t6 - d_z)
     del t6, t7
@@ -395,8 +393,8 @@ def _skeleton(rho1, rho2, rho3, L):
     s_w = _runtime.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, mu_nu)
-    del mu_nu
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    del m_m
     part = 1.0 / w_w
     t14 = _runtime.select(in_line, 0.0, t11 * part * 0.5)
     del t11
@@ -413,16 +411,14 @@ def _skeleton(rho1, rho2, rho3, L):
     t20 = L * 0.0625
     t21 = t20 + t17
     t22 = -t20 + t17
-    m_again_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
-    del m_x
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x, s_w
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
     slack = np.maximum(t16, 0.0)
     del t16
     h = _runtime.select(slack <= _runtime.VANISHING * t13, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack, t13
-    t23 = w_x * h
-    del w_x
+    t23 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
     t24 = rho1 * 0.5 - t10 * t14
     t25 = rho1 + (t23 - t24)
     t26 = t25 + t17
@@ -432,10 +428,10 @@ def _skeleton(rho1, rho2, rho3, L):
     del g_1, t27
     t29 = n_y * t14 - d_y * 0.5
     A_12 = t28 - t29
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t10), m_z)
-    del a_x, d_y, m_z, n_y, over, slim, t10
-    t30 = h * _runtime.select(in_line, -g_2, m_again_z)
-    del g_2, h, in_line, m_again_z
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t10
+    t30 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, h, in_line, m_z
     t31 = n_z * t14 - d_z * 0.5
     del d_z, n_z, t14
     A_13 = t30 - t31
@@ -581,14 +577,14 @@ def _skeleton_common(rho1, rho2, rho3, L):
     del size
     t4 = rho1 * rho1
     u_u = t4 + rho2 * rho2
-    m_x = rho2 * rho3
-    m_again_y = rho1 * rho3
-    m_z = rho1 * rho2
-    m_m = m_x * m_x + m_again_y * m_again_y + m_z * m_z
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
     t5 = rho3 * rho3
-    part = 1.0 / m_m
+    part = 1.0 / product_2
     t6 = t5 * part * 0.5
-    t7 = L * L - u_u * (0.25 + m_m * (t6 * t6))
+    t7 = L * L - u_u * (0.25 + product_2 * (t6 * t6))
     t8 = (np.abs(0.0) <= t2 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t3) <= t7)
     t9 = _runtime.poison(invalid | np.logical_not(t8))
     del invalid, t8
@@ -601,17 +597,17 @@ def _skeleton_common(rho1, rho2, rho3, L):
     del t7
     h = np.sqrt(part * slack)
     del part
-    t15 = m_x * h
-    t16 = rho1 * 0.5 + t6 * (rho2 * m_z)
+    t15 = product_x * h
+    t16 = rho1 * 0.5 + t6 * (rho2 * product_z)
     t17 = rho1 + (t15 - t16)
     t18 = t17 + t9
-    t19 = m_again_y * h
-    t20 = t6 * (rho1 * m_z) - rho2 * 0.5
+    t19 = m_y * h
+    t20 = t6 * (rho1 * product_z) - rho2 * 0.5
     A_12 = t19 - t20
-    t21 = t6 * (rho1 * m_again_y + rho2 * m_x)
-    del m_again_y, m_x, t6
-    t22 = m_z * h
-    del h, m_z
+    t21 = t6 * (rho1 * m_y + rho2 * product_x)
+    del m_y, product_x, t6
+    t22 = product_z * h
+    del h, product_z
     A_13 = t21 + t22
     t23 = A_13 + t9
     t24 = rho2 + t9
@@ -631,10 +627,10 @@ def _skeleton_common(rho1, rho2, rho3, L):
     v_v = t4 + t5
     del t4, t5
     t34 = u_u * v_v
-    slim = m_m - t34 * 0.000244140625 <= _runtime.VANISHING * t34
+    slim = product_2 - t34 * 0.000244140625 <= _runtime.VANISHING * t34
     del t34
-    t35 = (u_u <= t33) | (u_u + v_v <= t33) | slim | (m_m <= t32 * (u_u * t2))
-    del m_m, slim, t2, t32, t33, u_u, v_v
+    t35 = (u_u <= t33) | (u_u + v_v <= t33) | slim | (product_2 <= t32 * (u_u * t2))
+    del product_2, slim, t2, t32, t33, u_u, v_v
     return (
         t10,
         t10,
@@ -813,7 +809,7 @@ def _jacobian_parallel(rho1, rho2, rho3, L):
     t5 = _runtime.select(same, 0.0, rho3)
     t6 = _runtime.select(same, rho2, 0.0)
     d_z = _runtime.select(same, rho3, 0.0)
-    m_x = d_y * t5 - t6 * d_z
+    product_x = d_y * t5 - t6 * d_z
     v_v = t1 + rho3 * rho3
     del t1
     all_same = u_u + v_v <= t4
@@ -821,31 +817,29 @@ def _jacobian_parallel(rho1, rho2, rho3, L):
     whole = _runtime.select(size == 0.0, 1.0, size)
     a_x = _runtime.select(all_same, whole, -rho1)
     t7 = a_x * t5 + rho1 * d_z
-    m_z = a_x * t6 + rho1 * d_y
-    m_m = m_x * m_x + t7 * t7 + m_z * m_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t8 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
     del t8
     over = 1.0 / mu
-    t9 = d_y * m_z + d_z * t7
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t7 + d_y * m_x
-    mu_nu = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t3 * (t2 * mu)
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
     g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
-    m_again_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
-    del m_x
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
     g_2 = whole * (d_y + a_x * s_w)
-    del s_w, whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, mu_nu)
-    del mu_nu
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    del m_m
     part = 1.0 / w_w
     t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
     del t5, t6
@@ -859,8 +853,8 @@ def _jacobian_parallel(rho1, rho2, rho3, L):
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t15 = w_x * h
-    del w_x
+    t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
     t16 = rho1 * 0.5 - t9 * t11
     A_11 = t15 - t16
     t17 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
@@ -879,10 +873,10 @@ def _jacobian_parallel(rho1, rho2, rho3, L):
     t22 = n_y * t11 - d_y * 0.5
     A_12 = t21 - t22
     t23 = A_12 + t19
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), m_z)
-    del a_x, d_y, m_z, n_y, over, slim, t9
-    t24 = h * _runtime.select(in_line, -g_2, m_again_z)
-    del g_2, h, in_line, m_again_z
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t9
+    t24 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, h, in_line, m_z
     t25 = n_z * t11 - d_z * 0.5
     del d_z, n_z, t11
     A_13 = t24 - t25
@@ -921,21 +915,21 @@ def _jacobian_parallel(rho1, rho2, rho3, L):
 
 def _jacobian_parallel_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
-    m_x = rho2 * rho3
-    m_again_y = rho1 * rho3
-    m_z = rho1 * rho2
-    m_m = m_x * m_x + m_again_y * m_again_y + m_z * m_z
-    part = 1.0 / m_m
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
     t2 = rho3 * rho3
     t3 = t2 * part * 0.5
-    t4 = L * L - u_u * (0.25 + m_m * (t3 * t3))
+    t4 = L * L - u_u * (0.25 + product_2 * (t3 * t3))
     slack = np.maximum(t4, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t5 = m_x * h
-    t6 = rho1 * 0.5 + rho2 * m_z * t3
+    t5 = product_x * h
+    t6 = rho1 * 0.5 + rho2 * product_z * t3
     A_11 = t5 - t6
     t7 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t7)
@@ -948,14 +942,14 @@ def _jacobian_parallel_common(rho1, rho2, rho3, L):
     del t4
     t11 = _runtime.poison(invalid | np.logical_not(t10))
     del invalid, t10
-    t12 = m_again_y * h
-    t13 = t3 * (rho1 * m_z) - rho2 * 0.5
+    t12 = m_y * h
+    t13 = t3 * (rho1 * product_z) - rho2 * 0.5
     A_12 = t12 - t13
     t14 = A_12 + t11
-    t15 = t3 * (rho1 * m_again_y + rho2 * m_x)
-    del m_again_y, m_x, t3
-    t16 = m_z * h
-    del h, m_z
+    t15 = t3 * (rho1 * m_y + rho2 * product_x)
+    del m_y, product_x, t3
+    t16 = product_z * h
+    del h, product_z
     A_13 = t15 + t16
     t17 = A_13 + t11
     t18 = rho1 + A_11 + t11
@@ -973,10 +967,10 @@ def _jacobian_parallel_common(rho1, rho2, rho3, L):
     v_v = t1 + t2
     del t1, t2
     t26 = u_u * v_v
-    slim = m_m - t26 * 0.000244140625 <= _runtime.VANISHING * t26
+    slim = product_2 - t26 * 0.000244140625 <= _runtime.VANISHING * t26
     del t26
-    t27 = (u_u <= t25) | (u_u + v_v <= t25) | slim | (m_m <= t24 * (u_u * t8))
-    del m_m, slim, t24, t25, t8, u_u, v_v
+    t27 = (u_u <= t25) | (u_u + v_v <= t25) | slim | (product_2 <= t24 * (u_u * t8))
+    del product_2, slim, t24, t25, t8, u_u, v_v
     return (
         A_11 + t11,
         t14,
@@ -1057,7 +1051,7 @@ def _jacobian_serial(rho1, rho2, rho3, L):
     t5 = _runtime.select(same, 0.0, rho3)
     t6 = _runtime.select(same, rho2, 0.0)
     d_z = _runtime.select(same, rho3, 0.0)
-    m_x = d_y * t5 - t6 * d_z
+    product_x = d_y * t5 - t6 * d_z
     v_v = t1 + rho3 * rho3
     del t1
     all_same = u_u + v_v <= t4
@@ -1065,31 +1059,29 @@ def _jacobian_serial(rho1, rho2, rho3, L):
     whole = _runtime.select(size == 0.0, 1.0, size)
     a_x = _runtime.select(all_same, whole, -rho1)
     t7 = a_x * t5 + rho1 * d_z
-    m_z = a_x * t6 + rho1 * d_y
-    m_m = m_x * m_x + t7 * t7 + m_z * m_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t8 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
     del t8
     over = 1.0 / mu
-    t9 = d_y * m_z + d_z * t7
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t7 + d_y * m_x
-    mu_nu = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t3 * (t2 * mu)
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
     g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
-    m_again_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
-    del m_x
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
     g_2 = whole * (d_y + a_x * s_w)
-    del s_w, whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, mu_nu)
-    del mu_nu
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    del m_m
     part = 1.0 / w_w
     t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
     del t5, t6
@@ -1103,8 +1095,8 @@ def _jacobian_serial(rho1, rho2, rho3, L):
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t15 = w_x * h
-    del w_x
+    t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
     t16 = rho1 * 0.5 - t9 * t11
     t17 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t17)
@@ -1120,10 +1112,10 @@ def _jacobian_serial(rho1, rho2, rho3, L):
     t21 = h * _runtime.select(in_line, g_1, -t20)
     del g_1, t20
     t22 = n_y * t11 - d_y * 0.5
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), m_z)
-    del a_x, d_y, m_z, n_y, over, slim, t9
-    t23 = h * _runtime.select(in_line, -g_2, m_again_z)
-    del g_2, h, in_line, m_again_z
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t9
+    t23 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, h, in_line, m_z
     t24 = n_z * t11 - d_z * 0.5
     del d_z, n_z, t11
     return (
@@ -1138,21 +1130,21 @@ def _jacobian_serial(rho1, rho2, rho3, L):
 
 def _jacobian_serial_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
-    m_x = rho2 * rho3
-    m_again_y = rho1 * rho3
-    m_z = rho1 * rho2
-    m_m = m_x * m_x + m_again_y * m_again_y + m_z * m_z
-    part = 1.0 / m_m
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
     t2 = rho3 * rho3
     t3 = t2 * part * 0.5
-    t4 = L * L - u_u * (0.25 + m_m * (t3 * t3))
+    t4 = L * L - u_u * (0.25 + product_2 * (t3 * t3))
     slack = np.maximum(t4, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t5 = m_x * h
-    t6 = rho1 * 0.5 + rho2 * m_z * t3
+    t5 = product_x * h
+    t6 = rho1 * 0.5 + rho2 * product_z * t3
     t7 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t7)
     del t7
@@ -1164,21 +1156,21 @@ def _jacobian_serial_common(rho1, rho2, rho3, L):
     del t4
     t11 = _runtime.poison(invalid | np.logical_not(t10))
     del invalid, t10
-    t12 = m_again_y * h
-    t13 = t3 * (rho1 * m_z) - rho2 * 0.5
-    t14 = t3 * (rho1 * m_again_y + rho2 * m_x)
-    del m_again_y, m_x, t3
-    t15 = m_z * h
-    del h, m_z
+    t12 = m_y * h
+    t13 = t3 * (rho1 * product_z) - rho2 * 0.5
+    t14 = t3 * (rho1 * m_y + rho2 * product_x)
+    del m_y, product_x, t3
+    t15 = product_z * h
+    del h, product_z
     t16 = _runtime.VANISHING * _runtime.VANISHING
     t17 = t8 * t16
     v_v = t1 + t2
     del t1, t2
     t18 = u_u * v_v
-    slim = m_m - t18 * 0.000244140625 <= _runtime.VANISHING * t18
+    slim = product_2 - t18 * 0.000244140625 <= _runtime.VANISHING * t18
     del t18
-    t19 = (u_u <= t17) | (u_u + v_v <= t17) | slim | (m_m <= t16 * (u_u * t8))
-    del m_m, slim, t16, t17, t8, u_u, v_v
+    t19 = (u_u <= t17) | (u_u + v_v <= t17) | slim | (product_2 <= t16 * (u_u * t8))
+    del product_2, slim, t16, t17, t8, u_u, v_v
     return (
         t5 - t6 + t11,
         t12 - t13 - rho2 + t11,
@@ -1247,7 +1239,7 @@ def _jacobian(rho1, rho2, rho3, L):
     t5 = _runtime.select(same, 0.0, rho3)
     t6 = _runtime.select(same, rho2, 0.0)
     d_z = _runtime.select(same, rho3, 0.0)
-    m_x = d_y * t5 - t6 * d_z
+    product_x = d_y * t5 - t6 * d_z
     v_v = t1 + rho3 * rho3
     del t1
     all_same = u_u + v_v <= t4
@@ -1255,31 +1247,29 @@ def _jacobian(rho1, rho2, rho3, L):
     whole = _runtime.select(size == 0.0, 1.0, size)
     a_x = _runtime.select(all_same, whole, -rho1)
     t7 = a_x * t5 + rho1 * d_z
-    m_z = a_x * t6 + rho1 * d_y
-    m_m = m_x * m_x + t7 * t7 + m_z * m_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t8 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
     del t8
     over = 1.0 / mu
-    t9 = d_y * m_z + d_z * t7
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t7 + d_y * m_x
-    mu_nu = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t3 * (t2 * mu)
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
     g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
-    m_again_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
-    del m_x
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
     g_2 = whole * (d_y + a_x * s_w)
-    del s_w, whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, mu_nu)
-    del mu_nu
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    del m_m
     part = 1.0 / w_w
     t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
     del t5, t6
@@ -1293,8 +1283,8 @@ def _jacobian(rho1, rho2, rho3, L):
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t15 = w_x * h
-    del w_x
+    t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
     t16 = rho1 * 0.5 - t9 * t11
     A_11 = t15 - t16
     t17 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
@@ -1303,10 +1293,10 @@ def _jacobian(rho1, rho2, rho3, L):
     del g_1, t17
     t19 = n_y * t11 - d_y * 0.5
     t20 = t18 - t19
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), m_z)
-    del a_x, d_y, m_z, n_y, over, slim, t9
-    t21 = h * _runtime.select(in_line, -g_2, m_again_z)
-    del g_2, m_again_z
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t9
+    t21 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, m_z
     t22 = n_z * t11 - d_z * 0.5
     del d_z, n_z, t11
     t23 = t21 - t22
@@ -1366,35 +1356,35 @@ def _jacobian(rho1, rho2, rho3, L):
 
 def _jacobian_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
-    m_x = rho2 * rho3
-    m_again_y = rho1 * rho3
-    m_z = rho1 * rho2
-    m_m = m_x * m_x + m_again_y * m_again_y + m_z * m_z
-    part = 1.0 / m_m
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
     t2 = rho3 * rho3
     t3 = t2 * part * 0.5
-    t4 = L * L - u_u * (0.25 + m_m * (t3 * t3))
+    t4 = L * L - u_u * (0.25 + product_2 * (t3 * t3))
     slack = np.maximum(t4, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t5 = m_x * h
-    t6 = rho1 * 0.5 + rho2 * m_z * t3
+    t5 = product_x * h
+    t6 = rho1 * 0.5 + rho2 * product_z * t3
     A_11 = t5 - t6
-    t7 = t3 * (rho1 * m_again_y + rho2 * m_x)
-    del m_x
-    t8 = m_z * h
+    t7 = t3 * (rho1 * m_y + rho2 * product_x)
+    del product_x
+    t8 = product_z * h
     t9 = t7 + t8
-    t10 = m_again_y * h
-    del m_again_y
-    t11 = t3 * (rho1 * m_z) - rho2 * 0.5
-    del m_z, t3
+    t10 = m_y * h
+    del m_y
+    t11 = t3 * (rho1 * product_z) - rho2 * 0.5
+    del product_z, t3
     t12 = t10 - t11
     t13 = t9 * t12
     t14 = rho3 - t9
     t15 = rho2 - t12
-    Delta = m_m * h
+    Delta = product_2 * h
     del h
     t16 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t16)
@@ -1428,10 +1418,10 @@ def _jacobian_common(rho1, rho2, rho3, L):
     v_v = t1 + t2
     del t1, t2
     t34 = u_u * v_v
-    slim = m_m - t34 * 0.000244140625 <= _runtime.VANISHING * t34
+    slim = product_2 - t34 * 0.000244140625 <= _runtime.VANISHING * t34
     del t34
-    t35 = (u_u <= t33) | (u_u + v_v <= t33) | slim | (m_m <= t32 * (u_u * t17))
-    del m_m, slim, t17, t32, t33, u_u, v_v
+    t35 = (u_u <= t33) | (u_u + v_v <= t33) | slim | (product_2 <= t32 * (u_u * t17))
+    del product_2, slim, t17, t32, t33, u_u, v_v
     return (
         -(A_11 * (t13 - t14 * t15) / Delta) + t20,
         -(t15 * (t13 + t14 * t12) / Delta) + t20,
@@ -1513,7 +1503,7 @@ def _determinant(rho1, rho2, rho3, L):
     t5 = _runtime.select(same, 0.0, rho3)
     t6 = _runtime.select(same, rho2, 0.0)
     d_z = _runtime.select(same, rho3, 0.0)
-    m_x = d_y * t5 - t6 * d_z
+    product_x = d_y * t5 - t6 * d_z
     v_v = t1 + rho3 * rho3
     del t1
     all_same = u_u + v_v <= t4
@@ -1521,31 +1511,29 @@ def _determinant(rho1, rho2, rho3, L):
     whole = _runtime.select(size == 0.0, 1.0, size)
     a_x = _runtime.select(all_same, whole, -rho1)
     t7 = a_x * t5 + rho1 * d_z
-    m_z = a_x * t6 + rho1 * d_y
-    m_m = m_x * m_x + t7 * t7 + m_z * m_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t8 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
     del t8
     over = 1.0 / mu
-    t9 = d_y * m_z + d_z * t7
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t7 + d_y * m_x
-    mu_nu = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t3 * (t2 * mu)
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
     g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
-    m_again_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
-    del m_x
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
     g_2 = whole * (d_y + a_x * s_w)
-    del s_w, whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, mu_nu)
-    del mu_nu
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    del m_m
     part = 1.0 / w_w
     t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
     del t5, t6
@@ -1559,18 +1547,18 @@ def _determinant(rho1, rho2, rho3, L):
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t15 = w_x * h
-    del w_x
+    t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
     t16 = rho1 * 0.5 - t9 * t11
     t17 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
     del t7
     t18 = h * _runtime.select(in_line, g_1, -t17)
     del g_1, t17
     t19 = n_y * t11 - d_y * 0.5
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), m_z)
-    del a_x, d_y, m_z, n_y, over, slim, t9
-    t20 = h * _runtime.select(in_line, -g_2, m_again_z)
-    del g_2, m_again_z
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t9
+    t20 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, m_z
     t21 = n_z * t11 - d_z * 0.5
     del d_z, n_z, t11
     t22 = (t15 - t16) * (rho2 - (t18 - t19)) * (rho3 - (t20 - t21))
@@ -1596,29 +1584,29 @@ def _determinant(rho1, rho2, rho3, L):
 def _determinant_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
     t1 = rho3 * rho3
-    m_x = rho2 * rho3
-    m_again_y = rho1 * rho3
-    m_z = rho1 * rho2
-    m_m = m_x * m_x + m_again_y * m_again_y + m_z * m_z
-    part = 1.0 / m_m
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
     t2 = t1 * part * 0.5
-    t3 = t2 * (rho1 * m_again_y + rho2 * m_x)
+    t3 = t2 * (rho1 * m_y + rho2 * product_x)
     t4 = rho1 * rho1
     u_u = t4 + rho2 * rho2
-    t5 = L * L - u_u * (0.25 + m_m * (t2 * t2))
+    t5 = L * L - u_u * (0.25 + product_2 * (t2 * t2))
     slack = np.maximum(t5, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t6 = m_z * h
-    t7 = m_x * h
-    del m_x
-    t8 = rho1 * 0.5 + rho2 * m_z * t2
-    t9 = m_again_y * h
-    del m_again_y
-    t10 = t2 * (rho1 * m_z) - rho2 * 0.5
-    del m_z, t2
+    t6 = product_z * h
+    t7 = product_x * h
+    del product_x
+    t8 = rho1 * 0.5 + rho2 * product_z * t2
+    t9 = m_y * h
+    del m_y
+    t10 = t2 * (rho1 * product_z) - rho2 * 0.5
+    del product_z, t2
     t11 = (rho3 - (t3 + t6)) * (t7 - t8) * (rho2 - (t9 - t10))
-    Delta = m_m * h
+    Delta = product_2 * h
     del h
     t12 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t12)
@@ -1638,10 +1626,10 @@ def _determinant_common(rho1, rho2, rho3, L):
     v_v = t4 + t1
     del t1, t4
     t20 = u_u * v_v
-    slim = m_m - t20 * 0.000244140625 <= _runtime.VANISHING * t20
+    slim = product_2 - t20 * 0.000244140625 <= _runtime.VANISHING * t20
     del t20
-    t21 = (u_u <= t19) | (u_u + v_v <= t19) | slim | (m_m <= t18 * (u_u * t13))
-    del m_m, slim, t13, t18, t19, u_u, v_v
+    t21 = (u_u <= t19) | (u_u + v_v <= t19) | slim | (product_2 <= t18 * (u_u * t13))
+    del product_2, slim, t13, t18, t19, u_u, v_v
     return (
         t11 / Delta + t16,
         t17 / Delta + t16,
@@ -1706,7 +1694,7 @@ def _singularities(rho1, rho2, rho3, L):
     t5 = _runtime.select(same, 0.0, rho3)
     t6 = _runtime.select(same, rho2, 0.0)
     d_z = _runtime.select(same, rho3, 0.0)
-    m_x = d_y * t5 - t6 * d_z
+    product_x = d_y * t5 - t6 * d_z
     v_v = t1 + rho3 * rho3
     del t1
     all_same = u_u + v_v <= t4
@@ -1714,31 +1702,29 @@ def _singularities(rho1, rho2, rho3, L):
     whole = _runtime.select(size == 0.0, 1.0, size)
     a_x = _runtime.select(all_same, whole, -rho1)
     t7 = a_x * t5 + rho1 * d_z
-    m_z = a_x * t6 + rho1 * d_y
-    m_m = m_x * m_x + t7 * t7 + m_z * m_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t8 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
     del t8
     over = 1.0 / mu
-    t9 = d_y * m_z + d_z * t7
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t7 + d_y * m_x
-    mu_nu = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t3 * (t2 * mu)
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
     g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
-    m_again_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
-    del m_x
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
     g_2 = whole * (d_y + a_x * s_w)
-    del s_w, whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, mu_nu)
-    del mu_nu
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    del m_m
     part = 1.0 / w_w
     t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
     del t5, t6
@@ -1752,8 +1738,8 @@ def _singularities(rho1, rho2, rho3, L):
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t15 = w_x * h
-    del w_x
+    t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
     t16 = rho1 * 0.5 - t9 * t11
     t17 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t17)
@@ -1769,10 +1755,10 @@ def _singularities(rho1, rho2, rho3, L):
     t21 = h * _runtime.select(in_line, g_1, -t20)
     del g_1, t20
     t22 = n_y * t11 - d_y * 0.5
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), m_z)
-    del a_x, d_y, m_z, n_y, over, slim, t9
-    t23 = h * _runtime.select(in_line, -g_2, m_again_z)
-    del g_2, in_line, m_again_z
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t9
+    t23 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, in_line, m_z
     t24 = n_z * t11 - d_z * 0.5
     del d_z, n_z, t11
     Delta = w_w * h
@@ -1791,21 +1777,21 @@ def _singularities(rho1, rho2, rho3, L):
 
 def _singularities_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
-    m_x = rho2 * rho3
-    m_again_y = rho1 * rho3
-    m_z = rho1 * rho2
-    m_m = m_x * m_x + m_again_y * m_again_y + m_z * m_z
-    part = 1.0 / m_m
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
     t2 = rho3 * rho3
     t3 = t2 * part * 0.5
-    t4 = L * L - u_u * (0.25 + m_m * (t3 * t3))
+    t4 = L * L - u_u * (0.25 + product_2 * (t3 * t3))
     slack = np.maximum(t4, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t5 = m_x * h
-    t6 = rho1 * 0.5 + rho2 * m_z * t3
+    t5 = product_x * h
+    t6 = rho1 * 0.5 + rho2 * product_z * t3
     t7 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t7)
     del t7
@@ -1817,23 +1803,23 @@ def _singularities_common(rho1, rho2, rho3, L):
     del t4
     t11 = _runtime.poison(invalid | np.logical_not(t10))
     del invalid, t10
-    t12 = m_again_y * h
-    t13 = t3 * (rho1 * m_z) - rho2 * 0.5
-    t14 = t3 * (rho1 * m_again_y + rho2 * m_x)
-    del m_again_y, m_x, t3
-    t15 = m_z * h
-    del m_z
-    Delta = m_m * h
+    t12 = m_y * h
+    t13 = t3 * (rho1 * product_z) - rho2 * 0.5
+    t14 = t3 * (rho1 * m_y + rho2 * product_x)
+    del m_y, product_x, t3
+    t15 = product_z * h
+    del product_z
+    Delta = product_2 * h
     del h
     t16 = _runtime.VANISHING * _runtime.VANISHING
     t17 = t8 * t16
     v_v = t1 + t2
     del t1, t2
     t18 = u_u * v_v
-    slim = m_m - t18 * 0.000244140625 <= _runtime.VANISHING * t18
+    slim = product_2 - t18 * 0.000244140625 <= _runtime.VANISHING * t18
     del t18
-    t19 = (u_u <= t17) | (u_u + v_v <= t17) | slim | (m_m <= t16 * (u_u * t8))
-    del m_m, slim, t16, t17, t8, u_u, v_v
+    t19 = (u_u <= t17) | (u_u + v_v <= t17) | slim | (product_2 <= t16 * (u_u * t8))
+    del product_2, slim, t16, t17, t8, u_u, v_v
     return (
         t5 - t6 + t11,
         t12 - t13 - rho2 + t11,
@@ -1904,7 +1890,7 @@ def _condition_number(rho1, rho2, rho3, L):
     t5 = _runtime.select(same, 0.0, rho3)
     t6 = _runtime.select(same, rho2, 0.0)
     d_z = _runtime.select(same, rho3, 0.0)
-    m_x = d_y * t5 - t6 * d_z
+    product_x = d_y * t5 - t6 * d_z
     v_v = t1 + rho3 * rho3
     del t1
     all_same = u_u + v_v <= t4
@@ -1912,31 +1898,29 @@ def _condition_number(rho1, rho2, rho3, L):
     whole = _runtime.select(size == 0.0, 1.0, size)
     a_x = _runtime.select(all_same, whole, -rho1)
     t7 = a_x * t5 + rho1 * d_z
-    m_z = a_x * t6 + rho1 * d_y
-    m_m = m_x * m_x + t7 * t7 + m_z * m_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
     t8 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
     del t8
     over = 1.0 / mu
-    t9 = d_y * m_z + d_z * t7
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t7 + d_y * m_x
-    mu_nu = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t3 * (t2 * mu)
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
     g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
-    m_again_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
-    del m_x
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del m_again_x
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
     g_2 = whole * (d_y + a_x * s_w)
-    del s_w, whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, mu_nu)
-    del mu_nu
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    del m_m
     part = 1.0 / w_w
     t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
     del t5, t6
@@ -1950,8 +1934,8 @@ def _condition_number(rho1, rho2, rho3, L):
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part) * np.sqrt(slack))
     del part, slack
-    t15 = w_x * h
-    del w_x
+    t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
     t16 = rho1 * 0.5 - t9 * t11
     A_11 = t15 - t16
     t17 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
@@ -1961,10 +1945,10 @@ def _condition_number(rho1, rho2, rho3, L):
     t19 = n_y * t11 - d_y * 0.5
     t20 = t18 - t19
     t21 = t20 * t20
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), m_z)
-    del a_x, d_y, m_z, n_y, over, slim, t9
-    t22 = h * _runtime.select(in_line, -g_2, m_again_z)
-    del g_2, m_again_z
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t9
+    t22 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, m_z
     t23 = n_z * t11 - d_z * 0.5
     del d_z, n_z, t11
     t24 = t22 - t23
@@ -2055,30 +2039,30 @@ def _condition_number(rho1, rho2, rho3, L):
 def _condition_number_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
     t1 = rho3 * rho3
-    m_x = rho2 * rho3
-    m_again_y = rho1 * rho3
-    m_z = rho1 * rho2
-    m_m = m_x * m_x + m_again_y * m_again_y + m_z * m_z
-    part = 1.0 / m_m
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
     t2 = t1 * part * 0.5
-    t3 = t2 * (rho1 * m_again_y + rho2 * m_x)
+    t3 = t2 * (rho1 * m_y + rho2 * product_x)
     t4 = rho1 * rho1
     u_u = t4 + rho2 * rho2
-    t5 = L * L - u_u * (0.25 + m_m * (t2 * t2))
+    t5 = L * L - u_u * (0.25 + product_2 * (t2 * t2))
     slack = np.maximum(t5, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t6 = m_z * h
+    t6 = product_z * h
     t7 = t3 + t6
     t8 = t7 * t7
-    t9 = m_x * h
-    del m_x
-    t10 = rho1 * 0.5 + rho2 * m_z * t2
+    t9 = product_x * h
+    del product_x
+    t10 = rho1 * 0.5 + rho2 * product_z * t2
     A_11 = t9 - t10
-    t11 = m_again_y * h
-    del m_again_y
-    t12 = t2 * (rho1 * m_z) - rho2 * 0.5
-    del m_z, t2
+    t11 = m_y * h
+    del m_y
+    t12 = t2 * (rho1 * product_z) - rho2 * 0.5
+    del product_z, t2
     t13 = t11 - t12
     t14 = t13 * t13
     A_21 = rho1 + A_11
@@ -2110,7 +2094,7 @@ def _condition_number_common(rho1, rho2, rho3, L):
     del A_21, t21
     t33 = (t17 + (t18 * t18 + t14 + t15)) * (t31 + t32 * t32)
     del t14, t15, t17, t18, t31, t32
-    t34 = 3.0 * (m_m * h)
+    t34 = 3.0 * (product_2 * h)
     del h
     t35 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t35)
@@ -2165,10 +2149,10 @@ def _condition_number_common(rho1, rho2, rho3, L):
     v_v = t4 + t1
     del t1, t4
     t66 = u_u * v_v
-    slim = m_m - t66 * 0.000244140625 <= _runtime.VANISHING * t66
+    slim = product_2 - t66 * 0.000244140625 <= _runtime.VANISHING * t66
     del t66
-    t67 = (u_u <= t65) | (u_u + v_v <= t65) | slim | (m_m <= t64 * (u_u * t36))
-    del m_m, slim, t36, t64, t65, u_u, v_v
+    t67 = (u_u <= t65) | (u_u + v_v <= t65) | slim | (product_2 <= t64 * (u_u * t36))
+    del product_2, slim, t36, t64, t65, u_u, v_v
     return (
         np.sqrt(t33) / t34 + t39,
         np.sqrt(t63) / t34 + t39,
@@ -2240,29 +2224,29 @@ def _constraint(rho1, rho2, rho3, L):
     t5 = _runtime.select(same, 0.0, rho3)
     t6 = _runtime.select(same, rho2, 0.0)
     d_z = _runtime.select(same, rho3, 0.0)
-    m_x = d_y * t5 - t6 * d_z
+    product_x = d_y * t5 - t6 * d_z
     a_x = _runtime.select(all_same, whole, -rho1)
     t7 = a_x * t5 + rho1 * d_z
-    m_z = a_x * t6 + rho1 * d_y
-    m_m = m_x * m_x + t7 * t7 + m_z * m_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
     t8 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = m_m - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
     del t8
     over = 1.0 / mu
-    t9 = d_y * m_z + d_z * t7
-    n_y = a_x * m_z - d_z * m_x
-    n_z = a_x * t7 + d_y * m_x
-    mu_nu = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), m_m)
-    del m_m
-    in_line = mu_nu <= t3 * (t2 * mu)
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
     g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, mu_nu)
-    del mu_nu
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    del m_m
     part = 1.0 / w_w
     t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
     del t5, t6
@@ -2282,18 +2266,16 @@ def _constraint(rho1, rho2, rho3, L):
     del t15
     t17 = n_y * t11 - d_y * 0.5
     t18 = t16 - t17
-    m_again_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), m_z)
-    del a_x, m_z
-    t19 = h * _runtime.select(in_line, -g_2, m_again_z)
-    del g_2, m_again_z
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, product_z
+    t19 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, m_z
     t20 = n_z * t11 - d_z * 0.5
     t21 = t19 - t20
-    m_again_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), m_x)
-    del d_y, d_z, m_x, n_y, n_z, over, slim
-    w_x = _runtime.select(in_line, g_1 * s_w, m_again_x)
-    del g_1, m_again_x, s_w
-    t22 = w_x * h
-    del h, w_x
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del d_y, d_z, n_y, n_z, over, product_x, slim
+    t22 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del g_1, h, m_x, s_w
     t23 = rho1 * 0.5 - t9 * t11
     del t11, t9
     A_11 = t22 - t23
@@ -2325,29 +2307,29 @@ def _constraint(rho1, rho2, rho3, L):
 def _constraint_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
     t1 = rho3 * rho3
-    m_x = rho2 * rho3
-    m_again_y = rho1 * rho3
-    m_z = rho1 * rho2
-    m_m = m_x * m_x + m_again_y * m_again_y + m_z * m_z
-    part = 1.0 / m_m
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
     t2 = t1 * part * 0.5
-    t3 = t2 * (rho1 * m_again_y + rho2 * m_x)
+    t3 = t2 * (rho1 * m_y + rho2 * product_x)
     t4 = rho1 * rho1
     u_u = t4 + rho2 * rho2
-    t5 = L * L - u_u * (0.25 + m_m * (t2 * t2))
+    t5 = L * L - u_u * (0.25 + product_2 * (t2 * t2))
     slack = np.maximum(t5, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t6 = m_z * h
+    t6 = product_z * h
     t7 = t3 + t6
-    t8 = m_again_y * h
-    del m_again_y
-    t9 = t2 * (rho1 * m_z) - rho2 * 0.5
+    t8 = m_y * h
+    del m_y
+    t9 = t2 * (rho1 * product_z) - rho2 * 0.5
     t10 = t8 - t9
-    t11 = m_x * h
-    del h, m_x
-    t12 = rho1 * 0.5 + rho2 * m_z * t2
-    del m_z, t2
+    t11 = product_x * h
+    del h, product_x
+    t12 = rho1 * 0.5 + rho2 * product_z * t2
+    del product_z, t2
     A_11 = t11 - t12
     t13 = t7 * t10 * (rho1 + A_11) - (rho3 - t7) * A_11 * (rho2 - t10)
     del A_11, t10, t7
@@ -2375,10 +2357,10 @@ def _constraint_common(rho1, rho2, rho3, L):
     v_v = t4 + t1
     del t1, t4
     t25 = u_u * v_v
-    slim = m_m - t25 * 0.000244140625 <= _runtime.VANISHING * t25
+    slim = product_2 - t25 * 0.000244140625 <= _runtime.VANISHING * t25
     del t25
-    t26 = (u_u <= t24) | (u_u + v_v <= t24) | slim | (m_m <= t23 * (u_u * t15))
-    del m_m, slim, t15, t23, t24, u_u, v_v
+    t26 = (u_u <= t24) | (u_u + v_v <= t24) | slim | (product_2 <= t23 * (u_u * t15))
+    del product_2, slim, t15, t23, t24, u_u, v_v
     return (
         t13 + t18,
         t22 + t18,

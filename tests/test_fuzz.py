@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from closedform.generated.c import planar_2r, three_prs
-from fuzz import ATTACKS, arguments, kernels, postures, tables, targets
+from fuzz import ATTACKS, arguments, kernels, postures, single, tables, targets
 from fuzz.__main__ import attack, table
 from fuzz.outcome import CASES
 from fuzz.robots import Robot, robot
@@ -30,11 +30,13 @@ def test_saved_case(path: Path) -> None:
 
 def test_small_round(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(postures, "SIZE", 150)
-    monkeypatch.setattr(postures, "robots", lambda: tuple(map(robot, QUICK)))
+    monkeypatch.setattr(single, "SIZE", 150)
+    for module in (postures, single):
+        monkeypatch.setattr(module, "robots", lambda: tuple(map(robot, QUICK)))
     monkeypatch.setattr(targets, "SIZE", 150)
     monkeypatch.setattr(arguments, "CALLS", 300)
     monkeypatch.setattr(tables, "TABLES", 25)
-    total = attack([postures, targets, arguments, tables], SEED, 0, tmp_path)
+    total = attack([postures, targets, single, arguments, tables], SEED, 0, tmp_path)
     assert [f.problem for outcome in total.values() for f in outcome.failures] == []
     printed = "\n".join(table(total))
     assert "| ur_arm | " in printed
@@ -87,6 +89,31 @@ def test_faults_are_found(monkeypatch: pytest.MonkeyPatch, ik, kind: str) -> Non
     lengths = np.tile(planar.defaults, (100, 1))
     q = rng.uniform(-np.pi, np.pi, (100, 2))
     assert kind in {problem for problem, _, _ in postures.check(planar, lengths, q)}
+
+
+@pytest.mark.parametrize(
+    ("change", "lost", "wrong"),
+    [
+        (lambda q, status: (q, status), 0, False),
+        (lambda q, status: (q + 1e-4, status), 0, True),
+        (lambda q, status: (q, np.ones_like(status)), 100, False),
+    ],
+    ids=["right", "one_off", "lossy"],
+)
+def test_faults_in_single_precision_are_found(
+    monkeypatch: pytest.MonkeyPatch, change, lost: int, wrong: bool
+) -> None:
+    def ik(x, params):
+        return planar_2r.Solutions(*change(*kept(x, params)))
+
+    planar = robot("planar_2r")
+    array = planar.module("array")
+    kept = array.ik
+    monkeypatch.setattr(array, "ik", ik)
+    lengths = np.tile(np.float32(planar.defaults).astype(float), (100, 1))
+    q = np.random.default_rng(0).uniform(-np.pi, np.pi, (100, 2))
+    found, misses = single.check(planar, lengths, q, np.zeros(100))
+    assert (found, bool(misses)) == (lost, wrong)
 
 
 @pytest.mark.parametrize(

@@ -16,8 +16,9 @@ from sympy import atan2
 
 from closedform.model.functions import Program, choose
 from closedform.model.pair import Pair
+from closedform.model.tolerances import ROUNDING
 
-LOOSE = sp.Rational(1, 2**46)
+LOOSE = ROUNDING / 4
 """How much of the target may be missed before it counts as more than rounding of the answer."""
 FAR = sp.Rational(1, 2**7)
 """The largest step; the error that remains is of the order of its square, and is compared."""

@@ -19,19 +19,18 @@ import sympy as sp
 from closedform.lemmas.chain import Chain
 from closedform.lemmas.pairs import direction
 from closedform.lemmas.quartic import OnCircle
-from closedform.lemmas.tangent import ROUNDING
 from closedform.model.functions import choose, sign_of
 from closedform.model.lemma import label
 from closedform.model.pair import Pair
+from closedform.model.tolerances import ROUNDING
 
-UNDISTINGUISHED = sp.Rational(1, 2**48), sp.Rational(1, 2**21)
-"""By how much rounding may move a point of the circle, in units of the terms it is a sum of: in
-double and in single precision."""
-FARTHEST = sp.Rational(1, 2**12), sp.Rational(1, 2**6)
+UNDISTINGUISHED = ROUNDING / 16
+"""By how much rounding may move a point of the circle, in units of the terms it is a sum of."""
+FARTHEST = sp.Max(sp.Rational(1, 2**12), 2**11 * ROUNDING)
 """The largest turn, far more than the third root of a rounding error."""
-ALIGNED = sp.Rational(1, 2**46), sp.Rational(1, 2**19)
+ALIGNED = ROUNDING / 4
 """The sine between two axes that count as parallel, more than the rounding of a direction."""
-SHORT = ROUNDING, sp.Rational(1, 2**20)
+SHORT = ROUNDING
 """By how much links have to be too short before it matters, in units of the size of the arm."""
 
 Turning = Callable[[Pair, Pair], tuple[sp.Matrix, sp.Matrix, sp.Matrix, sp.Matrix]]
@@ -73,7 +72,7 @@ def within_links(
     away = start.let("away", start.distance - goal)
     loose = chain.program.vanishes(
         f"loose_{label(x)}",
-        sp.Max(0, chain.size * start.of(SHORT) - sp.Abs(away)),
+        sp.Max(0, chain.size * SHORT - sp.Abs(away)),
         chain.size,
         "the links seem to be too short or too long",
     )
@@ -85,12 +84,12 @@ def within_links(
     found = start.secant(goal, away)
     aligned = start.aligned().aligned()
     there = sp.And(
-        aligned.beside <= start.of(ALIGNED),
+        aligned.beside <= ALIGNED,
         aligned.wrong <= 1,
-        sp.Abs(start.to_aligned) <= start.of(FARTHEST),
+        sp.Abs(start.to_aligned) <= FARTHEST,
     )
     far = start.far(goal)
-    free = sp.And(start.moved <= start.of(FARTHEST), far.wrong <= 1)
+    free = sp.And(start.moved <= FARTHEST, far.wrong <= 1)
     s, c = (
         start.let(n, sp.Piecewise((f, free), (a, there), (b, found.wrong <= 1), (e, True)))
         for n, f, a, b, e in (
@@ -114,10 +113,6 @@ class _Place:
     carried: Turning
     pair: Pair
     name: str
-
-    def of(self, tolerance: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
-        """The tolerance of the precision of numbers."""
-        return self.chain.program.by_precision(*tolerance)
 
     def let(self, name: str, value: sp.Expr) -> sp.Expr:
         return self.chain.let(f"{name}_{self.name}", value)
@@ -165,7 +160,7 @@ class _Place:
     def rounding(self) -> sp.Expr:
         """By how much rounding may move the point: the terms are at least its derivatives."""
         terms = sp.Add(*(sp.Abs(e) for row in self.point for e in row))
-        return self.let("rounding", self.of(UNDISTINGUISHED) * (1 + terms))
+        return self.let("rounding", UNDISTINGUISHED * (1 + terms))
 
     @cached_property
     def _other(self) -> Pair:
@@ -198,7 +193,7 @@ class _Place:
         (a, b), (u, v) = (v[:2] for v in (axis, aimed))
         turned = self.let("turned", sp.sqrt(a**2 + b**2) - sp.sqrt(u**2 + v**2))
         return self.let(
-            "wrong", sp.Max(sp.Abs(self.missed) / self.rounding, sp.Abs(turned) / self.of(ALIGNED))
+            "wrong", sp.Max(sp.Abs(self.missed) / self.rounding, sp.Abs(turned) / ALIGNED)
         )
 
     @cached_property
@@ -254,7 +249,7 @@ class _Place:
         bend = self.let("bend", sp.Abs(dx**2 + dy**2 + x * ddx + y * ddy))
         R = self.rounding
         whole = self.let("whole", sp.Abs(rate) + sp.sqrt(rate**2 + 2 * bend * R))
-        most = self.let("farthest", self.of(FARTHEST))
+        most = self.let("farthest", FARTHEST)
         return self.let("most", choose(whole * most <= 2 * R, most, 2 * R / whole))
 
     def secant(self, goal: sp.Expr, away: sp.Expr) -> _Place:

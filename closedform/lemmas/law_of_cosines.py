@@ -11,11 +11,12 @@ from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
 from closedform.lemmas.links import degenerate, differs_from_zero, named
 from closedform.lemmas.registry import chain_lemma, theorem
-from closedform.lemmas.tangent import ANYWHERE, ROUNDING, Goal, Tangency
+from closedform.lemmas.tangent import ANYWHERE, Goal, Tangency
 from closedform.lemmas.triangle import Triangle
 from closedform.model.functions import choose
 from closedform.model.lemma import Lemma
 from closedform.model.pair import Pair
+from closedform.model.tolerances import ROUNDING
 
 theorem(
     "law of cosines",

@@ -18,10 +18,10 @@ import sympy as sp
 
 from closedform.lemmas.chain import Chain
 from closedform.lemmas.links import turned
-from closedform.lemmas.tangent import ROUNDING
 from closedform.model.functions import choose, sign_of
 from closedform.model.lemma import label
 from closedform.model.pair import Pair
+from closedform.model.tolerances import ROUNDING
 
 SHORT = sp.Rational(1, 2**8)
 """A lever below this fraction of its scale is short.

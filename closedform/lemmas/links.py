@@ -21,13 +21,13 @@ from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
 from closedform.lemmas.pairs import direction
 from closedform.lemmas.registry import chain_lemma, theorem
-from closedform.lemmas.tangent import ANYWHERE, ROUNDING, Goal, Tangency, Turned
+from closedform.lemmas.tangent import ANYWHERE, Goal, Tangency, Turned
 from closedform.lemmas.triangle import Triangle
 from closedform.model.functions import Let, choose, real
 from closedform.model.inverse import Degenerate
 from closedform.model.lemma import Lemma, label
 from closedform.model.pair import Pair
-from closedform.model.tolerances import FLOAT
+from closedform.model.tolerances import FLOAT, ROUNDING
 
 
 def turned(pair: Pair) -> sp.Matrix:

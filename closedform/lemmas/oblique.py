@@ -13,11 +13,12 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from closedform.lemmas.offset import LAST, Offset
-from closedform.lemmas.tangent import ROUNDING, Links, LinksAndWrist, Turn, Within
+from closedform.lemmas.offset import Offset
+from closedform.lemmas.tangent import Links, LinksAndWrist, Turn, Within
 from closedform.model.functions import real, sign_of
 from closedform.model.lemma import label
 from closedform.model.pair import Pair
+from closedform.model.tolerances import ROUNDING, VANISHING
 
 STEPS = 3
 """The number of steps that improve a turn; the error after a step is of the order of its square."""
@@ -160,7 +161,7 @@ class _Wrist:
         zero, tilted = sp.S.Zero, z - level
         if self.aligns_by_turn:
             (sine, cosine), _ = self._apart
-            spread = -dz / sp.Max(self._onward_across, LAST)
+            spread = -dz / sp.Max(self._onward_across, VANISHING)
             tilted, dz, reach = (
                 sp.Piecewise((near, self._near), (far, True))
                 for near, far in ((sine, tilted), (cosine * spread, dz), (self.across, reach))
@@ -242,12 +243,12 @@ class _Wrist:
         if not (self.can_be_aligned or self.aligns_by_turn):
             return Within((x, y), (dx, dy), bend, least, most)
         # rounding may turn an aligned wrist and its offset anywhere
-        loose = self.across <= sp.Rational(1, 2**46)
+        loose = self.across <= ROUNDING / 4
         offset = let("length", sp.sqrt(ox**2 + oy**2))
         apart = let("apart", sp.Max(0, least - offset, offset - most))
         if self.aligns_by_turn:
             # or a little, if it is nearly aligned
-            spare = let("spare", offset * sp.Rational(1, 2**47) / sp.Max(self.across, LAST))
+            spare = let("spare", offset * ROUNDING / 8 / sp.Max(self.across, VANISHING))
             least, most = sp.Max(0, least - spare), most + spare
         x, y, dx, dy, low, high = (
             let(f"{n}_any", sp.Piecewise((free, loose), (held, True)))
@@ -278,7 +279,7 @@ class _Wrist:
         r, e = let("r", sp.sqrt(qx**2 + qy**2)), let("e", sp.sqrt(ox**2 + oy**2))
         u, _ = Offset((qx, qy), r, e).leaving(turn.chain, wanted, side, f"to_{turn.name}")
         us, uc = let("us", u.s), let("uc", u.c)
-        length = sp.Max(e, LAST * size)
+        length = sp.Max(e, VANISHING * size)
         s, c = (
             let("lift_s", (ox * us - oy * uc) / length),
             let("lift_c", (ox * uc + oy * us) / length),
@@ -314,13 +315,13 @@ class _Wrist:
         rest = let("rest", sp.sqrt(below) * sp.sqrt(above))
         held = let("held", (above - below) / 2)
         side = self.goal.sense * real(f"sigma_{label(self.goal.middle)}")
-        whole = let("square_h", sp.Max(h**2, LAST**2))
+        whole = let("square_h", sp.Max(h**2, VANISHING**2))
         s2 = let("s2", (a * held + side * b * rest) / whole)
         c2 = let("c2", (b * held - side * a * rest) / whole)
         v = sp.Matrix([c2 * w[0] - s2 * w[1], s2 * w[0] + c2 * w[1], w[2]])
         moved, turned = dB * v, B * sp.Matrix([-v[1], v[0], 0])
         tilted = let("tilt_rate", daz - moved[2])
-        slant = let("slant", sp.Max(rest, LAST))
+        slant = let("slant", sp.Max(rest, VANISHING))
         square = let("steepness", slant**2 + tilted**2)
         steep = let("steep", sp.sqrt(square))
         part, by = let("along", slant / steep), let("by", -side * tilted / steep)
@@ -366,8 +367,8 @@ class _Wrist:
         """Sine and cosine of the first turn of the wrist, and its rate."""
         let, (ax, ay, _), (dax, day, _) = self.turn.let, *self.axis
         ((x, y), (dx, dy)), part = self._middle.last, self._middle.part
-        seen = let("seen", sp.Max(ax**2 + ay**2, LAST**2))
-        there = let("there", sp.Max(x**2 + y**2, LAST**2))
+        seen = let("seen", sp.Max(ax**2 + ay**2, VANISHING**2))
+        there = let("there", sp.Max(x**2 + y**2, VANISHING**2))
         spin = let("spin", part * (ax * day - ay * dax) / seen - (x * dy - y * dx) / there)
         both = let("both", sp.sqrt(seen) * sp.sqrt(there))
         us, uc = let("us", (ay * x - ax * y) / both), let("uc", (ax * x + ay * y) / both)
@@ -434,9 +435,9 @@ class LinksPastTurn(Links):
         let, chain = turn.let, turn.chain
         (x, y), (dx, dy) = turn.linear("last", self.last)
         qx, qy = list(self.q(turn.pair))[:2]
-        there = let("there", sp.Max(x**2 + y**2, LAST**2))
+        there = let("there", sp.Max(x**2 + y**2, VANISHING**2))
         both = let("both", sp.sqrt(self.axis[0] ** 2 + self.axis[1] ** 2) * sp.sqrt(there))
-        both = let("lengths", sp.Max(both, LAST**2))
+        both = let("lengths", sp.Max(both, VANISHING**2))
         us = let("us", (self.axis[1] * x - self.axis[0] * y) / both)
         uc = let("uc", (self.axis[0] * x + self.axis[1] * y) / both)
         spin = let("spin", (y * dx - x * dy) / there)
@@ -449,7 +450,7 @@ class LinksPastTurn(Links):
         v, _ = Offset((qx, qy), r, e).leaving(chain, wanted, side, f"past_{turn.name}")
         vs, vc = let("vs", v.s), let("vc", v.c)
         sine, cosine = let("dots", vs * ex - vc * ey), let("dotc", e + vc * ex + vs * ey)
-        found = turn.by_half(let("half", sine / sp.Max(cosine, LAST * e) / spin))
+        found = turn.by_half(let("half", sine / sp.Max(cosine, VANISHING * e) / spin))
         still = sp.Or(sp.Eq(wanted, here), sp.Eq(e, 0), sp.Eq(spin, 0))
         s, c = (
             sp.Piecewise((now, still), (then, True))

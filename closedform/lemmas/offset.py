@@ -10,14 +10,12 @@ import sympy as sp
 from closedform.lemmas.chain import Chain
 from closedform.model.functions import choose
 from closedform.model.pair import Pair
-
-LAST = sp.Rational(1, 2**50)
-"""What counts as zero in relation to its scale, as for a flag."""
+from closedform.model.tolerances import VANISHING
 
 
 def plain(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Basic:
     """A condition that a value vanishes, for values that only the tangent case computes."""
-    return value <= scale * LAST
+    return value <= scale * VANISHING
 
 
 @dataclass(frozen=True)

@@ -8,21 +8,20 @@ they may be too short or too long, although a posture reaches the target.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import sympy as sp
 
-from closedform.lemmas.offset import LAST, Offset
-from closedform.lemmas.tangent import ROUNDING, CoordinateWithin, Links, Turn, Within
+from closedform.lemmas.offset import Offset
+from closedform.lemmas.tangent import CoordinateWithin, Links, Turn, Within
 from closedform.model.functions import choose, real, sign_of
 from closedform.model.lemma import label
 from closedform.model.pair import Pair
+from closedform.model.tolerances import ROUNDING, VANISHING
 
 STEPS = 2
 """The number of steps that improve a turn; the error after a step is of the order of its square."""
-SINGLE = sp.Rational(1, 2**20)
-"""``ROUNDING`` in single precision, which is less than its tolerance too."""
 Plane = tuple[sp.Expr, sp.Expr]
 Z = sp.Matrix([0, 0, 1])
 
@@ -50,7 +49,7 @@ class LinksPastParallel(Links):
 
     def nearest(self, turn: Turn) -> Pair:
         """The pair of the turn, changed by no more than rounding, with the rest within reach."""
-        turn, tolerance = _precise(turn)
+        tolerance = turn.chain.size * ROUNDING
         level = self.height + self.centre[2]
         most = self.radius * sp.sqrt(sp.simplify(1 - self.about[2] ** 2))
         in_height = CoordinateWithin(lambda pair: self.q(pair)[2] - level, most).nearest(turn)
@@ -76,7 +75,7 @@ class LinksAround(Links):
 
     def nearest(self, turn: Turn) -> Pair:
         """The pair of the turn, changed by no more than rounding, with q within reach."""
-        turn, tolerance = _precise(turn)
+        tolerance = turn.chain.size * ROUNDING
         low, high = turn.let("fold", sp.Abs(self.l1 - self.l2)), turn.let("full", self.l1 + self.l2)
 
         def within(at: Turn) -> Within:
@@ -129,7 +128,7 @@ class _Past:
         """The turn back of the three axes."""
         (u, v), _ = self._aimed
         x, y, _ = self.goal.axis
-        square = self.let("aims", sp.Max(u**2 + v**2, LAST**2))
+        square = self.let("aims", sp.Max(u**2 + v**2, VANISHING**2))
         length = self.let("aim", sp.sqrt(square) * sp.sqrt(sp.simplify(x**2 + y**2)))
         s, c = (u * y - v * x) / length, (u * x + v * y) / length
         return Pair(self.let("back_s", s), self.let("back_c", c))
@@ -198,10 +197,10 @@ class _Past:
         """The smallest turn to within reach of the links, at the present rates."""
         (level, up), (_, risen) = self.goal.across, self._rise
         (u, v), (du, dv) = self._aimed
-        spin = self.let("spin", (u * dv - v * du) / sp.Max(u**2 + v**2, LAST**2))
+        spin = self.let("spin", (u * dv - v * du) / sp.Max(u**2 + v**2, VANISHING**2))
         x, y, _ = self._q
         rise = self.let("d_rise", self._rate[2] / up[2])
-        held = sp.Max(sp.Abs(self._aside), LAST * self.turn.chain.size)
+        held = sp.Max(sp.Abs(self._aside), VANISHING * self.turn.chain.size)
         aside = self.let("d_aside", -sign_of(self._aside) * risen * rise / held)
         moved = self._rate - spin * sp.Matrix([-y, x, 0]) - aside * level - rise * up
         dx, dy = (self.let(f"d_bridged{k}", moved[k]) for k in (0, 1))
@@ -272,13 +271,6 @@ class _Past:
         return self.let(name, sp.sqrt(sp.Max(0, (longest - other) * (longest + other))))
 
 
-def _precise(turn: Turn) -> tuple[Turn, sp.Expr]:
-    """The turn with the allowance of the precision of numbers, and how far links may miss."""
-    play = turn.chain.program.by_precision(1, SINGLE / ROUNDING)
-    tolerance = turn.chain.size * ROUNDING * play
-    return replace(turn, allowance=turn.let("play", play * turn.allowance)), tolerance
-
-
 def _better(better: sp.Basic, there: Pair, here: Pair) -> Pair:
     """One pair if it is better, else another one."""
     s, c = (
@@ -301,7 +293,7 @@ def _ended(
     length = turn.let("v", sp.sqrt(v[0] ** 2 + v[1] ** 2))
     u, _ = Offset(hub, r, length).leaving(turn.chain, reach, side, f"past_{turn.name}")
     us, uc = turn.let("us", u.s), turn.let("uc", u.c)
-    still = length <= size * LAST
+    still = length <= size * VANISHING
     sine = choose(still, 0, sense * (v[0] * us - v[1] * uc) / length)
     cosine = choose(still, 1, (v[0] * uc + v[1] * us) / length)
     return turn.by(turn.let("by_s", sine), turn.let("by_c", cosine))

@@ -17,14 +17,11 @@ import sympy as sp
 
 from closedform.lemmas.amplitude import Amplitude, nearly_tangent
 from closedform.lemmas.chain import Chain
-from closedform.lemmas.offset import LAST, Offset
+from closedform.lemmas.offset import Offset
 from closedform.lemmas.pairs import direction
 from closedform.model.functions import Program, choose, real, sign_of
 from closedform.model.pair import Pair
-
-ROUNDING = sp.Rational(1, 2**44)
-"""How far a turn may move the target, in units of the size of the arm: 256 units in its last place,
-which is more than a forward map and the inverse up to there lose, and far below the tolerance."""
+from closedform.model.tolerances import ROUNDING, VANISHING
 
 
 @dataclass(frozen=True)
@@ -504,7 +501,7 @@ class _Place:
         h, us, uc = self.wrist
         least = turn.let("fold", sp.Abs(self.goal.l1 - self.goal.l2))
         most = turn.let("full", self.goal.l1 + self.goal.l2)
-        loose = h <= sp.Rational(1, 2**46)
+        loose = h <= ROUNDING / 4
         spin = turn.let("spin", choose(loose, 0, (ax * day - ay * dax) / h**2))
         rate = turn.let("rate", offset * spin)
         # u only turns: the square of its length has no part in the bend
@@ -535,7 +532,7 @@ class _Place:
         (ax, _), (dax, _) = self.axis
         margin = turn.let("margin", sp.Max(0, (self.most - wanted) * (self.most + wanted)))
         rest = turn.let("rest", sign_of(dax) * sp.sqrt(margin))
-        fixed = self.most <= LAST  # the axis is that of the turn
+        fixed = self.most <= VANISHING  # the axis is that of the turn
         return turn.by(
             turn.let("by_s", choose(fixed, 0, (dax * wanted - ax * rest) / self.most**2)),
             turn.let("by_c", choose(fixed, 1, (ax * wanted + dax * rest) / self.most**2)),
@@ -576,7 +573,7 @@ class _Place:
             turn.let(n, sp.Piecewise((w, other), (v, True)))
             for n, v, w in (("to_s", vs, ws), ("to_c", vc, wc))
         )
-        across = turn.let("across", choose(sp.Abs(ay) <= 16 * LAST, 0, ay * vc * sign_of(vs)))
+        across = turn.let("across", choose(sp.Abs(ay) <= 16 * VANISHING, 0, ay * vc * sign_of(vs)))
         beyond = sp.Abs(across) >= self.most * sp.Abs(vs)
         limited = choose(beyond, self.most * sign_of(across), across / sp.Abs(vs))
         return self.across(turn.let("wanted", choose(sp.Eq(across, 0), 0, limited)))

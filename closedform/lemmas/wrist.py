@@ -14,10 +14,11 @@ from closedform.lemmas.links import degenerate, differs_from_zero, named, vanish
 from closedform.lemmas.pairs import any_pair, direction
 from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.lemmas.rotate import Because, terms
-from closedform.lemmas.tangent import ANYWHERE, ROUNDING, Goal, Tangency
+from closedform.lemmas.tangent import ANYWHERE, Goal, Tangency
 from closedform.model.functions import real
 from closedform.model.inverse import Relation
 from closedform.model.lemma import Lemma, label
+from closedform.model.tolerances import ROUNDING
 
 theorem(
     "tilt of a wrist",

@@ -19,6 +19,7 @@ from closedform.model.functions import Program, choose, real
 from closedform.model.inverse import Degenerate
 from closedform.model.lemma import Lemma, label
 from closedform.model.pair import Pair
+from closedform.model.tolerances import ROUNDING
 
 ALIGNED = 16
 """How far a wrist may be from aligned to count as such, in units of the rounding of the target.
@@ -229,7 +230,7 @@ class Reaching:
         v = self._at(reach, p.let("side", side), "near")
         inside = p.vanishes("inside", sp.Abs(reach - there), size, "it is in reach")
         change = sp.sqrt((v.c - u.c) ** 2 + (v.s - u.s) ** 2)
-        doubt = gain * change - sp.Rational(1, 2**42)  # which single precision cannot resolve
+        doubt = gain * change - 4 * ROUNDING
         near = p.vanishes("within_rounding", doubt, 4, "the turn is free up to rounding")
         return close, near, inside, v
 

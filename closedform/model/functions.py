@@ -436,16 +436,6 @@ class Program:
         )
         return symbol
 
-    def by_precision(self, double: Number, single: Number) -> sp.Expr:
-        """One number in double precision, another one in single precision.
-
-        The rounding of the numbers tells which: 2^-30 counts as zero in single precision alone.
-        """
-        meaning = "rounding is that of single precision"
-        flags = [s.symbol for s in self.body if isinstance(s, Vanishes) and s.meaning == meaning]
-        [flag] = flags or [self.vanishes("single_precision", sp.Rational(1, 2**30), 1, meaning)]
-        return choose(flag, single, double)
-
     def determined(
         self,
         value: sp.Expr,

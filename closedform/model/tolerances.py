@@ -5,6 +5,7 @@ The generated code repeats these numbers; ``test_tolerances_are_honoured`` check
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import sympy as sp
@@ -35,6 +36,9 @@ class Tolerances:
         A length from the root of a difference has half of the digits where the difference vanishes:
         ``feasibility`` may be a quarter of the square of this, so what counts as on the boundary
         changes such a length by no more than itself.
+    rounding
+        How far a corrected joint may move the target, in units of the size of the arm: more than a
+        forward map and the inverse up to there lose, and below ``forward``.
     rotation
         A matrix counts as a rotation if its columns are orthonormal and right-handed up to this.
         Matrices that were stored in single precision pass; a matrix that a person would call
@@ -63,6 +67,7 @@ class Tolerances:
     vanishing: float
     determined: float
     half_digits: float
+    rounding: float
     rotation: float
     round_trip: float
     forward: float
@@ -93,6 +98,7 @@ DOUBLE = Tolerances(
     vanishing=2.0**-50,
     determined=2.0**-10,
     half_digits=2.0**-22,
+    rounding=2.0**-44,
     rotation=1e-6,
     round_trip=1.1e-12,
     forward=1e-12,
@@ -105,6 +111,7 @@ FLOAT = Tolerances(
     vanishing=2.0**-21,
     determined=2.0**-6,
     half_digits=2.0**-12,
+    rounding=2.0**-17,
     rotation=1e-4,
     round_trip=2.0**-16,
     forward=4e-5,
@@ -112,10 +119,19 @@ FLOAT = Tolerances(
     least_exponent=-64,
     most_exponent=112,
 )
-GENERATED = ("feasibility", "vanishing", "determined", "half_digits", "rotation")
+GENERATED = ("feasibility", "vanishing", "determined", "half_digits", "rounding", "rotation")
 """The tolerances that generated code contains by name."""
-HALF_DIGITS = Constant("half_digits", sp.Rational(DOUBLE.half_digits))
-"""This tolerance in an expression of a derivation."""
+POWERS_OF_TWO = tuple(
+    name
+    for name in GENERATED
+    if all(math.frexp(getattr(kind, name))[0] == 0.5 for kind in (DOUBLE, FLOAT))
+)
+"""Those of them by which a product is exact, in both types."""
+VANISHING, HALF_DIGITS, ROUNDING = (
+    Constant(name, sp.Rational(getattr(DOUBLE, name)))
+    for name in ("vanishing", "half_digits", "rounding")
+)
+"""Tolerances in the expressions of a derivation."""
 UNIT_LENGTH = 1e-3
 """How far a direction or a rotation in decimals may be from unit length: three decimals.
 

@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 541 compare and select, 361 add, 23 atan2, 43 divide, 582 multiply, 1 sincos, 54 sqrt
+#   ik: 541 compare and select, 361 add, 23 atan2, 40 divide, 584 multiply, 1 sincos, 54 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder.  The axis of theta4, the elbow, is
@@ -1087,7 +1087,7 @@ def _ik(
     t57 = t55 - t56
     q__elbow_1 = ops.select(t46, a5 + a4 * t54 - d3 * t57, d3 * t54 - (d5 - a4 * t57))
     size__elbow_1 = ops.abs(q__elbow_1)
-    t58 = size * 5.684341886080802e-14
+    t58 = size * ops.rounding
     t59 = ops.select(t46, t45, 0.0) - t58
     t60 = t58 + ops.select(t46, size, reach)
     t61 = size__elbow_1 - ops.max(t59, ops.min(size__elbow_1, t60))
@@ -1112,7 +1112,7 @@ def _ik(
     t76 = by_s__elbow_1 * by_s__elbow_1 / (1.0 + ops.abs(by_c__elbow_1))
     versine__elbow_1 = ops.select(0.0 < by_c__elbow_1, t76, 1.0 - by_c__elbow_1)
     cost__elbow_1 = lever_elbow * ops.abs(by_s__elbow_1) + t75 * versine__elbow_1
-    whole__elbow_1 = size * 3.2311742677852644e-27 + far * 5.684341886080802e-14
+    whole__elbow_1 = ops.rounding * (t58 + far)
     t77 = cost__elbow_1 <= whole__elbow_1
     sine__elbow_1 = ops.select(t77, by_s__elbow_1, 0.0)
     cosine__elbow_1 = ops.select(t77, by_c__elbow_1, 1.0)

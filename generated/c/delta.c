@@ -3878,7 +3878,7 @@ CF_INLINE void delta_ik_kernel(const int single, const real_t one,
     const real_t t4 = cf_rounded(single, one, s_alpha1 * t2) + cf_rounded(single, one, c_alpha1 * t3);
     const real_t R_1 = cf_sqrt(t1 + cf_rounded(single, one, t4 * t4));
     const real_t size = f + e + L + l;
-    const real_t t5 = cf_rounded(single, one, size * CLOSEDFORM_VANISHING);
+    const real_t t5 = size * CLOSEDFORM_VANISHING;
     const int no_crank_1 = L <= t5;
     const int t6 = (R_1 <= t5) | no_crank_1;
     const real_t t7 = L - R_1;
@@ -3907,7 +3907,7 @@ CF_INLINE void delta_ik_kernel(const int single, const real_t one,
     const int t26 = cf_nought(x_2) + cf_nought(y) + cf_nought(z) == 0;
     const int invalid = !(t25 & t26);
     const real_t t27 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
-    const real_t t28 = cf_rounded(single, one, size * CLOSEDFORM_HALF_DIGITS);
+    const real_t t28 = size * CLOSEDFORM_HALF_DIGITS;
     const real_t lost_1 = cf_max(CLOSEDFORM_C(1.0), l / cf_nonzero(single, t28 + fore_1));
     const real_t t29 = CLOSEDFORM_FEASIBILITY * (size * lost_1 * CLOSEDFORM_C(0.5));
     const int t30 = (-t27 <= t9) & (-t27 <= t10) & (-t29 <= t12) & (-t29 <= t16);
@@ -4144,7 +4144,7 @@ CF_INLINE void delta_ik_lanes(const real_t one, const delta_params *params,
     const real_t z = x[2];
     const real_t t1 = cf_rounded(1, one, z * z);
     const real_t size = f + e + L + l;
-    const real_t t2 = cf_rounded(1, one, size * CLOSEDFORM_VANISHING);
+    const real_t t2 = size * CLOSEDFORM_VANISHING;
     const int no_crank_1 = L <= t2;
     const int t3 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
     const int t4 = t3 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
@@ -4153,7 +4153,7 @@ CF_INLINE void delta_ik_lanes(const real_t one, const delta_params *params,
     const int invalid = !(t5 & t6);
     const real_t t7 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
     const real_t t8 = -t7;
-    const real_t t9 = cf_rounded(1, one, size * CLOSEDFORM_HALF_DIGITS);
+    const real_t t9 = size * CLOSEDFORM_HALF_DIGITS;
     real_t sine_1_lanes[4], cosine_1_lanes[4], sine_1_minus_plus_plus_lanes[4], cosine_1_minus_plus_plus_lanes[4], t12_lanes[4], t13_lanes[4], A_13_lanes[4], missed_1_lanes[4], A_13_minus_plus_plus_lanes[4], t14_lanes[4], t15_lanes[4];
     cf_word met_1_lanes[4], t10_lanes[4], t11_lanes[4];
     for (size_t k = 0; k < 4; ++k) {
@@ -4489,7 +4489,7 @@ CF_INLINE void delta_workspace_contains_kernel(const int single, const real_t on
     const real_t aside_1 = cf_rounded(single, one, c_alpha1 * t6) - cf_rounded(single, one, s_alpha1 * t7);
     const real_t t8 = l - aside_1;
     const real_t t9 = l + aside_1;
-    const real_t t10 = cf_rounded(single, one, size * CLOSEDFORM_HALF_DIGITS);
+    const real_t t10 = size * CLOSEDFORM_HALF_DIGITS;
     const real_t t11 = cf_max(t8, CLOSEDFORM_C(0.0)) * cf_max(t9, CLOSEDFORM_C(0.0));
     const real_t fore_1 = cf_sqrt(t11);
     const real_t lost_1 = cf_max(CLOSEDFORM_C(1.0), l / cf_nonzero(single, t10 + fore_1));
@@ -4553,7 +4553,7 @@ CF_INLINE void delta_workspace_contains_lanes(const real_t one, const delta_para
     const real_t size = f + e + L + l;
     const real_t t5 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
     const real_t t6 = -t5;
-    const real_t t7 = cf_rounded(1, one, size * CLOSEDFORM_HALF_DIGITS);
+    const real_t t7 = size * CLOSEDFORM_HALF_DIGITS;
     const real_t t8 = cf_rounded(1, one, z * z);
     cf_word t9_lanes[4];
     for (size_t k = 0; k < 4; ++k) {

@@ -1357,7 +1357,7 @@ CF_INLINE void five_bar_ik_kernel(const int single, const real_t one,
     const real_t t2 = L1 + L3;
     const real_t t3 = L2 + L4;
     const real_t size = L0 + t2 + t3;
-    const real_t t4 = cf_rounded(single, one, CLOSEDFORM_VANISHING * size);
+    const real_t t4 = CLOSEDFORM_VANISHING * size;
     const int t5 = (R_1 <= t4) | (L1 <= t4);
     const real_t t6 = t2 - R_1;
     const real_t t7 = L1 - L3;

@@ -945,7 +945,7 @@ CF_INLINE void four_bar_ik_kernel(const int single, const real_t one,
     const real_t R_1 = cf_sqrt(t2);
     const real_t t3 = L2 + L3;
     const real_t size = L1 + L4 + t3;
-    const real_t t4 = cf_rounded(single, one, CLOSEDFORM_VANISHING * size);
+    const real_t t4 = CLOSEDFORM_VANISHING * size;
     const int t5 = (R_1 <= t4) | (L2 <= t4);
     const real_t t6 = t3 - R_1;
     const real_t t7 = L2 - L3;

@@ -12,7 +12,7 @@
  *   singularities: 5 add, 8 multiply, 3 sincos
  *   jacobian_space: 73 add, 155 multiply, 6 sincos
  *   jacobian_body: 83 add, 159 multiply, 6 sincos
- *   ik: 263 compare and select, 279 add, 23 atan2, 28 divide, 378 multiply, 1 sincos, 31 sqrt
+ *   ik: 263 compare and select, 279 add, 23 atan2, 25 divide, 380 multiply, 1 sincos, 31 sqrt
  *   ik where nothing vanishes: 146 compare and select, 220 add, 23 atan2, 17 divide, 312 multiply,
  *     1 sincos, 24 sqrt
  */
@@ -1278,7 +1278,7 @@ CF_INLINE void franka_arm_ik_whole_kernel(const int single, const real_t one,
     const real_t t48 = cf_rounded(single, one, d3 * t43) - (d5 - cf_rounded(single, one, a4 * t46));
     const real_t q__elbow_1 = cf_select(t35, t47, t48);
     const real_t size__elbow_1 = cf_abs(q__elbow_1);
-    const real_t t49 = size * CLOSEDFORM_C(5.684341886080802e-14);
+    const real_t t49 = size * CLOSEDFORM_ROUNDING;
     const real_t t50 = cf_select(t35, t34, CLOSEDFORM_C(0.0)) - t49;
     const real_t t51 = t49 + cf_select(t35, size, reach);
     const real_t t52 = size__elbow_1 - cf_max(t50, cf_min(size__elbow_1, t51));
@@ -1303,7 +1303,7 @@ CF_INLINE void franka_arm_ik_whole_kernel(const int single, const real_t one,
     const real_t t67 = by_s__elbow_1 * by_s__elbow_1 / cf_divisor(single, no_link_elbow, CLOSEDFORM_C(1.0) + cf_abs(by_c__elbow_1));
     const real_t versine__elbow_1 = cf_select(CLOSEDFORM_C(0.0) < by_c__elbow_1, t67, CLOSEDFORM_C(1.0) - by_c__elbow_1);
     const real_t t68 = cf_rounded(single, one, t66 * versine__elbow_1);
-    const real_t whole__elbow_1 = size * CLOSEDFORM_C(3.2311742677852644e-27) + far_2 * CLOSEDFORM_C(5.684341886080802e-14);
+    const real_t whole__elbow_1 = CLOSEDFORM_ROUNDING * (t49 + far_2);
     const int t69 = t65 + t68 <= whole__elbow_1;
     const real_t cosine__elbow_1 = cf_select(t69, by_c__elbow_1, CLOSEDFORM_C(1.0));
     const real_t t70 = cf_rounded(single, one, t33 * cosine__elbow_1);

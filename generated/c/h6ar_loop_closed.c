@@ -13,7 +13,7 @@
  *   jacobian: 55 compare and select, 208 add, 53 divide, 321 multiply, 6 sincos, 6 sqrt
  *   determinant: 55 compare and select, 86 add, 22 divide, 155 multiply, 5 sincos, 6 sqrt
  *   singularities: 55 compare and select, 91 add, 21 divide, 145 multiply, 5 sincos, 6 sqrt
- *   ik: 866 compare and select, 643 add, 28 atan2, 162 divide, 918 multiply, 1 reduce to a turn, 3
+ *   ik: 866 compare and select, 643 add, 28 atan2, 163 divide, 918 multiply, 1 reduce to a turn, 3
  *     sincos, 42 sqrt
  *   ik where nothing vanishes: 286 compare and select, 263 add, 23 atan2, 36 divide, 344 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
@@ -2150,8 +2150,8 @@ CF_INLINE void h6ar_loop_closed_ik_whole_kernel(const int single, const real_t o
     const real_t t33 = cf_rounded(single, one, t32 * t32);
     const real_t t34 = cf_rounded(single, one, t17 * t17);
     const real_t wanted = cf_max(cf_max(CLOSEDFORM_C(0.0), t31 - t33), cf_min(t15, t34 - t33));
-    const real_t t35 = CLOSEDFORM_C(8796093022208.0) * cf_abs(t15 - wanted);
-    const real_t t36 = cf_sqrt(cf_select(t35 <= t29, wanted, t15));
+    const int t35 = cf_abs(t15 - wanted) * CLOSEDFORM_C(0.5) <= CLOSEDFORM_ROUNDING * t29;
+    const real_t t36 = cf_sqrt(cf_select(t35, wanted, t15));
     const real_t t37 = above * CLOSEDFORM_C(0.5) - below * CLOSEDFORM_C(0.5);
     const int t38 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d1) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;
     const int t39 = t38 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
@@ -4518,7 +4518,7 @@ CF_INLINE void h6ar_loop_closed_ik_branch_kernel(const int single, const real_t 
     const real_t N = cf_max(t40, CLOSEDFORM_C(0.0));
     const real_t t50 = CLOSEDFORM_VANISHING * t37;
     const real_t t51 = CLOSEDFORM_C(1.0) / cf_divisor(1, fore <= t50, M + N);
-    const real_t t52 = sigma_waist * sigma_elbow * CLOSEDFORM_C(2.0);
+    const real_t t52 = CLOSEDFORM_C(2.0) * (sigma_waist * sigma_elbow);
     const real_t t53 = t51 * (t52 * cf_sqrt(M * N));
     const real_t t54 = fore * t53;
     const real_t ahead_1 = t42 + cf_rounded(single, one, t35 * M * t51);

@@ -1304,7 +1304,7 @@ CF_INLINE void hybrid_five_bar_ik_kernel(const int single, const real_t one,
     const real_t rP2 = cf_rounded(single, one, x_2 * x_2) + cf_rounded(single, one, z * z);
     const real_t rP = cf_sqrt(rP2);
     const real_t t1 = L1 + L2;
-    const real_t t2 = cf_rounded(single, one, CLOSEDFORM_VANISHING * (L0 + t1));
+    const real_t t2 = CLOSEDFORM_VANISHING * (L0 + t1);
     const int on_axis = rP <= t2;
     const int t3 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
     const int t4 = t3 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);

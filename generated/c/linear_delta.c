@@ -3323,7 +3323,7 @@ CF_INLINE void linear_delta_ik_kernel(const int single, const real_t one,
     const real_t t25 = slide_2_plus_minus_plus + t18;
     const real_t slide_1_minus_plus_plus = z + root_1;
     const real_t t26 = slide_1_minus_plus_plus + t18;
-    const real_t t27 = cf_rounded(single, one, size * CLOSEDFORM_VANISHING);
+    const real_t t27 = size * CLOSEDFORM_VANISHING;
     const real_t A_33 = z - slide_3;
     const real_t t28 = cf_rounded(single, one, A_22 * A_33);
     const real_t A_23 = z - slide_2;

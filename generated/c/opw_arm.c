@@ -13,7 +13,7 @@
  *   singularities: 6 add, 9 multiply, 3 sincos
  *   jacobian_space: 49 add, 90 multiply, 5 sincos
  *   jacobian_body: 33 add, 70 multiply, 5 sincos
- *   ik: 201 compare and select, 200 add, 22 atan2, 21 divide, 246 multiply, 13 sqrt
+ *   ik: 201 compare and select, 200 add, 22 atan2, 20 divide, 247 multiply, 13 sqrt
  *   ik where nothing vanishes: 128 compare and select, 170 add, 22 atan2, 14 divide, 198 multiply,
  *     11 sqrt
  */
@@ -1033,7 +1033,7 @@ CF_INLINE void opw_arm_ik_whole_kernel(const int single, const real_t one,
     const real_t t18 = cf_rounded(single, one, a2 * a2) + cf_rounded(single, one, c3 * c3);
     const real_t f = cf_sqrt(t18);
     const real_t t19 = c2 - f;
-    const real_t whole_1_1 = size * CLOSEDFORM_C(5.684341886080802e-14);
+    const real_t whole_1_1 = size * CLOSEDFORM_ROUNDING;
     const real_t t20 = cf_max(CLOSEDFORM_C(0.0), cf_abs(t19) - whole_1_1);
     const real_t low_1_1 = t20 * t20;
     const real_t t21 = c2 + f;

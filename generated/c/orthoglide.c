@@ -3007,7 +3007,7 @@ CF_INLINE void orthoglide_ik_kernel(const int single, const real_t one,
     const real_t t22 = slide_2_plus_minus_plus + t15;
     const real_t slide_1_minus_plus_plus = x_2 + root_1;
     const real_t t23 = slide_1_minus_plus_plus + t15;
-    const real_t t24 = cf_rounded(single, one, size * CLOSEDFORM_VANISHING);
+    const real_t t24 = size * CLOSEDFORM_VANISHING;
     const real_t A_11 = x_2 - slide_1;
     const real_t t25 = slide_2 * slide_3;
     const real_t t26 = z * slide_1;

@@ -779,7 +779,7 @@ CF_INLINE void slider_crank_ik_kernel(const int single, const real_t one,
     const real_t R_1 = cf_sqrt(t1);
     const real_t t2 = r + l;
     const real_t size = cf_abs(e) + cf_abs(x_2) + t2;
-    const real_t t3 = cf_rounded(single, one, CLOSEDFORM_VANISHING * size);
+    const real_t t3 = CLOSEDFORM_VANISHING * size;
     const int t4 = (R_1 <= t3) | (r <= t3);
     const real_t t5 = t2 - R_1;
     const real_t t6 = r - l;

@@ -3283,7 +3283,7 @@ CF_INLINE void spherical_five_bar_ik_kernel(const int single, const real_t one,
     const real_t c_alpha2 = cosines[4];
     const real_t t1 = cf_rounded(single, one, x_2 * x_2) + cf_rounded(single, one, y * y);
     const real_t strut_0 = cf_sqrt(t1 + cf_rounded(single, one, z * z));
-    const real_t t2 = cf_rounded(single, one, r * CLOSEDFORM_VANISHING);
+    const real_t t2 = r * CLOSEDFORM_VANISHING;
     const real_t t3 = r / cf_divisor(single, strut_0 <= t2, strut_0);
     const real_t share_0 = cf_select(strut_0 <= t2, CLOSEDFORM_C(1.0), t3);
     const real_t py_0 = cf_rounded(single, one, y * share_0);
@@ -3325,7 +3325,7 @@ CF_INLINE void spherical_five_bar_ik_kernel(const int single, const real_t one,
     const int invalid = !(t28 & t29);
     const real_t t30 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.5));
     const int t31 = cf_abs(r - strut_0) <= t30;
-    const real_t t32 = cf_rounded(single, one, r * CLOSEDFORM_HALF_DIGITS);
+    const real_t t32 = r * CLOSEDFORM_HALF_DIGITS;
     const real_t lost_1 = cf_max(CLOSEDFORM_C(1.0), r_1 / cf_nonzero(single, t32 + fore_1));
     const real_t t33 = CLOSEDFORM_FEASIBILITY * (r * lost_1 * CLOSEDFORM_C(0.5));
     const int t34 = t31 & (-t30 <= t9) & (-t30 <= t10) & (-t33 <= t13);
@@ -3625,7 +3625,7 @@ CF_INLINE void spherical_five_bar_workspace_contains_kernel(const int single, co
     const real_t aside_1 = px_0 - cf_rounded(single, one, r * c_alpha1);
     const real_t t11 = r_1 - aside_1;
     const real_t t12 = aside_1 + r_1;
-    const real_t t13 = cf_rounded(single, one, r * CLOSEDFORM_HALF_DIGITS);
+    const real_t t13 = r * CLOSEDFORM_HALF_DIGITS;
     const real_t t14 = cf_max(t11, CLOSEDFORM_C(0.0)) * cf_max(t12, CLOSEDFORM_C(0.0));
     const real_t fore_1 = cf_sqrt(t14);
     const real_t lost_1 = cf_max(CLOSEDFORM_C(1.0), r_1 / cf_nonzero(single, t13 + fore_1));

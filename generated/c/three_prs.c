@@ -1663,7 +1663,7 @@ CF_INLINE void three_prs_ik_kernel(const int single, const real_t one,
     const real_t t51 = slide_2_plus_minus_plus + t41;
     const real_t slide_1_minus_plus_plus = m_1 + root_1;
     const real_t t52 = slide_1_minus_plus_plus + t41;
-    const real_t t53 = cf_rounded(single, one, size * CLOSEDFORM_VANISHING);
+    const real_t t53 = size * CLOSEDFORM_VANISHING;
     const real_t least = a * a * (l * l * l);
     const real_t t54 = least * delta;
     const real_t t55 = t13 + a * CLOSEDFORM_C(2.0);

@@ -14,6 +14,7 @@ export const FEASIBILITY = 1e-12;
 export const VANISHING = 8.881784197001252e-16;
 export const DETERMINED = 0.0009765625;
 export const HALF_DIGITS = 2.384185791015625e-07;
+export const ROUNDING = 5.684341886080802e-14;
 export const ROTATION = 1e-06;
 
 /**

@@ -11,7 +11,7 @@
 //   singularities: 5 add, 8 multiply, 3 sincos
 //   jacobian_space: 73 add, 155 multiply, 6 sincos
 //   jacobian_body: 83 add, 159 multiply, 6 sincos
-//   ik: 263 compare and select, 279 add, 23 atan2, 28 divide, 378 multiply, 1 sincos, 31 sqrt
+//   ik: 263 compare and select, 279 add, 23 atan2, 25 divide, 380 multiply, 1 sincos, 31 sqrt
 //   ik where nothing vanishes: 146 compare and select, 220 add, 23 atan2, 17 divide, 312 multiply,
 //     1 sincos, 24 sqrt
 
@@ -1229,7 +1229,7 @@ function _ik(v, o) {
     const t38 = t36 - t37;
     const q__elbow_1 = t27 ? a5 + a4 * t35 - d3 * t38 : d3 * t35 - (d5 - a4 * t38);
     const size__elbow_1 = Math.abs(q__elbow_1);
-    const t39 = size * 5.684341886080802e-14;
+    const t39 = size * _runtime.ROUNDING;
     const t40 = (t27 ? t26 : 0.0) - t39;
     const t41 = t39 + (t27 ? size : reach);
     const t42 = size__elbow_1 - Math.max(t40, Math.min(size__elbow_1, t41));
@@ -1251,7 +1251,7 @@ function _ik(v, o) {
     const t54 = by_s__elbow_1 * by_s__elbow_1 / (1.0 + Math.abs(by_c__elbow_1));
     const versine__elbow_1 = 0.0 < by_c__elbow_1 ? t54 : 1.0 - by_c__elbow_1;
     const cost__elbow_1 = lever_elbow * Math.abs(by_s__elbow_1) + t53 * versine__elbow_1;
-    const whole__elbow_1 = size * 3.2311742677852644e-27 + far * 5.684341886080802e-14;
+    const whole__elbow_1 = _runtime.ROUNDING * (t39 + far);
     const t55 = cost__elbow_1 <= whole__elbow_1;
     const cosine__elbow_1 = t55 ? by_c__elbow_1 : 1.0;
     const sine__elbow_1 = t55 ? by_s__elbow_1 : 0.0;

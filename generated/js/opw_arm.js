@@ -12,7 +12,7 @@
 //   singularities: 6 add, 9 multiply, 3 sincos
 //   jacobian_space: 49 add, 90 multiply, 5 sincos
 //   jacobian_body: 33 add, 70 multiply, 5 sincos
-//   ik: 201 compare and select, 200 add, 22 atan2, 21 divide, 246 multiply, 13 sqrt
+//   ik: 201 compare and select, 200 add, 22 atan2, 20 divide, 247 multiply, 13 sqrt
 //   ik where nothing vanishes: 128 compare and select, 170 add, 22 atan2, 14 divide, 198 multiply,
 //     11 sqrt
 
@@ -1038,7 +1038,7 @@ function _ik(v, o) {
     const square_1_1 = t16 + t14 * t14;
     const f = Math.sqrt(a2 * a2 + c3 * c3);
     const t17 = c2 - f;
-    const whole_1_1 = size * 5.684341886080802e-14;
+    const whole_1_1 = size * _runtime.ROUNDING;
     const t18 = Math.max(0.0, Math.abs(t17) - whole_1_1);
     const low_1_1 = t18 * t18;
     const t19 = c2 + f;

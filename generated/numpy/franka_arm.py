@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 263 compare and select, 279 add, 23 atan2, 28 divide, 378 multiply, 1 sincos, 31 sqrt
+#   ik: 263 compare and select, 279 add, 23 atan2, 25 divide, 380 multiply, 1 sincos, 31 sqrt
 #   ik where nothing vanishes: 146 compare and select, 220 add, 23 atan2, 17 divide, 312 multiply,
 #     1 sincos, 24 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
@@ -1132,10 +1132,9 @@ def _ik(
     q__elbow_1 = _runtime.select(t26, a5 + a4 * t34 - d3 * t37, d3 * t34 - (d5 - a4 * t37))
     del t34, t37
     size__elbow_1 = np.abs(q__elbow_1)
-    t38 = size * 5.684341886080802e-14
+    t38 = size * _runtime.ROUNDING
     t39 = _runtime.select(t26, t25, 0.0) - t38
     t40 = t38 + _runtime.select(t26, size, reach)
-    del t38
     t41 = np.maximum(t39, np.minimum(size__elbow_1, t40))
     t42 = (size__elbow_1 - t41) * _runtime.sign(q__elbow_1)
     del q__elbow_1, size__elbow_1, t41
@@ -1167,8 +1166,8 @@ def _ik(
     del t53
     cost__elbow_1 = lever_elbow * np.abs(by_s__elbow_1) + t52 * versine__elbow_1
     del versine__elbow_1
-    whole__elbow_1 = size * 3.2311742677852644e-27 + far * 5.684341886080802e-14
-    del far
+    whole__elbow_1 = _runtime.ROUNDING * (t38 + far)
+    del far, t38
     t54 = cost__elbow_1 <= whole__elbow_1
     del cost__elbow_1
     cosine__elbow_1 = _runtime.select(t54, by_c__elbow_1, 1.0)

@@ -12,7 +12,7 @@
 #   singularities: 6 add, 9 multiply, 3 sincos
 #   jacobian_space: 49 add, 90 multiply, 5 sincos
 #   jacobian_body: 33 add, 70 multiply, 5 sincos
-#   ik: 201 compare and select, 200 add, 22 atan2, 21 divide, 246 multiply, 13 sqrt
+#   ik: 201 compare and select, 200 add, 22 atan2, 20 divide, 247 multiply, 13 sqrt
 #   ik where nothing vanishes: 128 compare and select, 170 add, 22 atan2, 14 divide, 198 multiply,
 #     11 sqrt
 """Industrial six-axis arm (OPW).
@@ -920,7 +920,7 @@ def _ik(
     del t14
     f = np.sqrt(a2 * a2 + c3 * c3)
     t17 = c2 - f
-    whole_1_1 = size * 5.684341886080802e-14
+    whole_1_1 = size * _runtime.ROUNDING
     t18 = np.maximum(0.0, np.abs(t17) - whole_1_1)
     low_1_1 = t18 * t18
     del t18

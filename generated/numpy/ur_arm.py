@@ -10,7 +10,7 @@
 #   singularities: 6 add, 11 multiply, 4 sincos
 #   jacobian_space: 29 add, 57 multiply, 5 sincos
 #   jacobian_body: 27 add, 58 multiply, 5 sincos
-#   ik: 2243 compare and select, 1783 add, 32 atan2, 334 divide, 3036 multiply, 210 sqrt
+#   ik: 2243 compare and select, 1783 add, 32 atan2, 323 divide, 3038 multiply, 210 sqrt
 #   ik where nothing vanishes: 158 compare and select, 183 add, 30 atan2, 18 divide, 218 multiply,
 #     12 sqrt
 """UR-type arm (three parallel axes).
@@ -845,7 +845,7 @@ def _ik(
     t14 = axisx_1_1 * axisx_1_1
     daxisx_1_1 = T13 * t13 + T23 * c_1_1
     most_1_1_5 = np.sqrt(t14 + daxisx_1_1 * daxisx_1_1)
-    t15 = most_1_1_5 <= 8.881784197001252e-16
+    t15 = most_1_1_5 <= _runtime.VANISHING
     margin_1_1_5 = most_1_1_5 * most_1_1_5
     del most_1_1_5
     rest_1_1_5 = np.sqrt(margin_1_1_5) * _runtime.sign(daxisx_1_1)
@@ -855,7 +855,7 @@ def _ik(
     t17 = _runtime.select(t15, 0.0, t16 * (axisx_1_1 * rest_1_1_5))
     del rest_1_1_5, t15, t16
     versine_1_1_5 = _runtime.select(0.0 < by_c_1_1_5, t17 * t17 / (1.0 + np.abs(by_c_1_1_5)), 1.0 - by_c_1_1_5)
-    whole_1_1 = size * 5.684341886080802e-14
+    whole_1_1 = _runtime.ROUNDING * size
     t18 = d4 * versine_1_1_5 + root1 * np.abs(t17) <= whole_1_1
     del versine_1_1_5
     cosine_1_1_5 = _runtime.select(t18, by_c_1_1_5, 1.0)
@@ -869,14 +869,14 @@ def _ik(
     t19 = axisx_1_1_10 * axisx_1_1_10
     t20 = T13 * s_1_1_10 - T23 * c_1_1_10
     most_1_1_10 = np.sqrt(t19 + t20 * t20)
-    t21 = most_1_1_10 <= 8.881784197001252e-16
-    t22 = np.abs(T33) <= 1.4210854715202004e-14
-    t23 = d1 - (T34 - T33 * d6)
-    t24 = t23 * t23
+    t21 = most_1_1_10 <= _runtime.VANISHING
+    t22 = _runtime.VANISHING * 16.0
+    t23 = np.abs(T33) <= t22
+    t24 = d1 - (T34 - T33 * d6)
+    t25 = t24 * t24
     qx_1_1_10 = w_x * c_1_1_10 + w_y * s_1_1_10
-    r_1_1_10 = np.sqrt(t24 + qx_1_1_10 * qx_1_1_10)
-    t25 = size * 8.881784197001252e-16
-    t26 = r_1_1_10 <= t25
+    r_1_1_10 = np.sqrt(t25 + qx_1_1_10 * qx_1_1_10)
+    t26 = r_1_1_10 <= t4
     t27 = d5 + r_1_1_10
     h_1_1_10 = np.sqrt(t5 + t19)
     del t19
@@ -889,7 +889,7 @@ def _ik(
     t32 = axisx_1_1_10 * t29
     del t29
     t33 = _runtime.select(t28, 1.0, t32)
-    t34 = t23 - d5 * t33
+    t34 = t24 - d5 * t33
     t35 = L2 - L3
     fold_1_1 = np.abs(t35)
     t36 = np.maximum(np.sqrt(t31 * t31 + t34 * t34), fold_1_1)
@@ -901,26 +901,26 @@ def _ik(
     d_v_1_1_10 = np.maximum(0.0, (goal_1_1_10 - t37) * (goal_1_1_10 + t37))
     del goal_1_1_10
     n_v_1_1_10 = k_v_1_1_10 + d_v_1_1_10
-    t38 = size * t27 * 8.881784197001252e-16
+    t38 = t4 * t27
     t39 = n_v_1_1_10 <= t38
     t40 = 1.0 / n_v_1_1_10
     del n_v_1_1_10
     uc_v_1_1_10 = _runtime.select(t39, 1.0, (k_v_1_1_10 - d_v_1_1_10) * t40)
     t41 = qx_1_1_10 * uc_v_1_1_10
-    t42 = t23 * uc_1_1_10
+    t42 = t24 * uc_1_1_10
     del uc_1_1_10
     t43 = 2.0 * _runtime.sign(t42 - qx_1_1_10 * t33) * np.sqrt(k_v_1_1_10 * d_v_1_1_10)
     del d_v_1_1_10, k_v_1_1_10, t33
     us_v_1_1_10 = _runtime.select(t39, 0.0, t40 * t43)
     del t39, t40, t43
-    t44 = t23 * us_v_1_1_10
+    t44 = t24 * us_v_1_1_10
     t45 = 1.0 / r_1_1_10
     del r_1_1_10
     c_v_1_1_10 = _runtime.select(t26, 1.0, (t41 + t44) * t45)
     t46 = T33 * c_v_1_1_10 < 0.0
     t47 = qx_1_1_10 * us_v_1_1_10
     del us_v_1_1_10
-    t48 = t23 * uc_v_1_1_10
+    t48 = t24 * uc_v_1_1_10
     del uc_v_1_1_10
     to_c_1_1_10 = _runtime.select(t46, _runtime.select(t26, 0.0, t45 * (t47 + t48)), -_runtime.select(t26, 0.0, t45 * (t47 - t48)))
     del t47, t48
@@ -928,7 +928,7 @@ def _ik(
     del c_v_1_1_10, t41, t44, t46
     t49 = T33 * to_c_1_1_10 * _runtime.sign(to_s_1_1_10)
     del to_c_1_1_10
-    across_1_1_10 = _runtime.select(t22, 0.0, t49)
+    across_1_1_10 = _runtime.select(t23, 0.0, t49)
     del t49
     t50 = np.abs(to_s_1_1_10)
     del to_s_1_1_10
@@ -962,10 +962,10 @@ def _ik(
     t59 = axisx_1_1_11 * axisx_1_1_11
     t60 = T13 * s_1_1_11 - T23 * c_1_1_11
     most_1_1_11 = np.sqrt(t59 + t60 * t60)
-    t61 = most_1_1_11 <= 8.881784197001252e-16
+    t61 = most_1_1_11 <= _runtime.VANISHING
     qx_1_1_11 = w_x * c_1_1_11 + w_y * s_1_1_11
-    r_1_1_11 = np.sqrt(t24 + qx_1_1_11 * qx_1_1_11)
-    t62 = r_1_1_11 <= t25
+    r_1_1_11 = np.sqrt(t25 + qx_1_1_11 * qx_1_1_11)
+    t62 = r_1_1_11 <= t4
     t63 = d5 + r_1_1_11
     h_1_1_11 = np.sqrt(t5 + t59)
     del t59
@@ -976,7 +976,7 @@ def _ik(
     t66 = qx_1_1_11 - d5 * uc_1_1_11
     t67 = _runtime.select(t64, 1.0, axisx_1_1_11 * t65)
     del t64, t65
-    t68 = t23 - d5 * t67
+    t68 = t24 - d5 * t67
     t69 = np.maximum(np.sqrt(t66 * t66 + t68 * t68), fold_1_1)
     del t66, t68
     goal_1_1_11 = np.minimum(full_1_1, t69)
@@ -986,26 +986,26 @@ def _ik(
     d_v_1_1_11 = np.maximum(0.0, (goal_1_1_11 - t70) * (goal_1_1_11 + t70))
     del goal_1_1_11, t70
     n_v_1_1_11 = k_v_1_1_11 + d_v_1_1_11
-    t71 = n_v_1_1_11 <= size * t63 * 8.881784197001252e-16
+    t71 = n_v_1_1_11 <= t4 * t63
     del t63
     t72 = 1.0 / n_v_1_1_11
     del n_v_1_1_11
     uc_v_1_1_11 = _runtime.select(t71, 1.0, (k_v_1_1_11 - d_v_1_1_11) * t72)
     t73 = qx_1_1_11 * uc_v_1_1_11
-    side_1_1_11 = _runtime.sign(t23 * uc_1_1_11 - qx_1_1_11 * t67)
+    side_1_1_11 = _runtime.sign(t24 * uc_1_1_11 - qx_1_1_11 * t67)
     del t67, uc_1_1_11
     t74 = 2.0 * side_1_1_11 * np.sqrt(k_v_1_1_11 * d_v_1_1_11)
     del d_v_1_1_11, k_v_1_1_11, side_1_1_11
     us_v_1_1_11 = _runtime.select(t71, 0.0, t72 * t74)
     del t71, t72, t74
-    t75 = t23 * us_v_1_1_11
+    t75 = t24 * us_v_1_1_11
     t76 = 1.0 / r_1_1_11
     del r_1_1_11
     c_v_1_1_11 = _runtime.select(t62, 1.0, (t73 + t75) * t76)
     t77 = T33 * c_v_1_1_11 < 0.0
     t78 = qx_1_1_11 * us_v_1_1_11
     del qx_1_1_11, us_v_1_1_11
-    t79 = t23 * uc_v_1_1_11
+    t79 = t24 * uc_v_1_1_11
     del uc_v_1_1_11
     to_c_1_1_11 = _runtime.select(t77, _runtime.select(t62, 0.0, t76 * (t78 + t79)), -_runtime.select(t62, 0.0, t76 * (t78 - t79)))
     del t78, t79
@@ -1013,7 +1013,7 @@ def _ik(
     del c_v_1_1_11, t62, t73, t75, t76, t77
     t80 = T33 * to_c_1_1_11 * _runtime.sign(to_s_1_1_11)
     del to_c_1_1_11
-    across_1_1_11 = _runtime.select(t22, 0.0, t80)
+    across_1_1_11 = _runtime.select(t23, 0.0, t80)
     del t80
     t81 = np.abs(to_s_1_1_11)
     del to_s_1_1_11
@@ -1045,855 +1045,855 @@ def _ik(
     del c_1_1_11, cosine_1_1_11, s_1_1_11, sine_1_1_11
     axisx_1_1_12 = T13 * c_1_1_12 + T23 * s_1_1_12
     h_1_1_12 = np.sqrt(t5 + axisx_1_1_12 * axisx_1_1_12)
-    t89 = h_1_1_12 <= 1.4210854715202004e-14
+    t89 = _runtime.ROUNDING * 0.25
+    t90 = h_1_1_12 <= t89
     qx_1_1_12 = w_x * c_1_1_12 + w_y * s_1_1_12
-    t90 = h_1_1_12 == 0.0
-    t91 = 1.0 / h_1_1_12
-    uc_1_1_12 = _runtime.select(t90, 0.0, T33 * t91)
-    x_1_1_12 = _runtime.select(t89, qx_1_1_12, qx_1_1_12 - d5 * uc_1_1_12)
+    t91 = h_1_1_12 == 0.0
+    t92 = 1.0 / h_1_1_12
+    uc_1_1_12 = _runtime.select(t91, 0.0, T33 * t92)
+    x_1_1_12 = _runtime.select(t90, qx_1_1_12, qx_1_1_12 - d5 * uc_1_1_12)
     dqx_1_1_12 = w_y * c_1_1_12 - w_x * s_1_1_12
-    t92 = T33 * (T13 * s_1_1_12 - T23 * c_1_1_12) / (h_1_1_12 * h_1_1_12)
+    t93 = T33 * (T13 * s_1_1_12 - T23 * c_1_1_12) / (h_1_1_12 * h_1_1_12)
     del h_1_1_12
-    spin_1_1_12 = _runtime.select(t89, 0.0, t92)
-    del t92
+    spin_1_1_12 = _runtime.select(t90, 0.0, t93)
+    del t93
     rate_1_1_12 = d5 * spin_1_1_12
-    t93 = _runtime.select(t90, 1.0, axisx_1_1_12 * t91)
-    del axisx_1_1_12, t90, t91
-    dx_1_1_12 = _runtime.select(t89, dqx_1_1_12, dqx_1_1_12 - rate_1_1_12 * t93)
-    t94 = _runtime.select(t89, t23, t23 - d5 * t93)
-    t95 = _runtime.select(t89, 0.0, rate_1_1_12 * uc_1_1_12)
-    slope_1_1_12 = x_1_1_12 * dx_1_1_12 + t94 * t95
-    del dx_1_1_12, t95
+    t94 = _runtime.select(t91, 1.0, axisx_1_1_12 * t92)
+    del axisx_1_1_12, t91, t92
+    dx_1_1_12 = _runtime.select(t90, dqx_1_1_12, dqx_1_1_12 - rate_1_1_12 * t94)
+    t95 = _runtime.select(t90, t24, t24 - d5 * t94)
+    t96 = _runtime.select(t90, 0.0, rate_1_1_12 * uc_1_1_12)
+    slope_1_1_12 = x_1_1_12 * dx_1_1_12 + t95 * t96
+    del dx_1_1_12, t96
     straight_1_1_12 = dqx_1_1_12 * dqx_1_1_12
-    t96 = spin_1_1_12 * (qx_1_1_12 * uc_1_1_12 + t23 * t93)
+    t97 = spin_1_1_12 * (qx_1_1_12 * uc_1_1_12 + t24 * t94)
     del qx_1_1_12, spin_1_1_12, uc_1_1_12
-    t97 = straight_1_1_12 - rate_1_1_12 * (2.0 * dqx_1_1_12 * t93 - t96)
-    del dqx_1_1_12, rate_1_1_12, t93, t96
-    bends_1_1_12 = _runtime.select(t89, straight_1_1_12, t97)
-    del straight_1_1_12, t97
-    square_1_1_12 = x_1_1_12 * x_1_1_12 + t94 * t94
-    del t94, x_1_1_12
-    t98 = np.maximum(0.0, np.maximum(fold_1_1 - d5, d5 - full_1_1))
-    t99 = _runtime.select(t89, t98, fold_1_1) - whole_1_1
-    t100 = np.maximum(0.0, t99)
-    del t99
-    t101 = whole_1_1 + _runtime.select(t89, t3, full_1_1)
-    del t89
-    t102 = np.maximum(t100 * t100, np.minimum(t101 * t101, square_1_1_12))
-    del t100, t101
-    miss_1_1_12 = square_1_1_12 - t102
-    del square_1_1_12, t102
+    t98 = straight_1_1_12 - rate_1_1_12 * (2.0 * dqx_1_1_12 * t94 - t97)
+    del dqx_1_1_12, rate_1_1_12, t94, t97
+    bends_1_1_12 = _runtime.select(t90, straight_1_1_12, t98)
+    del straight_1_1_12, t98
+    square_1_1_12 = x_1_1_12 * x_1_1_12 + t95 * t95
+    del t95, x_1_1_12
+    t99 = np.maximum(0.0, np.maximum(fold_1_1 - d5, d5 - full_1_1))
+    t100 = _runtime.select(t90, t99, fold_1_1) - whole_1_1
+    t101 = np.maximum(0.0, t100)
+    del t100
+    t102 = whole_1_1 + _runtime.select(t90, t3, full_1_1)
+    del t90
+    t103 = np.maximum(t101 * t101, np.minimum(t102 * t102, square_1_1_12))
+    del t101, t102
+    miss_1_1_12 = square_1_1_12 - t103
+    del square_1_1_12, t103
     inner_1_1_12 = slope_1_1_12 * slope_1_1_12 - bends_1_1_12 * miss_1_1_12
-    t103 = inner_1_1_12 < 0.0
-    t104 = _runtime.sign(slope_1_1_12) * np.sqrt(np.maximum(0.0, inner_1_1_12))
+    t104 = inner_1_1_12 < 0.0
+    t105 = _runtime.sign(slope_1_1_12) * np.sqrt(np.maximum(0.0, inner_1_1_12))
     del inner_1_1_12
-    below_1_1_12 = _runtime.select(t103, 2.0 * bends_1_1_12, 2.0 * (slope_1_1_12 + t104))
-    del bends_1_1_12, t104
-    above_1_1_12 = _runtime.select(t103, slope_1_1_12, miss_1_1_12)
-    del miss_1_1_12, slope_1_1_12, t103
-    t105 = _runtime.select(np.abs(below_1_1_12) <= np.abs(above_1_1_12), 0.0, above_1_1_12 / below_1_1_12)
+    below_1_1_12 = _runtime.select(t104, 2.0 * bends_1_1_12, 2.0 * (slope_1_1_12 + t105))
+    del bends_1_1_12, t105
+    above_1_1_12 = _runtime.select(t104, slope_1_1_12, miss_1_1_12)
+    del miss_1_1_12, slope_1_1_12, t104
+    t106 = _runtime.select(np.abs(below_1_1_12) <= np.abs(above_1_1_12), 0.0, above_1_1_12 / below_1_1_12)
     del above_1_1_12, below_1_1_12
-    t106 = t105 * t105
-    t107 = 1.0 / (1.0 + t106)
-    by_c_1_1_12 = (1.0 - t106) * t107
-    del t106
-    t108 = t107 * (2.0 * t105)
-    del t105, t107
-    versine_1_1_12 = _runtime.select(0.0 < by_c_1_1_12, t108 * t108 / (1.0 + np.abs(by_c_1_1_12)), 1.0 - by_c_1_1_12)
-    t109 = d4 * versine_1_1_12 + root1 * np.abs(t108) <= whole_1_1
+    t107 = t106 * t106
+    t108 = 1.0 / (1.0 + t107)
+    by_c_1_1_12 = (1.0 - t107) * t108
+    del t107
+    t109 = t108 * (2.0 * t106)
+    del t106, t108
+    versine_1_1_12 = _runtime.select(0.0 < by_c_1_1_12, t109 * t109 / (1.0 + np.abs(by_c_1_1_12)), 1.0 - by_c_1_1_12)
+    t110 = d4 * versine_1_1_12 + root1 * np.abs(t109) <= whole_1_1
     del versine_1_1_12
-    cosine_1_1_12 = _runtime.select(t109, by_c_1_1_12, 1.0)
+    cosine_1_1_12 = _runtime.select(t110, by_c_1_1_12, 1.0)
     del by_c_1_1_12
-    sine_1_1_12 = _runtime.select(t109, -t108, 0.0)
-    del t108, t109
+    sine_1_1_12 = _runtime.select(t110, -t109, 0.0)
+    del t109, t110
     c_1_1_13 = c_1_1_12 * cosine_1_1_12 - s_1_1_12 * sine_1_1_12
     s_1_1_13 = c_1_1_12 * sine_1_1_12 + s_1_1_12 * cosine_1_1_12
     del c_1_1_12, cosine_1_1_12, s_1_1_12, sine_1_1_12
     axisx_1_1_13 = T13 * c_1_1_13 + T23 * s_1_1_13
     h_1_1_13 = np.sqrt(t5 + axisx_1_1_13 * axisx_1_1_13)
-    t110 = h_1_1_13 <= 1.4210854715202004e-14
+    t111 = h_1_1_13 <= t89
     qx_1_1_13 = w_x * c_1_1_13 + w_y * s_1_1_13
-    t111 = h_1_1_13 == 0.0
-    t112 = 1.0 / h_1_1_13
-    uc_1_1_13 = _runtime.select(t111, 0.0, T33 * t112)
-    x_1_1_13 = _runtime.select(t110, qx_1_1_13, qx_1_1_13 - d5 * uc_1_1_13)
+    t112 = h_1_1_13 == 0.0
+    t113 = 1.0 / h_1_1_13
+    uc_1_1_13 = _runtime.select(t112, 0.0, T33 * t113)
+    x_1_1_13 = _runtime.select(t111, qx_1_1_13, qx_1_1_13 - d5 * uc_1_1_13)
     dqx_1_1_13 = w_y * c_1_1_13 - w_x * s_1_1_13
-    t113 = T33 * (T13 * s_1_1_13 - T23 * c_1_1_13) / (h_1_1_13 * h_1_1_13)
+    t114 = T33 * (T13 * s_1_1_13 - T23 * c_1_1_13) / (h_1_1_13 * h_1_1_13)
     del h_1_1_13
-    spin_1_1_13 = _runtime.select(t110, 0.0, t113)
-    del t113
+    spin_1_1_13 = _runtime.select(t111, 0.0, t114)
+    del t114
     rate_1_1_13 = d5 * spin_1_1_13
-    t114 = _runtime.select(t111, 1.0, axisx_1_1_13 * t112)
-    del axisx_1_1_13, t111, t112
-    dx_1_1_13 = _runtime.select(t110, dqx_1_1_13, dqx_1_1_13 - rate_1_1_13 * t114)
-    t115 = _runtime.select(t110, t23, t23 - d5 * t114)
-    t116 = _runtime.select(t110, 0.0, rate_1_1_13 * uc_1_1_13)
-    slope_1_1_13 = x_1_1_13 * dx_1_1_13 + t115 * t116
-    del dx_1_1_13, t116
+    t115 = _runtime.select(t112, 1.0, axisx_1_1_13 * t113)
+    del axisx_1_1_13, t112, t113
+    dx_1_1_13 = _runtime.select(t111, dqx_1_1_13, dqx_1_1_13 - rate_1_1_13 * t115)
+    t116 = _runtime.select(t111, t24, t24 - d5 * t115)
+    t117 = _runtime.select(t111, 0.0, rate_1_1_13 * uc_1_1_13)
+    slope_1_1_13 = x_1_1_13 * dx_1_1_13 + t116 * t117
+    del dx_1_1_13, t117
     straight_1_1_13 = dqx_1_1_13 * dqx_1_1_13
-    t117 = spin_1_1_13 * (qx_1_1_13 * uc_1_1_13 + t23 * t114)
+    t118 = spin_1_1_13 * (qx_1_1_13 * uc_1_1_13 + t24 * t115)
     del qx_1_1_13, spin_1_1_13, uc_1_1_13
-    t118 = rate_1_1_13 * (2.0 * dqx_1_1_13 * t114 - t117)
-    del dqx_1_1_13, rate_1_1_13, t114, t117
-    bends_1_1_13 = _runtime.select(t110, straight_1_1_13, straight_1_1_13 - t118)
-    del straight_1_1_13, t118
-    square_1_1_13 = x_1_1_13 * x_1_1_13 + t115 * t115
-    del t115, x_1_1_13
-    t119 = _runtime.select(t110, t98, fold_1_1) - whole_1_1
-    t120 = np.maximum(0.0, t119)
-    del t119
-    t121 = whole_1_1 + _runtime.select(t110, t3, full_1_1)
-    del t110
-    t122 = np.maximum(t120 * t120, np.minimum(t121 * t121, square_1_1_13))
-    del t120, t121
-    miss_1_1_13 = square_1_1_13 - t122
-    del square_1_1_13, t122
+    t119 = rate_1_1_13 * (2.0 * dqx_1_1_13 * t115 - t118)
+    del dqx_1_1_13, rate_1_1_13, t115, t118
+    bends_1_1_13 = _runtime.select(t111, straight_1_1_13, straight_1_1_13 - t119)
+    del straight_1_1_13, t119
+    square_1_1_13 = x_1_1_13 * x_1_1_13 + t116 * t116
+    del t116, x_1_1_13
+    t120 = _runtime.select(t111, t99, fold_1_1) - whole_1_1
+    t121 = np.maximum(0.0, t120)
+    del t120
+    t122 = whole_1_1 + _runtime.select(t111, t3, full_1_1)
+    del t111
+    t123 = np.maximum(t121 * t121, np.minimum(t122 * t122, square_1_1_13))
+    del t121, t122
+    miss_1_1_13 = square_1_1_13 - t123
+    del square_1_1_13, t123
     inner_1_1_13 = slope_1_1_13 * slope_1_1_13 - bends_1_1_13 * miss_1_1_13
-    t123 = inner_1_1_13 < 0.0
-    t124 = _runtime.sign(slope_1_1_13) * np.sqrt(np.maximum(0.0, inner_1_1_13))
+    t124 = inner_1_1_13 < 0.0
+    t125 = _runtime.sign(slope_1_1_13) * np.sqrt(np.maximum(0.0, inner_1_1_13))
     del inner_1_1_13
-    below_1_1_13 = _runtime.select(t123, 2.0 * bends_1_1_13, 2.0 * (slope_1_1_13 + t124))
-    del bends_1_1_13, t124
-    above_1_1_13 = _runtime.select(t123, slope_1_1_13, miss_1_1_13)
-    del miss_1_1_13, slope_1_1_13, t123
-    t125 = _runtime.select(np.abs(below_1_1_13) <= np.abs(above_1_1_13), 0.0, above_1_1_13 / below_1_1_13)
+    below_1_1_13 = _runtime.select(t124, 2.0 * bends_1_1_13, 2.0 * (slope_1_1_13 + t125))
+    del bends_1_1_13, t125
+    above_1_1_13 = _runtime.select(t124, slope_1_1_13, miss_1_1_13)
+    del miss_1_1_13, slope_1_1_13, t124
+    t126 = _runtime.select(np.abs(below_1_1_13) <= np.abs(above_1_1_13), 0.0, above_1_1_13 / below_1_1_13)
     del above_1_1_13, below_1_1_13
-    t126 = t125 * t125
-    t127 = 1.0 / (1.0 + t126)
-    by_c_1_1_13 = (1.0 - t126) * t127
-    del t126
-    t128 = t127 * (2.0 * t125)
-    del t125, t127
-    versine_1_1_13 = _runtime.select(0.0 < by_c_1_1_13, t128 * t128 / (1.0 + np.abs(by_c_1_1_13)), 1.0 - by_c_1_1_13)
-    t129 = d4 * versine_1_1_13 + root1 * np.abs(t128) <= whole_1_1
+    t127 = t126 * t126
+    t128 = 1.0 / (1.0 + t127)
+    by_c_1_1_13 = (1.0 - t127) * t128
+    del t127
+    t129 = t128 * (2.0 * t126)
+    del t126, t128
+    versine_1_1_13 = _runtime.select(0.0 < by_c_1_1_13, t129 * t129 / (1.0 + np.abs(by_c_1_1_13)), 1.0 - by_c_1_1_13)
+    t130 = d4 * versine_1_1_13 + root1 * np.abs(t129) <= whole_1_1
     del versine_1_1_13
-    cosine_1_1_13 = _runtime.select(t129, by_c_1_1_13, 1.0)
+    cosine_1_1_13 = _runtime.select(t130, by_c_1_1_13, 1.0)
     del by_c_1_1_13
-    sine_1_1_13 = _runtime.select(t129, -t128, 0.0)
-    del t128, t129
+    sine_1_1_13 = _runtime.select(t130, -t129, 0.0)
+    del t129, t130
     c_1_1_14 = c_1_1_13 * cosine_1_1_13 - s_1_1_13 * sine_1_1_13
     s_1_1_14 = c_1_1_13 * sine_1_1_13 + s_1_1_13 * cosine_1_1_13
     del c_1_1_13, cosine_1_1_13, s_1_1_13, sine_1_1_13
     axisx_1_1_14 = T13 * c_1_1_14 + T23 * s_1_1_14
     h_1_1_14 = np.sqrt(t5 + axisx_1_1_14 * axisx_1_1_14)
-    t130 = h_1_1_14 <= 1.4210854715202004e-14
+    t131 = h_1_1_14 <= t89
     qx_1_1_14 = w_x * c_1_1_14 + w_y * s_1_1_14
-    t131 = h_1_1_14 == 0.0
-    t132 = 1.0 / h_1_1_14
-    uc_1_1_14 = _runtime.select(t131, 0.0, T33 * t132)
-    x_1_1_14 = _runtime.select(t130, qx_1_1_14, qx_1_1_14 - d5 * uc_1_1_14)
+    t132 = h_1_1_14 == 0.0
+    t133 = 1.0 / h_1_1_14
+    uc_1_1_14 = _runtime.select(t132, 0.0, T33 * t133)
+    x_1_1_14 = _runtime.select(t131, qx_1_1_14, qx_1_1_14 - d5 * uc_1_1_14)
     dqx_1_1_14 = w_y * c_1_1_14 - w_x * s_1_1_14
-    t133 = T33 * (T13 * s_1_1_14 - T23 * c_1_1_14) / (h_1_1_14 * h_1_1_14)
+    t134 = T33 * (T13 * s_1_1_14 - T23 * c_1_1_14) / (h_1_1_14 * h_1_1_14)
     del h_1_1_14
-    spin_1_1_14 = _runtime.select(t130, 0.0, t133)
-    del t133
+    spin_1_1_14 = _runtime.select(t131, 0.0, t134)
+    del t134
     rate_1_1_14 = d5 * spin_1_1_14
-    t134 = _runtime.select(t131, 1.0, axisx_1_1_14 * t132)
-    del axisx_1_1_14, t131, t132
-    dx_1_1_14 = _runtime.select(t130, dqx_1_1_14, dqx_1_1_14 - rate_1_1_14 * t134)
-    t135 = _runtime.select(t130, t23, t23 - d5 * t134)
-    t136 = _runtime.select(t130, 0.0, rate_1_1_14 * uc_1_1_14)
-    slope_1_1_14 = x_1_1_14 * dx_1_1_14 + t135 * t136
-    del dx_1_1_14, t136
+    t135 = _runtime.select(t132, 1.0, axisx_1_1_14 * t133)
+    del axisx_1_1_14, t132, t133
+    dx_1_1_14 = _runtime.select(t131, dqx_1_1_14, dqx_1_1_14 - rate_1_1_14 * t135)
+    t136 = _runtime.select(t131, t24, t24 - d5 * t135)
+    t137 = _runtime.select(t131, 0.0, rate_1_1_14 * uc_1_1_14)
+    slope_1_1_14 = x_1_1_14 * dx_1_1_14 + t136 * t137
+    del dx_1_1_14, t137
     straight_1_1_14 = dqx_1_1_14 * dqx_1_1_14
-    t137 = spin_1_1_14 * (qx_1_1_14 * uc_1_1_14 + t23 * t134)
+    t138 = spin_1_1_14 * (qx_1_1_14 * uc_1_1_14 + t24 * t135)
     del qx_1_1_14, spin_1_1_14, uc_1_1_14
-    t138 = rate_1_1_14 * (2.0 * dqx_1_1_14 * t134 - t137)
-    del dqx_1_1_14, rate_1_1_14, t134, t137
-    bends_1_1_14 = _runtime.select(t130, straight_1_1_14, straight_1_1_14 - t138)
-    del straight_1_1_14, t138
-    square_1_1_14 = x_1_1_14 * x_1_1_14 + t135 * t135
-    del t135, x_1_1_14
-    t139 = _runtime.select(t130, t98, fold_1_1) - whole_1_1
-    t140 = np.maximum(0.0, t139)
-    del t139
-    t141 = whole_1_1 + _runtime.select(t130, t3, full_1_1)
-    del t130
-    t142 = np.maximum(t140 * t140, np.minimum(t141 * t141, square_1_1_14))
-    del t140, t141
-    miss_1_1_14 = square_1_1_14 - t142
-    del square_1_1_14, t142
+    t139 = rate_1_1_14 * (2.0 * dqx_1_1_14 * t135 - t138)
+    del dqx_1_1_14, rate_1_1_14, t135, t138
+    bends_1_1_14 = _runtime.select(t131, straight_1_1_14, straight_1_1_14 - t139)
+    del straight_1_1_14, t139
+    square_1_1_14 = x_1_1_14 * x_1_1_14 + t136 * t136
+    del t136, x_1_1_14
+    t140 = _runtime.select(t131, t99, fold_1_1) - whole_1_1
+    t141 = np.maximum(0.0, t140)
+    del t140
+    t142 = whole_1_1 + _runtime.select(t131, t3, full_1_1)
+    del t131
+    t143 = np.maximum(t141 * t141, np.minimum(t142 * t142, square_1_1_14))
+    del t141, t142
+    miss_1_1_14 = square_1_1_14 - t143
+    del square_1_1_14, t143
     inner_1_1_14 = slope_1_1_14 * slope_1_1_14 - bends_1_1_14 * miss_1_1_14
-    t143 = inner_1_1_14 < 0.0
-    t144 = _runtime.sign(slope_1_1_14) * np.sqrt(np.maximum(0.0, inner_1_1_14))
+    t144 = inner_1_1_14 < 0.0
+    t145 = _runtime.sign(slope_1_1_14) * np.sqrt(np.maximum(0.0, inner_1_1_14))
     del inner_1_1_14
-    below_1_1_14 = _runtime.select(t143, 2.0 * bends_1_1_14, 2.0 * (slope_1_1_14 + t144))
-    del bends_1_1_14, t144
-    above_1_1_14 = _runtime.select(t143, slope_1_1_14, miss_1_1_14)
-    del miss_1_1_14, slope_1_1_14, t143
-    t145 = _runtime.select(np.abs(below_1_1_14) <= np.abs(above_1_1_14), 0.0, above_1_1_14 / below_1_1_14)
+    below_1_1_14 = _runtime.select(t144, 2.0 * bends_1_1_14, 2.0 * (slope_1_1_14 + t145))
+    del bends_1_1_14, t145
+    above_1_1_14 = _runtime.select(t144, slope_1_1_14, miss_1_1_14)
+    del miss_1_1_14, slope_1_1_14, t144
+    t146 = _runtime.select(np.abs(below_1_1_14) <= np.abs(above_1_1_14), 0.0, above_1_1_14 / below_1_1_14)
     del above_1_1_14, below_1_1_14
-    t146 = t145 * t145
-    t147 = 1.0 / (1.0 + t146)
-    by_c_1_1_14 = (1.0 - t146) * t147
-    del t146
-    t148 = t147 * (2.0 * t145)
-    del t145, t147
-    versine_1_1_14 = _runtime.select(0.0 < by_c_1_1_14, t148 * t148 / (1.0 + np.abs(by_c_1_1_14)), 1.0 - by_c_1_1_14)
-    t149 = d4 * versine_1_1_14 + root1 * np.abs(t148) <= whole_1_1
+    t147 = t146 * t146
+    t148 = 1.0 / (1.0 + t147)
+    by_c_1_1_14 = (1.0 - t147) * t148
+    del t147
+    t149 = t148 * (2.0 * t146)
+    del t146, t148
+    versine_1_1_14 = _runtime.select(0.0 < by_c_1_1_14, t149 * t149 / (1.0 + np.abs(by_c_1_1_14)), 1.0 - by_c_1_1_14)
+    t150 = d4 * versine_1_1_14 + root1 * np.abs(t149) <= whole_1_1
     del versine_1_1_14
-    cosine_1_1_14 = _runtime.select(t149, by_c_1_1_14, 1.0)
+    cosine_1_1_14 = _runtime.select(t150, by_c_1_1_14, 1.0)
     del by_c_1_1_14
-    sine_1_1_14 = _runtime.select(t149, -t148, 0.0)
-    del t148, t149
+    sine_1_1_14 = _runtime.select(t150, -t149, 0.0)
+    del t149, t150
     c_1_1_15 = c_1_1_14 * cosine_1_1_14 - s_1_1_14 * sine_1_1_14
     s_1_1_15 = c_1_1_14 * sine_1_1_14 + s_1_1_14 * cosine_1_1_14
     del c_1_1_14, cosine_1_1_14, s_1_1_14, sine_1_1_14
     axisx_1_1_15 = T13 * c_1_1_15 + T23 * s_1_1_15
     h_1_1_15 = np.sqrt(t5 + axisx_1_1_15 * axisx_1_1_15)
-    t150 = h_1_1_15 <= 1.4210854715202004e-14
+    t151 = h_1_1_15 <= t89
     qx_1_1_15 = w_x * c_1_1_15 + w_y * s_1_1_15
-    t151 = h_1_1_15 == 0.0
-    t152 = 1.0 / h_1_1_15
-    uc_1_1_15 = _runtime.select(t151, 0.0, T33 * t152)
-    x_1_1_15 = _runtime.select(t150, qx_1_1_15, qx_1_1_15 - d5 * uc_1_1_15)
+    t152 = h_1_1_15 == 0.0
+    t153 = 1.0 / h_1_1_15
+    uc_1_1_15 = _runtime.select(t152, 0.0, T33 * t153)
+    x_1_1_15 = _runtime.select(t151, qx_1_1_15, qx_1_1_15 - d5 * uc_1_1_15)
     dqx_1_1_15 = w_y * c_1_1_15 - w_x * s_1_1_15
-    t153 = T33 * (T13 * s_1_1_15 - T23 * c_1_1_15) / (h_1_1_15 * h_1_1_15)
+    t154 = T33 * (T13 * s_1_1_15 - T23 * c_1_1_15) / (h_1_1_15 * h_1_1_15)
     del h_1_1_15
-    spin_1_1_15 = _runtime.select(t150, 0.0, t153)
-    del t153
+    spin_1_1_15 = _runtime.select(t151, 0.0, t154)
+    del t154
     rate_1_1_15 = d5 * spin_1_1_15
-    t154 = _runtime.select(t151, 1.0, axisx_1_1_15 * t152)
-    del axisx_1_1_15, t151, t152
-    dx_1_1_15 = _runtime.select(t150, dqx_1_1_15, dqx_1_1_15 - rate_1_1_15 * t154)
-    t155 = _runtime.select(t150, t23, t23 - d5 * t154)
-    t156 = _runtime.select(t150, 0.0, rate_1_1_15 * uc_1_1_15)
-    slope_1_1_15 = x_1_1_15 * dx_1_1_15 + t155 * t156
-    del dx_1_1_15, t156
+    t155 = _runtime.select(t152, 1.0, axisx_1_1_15 * t153)
+    del axisx_1_1_15, t152, t153
+    dx_1_1_15 = _runtime.select(t151, dqx_1_1_15, dqx_1_1_15 - rate_1_1_15 * t155)
+    t156 = _runtime.select(t151, t24, t24 - d5 * t155)
+    t157 = _runtime.select(t151, 0.0, rate_1_1_15 * uc_1_1_15)
+    slope_1_1_15 = x_1_1_15 * dx_1_1_15 + t156 * t157
+    del dx_1_1_15, t157
     straight_1_1_15 = dqx_1_1_15 * dqx_1_1_15
-    t157 = spin_1_1_15 * (qx_1_1_15 * uc_1_1_15 + t23 * t154)
+    t158 = spin_1_1_15 * (qx_1_1_15 * uc_1_1_15 + t24 * t155)
     del qx_1_1_15, spin_1_1_15, uc_1_1_15
-    t158 = rate_1_1_15 * (2.0 * dqx_1_1_15 * t154 - t157)
-    del dqx_1_1_15, rate_1_1_15, t154, t157
-    bends_1_1_15 = _runtime.select(t150, straight_1_1_15, straight_1_1_15 - t158)
-    del straight_1_1_15, t158
-    square_1_1_15 = x_1_1_15 * x_1_1_15 + t155 * t155
-    del t155, x_1_1_15
-    t159 = _runtime.select(t150, t98, fold_1_1) - whole_1_1
-    t160 = np.maximum(0.0, t159)
-    del t159
-    t161 = whole_1_1 + _runtime.select(t150, t3, full_1_1)
-    del t150
-    t162 = np.maximum(t160 * t160, np.minimum(t161 * t161, square_1_1_15))
-    del t160, t161
-    miss_1_1_15 = square_1_1_15 - t162
-    del square_1_1_15, t162
+    t159 = rate_1_1_15 * (2.0 * dqx_1_1_15 * t155 - t158)
+    del dqx_1_1_15, rate_1_1_15, t155, t158
+    bends_1_1_15 = _runtime.select(t151, straight_1_1_15, straight_1_1_15 - t159)
+    del straight_1_1_15, t159
+    square_1_1_15 = x_1_1_15 * x_1_1_15 + t156 * t156
+    del t156, x_1_1_15
+    t160 = _runtime.select(t151, t99, fold_1_1) - whole_1_1
+    t161 = np.maximum(0.0, t160)
+    del t160
+    t162 = whole_1_1 + _runtime.select(t151, t3, full_1_1)
+    del t151
+    t163 = np.maximum(t161 * t161, np.minimum(t162 * t162, square_1_1_15))
+    del t161, t162
+    miss_1_1_15 = square_1_1_15 - t163
+    del square_1_1_15, t163
     inner_1_1_15 = slope_1_1_15 * slope_1_1_15 - bends_1_1_15 * miss_1_1_15
-    t163 = inner_1_1_15 < 0.0
-    t164 = _runtime.sign(slope_1_1_15) * np.sqrt(np.maximum(0.0, inner_1_1_15))
+    t164 = inner_1_1_15 < 0.0
+    t165 = _runtime.sign(slope_1_1_15) * np.sqrt(np.maximum(0.0, inner_1_1_15))
     del inner_1_1_15
-    below_1_1_15 = _runtime.select(t163, 2.0 * bends_1_1_15, 2.0 * (slope_1_1_15 + t164))
-    del bends_1_1_15, t164
-    above_1_1_15 = _runtime.select(t163, slope_1_1_15, miss_1_1_15)
-    del miss_1_1_15, slope_1_1_15, t163
-    t165 = _runtime.select(np.abs(below_1_1_15) <= np.abs(above_1_1_15), 0.0, above_1_1_15 / below_1_1_15)
+    below_1_1_15 = _runtime.select(t164, 2.0 * bends_1_1_15, 2.0 * (slope_1_1_15 + t165))
+    del bends_1_1_15, t165
+    above_1_1_15 = _runtime.select(t164, slope_1_1_15, miss_1_1_15)
+    del miss_1_1_15, slope_1_1_15, t164
+    t166 = _runtime.select(np.abs(below_1_1_15) <= np.abs(above_1_1_15), 0.0, above_1_1_15 / below_1_1_15)
     del above_1_1_15, below_1_1_15
-    t166 = t165 * t165
-    t167 = 1.0 / (1.0 + t166)
-    by_c_1_1_15 = (1.0 - t166) * t167
-    del t166
-    t168 = t167 * (2.0 * t165)
-    del t165, t167
-    versine_1_1_15 = _runtime.select(0.0 < by_c_1_1_15, t168 * t168 / (1.0 + np.abs(by_c_1_1_15)), 1.0 - by_c_1_1_15)
-    t169 = d4 * versine_1_1_15 + root1 * np.abs(t168) <= whole_1_1
+    t167 = t166 * t166
+    t168 = 1.0 / (1.0 + t167)
+    by_c_1_1_15 = (1.0 - t167) * t168
+    del t167
+    t169 = t168 * (2.0 * t166)
+    del t166, t168
+    versine_1_1_15 = _runtime.select(0.0 < by_c_1_1_15, t169 * t169 / (1.0 + np.abs(by_c_1_1_15)), 1.0 - by_c_1_1_15)
+    t170 = d4 * versine_1_1_15 + root1 * np.abs(t169) <= whole_1_1
     del versine_1_1_15
-    cosine_1_1_15 = _runtime.select(t169, by_c_1_1_15, 1.0)
+    cosine_1_1_15 = _runtime.select(t170, by_c_1_1_15, 1.0)
     del by_c_1_1_15
-    sine_1_1_15 = _runtime.select(t169, -t168, 0.0)
-    del t168, t169
+    sine_1_1_15 = _runtime.select(t170, -t169, 0.0)
+    del t169, t170
     c_1_1_16 = c_1_1_15 * cosine_1_1_15 - s_1_1_15 * sine_1_1_15
     s_1_1_16 = c_1_1_15 * sine_1_1_15 + s_1_1_15 * cosine_1_1_15
     del c_1_1_15, cosine_1_1_15, s_1_1_15, sine_1_1_15
     axisx_1_1_16 = T13 * c_1_1_16 + T23 * s_1_1_16
     h_1_1_16 = np.sqrt(t5 + axisx_1_1_16 * axisx_1_1_16)
-    t170 = h_1_1_16 <= 1.4210854715202004e-14
+    t171 = h_1_1_16 <= t89
     qx_1_1_16 = w_x * c_1_1_16 + w_y * s_1_1_16
-    t171 = h_1_1_16 == 0.0
-    t172 = 1.0 / h_1_1_16
-    uc_1_1_16 = _runtime.select(t171, 0.0, T33 * t172)
-    x_1_1_16 = _runtime.select(t170, qx_1_1_16, qx_1_1_16 - d5 * uc_1_1_16)
+    t172 = h_1_1_16 == 0.0
+    t173 = 1.0 / h_1_1_16
+    uc_1_1_16 = _runtime.select(t172, 0.0, T33 * t173)
+    x_1_1_16 = _runtime.select(t171, qx_1_1_16, qx_1_1_16 - d5 * uc_1_1_16)
     dqx_1_1_16 = w_y * c_1_1_16 - w_x * s_1_1_16
-    t173 = T33 * (T13 * s_1_1_16 - T23 * c_1_1_16) / (h_1_1_16 * h_1_1_16)
+    t174 = T33 * (T13 * s_1_1_16 - T23 * c_1_1_16) / (h_1_1_16 * h_1_1_16)
     del h_1_1_16
-    spin_1_1_16 = _runtime.select(t170, 0.0, t173)
-    del t173
+    spin_1_1_16 = _runtime.select(t171, 0.0, t174)
+    del t174
     rate_1_1_16 = d5 * spin_1_1_16
-    t174 = _runtime.select(t171, 1.0, axisx_1_1_16 * t172)
-    del axisx_1_1_16, t171, t172
-    dx_1_1_16 = _runtime.select(t170, dqx_1_1_16, dqx_1_1_16 - rate_1_1_16 * t174)
-    t175 = _runtime.select(t170, t23, t23 - d5 * t174)
-    t176 = _runtime.select(t170, 0.0, rate_1_1_16 * uc_1_1_16)
-    slope_1_1_16 = x_1_1_16 * dx_1_1_16 + t175 * t176
-    del dx_1_1_16, t176
+    t175 = _runtime.select(t172, 1.0, axisx_1_1_16 * t173)
+    del axisx_1_1_16, t172, t173
+    dx_1_1_16 = _runtime.select(t171, dqx_1_1_16, dqx_1_1_16 - rate_1_1_16 * t175)
+    t176 = _runtime.select(t171, t24, t24 - d5 * t175)
+    t177 = _runtime.select(t171, 0.0, rate_1_1_16 * uc_1_1_16)
+    slope_1_1_16 = x_1_1_16 * dx_1_1_16 + t176 * t177
+    del dx_1_1_16, t177
     straight_1_1_16 = dqx_1_1_16 * dqx_1_1_16
-    t177 = spin_1_1_16 * (qx_1_1_16 * uc_1_1_16 + t23 * t174)
+    t178 = spin_1_1_16 * (qx_1_1_16 * uc_1_1_16 + t24 * t175)
     del qx_1_1_16, spin_1_1_16, uc_1_1_16
-    t178 = rate_1_1_16 * (2.0 * dqx_1_1_16 * t174 - t177)
-    del dqx_1_1_16, rate_1_1_16, t174, t177
-    bends_1_1_16 = _runtime.select(t170, straight_1_1_16, straight_1_1_16 - t178)
-    del straight_1_1_16, t178
-    square_1_1_16 = x_1_1_16 * x_1_1_16 + t175 * t175
-    del t175, x_1_1_16
-    t179 = _runtime.select(t170, t98, fold_1_1) - whole_1_1
-    t180 = np.maximum(0.0, t179)
-    del t179
-    t181 = whole_1_1 + _runtime.select(t170, t3, full_1_1)
-    del t170
-    t182 = np.maximum(t180 * t180, np.minimum(t181 * t181, square_1_1_16))
-    del t180, t181
-    miss_1_1_16 = square_1_1_16 - t182
-    del square_1_1_16, t182
+    t179 = rate_1_1_16 * (2.0 * dqx_1_1_16 * t175 - t178)
+    del dqx_1_1_16, rate_1_1_16, t175, t178
+    bends_1_1_16 = _runtime.select(t171, straight_1_1_16, straight_1_1_16 - t179)
+    del straight_1_1_16, t179
+    square_1_1_16 = x_1_1_16 * x_1_1_16 + t176 * t176
+    del t176, x_1_1_16
+    t180 = _runtime.select(t171, t99, fold_1_1) - whole_1_1
+    t181 = np.maximum(0.0, t180)
+    del t180
+    t182 = whole_1_1 + _runtime.select(t171, t3, full_1_1)
+    del t171
+    t183 = np.maximum(t181 * t181, np.minimum(t182 * t182, square_1_1_16))
+    del t181, t182
+    miss_1_1_16 = square_1_1_16 - t183
+    del square_1_1_16, t183
     inner_1_1_16 = slope_1_1_16 * slope_1_1_16 - bends_1_1_16 * miss_1_1_16
-    t183 = inner_1_1_16 < 0.0
-    t184 = _runtime.sign(slope_1_1_16) * np.sqrt(np.maximum(0.0, inner_1_1_16))
+    t184 = inner_1_1_16 < 0.0
+    t185 = _runtime.sign(slope_1_1_16) * np.sqrt(np.maximum(0.0, inner_1_1_16))
     del inner_1_1_16
-    below_1_1_16 = _runtime.select(t183, 2.0 * bends_1_1_16, 2.0 * (slope_1_1_16 + t184))
-    del bends_1_1_16, t184
-    above_1_1_16 = _runtime.select(t183, slope_1_1_16, miss_1_1_16)
-    del miss_1_1_16, slope_1_1_16, t183
-    t185 = _runtime.select(np.abs(below_1_1_16) <= np.abs(above_1_1_16), 0.0, above_1_1_16 / below_1_1_16)
+    below_1_1_16 = _runtime.select(t184, 2.0 * bends_1_1_16, 2.0 * (slope_1_1_16 + t185))
+    del bends_1_1_16, t185
+    above_1_1_16 = _runtime.select(t184, slope_1_1_16, miss_1_1_16)
+    del miss_1_1_16, slope_1_1_16, t184
+    t186 = _runtime.select(np.abs(below_1_1_16) <= np.abs(above_1_1_16), 0.0, above_1_1_16 / below_1_1_16)
     del above_1_1_16, below_1_1_16
-    t186 = t185 * t185
-    t187 = 1.0 / (1.0 + t186)
-    by_c_1_1_16 = (1.0 - t186) * t187
-    del t186
-    t188 = t187 * (2.0 * t185)
-    del t185, t187
-    versine_1_1_16 = _runtime.select(0.0 < by_c_1_1_16, t188 * t188 / (1.0 + np.abs(by_c_1_1_16)), 1.0 - by_c_1_1_16)
-    t189 = d4 * versine_1_1_16 + root1 * np.abs(t188) <= whole_1_1
+    t187 = t186 * t186
+    t188 = 1.0 / (1.0 + t187)
+    by_c_1_1_16 = (1.0 - t187) * t188
+    del t187
+    t189 = t188 * (2.0 * t186)
+    del t186, t188
+    versine_1_1_16 = _runtime.select(0.0 < by_c_1_1_16, t189 * t189 / (1.0 + np.abs(by_c_1_1_16)), 1.0 - by_c_1_1_16)
+    t190 = d4 * versine_1_1_16 + root1 * np.abs(t189) <= whole_1_1
     del versine_1_1_16
-    cosine_1_1_16 = _runtime.select(t189, by_c_1_1_16, 1.0)
+    cosine_1_1_16 = _runtime.select(t190, by_c_1_1_16, 1.0)
     del by_c_1_1_16
-    sine_1_1_16 = _runtime.select(t189, -t188, 0.0)
-    del t188, t189
+    sine_1_1_16 = _runtime.select(t190, -t189, 0.0)
+    del t189, t190
     c_1_1_17 = c_1_1_16 * cosine_1_1_16 - s_1_1_16 * sine_1_1_16
     s_1_1_17 = c_1_1_16 * sine_1_1_16 + s_1_1_16 * cosine_1_1_16
     del c_1_1_16, cosine_1_1_16, s_1_1_16, sine_1_1_16
     axisx_1_1_17 = T13 * c_1_1_17 + T23 * s_1_1_17
     h_1_1_17 = np.sqrt(t5 + axisx_1_1_17 * axisx_1_1_17)
-    t190 = h_1_1_17 <= 1.4210854715202004e-14
+    t191 = h_1_1_17 <= t89
     qx_1_1_17 = w_x * c_1_1_17 + w_y * s_1_1_17
-    t191 = h_1_1_17 == 0.0
-    t192 = 1.0 / h_1_1_17
+    t192 = h_1_1_17 == 0.0
+    t193 = 1.0 / h_1_1_17
     del h_1_1_17
-    t193 = qx_1_1_17 - d5 * _runtime.select(t191, 0.0, T33 * t192)
-    x_1_1_17 = _runtime.select(t190, qx_1_1_17, t193)
-    del qx_1_1_17, t193
-    t194 = _runtime.select(t191, 1.0, axisx_1_1_17 * t192)
-    del axisx_1_1_17, t191, t192
-    t195 = _runtime.select(t190, t23, t23 - d5 * t194)
-    del t194
-    t196 = np.sqrt(x_1_1_17 * x_1_1_17 + t195 * t195)
-    del t195, x_1_1_17
-    t197 = np.maximum(0.0, t196 - _runtime.select(t190, t3, full_1_1))
-    missed_1_1_17 = np.maximum(t197, _runtime.select(t190, t98, fold_1_1) - t196)
-    del t190, t196, t197
+    t194 = qx_1_1_17 - d5 * _runtime.select(t192, 0.0, T33 * t193)
+    x_1_1_17 = _runtime.select(t191, qx_1_1_17, t194)
+    del qx_1_1_17, t194
+    t195 = _runtime.select(t192, 1.0, axisx_1_1_17 * t193)
+    del axisx_1_1_17, t192, t193
+    t196 = _runtime.select(t191, t24, t24 - d5 * t195)
+    del t195
+    t197 = np.sqrt(x_1_1_17 * x_1_1_17 + t196 * t196)
+    del t196, x_1_1_17
+    t198 = np.maximum(0.0, t197 - _runtime.select(t191, t3, full_1_1))
+    missed_1_1_17 = np.maximum(t198, _runtime.select(t191, t99, fold_1_1) - t197)
+    del t191, t197, t198
     h_1_1 = np.sqrt(t5 + t14)
     del t14
-    t198 = h_1_1 <= 1.4210854715202004e-14
+    t199 = h_1_1 <= t89
     qx_1_1 = w_x * c_1_1 - w_y * t13
-    t199 = h_1_1 == 0.0
-    t200 = 1.0 / h_1_1
-    uc_1_1 = _runtime.select(t199, 0.0, T33 * t200)
-    t201 = d5 * uc_1_1
-    x_1_1 = _runtime.select(t198, qx_1_1, qx_1_1 - t201)
+    t200 = h_1_1 == 0.0
+    t201 = 1.0 / h_1_1
+    uc_1_1 = _runtime.select(t200, 0.0, T33 * t201)
+    t202 = d5 * uc_1_1
+    x_1_1 = _runtime.select(t199, qx_1_1, qx_1_1 - t202)
     dqx_1_1 = w_y * c_1_1 + w_x * t13
-    t202 = _runtime.select(t198, 0.0, T33 * daxisx_1_1 / (h_1_1 * h_1_1))
+    t203 = _runtime.select(t199, 0.0, T33 * daxisx_1_1 / (h_1_1 * h_1_1))
     del daxisx_1_1, h_1_1
-    t203 = d5 * t202
-    t204 = axisx_1_1 * t200
-    del axisx_1_1, t200
-    t205 = _runtime.select(t199, 1.0, t204)
-    dx_1_1 = _runtime.select(t198, dqx_1_1, dqx_1_1 + t203 * t205)
-    t206 = _runtime.select(t198, t23, t23 - d5 * t205)
-    dy_1_1 = _runtime.select(t198, 0.0, t203 * uc_1_1)
-    slope_1_1 = x_1_1 * dx_1_1 - t206 * dy_1_1
+    t204 = d5 * t203
+    t205 = axisx_1_1 * t201
+    del axisx_1_1, t201
+    t206 = _runtime.select(t200, 1.0, t205)
+    dx_1_1 = _runtime.select(t199, dqx_1_1, dqx_1_1 + t204 * t206)
+    t207 = _runtime.select(t199, t24, t24 - d5 * t206)
+    dy_1_1 = _runtime.select(t199, 0.0, t204 * uc_1_1)
+    slope_1_1 = x_1_1 * dx_1_1 - t207 * dy_1_1
     del dx_1_1
     straight_1_1 = dqx_1_1 * dqx_1_1
-    t207 = 2.0 * dqx_1_1
-    t208 = qx_1_1 * uc_1_1
+    t208 = 2.0 * dqx_1_1
+    t209 = qx_1_1 * uc_1_1
     del uc_1_1
-    t209 = t203 * (t207 * t205 + t202 * (t208 + t23 * t205))
-    del t205
-    bends_1_1 = _runtime.select(t198, straight_1_1, straight_1_1 + t209)
-    del t209
-    square_1_1 = x_1_1 * x_1_1 + t206 * t206
-    del t206, x_1_1
-    t210 = _runtime.select(t198, t98, fold_1_1) - whole_1_1
-    t211 = np.maximum(0.0, t210)
+    t210 = t204 * (t208 * t206 + t203 * (t209 + t24 * t206))
+    del t206
+    bends_1_1 = _runtime.select(t199, straight_1_1, straight_1_1 + t210)
     del t210
-    low_1_1 = t211 * t211
+    square_1_1 = x_1_1 * x_1_1 + t207 * t207
+    del t207, x_1_1
+    t211 = _runtime.select(t199, t99, fold_1_1) - whole_1_1
+    t212 = np.maximum(0.0, t211)
     del t211
-    t212 = whole_1_1 + _runtime.select(t198, t3, full_1_1)
-    high_1_1 = t212 * t212
+    low_1_1 = t212 * t212
     del t212
-    t213 = np.maximum(low_1_1, np.minimum(high_1_1, square_1_1))
-    miss_1_1 = square_1_1 - t213
-    del square_1_1, t213
+    t213 = whole_1_1 + _runtime.select(t199, t3, full_1_1)
+    high_1_1 = t213 * t213
+    del t213
+    t214 = np.maximum(low_1_1, np.minimum(high_1_1, square_1_1))
+    miss_1_1 = square_1_1 - t214
+    del square_1_1, t214
     inner_1_1 = slope_1_1 * slope_1_1 - bends_1_1 * miss_1_1
-    t214 = inner_1_1 < 0.0
-    t215 = _runtime.sign(slope_1_1) * np.sqrt(np.maximum(0.0, inner_1_1))
+    t215 = inner_1_1 < 0.0
+    t216 = _runtime.sign(slope_1_1) * np.sqrt(np.maximum(0.0, inner_1_1))
     del inner_1_1
-    below_1_1 = _runtime.select(t214, 2.0 * bends_1_1, 2.0 * (slope_1_1 + t215))
-    del bends_1_1, t215
-    above_1_1 = _runtime.select(t214, slope_1_1, miss_1_1)
-    del miss_1_1, slope_1_1, t214
-    t216 = _runtime.select(np.abs(below_1_1) <= np.abs(above_1_1), 0.0, above_1_1 / below_1_1)
+    below_1_1 = _runtime.select(t215, 2.0 * bends_1_1, 2.0 * (slope_1_1 + t216))
+    del bends_1_1, t216
+    above_1_1 = _runtime.select(t215, slope_1_1, miss_1_1)
+    del miss_1_1, slope_1_1, t215
+    t217 = _runtime.select(np.abs(below_1_1) <= np.abs(above_1_1), 0.0, above_1_1 / below_1_1)
     del above_1_1, below_1_1
-    t217 = t216 * t216
-    t218 = 1.0 / (1.0 + t217)
-    by_c_1_1 = (1.0 - t217) * t218
-    del t217
-    t219 = t218 * (2.0 * t216)
-    del t216, t218
-    versine_1_1 = _runtime.select(0.0 < by_c_1_1, t219 * t219 / (1.0 + np.abs(by_c_1_1)), 1.0 - by_c_1_1)
-    t220 = d4 * versine_1_1 + root1 * np.abs(t219) <= whole_1_1
+    t218 = t217 * t217
+    t219 = 1.0 / (1.0 + t218)
+    by_c_1_1 = (1.0 - t218) * t219
+    del t218
+    t220 = t219 * (2.0 * t217)
+    del t217, t219
+    versine_1_1 = _runtime.select(0.0 < by_c_1_1, t220 * t220 / (1.0 + np.abs(by_c_1_1)), 1.0 - by_c_1_1)
+    t221 = d4 * versine_1_1 + root1 * np.abs(t220) <= whole_1_1
     del versine_1_1
-    cosine_1_1 = _runtime.select(t220, by_c_1_1, 1.0)
+    cosine_1_1 = _runtime.select(t221, by_c_1_1, 1.0)
     del by_c_1_1
-    sine_1_1 = _runtime.select(t220, -t219, 0.0)
-    del t219, t220
+    sine_1_1 = _runtime.select(t221, -t220, 0.0)
+    del t220, t221
     c_1_1_2 = c_1_1 * cosine_1_1 + t13 * sine_1_1
     s_1_1_2 = c_1_1 * sine_1_1 - t13 * cosine_1_1
     del cosine_1_1, sine_1_1
     axisx_1_1_2 = T13 * c_1_1_2 + T23 * s_1_1_2
     h_1_1_2 = np.sqrt(t5 + axisx_1_1_2 * axisx_1_1_2)
-    t221 = h_1_1_2 <= 1.4210854715202004e-14
+    t222 = h_1_1_2 <= t89
     qx_1_1_2 = w_x * c_1_1_2 + w_y * s_1_1_2
-    t222 = h_1_1_2 == 0.0
-    t223 = 1.0 / h_1_1_2
-    uc_1_1_2 = _runtime.select(t222, 0.0, T33 * t223)
-    x_1_1_2 = _runtime.select(t221, qx_1_1_2, qx_1_1_2 - d5 * uc_1_1_2)
+    t223 = h_1_1_2 == 0.0
+    t224 = 1.0 / h_1_1_2
+    uc_1_1_2 = _runtime.select(t223, 0.0, T33 * t224)
+    x_1_1_2 = _runtime.select(t222, qx_1_1_2, qx_1_1_2 - d5 * uc_1_1_2)
     dqx_1_1_2 = w_y * c_1_1_2 - w_x * s_1_1_2
-    t224 = T33 * (T13 * s_1_1_2 - T23 * c_1_1_2) / (h_1_1_2 * h_1_1_2)
+    t225 = T33 * (T13 * s_1_1_2 - T23 * c_1_1_2) / (h_1_1_2 * h_1_1_2)
     del h_1_1_2
-    spin_1_1_2 = _runtime.select(t221, 0.0, t224)
-    del t224
+    spin_1_1_2 = _runtime.select(t222, 0.0, t225)
+    del t225
     rate_1_1_2 = d5 * spin_1_1_2
-    t225 = _runtime.select(t222, 1.0, axisx_1_1_2 * t223)
-    del axisx_1_1_2, t222, t223
-    dx_1_1_2 = _runtime.select(t221, dqx_1_1_2, dqx_1_1_2 - rate_1_1_2 * t225)
-    t226 = _runtime.select(t221, t23, t23 - d5 * t225)
-    t227 = _runtime.select(t221, 0.0, rate_1_1_2 * uc_1_1_2)
-    slope_1_1_2 = x_1_1_2 * dx_1_1_2 + t226 * t227
-    del dx_1_1_2, t227
+    t226 = _runtime.select(t223, 1.0, axisx_1_1_2 * t224)
+    del axisx_1_1_2, t223, t224
+    dx_1_1_2 = _runtime.select(t222, dqx_1_1_2, dqx_1_1_2 - rate_1_1_2 * t226)
+    t227 = _runtime.select(t222, t24, t24 - d5 * t226)
+    t228 = _runtime.select(t222, 0.0, rate_1_1_2 * uc_1_1_2)
+    slope_1_1_2 = x_1_1_2 * dx_1_1_2 + t227 * t228
+    del dx_1_1_2, t228
     straight_1_1_2 = dqx_1_1_2 * dqx_1_1_2
-    t228 = spin_1_1_2 * (qx_1_1_2 * uc_1_1_2 + t23 * t225)
+    t229 = spin_1_1_2 * (qx_1_1_2 * uc_1_1_2 + t24 * t226)
     del qx_1_1_2, spin_1_1_2, uc_1_1_2
-    t229 = straight_1_1_2 - rate_1_1_2 * (2.0 * dqx_1_1_2 * t225 - t228)
-    del dqx_1_1_2, rate_1_1_2, t225, t228
-    bends_1_1_2 = _runtime.select(t221, straight_1_1_2, t229)
-    del straight_1_1_2, t229
-    square_1_1_2 = x_1_1_2 * x_1_1_2 + t226 * t226
-    del t226, x_1_1_2
-    t230 = _runtime.select(t221, t98, fold_1_1) - whole_1_1
-    t231 = np.maximum(0.0, t230)
-    del t230
-    t232 = whole_1_1 + _runtime.select(t221, t3, full_1_1)
-    del t221
-    t233 = np.maximum(t231 * t231, np.minimum(t232 * t232, square_1_1_2))
-    del t231, t232
-    miss_1_1_2 = square_1_1_2 - t233
-    del square_1_1_2, t233
+    t230 = straight_1_1_2 - rate_1_1_2 * (2.0 * dqx_1_1_2 * t226 - t229)
+    del dqx_1_1_2, rate_1_1_2, t226, t229
+    bends_1_1_2 = _runtime.select(t222, straight_1_1_2, t230)
+    del straight_1_1_2, t230
+    square_1_1_2 = x_1_1_2 * x_1_1_2 + t227 * t227
+    del t227, x_1_1_2
+    t231 = _runtime.select(t222, t99, fold_1_1) - whole_1_1
+    t232 = np.maximum(0.0, t231)
+    del t231
+    t233 = whole_1_1 + _runtime.select(t222, t3, full_1_1)
+    del t222
+    t234 = np.maximum(t232 * t232, np.minimum(t233 * t233, square_1_1_2))
+    del t232, t233
+    miss_1_1_2 = square_1_1_2 - t234
+    del square_1_1_2, t234
     inner_1_1_2 = slope_1_1_2 * slope_1_1_2 - bends_1_1_2 * miss_1_1_2
-    t234 = inner_1_1_2 < 0.0
-    t235 = _runtime.sign(slope_1_1_2) * np.sqrt(np.maximum(0.0, inner_1_1_2))
+    t235 = inner_1_1_2 < 0.0
+    t236 = _runtime.sign(slope_1_1_2) * np.sqrt(np.maximum(0.0, inner_1_1_2))
     del inner_1_1_2
-    below_1_1_2 = _runtime.select(t234, 2.0 * bends_1_1_2, 2.0 * (slope_1_1_2 + t235))
-    del bends_1_1_2, t235
-    above_1_1_2 = _runtime.select(t234, slope_1_1_2, miss_1_1_2)
-    del miss_1_1_2, slope_1_1_2, t234
-    t236 = _runtime.select(np.abs(below_1_1_2) <= np.abs(above_1_1_2), 0.0, above_1_1_2 / below_1_1_2)
+    below_1_1_2 = _runtime.select(t235, 2.0 * bends_1_1_2, 2.0 * (slope_1_1_2 + t236))
+    del bends_1_1_2, t236
+    above_1_1_2 = _runtime.select(t235, slope_1_1_2, miss_1_1_2)
+    del miss_1_1_2, slope_1_1_2, t235
+    t237 = _runtime.select(np.abs(below_1_1_2) <= np.abs(above_1_1_2), 0.0, above_1_1_2 / below_1_1_2)
     del above_1_1_2, below_1_1_2
-    t237 = t236 * t236
-    t238 = 1.0 / (1.0 + t237)
-    by_c_1_1_2 = (1.0 - t237) * t238
-    del t237
-    t239 = t238 * (2.0 * t236)
-    del t236, t238
-    versine_1_1_2 = _runtime.select(0.0 < by_c_1_1_2, t239 * t239 / (1.0 + np.abs(by_c_1_1_2)), 1.0 - by_c_1_1_2)
-    t240 = d4 * versine_1_1_2 + root1 * np.abs(t239) <= whole_1_1
+    t238 = t237 * t237
+    t239 = 1.0 / (1.0 + t238)
+    by_c_1_1_2 = (1.0 - t238) * t239
+    del t238
+    t240 = t239 * (2.0 * t237)
+    del t237, t239
+    versine_1_1_2 = _runtime.select(0.0 < by_c_1_1_2, t240 * t240 / (1.0 + np.abs(by_c_1_1_2)), 1.0 - by_c_1_1_2)
+    t241 = d4 * versine_1_1_2 + root1 * np.abs(t240) <= whole_1_1
     del versine_1_1_2
-    cosine_1_1_2 = _runtime.select(t240, by_c_1_1_2, 1.0)
+    cosine_1_1_2 = _runtime.select(t241, by_c_1_1_2, 1.0)
     del by_c_1_1_2
-    sine_1_1_2 = _runtime.select(t240, -t239, 0.0)
-    del t239, t240
+    sine_1_1_2 = _runtime.select(t241, -t240, 0.0)
+    del t240, t241
     c_1_1_3 = c_1_1_2 * cosine_1_1_2 - s_1_1_2 * sine_1_1_2
     s_1_1_3 = c_1_1_2 * sine_1_1_2 + s_1_1_2 * cosine_1_1_2
     del c_1_1_2, cosine_1_1_2, s_1_1_2, sine_1_1_2
     axisx_1_1_3 = T13 * c_1_1_3 + T23 * s_1_1_3
     h_1_1_3 = np.sqrt(t5 + axisx_1_1_3 * axisx_1_1_3)
-    t241 = h_1_1_3 <= 1.4210854715202004e-14
+    t242 = h_1_1_3 <= t89
     qx_1_1_3 = w_x * c_1_1_3 + w_y * s_1_1_3
-    t242 = h_1_1_3 == 0.0
-    t243 = 1.0 / h_1_1_3
-    uc_1_1_3 = _runtime.select(t242, 0.0, T33 * t243)
-    x_1_1_3 = _runtime.select(t241, qx_1_1_3, qx_1_1_3 - d5 * uc_1_1_3)
+    t243 = h_1_1_3 == 0.0
+    t244 = 1.0 / h_1_1_3
+    uc_1_1_3 = _runtime.select(t243, 0.0, T33 * t244)
+    x_1_1_3 = _runtime.select(t242, qx_1_1_3, qx_1_1_3 - d5 * uc_1_1_3)
     dqx_1_1_3 = w_y * c_1_1_3 - w_x * s_1_1_3
-    t244 = T33 * (T13 * s_1_1_3 - T23 * c_1_1_3) / (h_1_1_3 * h_1_1_3)
+    t245 = T33 * (T13 * s_1_1_3 - T23 * c_1_1_3) / (h_1_1_3 * h_1_1_3)
     del h_1_1_3
-    spin_1_1_3 = _runtime.select(t241, 0.0, t244)
-    del t244
+    spin_1_1_3 = _runtime.select(t242, 0.0, t245)
+    del t245
     rate_1_1_3 = d5 * spin_1_1_3
-    t245 = _runtime.select(t242, 1.0, axisx_1_1_3 * t243)
-    del axisx_1_1_3, t242, t243
-    dx_1_1_3 = _runtime.select(t241, dqx_1_1_3, dqx_1_1_3 - rate_1_1_3 * t245)
-    t246 = _runtime.select(t241, t23, t23 - d5 * t245)
-    t247 = _runtime.select(t241, 0.0, rate_1_1_3 * uc_1_1_3)
-    slope_1_1_3 = x_1_1_3 * dx_1_1_3 + t246 * t247
-    del dx_1_1_3, t247
+    t246 = _runtime.select(t243, 1.0, axisx_1_1_3 * t244)
+    del axisx_1_1_3, t243, t244
+    dx_1_1_3 = _runtime.select(t242, dqx_1_1_3, dqx_1_1_3 - rate_1_1_3 * t246)
+    t247 = _runtime.select(t242, t24, t24 - d5 * t246)
+    t248 = _runtime.select(t242, 0.0, rate_1_1_3 * uc_1_1_3)
+    slope_1_1_3 = x_1_1_3 * dx_1_1_3 + t247 * t248
+    del dx_1_1_3, t248
     straight_1_1_3 = dqx_1_1_3 * dqx_1_1_3
-    t248 = spin_1_1_3 * (qx_1_1_3 * uc_1_1_3 + t23 * t245)
+    t249 = spin_1_1_3 * (qx_1_1_3 * uc_1_1_3 + t24 * t246)
     del qx_1_1_3, spin_1_1_3, uc_1_1_3
-    t249 = straight_1_1_3 - rate_1_1_3 * (2.0 * dqx_1_1_3 * t245 - t248)
-    del dqx_1_1_3, rate_1_1_3, t245, t248
-    bends_1_1_3 = _runtime.select(t241, straight_1_1_3, t249)
-    del straight_1_1_3, t249
-    square_1_1_3 = x_1_1_3 * x_1_1_3 + t246 * t246
-    del t246, x_1_1_3
-    t250 = _runtime.select(t241, t98, fold_1_1) - whole_1_1
-    t251 = np.maximum(0.0, t250)
-    del t250
-    t252 = whole_1_1 + _runtime.select(t241, t3, full_1_1)
-    del t241
-    t253 = np.maximum(t251 * t251, np.minimum(t252 * t252, square_1_1_3))
-    del t251, t252
-    miss_1_1_3 = square_1_1_3 - t253
-    del square_1_1_3, t253
+    t250 = straight_1_1_3 - rate_1_1_3 * (2.0 * dqx_1_1_3 * t246 - t249)
+    del dqx_1_1_3, rate_1_1_3, t246, t249
+    bends_1_1_3 = _runtime.select(t242, straight_1_1_3, t250)
+    del straight_1_1_3, t250
+    square_1_1_3 = x_1_1_3 * x_1_1_3 + t247 * t247
+    del t247, x_1_1_3
+    t251 = _runtime.select(t242, t99, fold_1_1) - whole_1_1
+    t252 = np.maximum(0.0, t251)
+    del t251
+    t253 = whole_1_1 + _runtime.select(t242, t3, full_1_1)
+    del t242
+    t254 = np.maximum(t252 * t252, np.minimum(t253 * t253, square_1_1_3))
+    del t252, t253
+    miss_1_1_3 = square_1_1_3 - t254
+    del square_1_1_3, t254
     inner_1_1_3 = slope_1_1_3 * slope_1_1_3 - bends_1_1_3 * miss_1_1_3
-    t254 = inner_1_1_3 < 0.0
-    t255 = _runtime.sign(slope_1_1_3) * np.sqrt(np.maximum(0.0, inner_1_1_3))
+    t255 = inner_1_1_3 < 0.0
+    t256 = _runtime.sign(slope_1_1_3) * np.sqrt(np.maximum(0.0, inner_1_1_3))
     del inner_1_1_3
-    below_1_1_3 = _runtime.select(t254, 2.0 * bends_1_1_3, 2.0 * (slope_1_1_3 + t255))
-    del bends_1_1_3, t255
-    above_1_1_3 = _runtime.select(t254, slope_1_1_3, miss_1_1_3)
-    del miss_1_1_3, slope_1_1_3, t254
-    t256 = _runtime.select(np.abs(below_1_1_3) <= np.abs(above_1_1_3), 0.0, above_1_1_3 / below_1_1_3)
+    below_1_1_3 = _runtime.select(t255, 2.0 * bends_1_1_3, 2.0 * (slope_1_1_3 + t256))
+    del bends_1_1_3, t256
+    above_1_1_3 = _runtime.select(t255, slope_1_1_3, miss_1_1_3)
+    del miss_1_1_3, slope_1_1_3, t255
+    t257 = _runtime.select(np.abs(below_1_1_3) <= np.abs(above_1_1_3), 0.0, above_1_1_3 / below_1_1_3)
     del above_1_1_3, below_1_1_3
-    t257 = t256 * t256
-    t258 = 1.0 / (1.0 + t257)
-    by_c_1_1_3 = (1.0 - t257) * t258
-    del t257
-    t259 = t258 * (2.0 * t256)
-    del t256, t258
-    versine_1_1_3 = _runtime.select(0.0 < by_c_1_1_3, t259 * t259 / (1.0 + np.abs(by_c_1_1_3)), 1.0 - by_c_1_1_3)
-    t260 = d4 * versine_1_1_3 + root1 * np.abs(t259) <= whole_1_1
+    t258 = t257 * t257
+    t259 = 1.0 / (1.0 + t258)
+    by_c_1_1_3 = (1.0 - t258) * t259
+    del t258
+    t260 = t259 * (2.0 * t257)
+    del t257, t259
+    versine_1_1_3 = _runtime.select(0.0 < by_c_1_1_3, t260 * t260 / (1.0 + np.abs(by_c_1_1_3)), 1.0 - by_c_1_1_3)
+    t261 = d4 * versine_1_1_3 + root1 * np.abs(t260) <= whole_1_1
     del versine_1_1_3
-    cosine_1_1_3 = _runtime.select(t260, by_c_1_1_3, 1.0)
+    cosine_1_1_3 = _runtime.select(t261, by_c_1_1_3, 1.0)
     del by_c_1_1_3
-    sine_1_1_3 = _runtime.select(t260, -t259, 0.0)
-    del t259, t260
+    sine_1_1_3 = _runtime.select(t261, -t260, 0.0)
+    del t260, t261
     c_1_1_4 = c_1_1_3 * cosine_1_1_3 - s_1_1_3 * sine_1_1_3
     s_1_1_4 = c_1_1_3 * sine_1_1_3 + s_1_1_3 * cosine_1_1_3
     del c_1_1_3, cosine_1_1_3, s_1_1_3, sine_1_1_3
     axisx_1_1_4 = T13 * c_1_1_4 + T23 * s_1_1_4
-    t261 = axisx_1_1_4 * axisx_1_1_4
-    t262 = T13 * s_1_1_4 - T23 * c_1_1_4
-    most_1_1_4 = np.sqrt(t261 + t262 * t262)
-    t263 = most_1_1_4 <= 8.881784197001252e-16
+    t262 = axisx_1_1_4 * axisx_1_1_4
+    t263 = T13 * s_1_1_4 - T23 * c_1_1_4
+    most_1_1_4 = np.sqrt(t262 + t263 * t263)
+    t264 = most_1_1_4 <= _runtime.VANISHING
     qx_1_1_4 = w_x * c_1_1_4 + w_y * s_1_1_4
-    r_1_1_4 = np.sqrt(t24 + qx_1_1_4 * qx_1_1_4)
-    t264 = r_1_1_4 <= t25
-    t265 = d5 + r_1_1_4
-    h_1_1_4 = np.sqrt(t5 + t261)
-    del t261
-    t266 = h_1_1_4 == 0.0
-    t267 = 1.0 / h_1_1_4
-    uc_1_1_4 = _runtime.select(t266, 0.0, T33 * t267)
-    t268 = qx_1_1_4 - d5 * uc_1_1_4
-    t269 = _runtime.select(t266, 1.0, axisx_1_1_4 * t267)
-    del t266, t267
-    t270 = t23 - d5 * t269
-    t271 = np.maximum(np.sqrt(t268 * t268 + t270 * t270), fold_1_1)
-    goal_1_1_4 = np.minimum(full_1_1, t271)
-    del t271
-    k_v_1_1_4 = np.maximum(0.0, (t265 - goal_1_1_4) * (t265 + goal_1_1_4))
-    t272 = d5 - r_1_1_4
-    d_v_1_1_4 = np.maximum(0.0, (goal_1_1_4 - t272) * (goal_1_1_4 + t272))
-    del goal_1_1_4, t272
+    r_1_1_4 = np.sqrt(t25 + qx_1_1_4 * qx_1_1_4)
+    t265 = r_1_1_4 <= t4
+    t266 = d5 + r_1_1_4
+    h_1_1_4 = np.sqrt(t5 + t262)
+    del t262
+    t267 = h_1_1_4 == 0.0
+    t268 = 1.0 / h_1_1_4
+    uc_1_1_4 = _runtime.select(t267, 0.0, T33 * t268)
+    t269 = qx_1_1_4 - d5 * uc_1_1_4
+    t270 = _runtime.select(t267, 1.0, axisx_1_1_4 * t268)
+    del t267, t268
+    t271 = t24 - d5 * t270
+    t272 = np.maximum(np.sqrt(t269 * t269 + t271 * t271), fold_1_1)
+    goal_1_1_4 = np.minimum(full_1_1, t272)
+    del t272
+    k_v_1_1_4 = np.maximum(0.0, (t266 - goal_1_1_4) * (t266 + goal_1_1_4))
+    t273 = d5 - r_1_1_4
+    d_v_1_1_4 = np.maximum(0.0, (goal_1_1_4 - t273) * (goal_1_1_4 + t273))
+    del goal_1_1_4, t273
     n_v_1_1_4 = k_v_1_1_4 + d_v_1_1_4
-    t273 = n_v_1_1_4 <= size * t265 * 8.881784197001252e-16
-    del t265
-    t274 = 1.0 / n_v_1_1_4
+    t274 = n_v_1_1_4 <= t4 * t266
+    del t266
+    t275 = 1.0 / n_v_1_1_4
     del n_v_1_1_4
-    uc_v_1_1_4 = _runtime.select(t273, 1.0, (k_v_1_1_4 - d_v_1_1_4) * t274)
-    t275 = qx_1_1_4 * uc_v_1_1_4
-    side_1_1_4 = _runtime.sign(t23 * uc_1_1_4 - qx_1_1_4 * t269)
-    del t269, uc_1_1_4
-    t276 = 2.0 * side_1_1_4 * np.sqrt(k_v_1_1_4 * d_v_1_1_4)
+    uc_v_1_1_4 = _runtime.select(t274, 1.0, (k_v_1_1_4 - d_v_1_1_4) * t275)
+    t276 = qx_1_1_4 * uc_v_1_1_4
+    side_1_1_4 = _runtime.sign(t24 * uc_1_1_4 - qx_1_1_4 * t270)
+    del t270, uc_1_1_4
+    t277 = 2.0 * side_1_1_4 * np.sqrt(k_v_1_1_4 * d_v_1_1_4)
     del d_v_1_1_4, k_v_1_1_4, side_1_1_4
-    us_v_1_1_4 = _runtime.select(t273, 0.0, t274 * t276)
-    del t273, t274, t276
-    t277 = t23 * us_v_1_1_4
-    t278 = 1.0 / r_1_1_4
+    us_v_1_1_4 = _runtime.select(t274, 0.0, t275 * t277)
+    del t274, t275, t277
+    t278 = t24 * us_v_1_1_4
+    t279 = 1.0 / r_1_1_4
     del r_1_1_4
-    c_v_1_1_4 = _runtime.select(t264, 1.0, (t275 + t277) * t278)
-    t279 = T33 * c_v_1_1_4 < 0.0
-    t280 = qx_1_1_4 * us_v_1_1_4
+    c_v_1_1_4 = _runtime.select(t265, 1.0, (t276 + t278) * t279)
+    t280 = T33 * c_v_1_1_4 < 0.0
+    t281 = qx_1_1_4 * us_v_1_1_4
     del us_v_1_1_4
-    t281 = t23 * uc_v_1_1_4
+    t282 = t24 * uc_v_1_1_4
     del uc_v_1_1_4
-    wc_1_1_4 = _runtime.select(t264, 0.0, t278 * (t280 + t281))
-    s_v_1_1_4 = _runtime.select(t264, 0.0, t278 * (t280 - t281))
-    del t280, t281
-    t282 = T33 * _runtime.select(t279, wc_1_1_4, -s_v_1_1_4)
+    wc_1_1_4 = _runtime.select(t265, 0.0, t279 * (t281 + t282))
+    s_v_1_1_4 = _runtime.select(t265, 0.0, t279 * (t281 - t282))
+    del t281, t282
+    t283 = T33 * _runtime.select(t280, wc_1_1_4, -s_v_1_1_4)
     del s_v_1_1_4, wc_1_1_4
-    c_w_1_1_4 = _runtime.select(t264, 1.0, t278 * (t275 - t277))
-    del t264, t275, t277, t278
-    to_s_1_1_4 = _runtime.select(t279, c_w_1_1_4, c_v_1_1_4)
-    del c_v_1_1_4, c_w_1_1_4, t279
-    across_1_1_4 = _runtime.select(t22, 0.0, t282 * _runtime.sign(to_s_1_1_4))
-    del t282
-    t283 = np.abs(to_s_1_1_4)
-    del to_s_1_1_4
-    t284 = _runtime.select(most_1_1_4 * t283 <= np.abs(across_1_1_4), most_1_1_4 * _runtime.sign(across_1_1_4), across_1_1_4 / t283)
+    c_w_1_1_4 = _runtime.select(t265, 1.0, t279 * (t276 - t278))
+    del t265, t276, t278, t279
+    to_s_1_1_4 = _runtime.select(t280, c_w_1_1_4, c_v_1_1_4)
+    del c_v_1_1_4, c_w_1_1_4, t280
+    across_1_1_4 = _runtime.select(t23, 0.0, t283 * _runtime.sign(to_s_1_1_4))
     del t283
-    wanted_1_1_4 = _runtime.select(across_1_1_4 == 0.0, 0.0, t284)
-    del across_1_1_4, t284
-    t285 = (most_1_1_4 - wanted_1_1_4) * (most_1_1_4 + wanted_1_1_4)
-    rest_1_1_4 = np.sqrt(np.maximum(0.0, t285)) * _runtime.sign(-t262)
-    del t285
-    t286 = axisx_1_1_4 * wanted_1_1_4 - t262 * rest_1_1_4
-    t287 = 1.0 / (most_1_1_4 * most_1_1_4)
-    del most_1_1_4
-    by_c_1_1_4 = _runtime.select(t263, 1.0, t286 * t287)
+    t284 = np.abs(to_s_1_1_4)
+    del to_s_1_1_4
+    t285 = _runtime.select(most_1_1_4 * t284 <= np.abs(across_1_1_4), most_1_1_4 * _runtime.sign(across_1_1_4), across_1_1_4 / t284)
+    del t284
+    wanted_1_1_4 = _runtime.select(across_1_1_4 == 0.0, 0.0, t285)
+    del across_1_1_4, t285
+    t286 = (most_1_1_4 - wanted_1_1_4) * (most_1_1_4 + wanted_1_1_4)
+    rest_1_1_4 = np.sqrt(np.maximum(0.0, t286)) * _runtime.sign(-t263)
     del t286
-    t288 = axisx_1_1_4 * rest_1_1_4 + t262 * wanted_1_1_4
-    del axisx_1_1_4, rest_1_1_4, t262, wanted_1_1_4
-    t289 = _runtime.select(t263, 0.0, t287 * t288)
-    del t263, t287, t288
-    versine_1_1_4 = _runtime.select(0.0 < by_c_1_1_4, t289 * t289 / (1.0 + np.abs(by_c_1_1_4)), 1.0 - by_c_1_1_4)
-    t290 = d4 * versine_1_1_4 + root1 * np.abs(t289) <= whole_1_1
+    t287 = axisx_1_1_4 * wanted_1_1_4 - t263 * rest_1_1_4
+    t288 = 1.0 / (most_1_1_4 * most_1_1_4)
+    del most_1_1_4
+    by_c_1_1_4 = _runtime.select(t264, 1.0, t287 * t288)
+    del t287
+    t289 = axisx_1_1_4 * rest_1_1_4 + t263 * wanted_1_1_4
+    del axisx_1_1_4, rest_1_1_4, t263, wanted_1_1_4
+    t290 = _runtime.select(t264, 0.0, t288 * t289)
+    del t264, t288, t289
+    versine_1_1_4 = _runtime.select(0.0 < by_c_1_1_4, t290 * t290 / (1.0 + np.abs(by_c_1_1_4)), 1.0 - by_c_1_1_4)
+    t291 = d4 * versine_1_1_4 + root1 * np.abs(t290) <= whole_1_1
     del versine_1_1_4
-    cosine_1_1_4 = _runtime.select(t290, by_c_1_1_4, 1.0)
+    cosine_1_1_4 = _runtime.select(t291, by_c_1_1_4, 1.0)
     del by_c_1_1_4
-    sine_1_1_4 = _runtime.select(t290, -t289, 0.0)
-    del t289, t290
+    sine_1_1_4 = _runtime.select(t291, -t290, 0.0)
+    del t290, t291
     c_1_1_6 = c_1_1_4 * cosine_1_1_4 - s_1_1_4 * sine_1_1_4
     s_1_1_6 = c_1_1_4 * sine_1_1_4 + s_1_1_4 * cosine_1_1_4
     del cosine_1_1_4, sine_1_1_4
     axisx_1_1_6 = T13 * c_1_1_6 + T23 * s_1_1_6
     h_1_1_6 = np.sqrt(t5 + axisx_1_1_6 * axisx_1_1_6)
-    t291 = h_1_1_6 <= 1.4210854715202004e-14
+    t292 = h_1_1_6 <= t89
     qx_1_1_6 = w_x * c_1_1_6 + w_y * s_1_1_6
-    t292 = h_1_1_6 == 0.0
-    t293 = 1.0 / h_1_1_6
-    uc_1_1_6 = _runtime.select(t292, 0.0, T33 * t293)
-    x_1_1_6 = _runtime.select(t291, qx_1_1_6, qx_1_1_6 - d5 * uc_1_1_6)
+    t293 = h_1_1_6 == 0.0
+    t294 = 1.0 / h_1_1_6
+    uc_1_1_6 = _runtime.select(t293, 0.0, T33 * t294)
+    x_1_1_6 = _runtime.select(t292, qx_1_1_6, qx_1_1_6 - d5 * uc_1_1_6)
     dqx_1_1_6 = w_y * c_1_1_6 - w_x * s_1_1_6
-    t294 = T33 * (T13 * s_1_1_6 - T23 * c_1_1_6) / (h_1_1_6 * h_1_1_6)
+    t295 = T33 * (T13 * s_1_1_6 - T23 * c_1_1_6) / (h_1_1_6 * h_1_1_6)
     del h_1_1_6
-    spin_1_1_6 = _runtime.select(t291, 0.0, t294)
-    del t294
+    spin_1_1_6 = _runtime.select(t292, 0.0, t295)
+    del t295
     rate_1_1_6 = d5 * spin_1_1_6
-    t295 = _runtime.select(t292, 1.0, axisx_1_1_6 * t293)
-    del axisx_1_1_6, t292, t293
-    dx_1_1_6 = _runtime.select(t291, dqx_1_1_6, dqx_1_1_6 - rate_1_1_6 * t295)
-    t296 = _runtime.select(t291, t23, t23 - d5 * t295)
-    t297 = _runtime.select(t291, 0.0, rate_1_1_6 * uc_1_1_6)
-    slope_1_1_6 = x_1_1_6 * dx_1_1_6 + t296 * t297
-    del dx_1_1_6, t297
+    t296 = _runtime.select(t293, 1.0, axisx_1_1_6 * t294)
+    del axisx_1_1_6, t293, t294
+    dx_1_1_6 = _runtime.select(t292, dqx_1_1_6, dqx_1_1_6 - rate_1_1_6 * t296)
+    t297 = _runtime.select(t292, t24, t24 - d5 * t296)
+    t298 = _runtime.select(t292, 0.0, rate_1_1_6 * uc_1_1_6)
+    slope_1_1_6 = x_1_1_6 * dx_1_1_6 + t297 * t298
+    del dx_1_1_6, t298
     straight_1_1_6 = dqx_1_1_6 * dqx_1_1_6
-    t298 = spin_1_1_6 * (qx_1_1_6 * uc_1_1_6 + t23 * t295)
+    t299 = spin_1_1_6 * (qx_1_1_6 * uc_1_1_6 + t24 * t296)
     del qx_1_1_6, spin_1_1_6, uc_1_1_6
-    t299 = straight_1_1_6 - rate_1_1_6 * (2.0 * dqx_1_1_6 * t295 - t298)
-    del dqx_1_1_6, rate_1_1_6, t295, t298
-    bends_1_1_6 = _runtime.select(t291, straight_1_1_6, t299)
-    del straight_1_1_6, t299
-    square_1_1_6 = x_1_1_6 * x_1_1_6 + t296 * t296
-    del t296, x_1_1_6
-    t300 = _runtime.select(t291, t98, fold_1_1) - whole_1_1
-    t301 = np.maximum(0.0, t300)
-    del t300
-    t302 = whole_1_1 + _runtime.select(t291, t3, full_1_1)
-    del t291
-    t303 = np.maximum(t301 * t301, np.minimum(t302 * t302, square_1_1_6))
-    del t301, t302
-    miss_1_1_6 = square_1_1_6 - t303
-    del square_1_1_6, t303
+    t300 = straight_1_1_6 - rate_1_1_6 * (2.0 * dqx_1_1_6 * t296 - t299)
+    del dqx_1_1_6, rate_1_1_6, t296, t299
+    bends_1_1_6 = _runtime.select(t292, straight_1_1_6, t300)
+    del straight_1_1_6, t300
+    square_1_1_6 = x_1_1_6 * x_1_1_6 + t297 * t297
+    del t297, x_1_1_6
+    t301 = _runtime.select(t292, t99, fold_1_1) - whole_1_1
+    t302 = np.maximum(0.0, t301)
+    del t301
+    t303 = whole_1_1 + _runtime.select(t292, t3, full_1_1)
+    del t292
+    t304 = np.maximum(t302 * t302, np.minimum(t303 * t303, square_1_1_6))
+    del t302, t303
+    miss_1_1_6 = square_1_1_6 - t304
+    del square_1_1_6, t304
     inner_1_1_6 = slope_1_1_6 * slope_1_1_6 - bends_1_1_6 * miss_1_1_6
-    t304 = inner_1_1_6 < 0.0
-    t305 = _runtime.sign(slope_1_1_6) * np.sqrt(np.maximum(0.0, inner_1_1_6))
+    t305 = inner_1_1_6 < 0.0
+    t306 = _runtime.sign(slope_1_1_6) * np.sqrt(np.maximum(0.0, inner_1_1_6))
     del inner_1_1_6
-    below_1_1_6 = _runtime.select(t304, 2.0 * bends_1_1_6, 2.0 * (slope_1_1_6 + t305))
-    del bends_1_1_6, t305
-    above_1_1_6 = _runtime.select(t304, slope_1_1_6, miss_1_1_6)
-    del miss_1_1_6, slope_1_1_6, t304
-    t306 = _runtime.select(np.abs(below_1_1_6) <= np.abs(above_1_1_6), 0.0, above_1_1_6 / below_1_1_6)
+    below_1_1_6 = _runtime.select(t305, 2.0 * bends_1_1_6, 2.0 * (slope_1_1_6 + t306))
+    del bends_1_1_6, t306
+    above_1_1_6 = _runtime.select(t305, slope_1_1_6, miss_1_1_6)
+    del miss_1_1_6, slope_1_1_6, t305
+    t307 = _runtime.select(np.abs(below_1_1_6) <= np.abs(above_1_1_6), 0.0, above_1_1_6 / below_1_1_6)
     del above_1_1_6, below_1_1_6
-    t307 = t306 * t306
-    t308 = 1.0 / (1.0 + t307)
-    by_c_1_1_6 = (1.0 - t307) * t308
-    del t307
-    t309 = t308 * (2.0 * t306)
-    del t306, t308
-    versine_1_1_6 = _runtime.select(0.0 < by_c_1_1_6, t309 * t309 / (1.0 + np.abs(by_c_1_1_6)), 1.0 - by_c_1_1_6)
-    t310 = d4 * versine_1_1_6 + root1 * np.abs(t309) <= whole_1_1
+    t308 = t307 * t307
+    t309 = 1.0 / (1.0 + t308)
+    by_c_1_1_6 = (1.0 - t308) * t309
+    del t308
+    t310 = t309 * (2.0 * t307)
+    del t307, t309
+    versine_1_1_6 = _runtime.select(0.0 < by_c_1_1_6, t310 * t310 / (1.0 + np.abs(by_c_1_1_6)), 1.0 - by_c_1_1_6)
+    t311 = d4 * versine_1_1_6 + root1 * np.abs(t310) <= whole_1_1
     del versine_1_1_6
-    cosine_1_1_6 = _runtime.select(t310, by_c_1_1_6, 1.0)
+    cosine_1_1_6 = _runtime.select(t311, by_c_1_1_6, 1.0)
     del by_c_1_1_6
-    sine_1_1_6 = _runtime.select(t310, -t309, 0.0)
-    del t309, t310
+    sine_1_1_6 = _runtime.select(t311, -t310, 0.0)
+    del t310, t311
     c_1_1_7 = c_1_1_6 * cosine_1_1_6 - s_1_1_6 * sine_1_1_6
     s_1_1_7 = c_1_1_6 * sine_1_1_6 + s_1_1_6 * cosine_1_1_6
     del c_1_1_6, cosine_1_1_6, s_1_1_6, sine_1_1_6
     axisx_1_1_7 = T13 * c_1_1_7 + T23 * s_1_1_7
     h_1_1_7 = np.sqrt(t5 + axisx_1_1_7 * axisx_1_1_7)
-    t311 = h_1_1_7 <= 1.4210854715202004e-14
+    t312 = h_1_1_7 <= t89
     qx_1_1_7 = w_x * c_1_1_7 + w_y * s_1_1_7
-    t312 = h_1_1_7 == 0.0
-    t313 = 1.0 / h_1_1_7
-    uc_1_1_7 = _runtime.select(t312, 0.0, T33 * t313)
-    x_1_1_7 = _runtime.select(t311, qx_1_1_7, qx_1_1_7 - d5 * uc_1_1_7)
+    t313 = h_1_1_7 == 0.0
+    t314 = 1.0 / h_1_1_7
+    uc_1_1_7 = _runtime.select(t313, 0.0, T33 * t314)
+    x_1_1_7 = _runtime.select(t312, qx_1_1_7, qx_1_1_7 - d5 * uc_1_1_7)
     dqx_1_1_7 = w_y * c_1_1_7 - w_x * s_1_1_7
-    t314 = T33 * (T13 * s_1_1_7 - T23 * c_1_1_7) / (h_1_1_7 * h_1_1_7)
+    t315 = T33 * (T13 * s_1_1_7 - T23 * c_1_1_7) / (h_1_1_7 * h_1_1_7)
     del h_1_1_7
-    spin_1_1_7 = _runtime.select(t311, 0.0, t314)
-    del t314
+    spin_1_1_7 = _runtime.select(t312, 0.0, t315)
+    del t315
     rate_1_1_7 = d5 * spin_1_1_7
-    t315 = _runtime.select(t312, 1.0, axisx_1_1_7 * t313)
-    del axisx_1_1_7, t312, t313
-    dx_1_1_7 = _runtime.select(t311, dqx_1_1_7, dqx_1_1_7 - rate_1_1_7 * t315)
-    t316 = _runtime.select(t311, t23, t23 - d5 * t315)
-    t317 = _runtime.select(t311, 0.0, rate_1_1_7 * uc_1_1_7)
-    slope_1_1_7 = x_1_1_7 * dx_1_1_7 + t316 * t317
-    del dx_1_1_7, t317
+    t316 = _runtime.select(t313, 1.0, axisx_1_1_7 * t314)
+    del axisx_1_1_7, t313, t314
+    dx_1_1_7 = _runtime.select(t312, dqx_1_1_7, dqx_1_1_7 - rate_1_1_7 * t316)
+    t317 = _runtime.select(t312, t24, t24 - d5 * t316)
+    t318 = _runtime.select(t312, 0.0, rate_1_1_7 * uc_1_1_7)
+    slope_1_1_7 = x_1_1_7 * dx_1_1_7 + t317 * t318
+    del dx_1_1_7, t318
     straight_1_1_7 = dqx_1_1_7 * dqx_1_1_7
-    t318 = spin_1_1_7 * (qx_1_1_7 * uc_1_1_7 + t23 * t315)
+    t319 = spin_1_1_7 * (qx_1_1_7 * uc_1_1_7 + t24 * t316)
     del qx_1_1_7, spin_1_1_7, uc_1_1_7
-    t319 = straight_1_1_7 - rate_1_1_7 * (2.0 * dqx_1_1_7 * t315 - t318)
-    del dqx_1_1_7, rate_1_1_7, t315, t318
-    bends_1_1_7 = _runtime.select(t311, straight_1_1_7, t319)
-    del straight_1_1_7, t319
-    square_1_1_7 = x_1_1_7 * x_1_1_7 + t316 * t316
-    del t316, x_1_1_7
-    t320 = _runtime.select(t311, t98, fold_1_1) - whole_1_1
-    t321 = np.maximum(0.0, t320)
-    del t320
-    t322 = whole_1_1 + _runtime.select(t311, t3, full_1_1)
-    del t311
-    t323 = np.maximum(t321 * t321, np.minimum(t322 * t322, square_1_1_7))
-    del t321, t322
-    miss_1_1_7 = square_1_1_7 - t323
-    del square_1_1_7, t323
+    t320 = straight_1_1_7 - rate_1_1_7 * (2.0 * dqx_1_1_7 * t316 - t319)
+    del dqx_1_1_7, rate_1_1_7, t316, t319
+    bends_1_1_7 = _runtime.select(t312, straight_1_1_7, t320)
+    del straight_1_1_7, t320
+    square_1_1_7 = x_1_1_7 * x_1_1_7 + t317 * t317
+    del t317, x_1_1_7
+    t321 = _runtime.select(t312, t99, fold_1_1) - whole_1_1
+    t322 = np.maximum(0.0, t321)
+    del t321
+    t323 = whole_1_1 + _runtime.select(t312, t3, full_1_1)
+    del t312
+    t324 = np.maximum(t322 * t322, np.minimum(t323 * t323, square_1_1_7))
+    del t322, t323
+    miss_1_1_7 = square_1_1_7 - t324
+    del square_1_1_7, t324
     inner_1_1_7 = slope_1_1_7 * slope_1_1_7 - bends_1_1_7 * miss_1_1_7
-    t324 = inner_1_1_7 < 0.0
-    t325 = _runtime.sign(slope_1_1_7) * np.sqrt(np.maximum(0.0, inner_1_1_7))
+    t325 = inner_1_1_7 < 0.0
+    t326 = _runtime.sign(slope_1_1_7) * np.sqrt(np.maximum(0.0, inner_1_1_7))
     del inner_1_1_7
-    below_1_1_7 = _runtime.select(t324, 2.0 * bends_1_1_7, 2.0 * (slope_1_1_7 + t325))
-    del bends_1_1_7, t325
-    above_1_1_7 = _runtime.select(t324, slope_1_1_7, miss_1_1_7)
-    del miss_1_1_7, slope_1_1_7, t324
-    t326 = _runtime.select(np.abs(below_1_1_7) <= np.abs(above_1_1_7), 0.0, above_1_1_7 / below_1_1_7)
+    below_1_1_7 = _runtime.select(t325, 2.0 * bends_1_1_7, 2.0 * (slope_1_1_7 + t326))
+    del bends_1_1_7, t326
+    above_1_1_7 = _runtime.select(t325, slope_1_1_7, miss_1_1_7)
+    del miss_1_1_7, slope_1_1_7, t325
+    t327 = _runtime.select(np.abs(below_1_1_7) <= np.abs(above_1_1_7), 0.0, above_1_1_7 / below_1_1_7)
     del above_1_1_7, below_1_1_7
-    t327 = t326 * t326
-    t328 = 1.0 / (1.0 + t327)
-    by_c_1_1_7 = (1.0 - t327) * t328
-    del t327
-    t329 = t328 * (2.0 * t326)
-    del t326, t328
-    versine_1_1_7 = _runtime.select(0.0 < by_c_1_1_7, t329 * t329 / (1.0 + np.abs(by_c_1_1_7)), 1.0 - by_c_1_1_7)
-    t330 = d4 * versine_1_1_7 + root1 * np.abs(t329) <= whole_1_1
+    t328 = t327 * t327
+    t329 = 1.0 / (1.0 + t328)
+    by_c_1_1_7 = (1.0 - t328) * t329
+    del t328
+    t330 = t329 * (2.0 * t327)
+    del t327, t329
+    versine_1_1_7 = _runtime.select(0.0 < by_c_1_1_7, t330 * t330 / (1.0 + np.abs(by_c_1_1_7)), 1.0 - by_c_1_1_7)
+    t331 = d4 * versine_1_1_7 + root1 * np.abs(t330) <= whole_1_1
     del versine_1_1_7
-    cosine_1_1_7 = _runtime.select(t330, by_c_1_1_7, 1.0)
+    cosine_1_1_7 = _runtime.select(t331, by_c_1_1_7, 1.0)
     del by_c_1_1_7
-    sine_1_1_7 = _runtime.select(t330, -t329, 0.0)
-    del t329, t330
+    sine_1_1_7 = _runtime.select(t331, -t330, 0.0)
+    del t330, t331
     c_1_1_8 = c_1_1_7 * cosine_1_1_7 - s_1_1_7 * sine_1_1_7
     s_1_1_8 = c_1_1_7 * sine_1_1_7 + s_1_1_7 * cosine_1_1_7
     del c_1_1_7, cosine_1_1_7, s_1_1_7, sine_1_1_7
     axisx_1_1_8 = T13 * c_1_1_8 + T23 * s_1_1_8
     h_1_1_8 = np.sqrt(t5 + axisx_1_1_8 * axisx_1_1_8)
-    t331 = h_1_1_8 <= 1.4210854715202004e-14
+    t332 = h_1_1_8 <= t89
     qx_1_1_8 = w_x * c_1_1_8 + w_y * s_1_1_8
-    t332 = h_1_1_8 == 0.0
-    t333 = 1.0 / h_1_1_8
+    t333 = h_1_1_8 == 0.0
+    t334 = 1.0 / h_1_1_8
     del h_1_1_8
-    t334 = qx_1_1_8 - d5 * _runtime.select(t332, 0.0, T33 * t333)
-    x_1_1_8 = _runtime.select(t331, qx_1_1_8, t334)
-    del qx_1_1_8, t334
-    t335 = _runtime.select(t332, 1.0, axisx_1_1_8 * t333)
-    del axisx_1_1_8, t332, t333
-    t336 = _runtime.select(t331, t23, t23 - d5 * t335)
-    del t335
-    t337 = np.sqrt(x_1_1_8 * x_1_1_8 + t336 * t336)
-    del t336, x_1_1_8
-    t338 = np.maximum(0.0, t337 - _runtime.select(t331, t3, full_1_1))
-    missed_1_1_8 = np.maximum(t338, _runtime.select(t331, t98, fold_1_1) - t337)
-    del t331, t337, t338
-    t339 = h_1_1_4 <= 1.4210854715202004e-14
+    t335 = qx_1_1_8 - d5 * _runtime.select(t333, 0.0, T33 * t334)
+    x_1_1_8 = _runtime.select(t332, qx_1_1_8, t335)
+    del qx_1_1_8, t335
+    t336 = _runtime.select(t333, 1.0, axisx_1_1_8 * t334)
+    del axisx_1_1_8, t333, t334
+    t337 = _runtime.select(t332, t24, t24 - d5 * t336)
+    del t336
+    t338 = np.sqrt(x_1_1_8 * x_1_1_8 + t337 * t337)
+    del t337, x_1_1_8
+    t339 = np.maximum(0.0, t338 - _runtime.select(t332, t3, full_1_1))
+    missed_1_1_8 = np.maximum(t339, _runtime.select(t332, t99, fold_1_1) - t338)
+    del t332, t338, t339
+    t340 = h_1_1_4 <= t89
     del h_1_1_4
-    x_1_1_4 = _runtime.select(t339, qx_1_1_4, t268)
-    del qx_1_1_4, t268
-    t340 = _runtime.select(t339, t23, t270)
-    del t270
-    t341 = np.sqrt(x_1_1_4 * x_1_1_4 + t340 * t340)
-    del t340, x_1_1_4
-    t342 = np.maximum(0.0, t341 - _runtime.select(t339, t3, full_1_1))
-    missed_1_1_4 = np.maximum(t342, _runtime.select(t339, t98, fold_1_1) - t341)
-    del t339, t341, t342
-    t343 = missed_1_1_8 < missed_1_1_4
+    x_1_1_4 = _runtime.select(t340, qx_1_1_4, t269)
+    del qx_1_1_4, t269
+    t341 = _runtime.select(t340, t24, t271)
+    del t271
+    t342 = np.sqrt(x_1_1_4 * x_1_1_4 + t341 * t341)
+    del t341, x_1_1_4
+    t343 = np.maximum(0.0, t342 - _runtime.select(t340, t3, full_1_1))
+    missed_1_1_4 = np.maximum(t343, _runtime.select(t340, t99, fold_1_1) - t342)
+    del t340, t342, t343
+    t344 = missed_1_1_8 < missed_1_1_4
     del missed_1_1_4, missed_1_1_8
-    c_1_1_9 = _runtime.select(t343, c_1_1_8, c_1_1_4)
+    c_1_1_9 = _runtime.select(t344, c_1_1_8, c_1_1_4)
     del c_1_1_4, c_1_1_8
-    s_1_1_9 = _runtime.select(t343, s_1_1_8, s_1_1_4)
-    del s_1_1_4, s_1_1_8, t343
+    s_1_1_9 = _runtime.select(t344, s_1_1_8, s_1_1_4)
+    del s_1_1_4, s_1_1_8, t344
     axisx_1_1_9 = T13 * c_1_1_9 + T23 * s_1_1_9
     h_1_1_9 = np.sqrt(t5 + axisx_1_1_9 * axisx_1_1_9)
-    t344 = h_1_1_9 <= 1.4210854715202004e-14
+    t345 = h_1_1_9 <= t89
     qx_1_1_9 = w_x * c_1_1_9 + w_y * s_1_1_9
-    t345 = h_1_1_9 == 0.0
-    t346 = 1.0 / h_1_1_9
+    t346 = h_1_1_9 == 0.0
+    t347 = 1.0 / h_1_1_9
     del h_1_1_9
-    t347 = qx_1_1_9 - d5 * _runtime.select(t345, 0.0, T33 * t346)
-    x_1_1_9 = _runtime.select(t344, qx_1_1_9, t347)
-    del qx_1_1_9, t347
-    t348 = _runtime.select(t345, 1.0, axisx_1_1_9 * t346)
-    del axisx_1_1_9, t345, t346
-    t349 = _runtime.select(t344, t23, t23 - d5 * t348)
-    del t348
-    t350 = np.sqrt(x_1_1_9 * x_1_1_9 + t349 * t349)
-    del t349, x_1_1_9
-    t351 = np.maximum(0.0, t350 - _runtime.select(t344, t3, full_1_1))
-    missed_1_1_9 = np.maximum(t351, _runtime.select(t344, t98, fold_1_1) - t350)
-    del t344, t350, t351
-    t352 = missed_1_1_17 < missed_1_1_9
+    t348 = qx_1_1_9 - d5 * _runtime.select(t346, 0.0, T33 * t347)
+    x_1_1_9 = _runtime.select(t345, qx_1_1_9, t348)
+    del qx_1_1_9, t348
+    t349 = _runtime.select(t346, 1.0, axisx_1_1_9 * t347)
+    del axisx_1_1_9, t346, t347
+    t350 = _runtime.select(t345, t24, t24 - d5 * t349)
+    del t349
+    t351 = np.sqrt(x_1_1_9 * x_1_1_9 + t350 * t350)
+    del t350, x_1_1_9
+    t352 = np.maximum(0.0, t351 - _runtime.select(t345, t3, full_1_1))
+    missed_1_1_9 = np.maximum(t352, _runtime.select(t345, t99, fold_1_1) - t351)
+    del t345, t351, t352
+    t353 = missed_1_1_17 < missed_1_1_9
     del missed_1_1_17, missed_1_1_9
-    s1 = _runtime.select(tangent1, _runtime.select(t352, s_1_1_17, s_1_1_9), -t13)
+    s1 = _runtime.select(tangent1, _runtime.select(t353, s_1_1_17, s_1_1_9), -t13)
     del s_1_1_17, s_1_1_9
-    c1 = _runtime.select(tangent1, _runtime.select(t352, c_1_1_17, c_1_1_9), c_1_1)
-    del c_1_1_17, c_1_1_9, t352
-    t353 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
-    t354 = t353 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
-    del t353
-    t355 = t354 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
+    c1 = _runtime.select(tangent1, _runtime.select(t353, c_1_1_17, c_1_1_9), c_1_1)
+    del c_1_1_17, c_1_1_9, t353
+    t354 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
+    t355 = t354 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
     del t354
-    t356 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
-    t357 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t358 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
-    t359 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
-    t360 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t361 = t355 & t356 & t357 & t358 & t359 & (t360 <= _runtime.ROTATION)
-    del t355, t356, t357, t358, t359, t360
-    t362 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t363 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t364 = t361 & (t362 <= _runtime.ROTATION) & t363 & (np.abs(T41) <= _runtime.ROTATION)
-    del t361, t362, t363
-    t365 = t364 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
-    del t364
-    t366 = t365 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    t356 = t355 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
+    del t355
+    t357 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
+    t358 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t359 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t360 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t361 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t362 = t356 & t357 & t358 & t359 & t360 & (t361 <= _runtime.ROTATION)
+    del t356, t357, t358, t359, t360, t361
+    t363 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t364 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t365 = t362 & (t363 <= _runtime.ROTATION) & t364 & (np.abs(T41) <= _runtime.ROTATION)
+    del t362, t363, t364
+    t366 = t365 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
     del t365
-    invalid = np.logical_not(t366)
+    t367 = t366 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
     del t366
-    t367 = -(_runtime.FEASIBILITY * (size * 0.5))
-    t368 = (t367 <= t1) & (t367 <= t2)
+    invalid = np.logical_not(t367)
+    del t367
+    t368 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t369 = (t368 <= t1) & (t368 <= t2)
     del t1, t2
     across = w_x * c1 + w_y * s1
     M_13 = T13 * c1 + T23 * s1
     h_wrist = np.sqrt(t5 + M_13 * M_13)
-    t369 = _runtime.VANISHING * 16.0
-    aligned_wrist = h_wrist <= t369
-    r_hub = np.sqrt(t24 + across * across)
+    aligned_wrist = h_wrist <= t22
+    r_hub = np.sqrt(t25 + across * across)
     hub_mid = r_hub <= t4
     t370 = d5 + r_hub
     t371 = d5 - r_hub
@@ -1911,7 +1911,7 @@ def _ik(
     del any_mid, d_mid, k_mid, t373
     t374 = 1.0 / r_hub
     del r_hub
-    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t23 * us_mid) * t374)
+    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t24 * us_mid) * t374)
     t375 = size * 0.00048828125
     close = root1 * h_wrist - t375 <= t4
     t376 = 1.0 / h_wrist
@@ -1919,7 +1919,7 @@ def _ik(
     t377 = across - d5 * s_phi
     c_phi = _runtime.select(aligned_wrist, 1.0, M_13 * t376)
     del t376
-    t378 = t23 - d5 * c_phi
+    t378 = t24 - d5 * c_phi
     here = np.sqrt(t377 * t377 + t378 * t378)
     del t377, t378
     in_reach = np.minimum(full_1_1, np.maximum(here, fold_1_1))
@@ -1933,7 +1933,7 @@ def _ik(
     t379 = 1.0 / n_near
     del n_near
     uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) * t379)
-    t380 = across * c_phi - t23 * s_phi
+    t380 = across * c_phi - t24 * s_phi
     t381 = np.abs(t380)
     side = _runtime.select(t381 <= t4, 1.0, -(t380 / t381))
     del t380, t381
@@ -1941,4918 +1941,4919 @@ def _ik(
     del d_near, k_near, side, t379
     us_near = _runtime.select(any_near, 0.0, t382)
     del any_near, t382
-    c_near = _runtime.select(hub_mid, 1.0, t374 * (across * uc_near + t23 * us_near))
+    c_near = _runtime.select(hub_mid, 1.0, t374 * (across * uc_near + t24 * us_near))
     t383 = s_phi - c_near
-    s_near = _runtime.select(hub_mid, 0.0, t374 * (across * us_near - t23 * uc_near))
+    s_near = _runtime.select(hub_mid, 0.0, t374 * (across * us_near - t24 * uc_near))
     del uc_near, us_near
     t384 = c_phi + s_near
-    t385 = h_wrist * np.sqrt(t383 * t383 + t384 * t384) - 2.2737367544323206e-13
+    t385 = 4.0 * _runtime.ROUNDING
+    t386 = h_wrist * np.sqrt(t383 * t383 + t384 * t384) - t385
     del h_wrist, t383, t384
-    t386 = _runtime.VANISHING * 4.0
-    t387 = np.logical_not(np.abs(here - in_reach) <= t4)
+    t387 = _runtime.VANISHING * 4.0
+    t388 = np.logical_not(np.abs(here - in_reach) <= t4)
     del here, in_reach
-    t388 = (t385 <= t386) & t387
-    del t385, t387
-    t389 = _runtime.select(close, _runtime.select(t388, c_near, s_phi), s_phi)
+    t389 = (t386 <= t387) & t388
+    del t386, t388
+    t390 = _runtime.select(close, _runtime.select(t389, c_near, s_phi), s_phi)
     del c_near, s_phi
-    sphi = _runtime.select(aligned_wrist, c_mid, t389)
-    del c_mid, t389
-    t390 = across - d5 * sphi
-    s_mid = _runtime.select(hub_mid, 0.0, t374 * (across * us_mid - t23 * uc_mid))
+    sphi = _runtime.select(aligned_wrist, c_mid, t390)
+    del c_mid, t390
+    t391 = across - d5 * sphi
+    s_mid = _runtime.select(hub_mid, 0.0, t374 * (across * us_mid - t24 * uc_mid))
     del across, hub_mid, t374, uc_mid, us_mid
-    t391 = _runtime.select(close, _runtime.select(t388, -s_near, c_phi), c_phi)
-    del c_phi, close, s_near, t388
-    cphi = _runtime.select(aligned_wrist, -s_mid, t391)
-    del s_mid, t391
-    ey = t23 - d5 * cphi
-    r_elbow = np.sqrt(t390 * t390 + ey * ey)
-    t392 = full_1_1 - r_elbow
-    t393 = t35 + r_elbow
-    t394 = r_elbow - t35
-    t395 = t368 & (t367 <= t392) & (t367 <= t393) & (t367 <= t394)
-    unreachable = np.logical_not(t395)
-    del t395
-    t396 = _runtime.poison(invalid | unreachable)
-    t397 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t396
+    t392 = _runtime.select(close, _runtime.select(t389, -s_near, c_phi), c_phi)
+    del c_phi, close, s_near, t389
+    cphi = _runtime.select(aligned_wrist, -s_mid, t392)
+    del s_mid, t392
+    ey = t24 - d5 * cphi
+    r_elbow = np.sqrt(t391 * t391 + ey * ey)
+    t393 = full_1_1 - r_elbow
+    t394 = t35 + r_elbow
+    t395 = r_elbow - t35
+    t396 = t369 & (t368 <= t393) & (t368 <= t394) & (t368 <= t395)
+    unreachable = np.logical_not(t396)
+    del t396
+    t397 = _runtime.poison(invalid | unreachable)
+    t398 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t397
     folded_elbow = r_elbow <= t4
     no_link_elbow = L2 * L3 <= _runtime.VANISHING * (full_1_1 * full_1_1)
-    t398 = folded_elbow | no_link_elbow
-    A_elbow = np.maximum(t392, 0.0)
-    del t392
-    C_elbow = np.maximum(t394, 0.0)
-    del t394
-    t399 = A_elbow * C_elbow
-    S_elbow = full_1_1 + r_elbow
-    B_elbow = np.maximum(t393, 0.0)
+    t399 = folded_elbow | no_link_elbow
+    A_elbow = np.maximum(t393, 0.0)
     del t393
-    t400 = S_elbow * B_elbow
-    t401 = 1.0 / (t399 + t400)
-    c_base_elbow = _runtime.select(t398, 1.0, -((t399 - t400) * t401))
-    t402 = 1.0 / r_elbow
+    C_elbow = np.maximum(t395, 0.0)
+    del t395
+    t400 = A_elbow * C_elbow
+    S_elbow = full_1_1 + r_elbow
+    B_elbow = np.maximum(t394, 0.0)
+    del t394
+    t401 = S_elbow * B_elbow
+    t402 = 1.0 / (t400 + t401)
+    c_base_elbow = _runtime.select(t399, 1.0, -((t400 - t401) * t402))
+    t403 = 1.0 / r_elbow
     del r_elbow
-    t403 = _runtime.select(folded_elbow, 0.0, ey * t402)
+    t404 = _runtime.select(folded_elbow, 0.0, ey * t403)
     del ey
-    t404 = c_base_elbow * t403
-    area_elbow = 2.0 * np.sqrt(t399 * t400)
-    del t399, t400
-    s_base_elbow = _runtime.select(t398, 0.0, t401 * area_elbow)
-    del t398, t401
-    t405 = _runtime.select(folded_elbow, 1.0, -(t390 * t402))
-    del t390, t402
-    t406 = s_base_elbow * t405
-    s2 = t404 - t406
-    t407 = c_base_elbow * t405
-    del c_base_elbow, t405
-    t408 = t403 * s_base_elbow
-    del s_base_elbow, t403
-    c2 = t407 + t408
-    t409 = A_elbow * S_elbow
+    t405 = c_base_elbow * t404
+    area_elbow = 2.0 * np.sqrt(t400 * t401)
+    del t400, t401
+    s_base_elbow = _runtime.select(t399, 0.0, t402 * area_elbow)
+    del t399, t402
+    t406 = _runtime.select(folded_elbow, 1.0, -(t391 * t403))
+    del t391, t403
+    t407 = s_base_elbow * t406
+    s2 = t405 - t407
+    t408 = c_base_elbow * t406
+    del c_base_elbow, t406
+    t409 = t404 * s_base_elbow
+    del s_base_elbow, t404
+    c2 = t408 + t409
+    t410 = A_elbow * S_elbow
     del A_elbow, S_elbow
-    t410 = C_elbow * B_elbow
+    t411 = C_elbow * B_elbow
     del B_elbow, C_elbow
-    t411 = 1.0 / (t409 + t410)
-    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t411)
+    t412 = 1.0 / (t410 + t411)
+    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t412)
     del area_elbow
-    c3 = _runtime.select(no_link_elbow, 1.0, -(t411 * (t409 - t410)))
-    del t409, t410, t411
-    t412 = np.arctan2(s3, c3)
-    t413 = sphi * c2 - cphi * s2
-    t414 = cphi * c2 + sphi * s2
-    t415 = np.arctan2(c3 * t413 - s3 * t414, c3 * t414 + s3 * t413)
-    del t413, t414
-    t416 = np.arctan2(M_13 * cphi + T33 * sphi, T13 * s1 - T23 * c1)
+    c3 = _runtime.select(no_link_elbow, 1.0, -(t412 * (t410 - t411)))
+    del t410, t411, t412
+    t413 = np.arctan2(s3, c3)
+    t414 = sphi * c2 - cphi * s2
+    t415 = cphi * c2 + sphi * s2
+    t416 = np.arctan2(c3 * t414 - s3 * t415, c3 * t415 + s3 * t414)
+    del t414, t415
+    t417 = np.arctan2(M_13 * cphi + T33 * sphi, T13 * s1 - T23 * c1)
     del M_13
-    t417 = _runtime.wrap_cut(-t416) + t396
-    del t416
-    t418 = np.arctan2(sphi * (T11 * c1 + T21 * s1) - T31 * cphi, T32 * cphi - sphi * (T12 * c1 + T22 * s1))
+    t418 = _runtime.wrap_cut(-t417) + t397
+    del t417
+    t419 = np.arctan2(sphi * (T11 * c1 + T21 * s1) - T31 * cphi, T32 * cphi - sphi * (T12 * c1 + T22 * s1))
     del c1, s1
-    t419 = _runtime.wrap_cut(-t418) + t396
-    del t418
-    s2_left_noflip_down = t404 + t406
-    del t404, t406
-    c2_left_noflip_down = t407 - t408
-    del t407, t408
-    t420 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
-    t421 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
-    t422 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
+    t420 = _runtime.wrap_cut(-t419) + t397
+    del t419
+    s2_left_noflip_down = t405 + t407
+    del t405, t407
+    c2_left_noflip_down = t408 - t409
+    del t408, t409
+    t421 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
+    t422 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
+    t423 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
     del c2_left_noflip_down, cphi, s2_left_noflip_down, sphi
-    t423 = np.arctan2(c3 * t421 + s3 * t422, c3 * t422 - s3 * t421)
-    del c3, s3, t421, t422
-    t424 = qx_1_1_10 + t30
+    t424 = np.arctan2(c3 * t422 + s3 * t423, c3 * t423 - s3 * t422)
+    del c3, s3, t422, t423
+    t425 = qx_1_1_10 + t30
     del t30
-    t425 = _runtime.select(t28, 1.0, -t32)
+    t426 = _runtime.select(t28, 1.0, -t32)
     del t28, t32
-    t426 = t23 - d5 * t425
-    t427 = np.maximum(np.sqrt(t424 * t424 + t426 * t426), fold_1_1)
-    del t424, t426
-    goal_1_1_10_left_flip_up = np.minimum(full_1_1, t427)
-    del t427
-    t428 = (t27 - goal_1_1_10_left_flip_up) * (t27 + goal_1_1_10_left_flip_up)
-    del t27
-    k_v_1_1_10_left_flip_up = np.maximum(0.0, t428)
+    t427 = t24 - d5 * t426
+    t428 = np.maximum(np.sqrt(t425 * t425 + t427 * t427), fold_1_1)
+    del t425, t427
+    goal_1_1_10_left_flip_up = np.minimum(full_1_1, t428)
     del t428
-    t429 = (t37 - goal_1_1_10_left_flip_up) * (t37 + goal_1_1_10_left_flip_up)
-    del goal_1_1_10_left_flip_up, t37
-    d_v_1_1_10_left_flip_up = np.maximum(0.0, -t429)
+    t429 = (t27 - goal_1_1_10_left_flip_up) * (t27 + goal_1_1_10_left_flip_up)
+    del t27
+    k_v_1_1_10_left_flip_up = np.maximum(0.0, t429)
     del t429
+    t430 = (t37 - goal_1_1_10_left_flip_up) * (t37 + goal_1_1_10_left_flip_up)
+    del goal_1_1_10_left_flip_up, t37
+    d_v_1_1_10_left_flip_up = np.maximum(0.0, -t430)
+    del t430
     n_v_1_1_10_left_flip_up = k_v_1_1_10_left_flip_up + d_v_1_1_10_left_flip_up
-    t430 = n_v_1_1_10_left_flip_up <= t38
+    t431 = n_v_1_1_10_left_flip_up <= t38
     del t38
-    t431 = k_v_1_1_10_left_flip_up - d_v_1_1_10_left_flip_up
-    t432 = 1.0 / n_v_1_1_10_left_flip_up
+    t432 = k_v_1_1_10_left_flip_up - d_v_1_1_10_left_flip_up
+    t433 = 1.0 / n_v_1_1_10_left_flip_up
     del n_v_1_1_10_left_flip_up
-    uc_v_1_1_10_left_flip_up = _runtime.select(t430, 1.0, t431 * t432)
-    del t431
-    t433 = qx_1_1_10 * uc_v_1_1_10_left_flip_up
-    t434 = 2.0 * _runtime.sign(-(t42 + qx_1_1_10 * t425))
-    del t42, t425
-    t435 = k_v_1_1_10_left_flip_up * d_v_1_1_10_left_flip_up
+    uc_v_1_1_10_left_flip_up = _runtime.select(t431, 1.0, t432 * t433)
+    del t432
+    t434 = qx_1_1_10 * uc_v_1_1_10_left_flip_up
+    t435 = 2.0 * _runtime.sign(-(t42 + qx_1_1_10 * t426))
+    del t42, t426
+    t436 = k_v_1_1_10_left_flip_up * d_v_1_1_10_left_flip_up
     del d_v_1_1_10_left_flip_up, k_v_1_1_10_left_flip_up
-    us_v_1_1_10_left_flip_up = _runtime.select(t430, 0.0, t432 * (t434 * np.sqrt(t435)))
-    del t430, t432, t434, t435
-    t436 = t23 * us_v_1_1_10_left_flip_up
-    c_v_1_1_10_left_flip_up = _runtime.select(t26, 1.0, t45 * (t433 + t436))
-    t437 = -(T33 * c_v_1_1_10_left_flip_up) < 0.0
-    t438 = qx_1_1_10 * us_v_1_1_10_left_flip_up
+    us_v_1_1_10_left_flip_up = _runtime.select(t431, 0.0, t433 * (t435 * np.sqrt(t436)))
+    del t431, t433, t435, t436
+    t437 = t24 * us_v_1_1_10_left_flip_up
+    c_v_1_1_10_left_flip_up = _runtime.select(t26, 1.0, t45 * (t434 + t437))
+    t438 = -(T33 * c_v_1_1_10_left_flip_up) < 0.0
+    t439 = qx_1_1_10 * us_v_1_1_10_left_flip_up
     del qx_1_1_10, us_v_1_1_10_left_flip_up
-    t439 = t23 * uc_v_1_1_10_left_flip_up
+    t440 = t24 * uc_v_1_1_10_left_flip_up
     del uc_v_1_1_10_left_flip_up
-    wc_1_1_10_left_flip_up = _runtime.select(t26, 0.0, t45 * (t438 + t439))
-    s_v_1_1_10_left_flip_up = _runtime.select(t26, 0.0, t45 * (t438 - t439))
-    del t438, t439
-    to_c_1_1_10_left_flip_up = _runtime.select(t437, wc_1_1_10_left_flip_up, -s_v_1_1_10_left_flip_up)
+    wc_1_1_10_left_flip_up = _runtime.select(t26, 0.0, t45 * (t439 + t440))
+    s_v_1_1_10_left_flip_up = _runtime.select(t26, 0.0, t45 * (t439 - t440))
+    del t439, t440
+    to_c_1_1_10_left_flip_up = _runtime.select(t438, wc_1_1_10_left_flip_up, -s_v_1_1_10_left_flip_up)
     del s_v_1_1_10_left_flip_up, wc_1_1_10_left_flip_up
-    c_w_1_1_10_left_flip_up = _runtime.select(t26, 1.0, t45 * (t433 - t436))
-    del t26, t433, t436, t45
-    to_s_1_1_10_left_flip_up = _runtime.select(t437, c_w_1_1_10_left_flip_up, c_v_1_1_10_left_flip_up)
-    del c_v_1_1_10_left_flip_up, c_w_1_1_10_left_flip_up, t437
-    t440 = T33 * to_c_1_1_10_left_flip_up * _runtime.sign(to_s_1_1_10_left_flip_up)
+    c_w_1_1_10_left_flip_up = _runtime.select(t26, 1.0, t45 * (t434 - t437))
+    del t26, t434, t437, t45
+    to_s_1_1_10_left_flip_up = _runtime.select(t438, c_w_1_1_10_left_flip_up, c_v_1_1_10_left_flip_up)
+    del c_v_1_1_10_left_flip_up, c_w_1_1_10_left_flip_up, t438
+    t441 = T33 * to_c_1_1_10_left_flip_up * _runtime.sign(to_s_1_1_10_left_flip_up)
     del to_c_1_1_10_left_flip_up
-    across_1_1_10_left_flip_up = _runtime.select(t22, 0.0, t440)
-    del t440
-    t441 = np.abs(to_s_1_1_10_left_flip_up)
+    across_1_1_10_left_flip_up = _runtime.select(t23, 0.0, t441)
+    del t441
+    t442 = np.abs(to_s_1_1_10_left_flip_up)
     del to_s_1_1_10_left_flip_up
-    t442 = most_1_1_10 * t441 <= np.abs(across_1_1_10_left_flip_up)
-    t443 = most_1_1_10 * _runtime.sign(across_1_1_10_left_flip_up)
-    t444 = _runtime.select(t442, t443, across_1_1_10_left_flip_up / t441)
-    del t441, t442, t443
-    wanted_1_1_10_left_flip_up = _runtime.select(across_1_1_10_left_flip_up == 0.0, 0.0, t444)
-    del across_1_1_10_left_flip_up, t444
-    t445 = (most_1_1_10 - wanted_1_1_10_left_flip_up) * (most_1_1_10 + wanted_1_1_10_left_flip_up)
+    t443 = most_1_1_10 * t442 <= np.abs(across_1_1_10_left_flip_up)
+    t444 = most_1_1_10 * _runtime.sign(across_1_1_10_left_flip_up)
+    t445 = _runtime.select(t443, t444, across_1_1_10_left_flip_up / t442)
+    del t442, t443, t444
+    wanted_1_1_10_left_flip_up = _runtime.select(across_1_1_10_left_flip_up == 0.0, 0.0, t445)
+    del across_1_1_10_left_flip_up, t445
+    t446 = (most_1_1_10 - wanted_1_1_10_left_flip_up) * (most_1_1_10 + wanted_1_1_10_left_flip_up)
     del most_1_1_10
-    rest_1_1_10_left_flip_up = t53 * np.sqrt(np.maximum(0.0, t445))
-    del t445, t53
-    t446 = axisx_1_1_10 * wanted_1_1_10_left_flip_up - t20 * rest_1_1_10_left_flip_up
-    by_c_1_1_10_left_flip_up = _runtime.select(t21, 1.0, t55 * t446)
-    del t446
-    t447 = axisx_1_1_10 * rest_1_1_10_left_flip_up + t20 * wanted_1_1_10_left_flip_up
+    rest_1_1_10_left_flip_up = t53 * np.sqrt(np.maximum(0.0, t446))
+    del t446, t53
+    t447 = axisx_1_1_10 * wanted_1_1_10_left_flip_up - t20 * rest_1_1_10_left_flip_up
+    by_c_1_1_10_left_flip_up = _runtime.select(t21, 1.0, t55 * t447)
+    del t447
+    t448 = axisx_1_1_10 * rest_1_1_10_left_flip_up + t20 * wanted_1_1_10_left_flip_up
     del axisx_1_1_10, rest_1_1_10_left_flip_up, t20, wanted_1_1_10_left_flip_up
-    t448 = _runtime.select(t21, 0.0, t55 * t447)
-    del t21, t447, t55
-    t449 = t448 * t448 / (1.0 + np.abs(by_c_1_1_10_left_flip_up))
-    versine_1_1_10_left_flip_up = _runtime.select(0.0 < by_c_1_1_10_left_flip_up, t449, 1.0 - by_c_1_1_10_left_flip_up)
-    del t449
-    cost_1_1_10_left_flip_up = d4 * versine_1_1_10_left_flip_up + root1 * np.abs(t448)
+    t449 = _runtime.select(t21, 0.0, t55 * t448)
+    del t21, t448, t55
+    t450 = t449 * t449 / (1.0 + np.abs(by_c_1_1_10_left_flip_up))
+    versine_1_1_10_left_flip_up = _runtime.select(0.0 < by_c_1_1_10_left_flip_up, t450, 1.0 - by_c_1_1_10_left_flip_up)
+    del t450
+    cost_1_1_10_left_flip_up = d4 * versine_1_1_10_left_flip_up + root1 * np.abs(t449)
     del versine_1_1_10_left_flip_up
-    t450 = cost_1_1_10_left_flip_up <= whole_1_1
+    t451 = cost_1_1_10_left_flip_up <= whole_1_1
     del cost_1_1_10_left_flip_up
-    cosine_1_1_10_left_flip_up = _runtime.select(t450, by_c_1_1_10_left_flip_up, 1.0)
+    cosine_1_1_10_left_flip_up = _runtime.select(t451, by_c_1_1_10_left_flip_up, 1.0)
     del by_c_1_1_10_left_flip_up
-    sine_1_1_10_left_flip_up = _runtime.select(t450, -t448, 0.0)
-    del t448, t450
+    sine_1_1_10_left_flip_up = _runtime.select(t451, -t449, 0.0)
+    del t449, t451
     c_1_1_11_left_flip_up = c_1_1_10 * cosine_1_1_10_left_flip_up - s_1_1_10 * sine_1_1_10_left_flip_up
     s_1_1_11_left_flip_up = c_1_1_10 * sine_1_1_10_left_flip_up + s_1_1_10 * cosine_1_1_10_left_flip_up
     del c_1_1_10, cosine_1_1_10_left_flip_up, s_1_1_10, sine_1_1_10_left_flip_up
     axisx_1_1_11_left_flip_up = T13 * c_1_1_11_left_flip_up + T23 * s_1_1_11_left_flip_up
-    t451 = axisx_1_1_11_left_flip_up * axisx_1_1_11_left_flip_up
-    t452 = T13 * s_1_1_11_left_flip_up - T23 * c_1_1_11_left_flip_up
-    most_1_1_11_left_flip_up = np.sqrt(t451 + t452 * t452)
-    t453 = most_1_1_11_left_flip_up <= 8.881784197001252e-16
+    t452 = axisx_1_1_11_left_flip_up * axisx_1_1_11_left_flip_up
+    t453 = T13 * s_1_1_11_left_flip_up - T23 * c_1_1_11_left_flip_up
+    most_1_1_11_left_flip_up = np.sqrt(t452 + t453 * t453)
+    t454 = most_1_1_11_left_flip_up <= _runtime.VANISHING
     qx_1_1_11_left_flip_up = w_x * c_1_1_11_left_flip_up + w_y * s_1_1_11_left_flip_up
-    t454 = qx_1_1_11_left_flip_up * qx_1_1_11_left_flip_up
-    r_1_1_11_left_flip_up = np.sqrt(t24 + t454)
-    del t454
-    t455 = r_1_1_11_left_flip_up <= t25
-    t456 = d5 + r_1_1_11_left_flip_up
-    h_1_1_11_left_flip_up = np.sqrt(t5 + t451)
-    del t451
-    t457 = h_1_1_11_left_flip_up == 0.0
-    t458 = 1.0 / h_1_1_11_left_flip_up
+    t455 = qx_1_1_11_left_flip_up * qx_1_1_11_left_flip_up
+    r_1_1_11_left_flip_up = np.sqrt(t25 + t455)
+    del t455
+    t456 = r_1_1_11_left_flip_up <= t4
+    t457 = d5 + r_1_1_11_left_flip_up
+    h_1_1_11_left_flip_up = np.sqrt(t5 + t452)
+    del t452
+    t458 = h_1_1_11_left_flip_up == 0.0
+    t459 = 1.0 / h_1_1_11_left_flip_up
     del h_1_1_11_left_flip_up
-    t459 = _runtime.select(t457, 0.0, T33 * t458)
-    t460 = qx_1_1_11_left_flip_up + d5 * t459
-    t461 = _runtime.select(t457, 1.0, -(axisx_1_1_11_left_flip_up * t458))
-    del t457, t458
-    t462 = t23 - d5 * t461
-    t463 = np.maximum(np.sqrt(t460 * t460 + t462 * t462), fold_1_1)
-    del t460, t462
-    goal_1_1_11_left_flip_up = np.minimum(full_1_1, t463)
-    del t463
-    t464 = (t456 - goal_1_1_11_left_flip_up) * (t456 + goal_1_1_11_left_flip_up)
-    k_v_1_1_11_left_flip_up = np.maximum(0.0, t464)
+    t460 = _runtime.select(t458, 0.0, T33 * t459)
+    t461 = qx_1_1_11_left_flip_up + d5 * t460
+    t462 = _runtime.select(t458, 1.0, -(axisx_1_1_11_left_flip_up * t459))
+    del t458, t459
+    t463 = t24 - d5 * t462
+    t464 = np.maximum(np.sqrt(t461 * t461 + t463 * t463), fold_1_1)
+    del t461, t463
+    goal_1_1_11_left_flip_up = np.minimum(full_1_1, t464)
     del t464
-    t465 = d5 - r_1_1_11_left_flip_up
-    t466 = (goal_1_1_11_left_flip_up - t465) * (goal_1_1_11_left_flip_up + t465)
-    del goal_1_1_11_left_flip_up, t465
-    d_v_1_1_11_left_flip_up = np.maximum(0.0, t466)
-    del t466
+    t465 = (t457 - goal_1_1_11_left_flip_up) * (t457 + goal_1_1_11_left_flip_up)
+    k_v_1_1_11_left_flip_up = np.maximum(0.0, t465)
+    del t465
+    t466 = d5 - r_1_1_11_left_flip_up
+    t467 = (goal_1_1_11_left_flip_up - t466) * (goal_1_1_11_left_flip_up + t466)
+    del goal_1_1_11_left_flip_up, t466
+    d_v_1_1_11_left_flip_up = np.maximum(0.0, t467)
+    del t467
     n_v_1_1_11_left_flip_up = k_v_1_1_11_left_flip_up + d_v_1_1_11_left_flip_up
-    t467 = n_v_1_1_11_left_flip_up <= size * t456 * 8.881784197001252e-16
-    del t456
-    t468 = k_v_1_1_11_left_flip_up - d_v_1_1_11_left_flip_up
-    t469 = 1.0 / n_v_1_1_11_left_flip_up
+    t468 = n_v_1_1_11_left_flip_up <= t4 * t457
+    del t457
+    t469 = k_v_1_1_11_left_flip_up - d_v_1_1_11_left_flip_up
+    t470 = 1.0 / n_v_1_1_11_left_flip_up
     del n_v_1_1_11_left_flip_up
-    uc_v_1_1_11_left_flip_up = _runtime.select(t467, 1.0, t468 * t469)
-    del t468
-    t470 = qx_1_1_11_left_flip_up * uc_v_1_1_11_left_flip_up
-    t471 = -(qx_1_1_11_left_flip_up * t461 + t23 * t459)
-    del t459, t461
-    t472 = k_v_1_1_11_left_flip_up * d_v_1_1_11_left_flip_up
+    uc_v_1_1_11_left_flip_up = _runtime.select(t468, 1.0, t469 * t470)
+    del t469
+    t471 = qx_1_1_11_left_flip_up * uc_v_1_1_11_left_flip_up
+    t472 = -(qx_1_1_11_left_flip_up * t462 + t24 * t460)
+    del t460, t462
+    t473 = k_v_1_1_11_left_flip_up * d_v_1_1_11_left_flip_up
     del d_v_1_1_11_left_flip_up, k_v_1_1_11_left_flip_up
-    t473 = t469 * (2.0 * _runtime.sign(t471) * np.sqrt(t472))
-    del t469, t471, t472
-    us_v_1_1_11_left_flip_up = _runtime.select(t467, 0.0, t473)
-    del t467, t473
-    t474 = t23 * us_v_1_1_11_left_flip_up
-    t475 = 1.0 / r_1_1_11_left_flip_up
+    t474 = t470 * (2.0 * _runtime.sign(t472) * np.sqrt(t473))
+    del t470, t472, t473
+    us_v_1_1_11_left_flip_up = _runtime.select(t468, 0.0, t474)
+    del t468, t474
+    t475 = t24 * us_v_1_1_11_left_flip_up
+    t476 = 1.0 / r_1_1_11_left_flip_up
     del r_1_1_11_left_flip_up
-    c_v_1_1_11_left_flip_up = _runtime.select(t455, 1.0, (t470 + t474) * t475)
-    t476 = -(T33 * c_v_1_1_11_left_flip_up) < 0.0
-    t477 = qx_1_1_11_left_flip_up * us_v_1_1_11_left_flip_up
+    c_v_1_1_11_left_flip_up = _runtime.select(t456, 1.0, (t471 + t475) * t476)
+    t477 = -(T33 * c_v_1_1_11_left_flip_up) < 0.0
+    t478 = qx_1_1_11_left_flip_up * us_v_1_1_11_left_flip_up
     del qx_1_1_11_left_flip_up, us_v_1_1_11_left_flip_up
-    t478 = t23 * uc_v_1_1_11_left_flip_up
+    t479 = t24 * uc_v_1_1_11_left_flip_up
     del uc_v_1_1_11_left_flip_up
-    wc_1_1_11_left_flip_up = _runtime.select(t455, 0.0, t475 * (t477 + t478))
-    s_v_1_1_11_left_flip_up = _runtime.select(t455, 0.0, t475 * (t477 - t478))
-    del t477, t478
-    to_c_1_1_11_left_flip_up = _runtime.select(t476, wc_1_1_11_left_flip_up, -s_v_1_1_11_left_flip_up)
+    wc_1_1_11_left_flip_up = _runtime.select(t456, 0.0, t476 * (t478 + t479))
+    s_v_1_1_11_left_flip_up = _runtime.select(t456, 0.0, t476 * (t478 - t479))
+    del t478, t479
+    to_c_1_1_11_left_flip_up = _runtime.select(t477, wc_1_1_11_left_flip_up, -s_v_1_1_11_left_flip_up)
     del s_v_1_1_11_left_flip_up, wc_1_1_11_left_flip_up
-    c_w_1_1_11_left_flip_up = _runtime.select(t455, 1.0, t475 * (t470 - t474))
-    del t455, t470, t474, t475
-    to_s_1_1_11_left_flip_up = _runtime.select(t476, c_w_1_1_11_left_flip_up, c_v_1_1_11_left_flip_up)
-    del c_v_1_1_11_left_flip_up, c_w_1_1_11_left_flip_up, t476
-    t479 = T33 * to_c_1_1_11_left_flip_up * _runtime.sign(to_s_1_1_11_left_flip_up)
+    c_w_1_1_11_left_flip_up = _runtime.select(t456, 1.0, t476 * (t471 - t475))
+    del t456, t471, t475, t476
+    to_s_1_1_11_left_flip_up = _runtime.select(t477, c_w_1_1_11_left_flip_up, c_v_1_1_11_left_flip_up)
+    del c_v_1_1_11_left_flip_up, c_w_1_1_11_left_flip_up, t477
+    t480 = T33 * to_c_1_1_11_left_flip_up * _runtime.sign(to_s_1_1_11_left_flip_up)
     del to_c_1_1_11_left_flip_up
-    across_1_1_11_left_flip_up = _runtime.select(t22, 0.0, t479)
-    del t479
-    t480 = np.abs(to_s_1_1_11_left_flip_up)
+    across_1_1_11_left_flip_up = _runtime.select(t23, 0.0, t480)
+    del t480
+    t481 = np.abs(to_s_1_1_11_left_flip_up)
     del to_s_1_1_11_left_flip_up
-    t481 = most_1_1_11_left_flip_up * t480 <= np.abs(across_1_1_11_left_flip_up)
-    t482 = most_1_1_11_left_flip_up * _runtime.sign(across_1_1_11_left_flip_up)
-    t483 = _runtime.select(t481, t482, across_1_1_11_left_flip_up / t480)
-    del t480, t481, t482
-    wanted_1_1_11_left_flip_up = _runtime.select(across_1_1_11_left_flip_up == 0.0, 0.0, t483)
-    del across_1_1_11_left_flip_up, t483
-    t484 = axisx_1_1_11_left_flip_up * wanted_1_1_11_left_flip_up
-    t485 = most_1_1_11_left_flip_up - wanted_1_1_11_left_flip_up
-    t486 = most_1_1_11_left_flip_up + wanted_1_1_11_left_flip_up
-    rest_1_1_11_left_flip_up = np.sqrt(np.maximum(0.0, t485 * t486)) * _runtime.sign(-t452)
-    del t485, t486
-    t487 = most_1_1_11_left_flip_up * most_1_1_11_left_flip_up
+    t482 = most_1_1_11_left_flip_up * t481 <= np.abs(across_1_1_11_left_flip_up)
+    t483 = most_1_1_11_left_flip_up * _runtime.sign(across_1_1_11_left_flip_up)
+    t484 = _runtime.select(t482, t483, across_1_1_11_left_flip_up / t481)
+    del t481, t482, t483
+    wanted_1_1_11_left_flip_up = _runtime.select(across_1_1_11_left_flip_up == 0.0, 0.0, t484)
+    del across_1_1_11_left_flip_up, t484
+    t485 = axisx_1_1_11_left_flip_up * wanted_1_1_11_left_flip_up
+    t486 = most_1_1_11_left_flip_up - wanted_1_1_11_left_flip_up
+    t487 = most_1_1_11_left_flip_up + wanted_1_1_11_left_flip_up
+    rest_1_1_11_left_flip_up = np.sqrt(np.maximum(0.0, t486 * t487)) * _runtime.sign(-t453)
+    del t486, t487
+    t488 = most_1_1_11_left_flip_up * most_1_1_11_left_flip_up
     del most_1_1_11_left_flip_up
-    t488 = 1.0 / t487
-    del t487
-    t489 = (t484 - t452 * rest_1_1_11_left_flip_up) * t488
-    del t484
-    by_c_1_1_11_left_flip_up = _runtime.select(t453, 1.0, t489)
-    del t489
-    t490 = axisx_1_1_11_left_flip_up * rest_1_1_11_left_flip_up
+    t489 = 1.0 / t488
+    del t488
+    t490 = (t485 - t453 * rest_1_1_11_left_flip_up) * t489
+    del t485
+    by_c_1_1_11_left_flip_up = _runtime.select(t454, 1.0, t490)
+    del t490
+    t491 = axisx_1_1_11_left_flip_up * rest_1_1_11_left_flip_up
     del axisx_1_1_11_left_flip_up, rest_1_1_11_left_flip_up
-    t491 = t488 * (t490 + t452 * wanted_1_1_11_left_flip_up)
-    del t452, t488, t490, wanted_1_1_11_left_flip_up
-    t492 = _runtime.select(t453, 0.0, t491)
-    del t453, t491
-    t493 = t492 * t492 / (1.0 + np.abs(by_c_1_1_11_left_flip_up))
-    versine_1_1_11_left_flip_up = _runtime.select(0.0 < by_c_1_1_11_left_flip_up, t493, 1.0 - by_c_1_1_11_left_flip_up)
-    del t493
-    cost_1_1_11_left_flip_up = d4 * versine_1_1_11_left_flip_up + root1 * np.abs(t492)
+    t492 = t489 * (t491 + t453 * wanted_1_1_11_left_flip_up)
+    del t453, t489, t491, wanted_1_1_11_left_flip_up
+    t493 = _runtime.select(t454, 0.0, t492)
+    del t454, t492
+    t494 = t493 * t493 / (1.0 + np.abs(by_c_1_1_11_left_flip_up))
+    versine_1_1_11_left_flip_up = _runtime.select(0.0 < by_c_1_1_11_left_flip_up, t494, 1.0 - by_c_1_1_11_left_flip_up)
+    del t494
+    cost_1_1_11_left_flip_up = d4 * versine_1_1_11_left_flip_up + root1 * np.abs(t493)
     del versine_1_1_11_left_flip_up
-    t494 = cost_1_1_11_left_flip_up <= whole_1_1
+    t495 = cost_1_1_11_left_flip_up <= whole_1_1
     del cost_1_1_11_left_flip_up
-    cosine_1_1_11_left_flip_up = _runtime.select(t494, by_c_1_1_11_left_flip_up, 1.0)
+    cosine_1_1_11_left_flip_up = _runtime.select(t495, by_c_1_1_11_left_flip_up, 1.0)
     del by_c_1_1_11_left_flip_up
-    t495 = c_1_1_11_left_flip_up * cosine_1_1_11_left_flip_up
-    sine_1_1_11_left_flip_up = _runtime.select(t494, -t492, 0.0)
-    del t492, t494
-    t496 = s_1_1_11_left_flip_up * sine_1_1_11_left_flip_up
-    c_1_1_12_left_flip_up = t495 - t496
-    del t495, t496
-    t497 = c_1_1_11_left_flip_up * sine_1_1_11_left_flip_up
+    t496 = c_1_1_11_left_flip_up * cosine_1_1_11_left_flip_up
+    sine_1_1_11_left_flip_up = _runtime.select(t495, -t493, 0.0)
+    del t493, t495
+    t497 = s_1_1_11_left_flip_up * sine_1_1_11_left_flip_up
+    c_1_1_12_left_flip_up = t496 - t497
+    del t496, t497
+    t498 = c_1_1_11_left_flip_up * sine_1_1_11_left_flip_up
     del c_1_1_11_left_flip_up, sine_1_1_11_left_flip_up
-    t498 = s_1_1_11_left_flip_up * cosine_1_1_11_left_flip_up
+    t499 = s_1_1_11_left_flip_up * cosine_1_1_11_left_flip_up
     del cosine_1_1_11_left_flip_up, s_1_1_11_left_flip_up
-    s_1_1_12_left_flip_up = t497 + t498
-    del t497, t498
+    s_1_1_12_left_flip_up = t498 + t499
+    del t498, t499
     axisx_1_1_12_left_flip_up = T13 * c_1_1_12_left_flip_up + T23 * s_1_1_12_left_flip_up
-    t499 = axisx_1_1_12_left_flip_up * axisx_1_1_12_left_flip_up
-    h_1_1_12_left_flip_up = np.sqrt(t5 + t499)
-    del t499
-    t500 = h_1_1_12_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_12_left_flip_up = w_x * c_1_1_12_left_flip_up + w_y * s_1_1_12_left_flip_up
-    t501 = h_1_1_12_left_flip_up == 0.0
-    t502 = 1.0 / h_1_1_12_left_flip_up
-    t503 = _runtime.select(t501, 0.0, T33 * t502)
-    x_1_1_12_left_flip_up = _runtime.select(t500, qx_1_1_12_left_flip_up, qx_1_1_12_left_flip_up + d5 * t503)
-    dqx_1_1_12_left_flip_up = w_y * c_1_1_12_left_flip_up - w_x * s_1_1_12_left_flip_up
-    t504 = T13 * s_1_1_12_left_flip_up - T23 * c_1_1_12_left_flip_up
-    t505 = h_1_1_12_left_flip_up * h_1_1_12_left_flip_up
-    del h_1_1_12_left_flip_up
-    spin_1_1_12_left_flip_up = _runtime.select(t500, 0.0, T33 * t504 / t505)
-    del t504, t505
-    rate_1_1_12_left_flip_up = d5 * spin_1_1_12_left_flip_up
-    t506 = _runtime.select(t501, 1.0, -(axisx_1_1_12_left_flip_up * t502))
-    del axisx_1_1_12_left_flip_up, t501, t502
-    t507 = dqx_1_1_12_left_flip_up - rate_1_1_12_left_flip_up * t506
-    dx_1_1_12_left_flip_up = _runtime.select(t500, dqx_1_1_12_left_flip_up, t507)
-    del t507
-    t508 = x_1_1_12_left_flip_up * dx_1_1_12_left_flip_up
-    del dx_1_1_12_left_flip_up
-    t509 = _runtime.select(t500, t23, t23 - d5 * t506)
-    dy_1_1_12_left_flip_up = _runtime.select(t500, 0.0, rate_1_1_12_left_flip_up * t503)
-    slope_1_1_12_left_flip_up = t508 - t509 * dy_1_1_12_left_flip_up
-    del dy_1_1_12_left_flip_up, t508
-    t510 = slope_1_1_12_left_flip_up * slope_1_1_12_left_flip_up
-    straight_1_1_12_left_flip_up = dqx_1_1_12_left_flip_up * dqx_1_1_12_left_flip_up
-    t511 = spin_1_1_12_left_flip_up * (qx_1_1_12_left_flip_up * t503 - t23 * t506)
-    del qx_1_1_12_left_flip_up, spin_1_1_12_left_flip_up, t503
-    t512 = rate_1_1_12_left_flip_up * (2.0 * dqx_1_1_12_left_flip_up * t506 + t511)
-    del dqx_1_1_12_left_flip_up, rate_1_1_12_left_flip_up, t506, t511
-    bends_1_1_12_left_flip_up = _runtime.select(t500, straight_1_1_12_left_flip_up, straight_1_1_12_left_flip_up - t512)
-    del straight_1_1_12_left_flip_up, t512
-    t513 = x_1_1_12_left_flip_up * x_1_1_12_left_flip_up
-    del x_1_1_12_left_flip_up
-    square_1_1_12_left_flip_up = t513 + t509 * t509
-    del t509, t513
-    t514 = _runtime.select(t500, t98, fold_1_1) - whole_1_1
-    t515 = np.maximum(0.0, t514)
-    del t514
-    t516 = whole_1_1 + _runtime.select(t500, t3, full_1_1)
+    t500 = axisx_1_1_12_left_flip_up * axisx_1_1_12_left_flip_up
+    h_1_1_12_left_flip_up = np.sqrt(t5 + t500)
     del t500
-    t517 = np.minimum(t516 * t516, square_1_1_12_left_flip_up)
-    del t516
-    miss_1_1_12_left_flip_up = square_1_1_12_left_flip_up - np.maximum(t515 * t515, t517)
-    del square_1_1_12_left_flip_up, t515, t517
-    t518 = bends_1_1_12_left_flip_up * miss_1_1_12_left_flip_up
-    inner_1_1_12_left_flip_up = t510 - t518
-    del t510, t518
-    t519 = inner_1_1_12_left_flip_up < 0.0
-    t520 = np.sqrt(np.maximum(0.0, inner_1_1_12_left_flip_up))
+    t501 = h_1_1_12_left_flip_up <= t89
+    qx_1_1_12_left_flip_up = w_x * c_1_1_12_left_flip_up + w_y * s_1_1_12_left_flip_up
+    t502 = h_1_1_12_left_flip_up == 0.0
+    t503 = 1.0 / h_1_1_12_left_flip_up
+    t504 = _runtime.select(t502, 0.0, T33 * t503)
+    x_1_1_12_left_flip_up = _runtime.select(t501, qx_1_1_12_left_flip_up, qx_1_1_12_left_flip_up + d5 * t504)
+    dqx_1_1_12_left_flip_up = w_y * c_1_1_12_left_flip_up - w_x * s_1_1_12_left_flip_up
+    t505 = T13 * s_1_1_12_left_flip_up - T23 * c_1_1_12_left_flip_up
+    t506 = h_1_1_12_left_flip_up * h_1_1_12_left_flip_up
+    del h_1_1_12_left_flip_up
+    spin_1_1_12_left_flip_up = _runtime.select(t501, 0.0, T33 * t505 / t506)
+    del t505, t506
+    rate_1_1_12_left_flip_up = d5 * spin_1_1_12_left_flip_up
+    t507 = _runtime.select(t502, 1.0, -(axisx_1_1_12_left_flip_up * t503))
+    del axisx_1_1_12_left_flip_up, t502, t503
+    t508 = dqx_1_1_12_left_flip_up - rate_1_1_12_left_flip_up * t507
+    dx_1_1_12_left_flip_up = _runtime.select(t501, dqx_1_1_12_left_flip_up, t508)
+    del t508
+    t509 = x_1_1_12_left_flip_up * dx_1_1_12_left_flip_up
+    del dx_1_1_12_left_flip_up
+    t510 = _runtime.select(t501, t24, t24 - d5 * t507)
+    dy_1_1_12_left_flip_up = _runtime.select(t501, 0.0, rate_1_1_12_left_flip_up * t504)
+    slope_1_1_12_left_flip_up = t509 - t510 * dy_1_1_12_left_flip_up
+    del dy_1_1_12_left_flip_up, t509
+    t511 = slope_1_1_12_left_flip_up * slope_1_1_12_left_flip_up
+    straight_1_1_12_left_flip_up = dqx_1_1_12_left_flip_up * dqx_1_1_12_left_flip_up
+    t512 = spin_1_1_12_left_flip_up * (qx_1_1_12_left_flip_up * t504 - t24 * t507)
+    del qx_1_1_12_left_flip_up, spin_1_1_12_left_flip_up, t504
+    t513 = rate_1_1_12_left_flip_up * (2.0 * dqx_1_1_12_left_flip_up * t507 + t512)
+    del dqx_1_1_12_left_flip_up, rate_1_1_12_left_flip_up, t507, t512
+    bends_1_1_12_left_flip_up = _runtime.select(t501, straight_1_1_12_left_flip_up, straight_1_1_12_left_flip_up - t513)
+    del straight_1_1_12_left_flip_up, t513
+    t514 = x_1_1_12_left_flip_up * x_1_1_12_left_flip_up
+    del x_1_1_12_left_flip_up
+    square_1_1_12_left_flip_up = t514 + t510 * t510
+    del t510, t514
+    t515 = _runtime.select(t501, t99, fold_1_1) - whole_1_1
+    t516 = np.maximum(0.0, t515)
+    del t515
+    t517 = whole_1_1 + _runtime.select(t501, t3, full_1_1)
+    del t501
+    t518 = np.minimum(t517 * t517, square_1_1_12_left_flip_up)
+    del t517
+    miss_1_1_12_left_flip_up = square_1_1_12_left_flip_up - np.maximum(t516 * t516, t518)
+    del square_1_1_12_left_flip_up, t516, t518
+    t519 = bends_1_1_12_left_flip_up * miss_1_1_12_left_flip_up
+    inner_1_1_12_left_flip_up = t511 - t519
+    del t511, t519
+    t520 = inner_1_1_12_left_flip_up < 0.0
+    t521 = np.sqrt(np.maximum(0.0, inner_1_1_12_left_flip_up))
     del inner_1_1_12_left_flip_up
-    t521 = _runtime.sign(slope_1_1_12_left_flip_up) * t520
-    del t520
-    below_1_1_12_left_flip_up = _runtime.select(t519, 2.0 * bends_1_1_12_left_flip_up, 2.0 * (slope_1_1_12_left_flip_up + t521))
-    del bends_1_1_12_left_flip_up, t521
-    above_1_1_12_left_flip_up = _runtime.select(t519, slope_1_1_12_left_flip_up, miss_1_1_12_left_flip_up)
-    del miss_1_1_12_left_flip_up, slope_1_1_12_left_flip_up, t519
-    t522 = np.abs(below_1_1_12_left_flip_up) <= np.abs(above_1_1_12_left_flip_up)
-    t523 = above_1_1_12_left_flip_up / below_1_1_12_left_flip_up
+    t522 = _runtime.sign(slope_1_1_12_left_flip_up) * t521
+    del t521
+    below_1_1_12_left_flip_up = _runtime.select(t520, 2.0 * bends_1_1_12_left_flip_up, 2.0 * (slope_1_1_12_left_flip_up + t522))
+    del bends_1_1_12_left_flip_up, t522
+    above_1_1_12_left_flip_up = _runtime.select(t520, slope_1_1_12_left_flip_up, miss_1_1_12_left_flip_up)
+    del miss_1_1_12_left_flip_up, slope_1_1_12_left_flip_up, t520
+    t523 = np.abs(below_1_1_12_left_flip_up) <= np.abs(above_1_1_12_left_flip_up)
+    t524 = above_1_1_12_left_flip_up / below_1_1_12_left_flip_up
     del above_1_1_12_left_flip_up, below_1_1_12_left_flip_up
-    t524 = _runtime.select(t522, 0.0, t523)
-    del t522, t523
-    t525 = t524 * t524
-    t526 = 1.0 / (1.0 + t525)
-    by_c_1_1_12_left_flip_up = (1.0 - t525) * t526
-    del t525
-    t527 = t526 * (2.0 * t524)
-    del t524, t526
-    t528 = t527 * t527 / (1.0 + np.abs(by_c_1_1_12_left_flip_up))
-    versine_1_1_12_left_flip_up = _runtime.select(0.0 < by_c_1_1_12_left_flip_up, t528, 1.0 - by_c_1_1_12_left_flip_up)
-    del t528
-    cost_1_1_12_left_flip_up = d4 * versine_1_1_12_left_flip_up + root1 * np.abs(t527)
+    t525 = _runtime.select(t523, 0.0, t524)
+    del t523, t524
+    t526 = t525 * t525
+    t527 = 1.0 / (1.0 + t526)
+    by_c_1_1_12_left_flip_up = (1.0 - t526) * t527
+    del t526
+    t528 = t527 * (2.0 * t525)
+    del t525, t527
+    t529 = t528 * t528 / (1.0 + np.abs(by_c_1_1_12_left_flip_up))
+    versine_1_1_12_left_flip_up = _runtime.select(0.0 < by_c_1_1_12_left_flip_up, t529, 1.0 - by_c_1_1_12_left_flip_up)
+    del t529
+    cost_1_1_12_left_flip_up = d4 * versine_1_1_12_left_flip_up + root1 * np.abs(t528)
     del versine_1_1_12_left_flip_up
-    t529 = cost_1_1_12_left_flip_up <= whole_1_1
+    t530 = cost_1_1_12_left_flip_up <= whole_1_1
     del cost_1_1_12_left_flip_up
-    cosine_1_1_12_left_flip_up = _runtime.select(t529, by_c_1_1_12_left_flip_up, 1.0)
+    cosine_1_1_12_left_flip_up = _runtime.select(t530, by_c_1_1_12_left_flip_up, 1.0)
     del by_c_1_1_12_left_flip_up
-    t530 = c_1_1_12_left_flip_up * cosine_1_1_12_left_flip_up
-    sine_1_1_12_left_flip_up = _runtime.select(t529, -t527, 0.0)
-    del t527, t529
-    t531 = s_1_1_12_left_flip_up * sine_1_1_12_left_flip_up
-    c_1_1_13_left_flip_up = t530 - t531
-    del t530, t531
-    t532 = c_1_1_12_left_flip_up * sine_1_1_12_left_flip_up
+    t531 = c_1_1_12_left_flip_up * cosine_1_1_12_left_flip_up
+    sine_1_1_12_left_flip_up = _runtime.select(t530, -t528, 0.0)
+    del t528, t530
+    t532 = s_1_1_12_left_flip_up * sine_1_1_12_left_flip_up
+    c_1_1_13_left_flip_up = t531 - t532
+    del t531, t532
+    t533 = c_1_1_12_left_flip_up * sine_1_1_12_left_flip_up
     del c_1_1_12_left_flip_up, sine_1_1_12_left_flip_up
-    t533 = s_1_1_12_left_flip_up * cosine_1_1_12_left_flip_up
+    t534 = s_1_1_12_left_flip_up * cosine_1_1_12_left_flip_up
     del cosine_1_1_12_left_flip_up, s_1_1_12_left_flip_up
-    s_1_1_13_left_flip_up = t532 + t533
-    del t532, t533
+    s_1_1_13_left_flip_up = t533 + t534
+    del t533, t534
     axisx_1_1_13_left_flip_up = T13 * c_1_1_13_left_flip_up + T23 * s_1_1_13_left_flip_up
-    t534 = axisx_1_1_13_left_flip_up * axisx_1_1_13_left_flip_up
-    h_1_1_13_left_flip_up = np.sqrt(t5 + t534)
-    del t534
-    t535 = h_1_1_13_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_13_left_flip_up = w_x * c_1_1_13_left_flip_up + w_y * s_1_1_13_left_flip_up
-    t536 = h_1_1_13_left_flip_up == 0.0
-    t537 = 1.0 / h_1_1_13_left_flip_up
-    t538 = _runtime.select(t536, 0.0, T33 * t537)
-    x_1_1_13_left_flip_up = _runtime.select(t535, qx_1_1_13_left_flip_up, qx_1_1_13_left_flip_up + d5 * t538)
-    dqx_1_1_13_left_flip_up = w_y * c_1_1_13_left_flip_up - w_x * s_1_1_13_left_flip_up
-    t539 = T13 * s_1_1_13_left_flip_up - T23 * c_1_1_13_left_flip_up
-    t540 = h_1_1_13_left_flip_up * h_1_1_13_left_flip_up
-    del h_1_1_13_left_flip_up
-    spin_1_1_13_left_flip_up = _runtime.select(t535, 0.0, T33 * t539 / t540)
-    del t539, t540
-    rate_1_1_13_left_flip_up = d5 * spin_1_1_13_left_flip_up
-    t541 = _runtime.select(t536, 1.0, -(axisx_1_1_13_left_flip_up * t537))
-    del axisx_1_1_13_left_flip_up, t536, t537
-    t542 = dqx_1_1_13_left_flip_up - rate_1_1_13_left_flip_up * t541
-    dx_1_1_13_left_flip_up = _runtime.select(t535, dqx_1_1_13_left_flip_up, t542)
-    del t542
-    t543 = x_1_1_13_left_flip_up * dx_1_1_13_left_flip_up
-    del dx_1_1_13_left_flip_up
-    t544 = _runtime.select(t535, t23, t23 - d5 * t541)
-    dy_1_1_13_left_flip_up = _runtime.select(t535, 0.0, rate_1_1_13_left_flip_up * t538)
-    slope_1_1_13_left_flip_up = t543 - t544 * dy_1_1_13_left_flip_up
-    del dy_1_1_13_left_flip_up, t543
-    t545 = slope_1_1_13_left_flip_up * slope_1_1_13_left_flip_up
-    straight_1_1_13_left_flip_up = dqx_1_1_13_left_flip_up * dqx_1_1_13_left_flip_up
-    t546 = spin_1_1_13_left_flip_up * (qx_1_1_13_left_flip_up * t538 - t23 * t541)
-    del qx_1_1_13_left_flip_up, spin_1_1_13_left_flip_up, t538
-    t547 = rate_1_1_13_left_flip_up * (2.0 * dqx_1_1_13_left_flip_up * t541 + t546)
-    del dqx_1_1_13_left_flip_up, rate_1_1_13_left_flip_up, t541, t546
-    bends_1_1_13_left_flip_up = _runtime.select(t535, straight_1_1_13_left_flip_up, straight_1_1_13_left_flip_up - t547)
-    del straight_1_1_13_left_flip_up, t547
-    t548 = x_1_1_13_left_flip_up * x_1_1_13_left_flip_up
-    del x_1_1_13_left_flip_up
-    square_1_1_13_left_flip_up = t548 + t544 * t544
-    del t544, t548
-    t549 = _runtime.select(t535, t98, fold_1_1) - whole_1_1
-    t550 = np.maximum(0.0, t549)
-    del t549
-    t551 = whole_1_1 + _runtime.select(t535, t3, full_1_1)
+    t535 = axisx_1_1_13_left_flip_up * axisx_1_1_13_left_flip_up
+    h_1_1_13_left_flip_up = np.sqrt(t5 + t535)
     del t535
-    t552 = np.minimum(t551 * t551, square_1_1_13_left_flip_up)
-    del t551
-    miss_1_1_13_left_flip_up = square_1_1_13_left_flip_up - np.maximum(t550 * t550, t552)
-    del square_1_1_13_left_flip_up, t550, t552
-    t553 = bends_1_1_13_left_flip_up * miss_1_1_13_left_flip_up
-    inner_1_1_13_left_flip_up = t545 - t553
-    del t545, t553
-    t554 = inner_1_1_13_left_flip_up < 0.0
-    t555 = np.sqrt(np.maximum(0.0, inner_1_1_13_left_flip_up))
+    t536 = h_1_1_13_left_flip_up <= t89
+    qx_1_1_13_left_flip_up = w_x * c_1_1_13_left_flip_up + w_y * s_1_1_13_left_flip_up
+    t537 = h_1_1_13_left_flip_up == 0.0
+    t538 = 1.0 / h_1_1_13_left_flip_up
+    t539 = _runtime.select(t537, 0.0, T33 * t538)
+    x_1_1_13_left_flip_up = _runtime.select(t536, qx_1_1_13_left_flip_up, qx_1_1_13_left_flip_up + d5 * t539)
+    dqx_1_1_13_left_flip_up = w_y * c_1_1_13_left_flip_up - w_x * s_1_1_13_left_flip_up
+    t540 = T13 * s_1_1_13_left_flip_up - T23 * c_1_1_13_left_flip_up
+    t541 = h_1_1_13_left_flip_up * h_1_1_13_left_flip_up
+    del h_1_1_13_left_flip_up
+    spin_1_1_13_left_flip_up = _runtime.select(t536, 0.0, T33 * t540 / t541)
+    del t540, t541
+    rate_1_1_13_left_flip_up = d5 * spin_1_1_13_left_flip_up
+    t542 = _runtime.select(t537, 1.0, -(axisx_1_1_13_left_flip_up * t538))
+    del axisx_1_1_13_left_flip_up, t537, t538
+    t543 = dqx_1_1_13_left_flip_up - rate_1_1_13_left_flip_up * t542
+    dx_1_1_13_left_flip_up = _runtime.select(t536, dqx_1_1_13_left_flip_up, t543)
+    del t543
+    t544 = x_1_1_13_left_flip_up * dx_1_1_13_left_flip_up
+    del dx_1_1_13_left_flip_up
+    t545 = _runtime.select(t536, t24, t24 - d5 * t542)
+    dy_1_1_13_left_flip_up = _runtime.select(t536, 0.0, rate_1_1_13_left_flip_up * t539)
+    slope_1_1_13_left_flip_up = t544 - t545 * dy_1_1_13_left_flip_up
+    del dy_1_1_13_left_flip_up, t544
+    t546 = slope_1_1_13_left_flip_up * slope_1_1_13_left_flip_up
+    straight_1_1_13_left_flip_up = dqx_1_1_13_left_flip_up * dqx_1_1_13_left_flip_up
+    t547 = spin_1_1_13_left_flip_up * (qx_1_1_13_left_flip_up * t539 - t24 * t542)
+    del qx_1_1_13_left_flip_up, spin_1_1_13_left_flip_up, t539
+    t548 = rate_1_1_13_left_flip_up * (2.0 * dqx_1_1_13_left_flip_up * t542 + t547)
+    del dqx_1_1_13_left_flip_up, rate_1_1_13_left_flip_up, t542, t547
+    bends_1_1_13_left_flip_up = _runtime.select(t536, straight_1_1_13_left_flip_up, straight_1_1_13_left_flip_up - t548)
+    del straight_1_1_13_left_flip_up, t548
+    t549 = x_1_1_13_left_flip_up * x_1_1_13_left_flip_up
+    del x_1_1_13_left_flip_up
+    square_1_1_13_left_flip_up = t549 + t545 * t545
+    del t545, t549
+    t550 = _runtime.select(t536, t99, fold_1_1) - whole_1_1
+    t551 = np.maximum(0.0, t550)
+    del t550
+    t552 = whole_1_1 + _runtime.select(t536, t3, full_1_1)
+    del t536
+    t553 = np.minimum(t552 * t552, square_1_1_13_left_flip_up)
+    del t552
+    miss_1_1_13_left_flip_up = square_1_1_13_left_flip_up - np.maximum(t551 * t551, t553)
+    del square_1_1_13_left_flip_up, t551, t553
+    t554 = bends_1_1_13_left_flip_up * miss_1_1_13_left_flip_up
+    inner_1_1_13_left_flip_up = t546 - t554
+    del t546, t554
+    t555 = inner_1_1_13_left_flip_up < 0.0
+    t556 = np.sqrt(np.maximum(0.0, inner_1_1_13_left_flip_up))
     del inner_1_1_13_left_flip_up
-    t556 = _runtime.sign(slope_1_1_13_left_flip_up) * t555
-    del t555
-    below_1_1_13_left_flip_up = _runtime.select(t554, 2.0 * bends_1_1_13_left_flip_up, 2.0 * (slope_1_1_13_left_flip_up + t556))
-    del bends_1_1_13_left_flip_up, t556
-    above_1_1_13_left_flip_up = _runtime.select(t554, slope_1_1_13_left_flip_up, miss_1_1_13_left_flip_up)
-    del miss_1_1_13_left_flip_up, slope_1_1_13_left_flip_up, t554
-    t557 = np.abs(below_1_1_13_left_flip_up) <= np.abs(above_1_1_13_left_flip_up)
-    t558 = above_1_1_13_left_flip_up / below_1_1_13_left_flip_up
+    t557 = _runtime.sign(slope_1_1_13_left_flip_up) * t556
+    del t556
+    below_1_1_13_left_flip_up = _runtime.select(t555, 2.0 * bends_1_1_13_left_flip_up, 2.0 * (slope_1_1_13_left_flip_up + t557))
+    del bends_1_1_13_left_flip_up, t557
+    above_1_1_13_left_flip_up = _runtime.select(t555, slope_1_1_13_left_flip_up, miss_1_1_13_left_flip_up)
+    del miss_1_1_13_left_flip_up, slope_1_1_13_left_flip_up, t555
+    t558 = np.abs(below_1_1_13_left_flip_up) <= np.abs(above_1_1_13_left_flip_up)
+    t559 = above_1_1_13_left_flip_up / below_1_1_13_left_flip_up
     del above_1_1_13_left_flip_up, below_1_1_13_left_flip_up
-    t559 = _runtime.select(t557, 0.0, t558)
-    del t557, t558
-    t560 = t559 * t559
-    t561 = 1.0 / (1.0 + t560)
-    by_c_1_1_13_left_flip_up = (1.0 - t560) * t561
-    del t560
-    t562 = t561 * (2.0 * t559)
-    del t559, t561
-    t563 = t562 * t562 / (1.0 + np.abs(by_c_1_1_13_left_flip_up))
-    versine_1_1_13_left_flip_up = _runtime.select(0.0 < by_c_1_1_13_left_flip_up, t563, 1.0 - by_c_1_1_13_left_flip_up)
-    del t563
-    cost_1_1_13_left_flip_up = d4 * versine_1_1_13_left_flip_up + root1 * np.abs(t562)
+    t560 = _runtime.select(t558, 0.0, t559)
+    del t558, t559
+    t561 = t560 * t560
+    t562 = 1.0 / (1.0 + t561)
+    by_c_1_1_13_left_flip_up = (1.0 - t561) * t562
+    del t561
+    t563 = t562 * (2.0 * t560)
+    del t560, t562
+    t564 = t563 * t563 / (1.0 + np.abs(by_c_1_1_13_left_flip_up))
+    versine_1_1_13_left_flip_up = _runtime.select(0.0 < by_c_1_1_13_left_flip_up, t564, 1.0 - by_c_1_1_13_left_flip_up)
+    del t564
+    cost_1_1_13_left_flip_up = d4 * versine_1_1_13_left_flip_up + root1 * np.abs(t563)
     del versine_1_1_13_left_flip_up
-    t564 = cost_1_1_13_left_flip_up <= whole_1_1
+    t565 = cost_1_1_13_left_flip_up <= whole_1_1
     del cost_1_1_13_left_flip_up
-    cosine_1_1_13_left_flip_up = _runtime.select(t564, by_c_1_1_13_left_flip_up, 1.0)
+    cosine_1_1_13_left_flip_up = _runtime.select(t565, by_c_1_1_13_left_flip_up, 1.0)
     del by_c_1_1_13_left_flip_up
-    t565 = c_1_1_13_left_flip_up * cosine_1_1_13_left_flip_up
-    sine_1_1_13_left_flip_up = _runtime.select(t564, -t562, 0.0)
-    del t562, t564
-    t566 = s_1_1_13_left_flip_up * sine_1_1_13_left_flip_up
-    c_1_1_14_left_flip_up = t565 - t566
-    del t565, t566
-    t567 = c_1_1_13_left_flip_up * sine_1_1_13_left_flip_up
+    t566 = c_1_1_13_left_flip_up * cosine_1_1_13_left_flip_up
+    sine_1_1_13_left_flip_up = _runtime.select(t565, -t563, 0.0)
+    del t563, t565
+    t567 = s_1_1_13_left_flip_up * sine_1_1_13_left_flip_up
+    c_1_1_14_left_flip_up = t566 - t567
+    del t566, t567
+    t568 = c_1_1_13_left_flip_up * sine_1_1_13_left_flip_up
     del c_1_1_13_left_flip_up, sine_1_1_13_left_flip_up
-    t568 = s_1_1_13_left_flip_up * cosine_1_1_13_left_flip_up
+    t569 = s_1_1_13_left_flip_up * cosine_1_1_13_left_flip_up
     del cosine_1_1_13_left_flip_up, s_1_1_13_left_flip_up
-    s_1_1_14_left_flip_up = t567 + t568
-    del t567, t568
+    s_1_1_14_left_flip_up = t568 + t569
+    del t568, t569
     axisx_1_1_14_left_flip_up = T13 * c_1_1_14_left_flip_up + T23 * s_1_1_14_left_flip_up
-    t569 = axisx_1_1_14_left_flip_up * axisx_1_1_14_left_flip_up
-    h_1_1_14_left_flip_up = np.sqrt(t5 + t569)
-    del t569
-    t570 = h_1_1_14_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_14_left_flip_up = w_x * c_1_1_14_left_flip_up + w_y * s_1_1_14_left_flip_up
-    t571 = h_1_1_14_left_flip_up == 0.0
-    t572 = 1.0 / h_1_1_14_left_flip_up
-    t573 = _runtime.select(t571, 0.0, T33 * t572)
-    x_1_1_14_left_flip_up = _runtime.select(t570, qx_1_1_14_left_flip_up, qx_1_1_14_left_flip_up + d5 * t573)
-    dqx_1_1_14_left_flip_up = w_y * c_1_1_14_left_flip_up - w_x * s_1_1_14_left_flip_up
-    t574 = T13 * s_1_1_14_left_flip_up - T23 * c_1_1_14_left_flip_up
-    t575 = h_1_1_14_left_flip_up * h_1_1_14_left_flip_up
-    del h_1_1_14_left_flip_up
-    spin_1_1_14_left_flip_up = _runtime.select(t570, 0.0, T33 * t574 / t575)
-    del t574, t575
-    rate_1_1_14_left_flip_up = d5 * spin_1_1_14_left_flip_up
-    t576 = _runtime.select(t571, 1.0, -(axisx_1_1_14_left_flip_up * t572))
-    del axisx_1_1_14_left_flip_up, t571, t572
-    t577 = dqx_1_1_14_left_flip_up - rate_1_1_14_left_flip_up * t576
-    dx_1_1_14_left_flip_up = _runtime.select(t570, dqx_1_1_14_left_flip_up, t577)
-    del t577
-    t578 = x_1_1_14_left_flip_up * dx_1_1_14_left_flip_up
-    del dx_1_1_14_left_flip_up
-    t579 = _runtime.select(t570, t23, t23 - d5 * t576)
-    dy_1_1_14_left_flip_up = _runtime.select(t570, 0.0, rate_1_1_14_left_flip_up * t573)
-    slope_1_1_14_left_flip_up = t578 - t579 * dy_1_1_14_left_flip_up
-    del dy_1_1_14_left_flip_up, t578
-    t580 = slope_1_1_14_left_flip_up * slope_1_1_14_left_flip_up
-    straight_1_1_14_left_flip_up = dqx_1_1_14_left_flip_up * dqx_1_1_14_left_flip_up
-    t581 = spin_1_1_14_left_flip_up * (qx_1_1_14_left_flip_up * t573 - t23 * t576)
-    del qx_1_1_14_left_flip_up, spin_1_1_14_left_flip_up, t573
-    t582 = rate_1_1_14_left_flip_up * (2.0 * dqx_1_1_14_left_flip_up * t576 + t581)
-    del dqx_1_1_14_left_flip_up, rate_1_1_14_left_flip_up, t576, t581
-    bends_1_1_14_left_flip_up = _runtime.select(t570, straight_1_1_14_left_flip_up, straight_1_1_14_left_flip_up - t582)
-    del straight_1_1_14_left_flip_up, t582
-    t583 = x_1_1_14_left_flip_up * x_1_1_14_left_flip_up
-    del x_1_1_14_left_flip_up
-    square_1_1_14_left_flip_up = t583 + t579 * t579
-    del t579, t583
-    t584 = _runtime.select(t570, t98, fold_1_1) - whole_1_1
-    t585 = np.maximum(0.0, t584)
-    del t584
-    t586 = whole_1_1 + _runtime.select(t570, t3, full_1_1)
+    t570 = axisx_1_1_14_left_flip_up * axisx_1_1_14_left_flip_up
+    h_1_1_14_left_flip_up = np.sqrt(t5 + t570)
     del t570
-    t587 = np.minimum(t586 * t586, square_1_1_14_left_flip_up)
-    del t586
-    miss_1_1_14_left_flip_up = square_1_1_14_left_flip_up - np.maximum(t585 * t585, t587)
-    del square_1_1_14_left_flip_up, t585, t587
-    t588 = bends_1_1_14_left_flip_up * miss_1_1_14_left_flip_up
-    inner_1_1_14_left_flip_up = t580 - t588
-    del t580, t588
-    t589 = inner_1_1_14_left_flip_up < 0.0
-    t590 = np.sqrt(np.maximum(0.0, inner_1_1_14_left_flip_up))
+    t571 = h_1_1_14_left_flip_up <= t89
+    qx_1_1_14_left_flip_up = w_x * c_1_1_14_left_flip_up + w_y * s_1_1_14_left_flip_up
+    t572 = h_1_1_14_left_flip_up == 0.0
+    t573 = 1.0 / h_1_1_14_left_flip_up
+    t574 = _runtime.select(t572, 0.0, T33 * t573)
+    x_1_1_14_left_flip_up = _runtime.select(t571, qx_1_1_14_left_flip_up, qx_1_1_14_left_flip_up + d5 * t574)
+    dqx_1_1_14_left_flip_up = w_y * c_1_1_14_left_flip_up - w_x * s_1_1_14_left_flip_up
+    t575 = T13 * s_1_1_14_left_flip_up - T23 * c_1_1_14_left_flip_up
+    t576 = h_1_1_14_left_flip_up * h_1_1_14_left_flip_up
+    del h_1_1_14_left_flip_up
+    spin_1_1_14_left_flip_up = _runtime.select(t571, 0.0, T33 * t575 / t576)
+    del t575, t576
+    rate_1_1_14_left_flip_up = d5 * spin_1_1_14_left_flip_up
+    t577 = _runtime.select(t572, 1.0, -(axisx_1_1_14_left_flip_up * t573))
+    del axisx_1_1_14_left_flip_up, t572, t573
+    t578 = dqx_1_1_14_left_flip_up - rate_1_1_14_left_flip_up * t577
+    dx_1_1_14_left_flip_up = _runtime.select(t571, dqx_1_1_14_left_flip_up, t578)
+    del t578
+    t579 = x_1_1_14_left_flip_up * dx_1_1_14_left_flip_up
+    del dx_1_1_14_left_flip_up
+    t580 = _runtime.select(t571, t24, t24 - d5 * t577)
+    dy_1_1_14_left_flip_up = _runtime.select(t571, 0.0, rate_1_1_14_left_flip_up * t574)
+    slope_1_1_14_left_flip_up = t579 - t580 * dy_1_1_14_left_flip_up
+    del dy_1_1_14_left_flip_up, t579
+    t581 = slope_1_1_14_left_flip_up * slope_1_1_14_left_flip_up
+    straight_1_1_14_left_flip_up = dqx_1_1_14_left_flip_up * dqx_1_1_14_left_flip_up
+    t582 = spin_1_1_14_left_flip_up * (qx_1_1_14_left_flip_up * t574 - t24 * t577)
+    del qx_1_1_14_left_flip_up, spin_1_1_14_left_flip_up, t574
+    t583 = rate_1_1_14_left_flip_up * (2.0 * dqx_1_1_14_left_flip_up * t577 + t582)
+    del dqx_1_1_14_left_flip_up, rate_1_1_14_left_flip_up, t577, t582
+    bends_1_1_14_left_flip_up = _runtime.select(t571, straight_1_1_14_left_flip_up, straight_1_1_14_left_flip_up - t583)
+    del straight_1_1_14_left_flip_up, t583
+    t584 = x_1_1_14_left_flip_up * x_1_1_14_left_flip_up
+    del x_1_1_14_left_flip_up
+    square_1_1_14_left_flip_up = t584 + t580 * t580
+    del t580, t584
+    t585 = _runtime.select(t571, t99, fold_1_1) - whole_1_1
+    t586 = np.maximum(0.0, t585)
+    del t585
+    t587 = whole_1_1 + _runtime.select(t571, t3, full_1_1)
+    del t571
+    t588 = np.minimum(t587 * t587, square_1_1_14_left_flip_up)
+    del t587
+    miss_1_1_14_left_flip_up = square_1_1_14_left_flip_up - np.maximum(t586 * t586, t588)
+    del square_1_1_14_left_flip_up, t586, t588
+    t589 = bends_1_1_14_left_flip_up * miss_1_1_14_left_flip_up
+    inner_1_1_14_left_flip_up = t581 - t589
+    del t581, t589
+    t590 = inner_1_1_14_left_flip_up < 0.0
+    t591 = np.sqrt(np.maximum(0.0, inner_1_1_14_left_flip_up))
     del inner_1_1_14_left_flip_up
-    t591 = _runtime.sign(slope_1_1_14_left_flip_up) * t590
-    del t590
-    below_1_1_14_left_flip_up = _runtime.select(t589, 2.0 * bends_1_1_14_left_flip_up, 2.0 * (slope_1_1_14_left_flip_up + t591))
-    del bends_1_1_14_left_flip_up, t591
-    above_1_1_14_left_flip_up = _runtime.select(t589, slope_1_1_14_left_flip_up, miss_1_1_14_left_flip_up)
-    del miss_1_1_14_left_flip_up, slope_1_1_14_left_flip_up, t589
-    t592 = np.abs(below_1_1_14_left_flip_up) <= np.abs(above_1_1_14_left_flip_up)
-    t593 = above_1_1_14_left_flip_up / below_1_1_14_left_flip_up
+    t592 = _runtime.sign(slope_1_1_14_left_flip_up) * t591
+    del t591
+    below_1_1_14_left_flip_up = _runtime.select(t590, 2.0 * bends_1_1_14_left_flip_up, 2.0 * (slope_1_1_14_left_flip_up + t592))
+    del bends_1_1_14_left_flip_up, t592
+    above_1_1_14_left_flip_up = _runtime.select(t590, slope_1_1_14_left_flip_up, miss_1_1_14_left_flip_up)
+    del miss_1_1_14_left_flip_up, slope_1_1_14_left_flip_up, t590
+    t593 = np.abs(below_1_1_14_left_flip_up) <= np.abs(above_1_1_14_left_flip_up)
+    t594 = above_1_1_14_left_flip_up / below_1_1_14_left_flip_up
     del above_1_1_14_left_flip_up, below_1_1_14_left_flip_up
-    t594 = _runtime.select(t592, 0.0, t593)
-    del t592, t593
-    t595 = t594 * t594
-    t596 = 1.0 / (1.0 + t595)
-    by_c_1_1_14_left_flip_up = (1.0 - t595) * t596
-    del t595
-    t597 = t596 * (2.0 * t594)
-    del t594, t596
-    t598 = t597 * t597 / (1.0 + np.abs(by_c_1_1_14_left_flip_up))
-    versine_1_1_14_left_flip_up = _runtime.select(0.0 < by_c_1_1_14_left_flip_up, t598, 1.0 - by_c_1_1_14_left_flip_up)
-    del t598
-    cost_1_1_14_left_flip_up = d4 * versine_1_1_14_left_flip_up + root1 * np.abs(t597)
+    t595 = _runtime.select(t593, 0.0, t594)
+    del t593, t594
+    t596 = t595 * t595
+    t597 = 1.0 / (1.0 + t596)
+    by_c_1_1_14_left_flip_up = (1.0 - t596) * t597
+    del t596
+    t598 = t597 * (2.0 * t595)
+    del t595, t597
+    t599 = t598 * t598 / (1.0 + np.abs(by_c_1_1_14_left_flip_up))
+    versine_1_1_14_left_flip_up = _runtime.select(0.0 < by_c_1_1_14_left_flip_up, t599, 1.0 - by_c_1_1_14_left_flip_up)
+    del t599
+    cost_1_1_14_left_flip_up = d4 * versine_1_1_14_left_flip_up + root1 * np.abs(t598)
     del versine_1_1_14_left_flip_up
-    t599 = cost_1_1_14_left_flip_up <= whole_1_1
+    t600 = cost_1_1_14_left_flip_up <= whole_1_1
     del cost_1_1_14_left_flip_up
-    cosine_1_1_14_left_flip_up = _runtime.select(t599, by_c_1_1_14_left_flip_up, 1.0)
+    cosine_1_1_14_left_flip_up = _runtime.select(t600, by_c_1_1_14_left_flip_up, 1.0)
     del by_c_1_1_14_left_flip_up
-    t600 = c_1_1_14_left_flip_up * cosine_1_1_14_left_flip_up
-    sine_1_1_14_left_flip_up = _runtime.select(t599, -t597, 0.0)
-    del t597, t599
-    t601 = s_1_1_14_left_flip_up * sine_1_1_14_left_flip_up
-    c_1_1_15_left_flip_up = t600 - t601
-    del t600, t601
-    t602 = c_1_1_14_left_flip_up * sine_1_1_14_left_flip_up
+    t601 = c_1_1_14_left_flip_up * cosine_1_1_14_left_flip_up
+    sine_1_1_14_left_flip_up = _runtime.select(t600, -t598, 0.0)
+    del t598, t600
+    t602 = s_1_1_14_left_flip_up * sine_1_1_14_left_flip_up
+    c_1_1_15_left_flip_up = t601 - t602
+    del t601, t602
+    t603 = c_1_1_14_left_flip_up * sine_1_1_14_left_flip_up
     del c_1_1_14_left_flip_up, sine_1_1_14_left_flip_up
-    t603 = s_1_1_14_left_flip_up * cosine_1_1_14_left_flip_up
+    t604 = s_1_1_14_left_flip_up * cosine_1_1_14_left_flip_up
     del cosine_1_1_14_left_flip_up, s_1_1_14_left_flip_up
-    s_1_1_15_left_flip_up = t602 + t603
-    del t602, t603
+    s_1_1_15_left_flip_up = t603 + t604
+    del t603, t604
     axisx_1_1_15_left_flip_up = T13 * c_1_1_15_left_flip_up + T23 * s_1_1_15_left_flip_up
-    t604 = axisx_1_1_15_left_flip_up * axisx_1_1_15_left_flip_up
-    h_1_1_15_left_flip_up = np.sqrt(t5 + t604)
-    del t604
-    t605 = h_1_1_15_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_15_left_flip_up = w_x * c_1_1_15_left_flip_up + w_y * s_1_1_15_left_flip_up
-    t606 = h_1_1_15_left_flip_up == 0.0
-    t607 = 1.0 / h_1_1_15_left_flip_up
-    t608 = _runtime.select(t606, 0.0, T33 * t607)
-    x_1_1_15_left_flip_up = _runtime.select(t605, qx_1_1_15_left_flip_up, qx_1_1_15_left_flip_up + d5 * t608)
-    dqx_1_1_15_left_flip_up = w_y * c_1_1_15_left_flip_up - w_x * s_1_1_15_left_flip_up
-    t609 = T13 * s_1_1_15_left_flip_up - T23 * c_1_1_15_left_flip_up
-    t610 = h_1_1_15_left_flip_up * h_1_1_15_left_flip_up
-    del h_1_1_15_left_flip_up
-    spin_1_1_15_left_flip_up = _runtime.select(t605, 0.0, T33 * t609 / t610)
-    del t609, t610
-    rate_1_1_15_left_flip_up = d5 * spin_1_1_15_left_flip_up
-    t611 = _runtime.select(t606, 1.0, -(axisx_1_1_15_left_flip_up * t607))
-    del axisx_1_1_15_left_flip_up, t606, t607
-    t612 = dqx_1_1_15_left_flip_up - rate_1_1_15_left_flip_up * t611
-    dx_1_1_15_left_flip_up = _runtime.select(t605, dqx_1_1_15_left_flip_up, t612)
-    del t612
-    t613 = x_1_1_15_left_flip_up * dx_1_1_15_left_flip_up
-    del dx_1_1_15_left_flip_up
-    t614 = _runtime.select(t605, t23, t23 - d5 * t611)
-    dy_1_1_15_left_flip_up = _runtime.select(t605, 0.0, rate_1_1_15_left_flip_up * t608)
-    slope_1_1_15_left_flip_up = t613 - t614 * dy_1_1_15_left_flip_up
-    del dy_1_1_15_left_flip_up, t613
-    t615 = slope_1_1_15_left_flip_up * slope_1_1_15_left_flip_up
-    straight_1_1_15_left_flip_up = dqx_1_1_15_left_flip_up * dqx_1_1_15_left_flip_up
-    t616 = spin_1_1_15_left_flip_up * (qx_1_1_15_left_flip_up * t608 - t23 * t611)
-    del qx_1_1_15_left_flip_up, spin_1_1_15_left_flip_up, t608
-    t617 = rate_1_1_15_left_flip_up * (2.0 * dqx_1_1_15_left_flip_up * t611 + t616)
-    del dqx_1_1_15_left_flip_up, rate_1_1_15_left_flip_up, t611, t616
-    bends_1_1_15_left_flip_up = _runtime.select(t605, straight_1_1_15_left_flip_up, straight_1_1_15_left_flip_up - t617)
-    del straight_1_1_15_left_flip_up, t617
-    t618 = x_1_1_15_left_flip_up * x_1_1_15_left_flip_up
-    del x_1_1_15_left_flip_up
-    square_1_1_15_left_flip_up = t618 + t614 * t614
-    del t614, t618
-    t619 = _runtime.select(t605, t98, fold_1_1) - whole_1_1
-    t620 = np.maximum(0.0, t619)
-    del t619
-    t621 = whole_1_1 + _runtime.select(t605, t3, full_1_1)
+    t605 = axisx_1_1_15_left_flip_up * axisx_1_1_15_left_flip_up
+    h_1_1_15_left_flip_up = np.sqrt(t5 + t605)
     del t605
-    t622 = np.minimum(t621 * t621, square_1_1_15_left_flip_up)
-    del t621
-    miss_1_1_15_left_flip_up = square_1_1_15_left_flip_up - np.maximum(t620 * t620, t622)
-    del square_1_1_15_left_flip_up, t620, t622
-    t623 = bends_1_1_15_left_flip_up * miss_1_1_15_left_flip_up
-    inner_1_1_15_left_flip_up = t615 - t623
-    del t615, t623
-    t624 = inner_1_1_15_left_flip_up < 0.0
-    t625 = np.sqrt(np.maximum(0.0, inner_1_1_15_left_flip_up))
+    t606 = h_1_1_15_left_flip_up <= t89
+    qx_1_1_15_left_flip_up = w_x * c_1_1_15_left_flip_up + w_y * s_1_1_15_left_flip_up
+    t607 = h_1_1_15_left_flip_up == 0.0
+    t608 = 1.0 / h_1_1_15_left_flip_up
+    t609 = _runtime.select(t607, 0.0, T33 * t608)
+    x_1_1_15_left_flip_up = _runtime.select(t606, qx_1_1_15_left_flip_up, qx_1_1_15_left_flip_up + d5 * t609)
+    dqx_1_1_15_left_flip_up = w_y * c_1_1_15_left_flip_up - w_x * s_1_1_15_left_flip_up
+    t610 = T13 * s_1_1_15_left_flip_up - T23 * c_1_1_15_left_flip_up
+    t611 = h_1_1_15_left_flip_up * h_1_1_15_left_flip_up
+    del h_1_1_15_left_flip_up
+    spin_1_1_15_left_flip_up = _runtime.select(t606, 0.0, T33 * t610 / t611)
+    del t610, t611
+    rate_1_1_15_left_flip_up = d5 * spin_1_1_15_left_flip_up
+    t612 = _runtime.select(t607, 1.0, -(axisx_1_1_15_left_flip_up * t608))
+    del axisx_1_1_15_left_flip_up, t607, t608
+    t613 = dqx_1_1_15_left_flip_up - rate_1_1_15_left_flip_up * t612
+    dx_1_1_15_left_flip_up = _runtime.select(t606, dqx_1_1_15_left_flip_up, t613)
+    del t613
+    t614 = x_1_1_15_left_flip_up * dx_1_1_15_left_flip_up
+    del dx_1_1_15_left_flip_up
+    t615 = _runtime.select(t606, t24, t24 - d5 * t612)
+    dy_1_1_15_left_flip_up = _runtime.select(t606, 0.0, rate_1_1_15_left_flip_up * t609)
+    slope_1_1_15_left_flip_up = t614 - t615 * dy_1_1_15_left_flip_up
+    del dy_1_1_15_left_flip_up, t614
+    t616 = slope_1_1_15_left_flip_up * slope_1_1_15_left_flip_up
+    straight_1_1_15_left_flip_up = dqx_1_1_15_left_flip_up * dqx_1_1_15_left_flip_up
+    t617 = spin_1_1_15_left_flip_up * (qx_1_1_15_left_flip_up * t609 - t24 * t612)
+    del qx_1_1_15_left_flip_up, spin_1_1_15_left_flip_up, t609
+    t618 = rate_1_1_15_left_flip_up * (2.0 * dqx_1_1_15_left_flip_up * t612 + t617)
+    del dqx_1_1_15_left_flip_up, rate_1_1_15_left_flip_up, t612, t617
+    bends_1_1_15_left_flip_up = _runtime.select(t606, straight_1_1_15_left_flip_up, straight_1_1_15_left_flip_up - t618)
+    del straight_1_1_15_left_flip_up, t618
+    t619 = x_1_1_15_left_flip_up * x_1_1_15_left_flip_up
+    del x_1_1_15_left_flip_up
+    square_1_1_15_left_flip_up = t619 + t615 * t615
+    del t615, t619
+    t620 = _runtime.select(t606, t99, fold_1_1) - whole_1_1
+    t621 = np.maximum(0.0, t620)
+    del t620
+    t622 = whole_1_1 + _runtime.select(t606, t3, full_1_1)
+    del t606
+    t623 = np.minimum(t622 * t622, square_1_1_15_left_flip_up)
+    del t622
+    miss_1_1_15_left_flip_up = square_1_1_15_left_flip_up - np.maximum(t621 * t621, t623)
+    del square_1_1_15_left_flip_up, t621, t623
+    t624 = bends_1_1_15_left_flip_up * miss_1_1_15_left_flip_up
+    inner_1_1_15_left_flip_up = t616 - t624
+    del t616, t624
+    t625 = inner_1_1_15_left_flip_up < 0.0
+    t626 = np.sqrt(np.maximum(0.0, inner_1_1_15_left_flip_up))
     del inner_1_1_15_left_flip_up
-    t626 = _runtime.sign(slope_1_1_15_left_flip_up) * t625
-    del t625
-    below_1_1_15_left_flip_up = _runtime.select(t624, 2.0 * bends_1_1_15_left_flip_up, 2.0 * (slope_1_1_15_left_flip_up + t626))
-    del bends_1_1_15_left_flip_up, t626
-    above_1_1_15_left_flip_up = _runtime.select(t624, slope_1_1_15_left_flip_up, miss_1_1_15_left_flip_up)
-    del miss_1_1_15_left_flip_up, slope_1_1_15_left_flip_up, t624
-    t627 = np.abs(below_1_1_15_left_flip_up) <= np.abs(above_1_1_15_left_flip_up)
-    t628 = above_1_1_15_left_flip_up / below_1_1_15_left_flip_up
+    t627 = _runtime.sign(slope_1_1_15_left_flip_up) * t626
+    del t626
+    below_1_1_15_left_flip_up = _runtime.select(t625, 2.0 * bends_1_1_15_left_flip_up, 2.0 * (slope_1_1_15_left_flip_up + t627))
+    del bends_1_1_15_left_flip_up, t627
+    above_1_1_15_left_flip_up = _runtime.select(t625, slope_1_1_15_left_flip_up, miss_1_1_15_left_flip_up)
+    del miss_1_1_15_left_flip_up, slope_1_1_15_left_flip_up, t625
+    t628 = np.abs(below_1_1_15_left_flip_up) <= np.abs(above_1_1_15_left_flip_up)
+    t629 = above_1_1_15_left_flip_up / below_1_1_15_left_flip_up
     del above_1_1_15_left_flip_up, below_1_1_15_left_flip_up
-    t629 = _runtime.select(t627, 0.0, t628)
-    del t627, t628
-    t630 = t629 * t629
-    t631 = 1.0 / (1.0 + t630)
-    by_c_1_1_15_left_flip_up = (1.0 - t630) * t631
-    del t630
-    t632 = t631 * (2.0 * t629)
-    del t629, t631
-    t633 = t632 * t632 / (1.0 + np.abs(by_c_1_1_15_left_flip_up))
-    versine_1_1_15_left_flip_up = _runtime.select(0.0 < by_c_1_1_15_left_flip_up, t633, 1.0 - by_c_1_1_15_left_flip_up)
-    del t633
-    cost_1_1_15_left_flip_up = d4 * versine_1_1_15_left_flip_up + root1 * np.abs(t632)
+    t630 = _runtime.select(t628, 0.0, t629)
+    del t628, t629
+    t631 = t630 * t630
+    t632 = 1.0 / (1.0 + t631)
+    by_c_1_1_15_left_flip_up = (1.0 - t631) * t632
+    del t631
+    t633 = t632 * (2.0 * t630)
+    del t630, t632
+    t634 = t633 * t633 / (1.0 + np.abs(by_c_1_1_15_left_flip_up))
+    versine_1_1_15_left_flip_up = _runtime.select(0.0 < by_c_1_1_15_left_flip_up, t634, 1.0 - by_c_1_1_15_left_flip_up)
+    del t634
+    cost_1_1_15_left_flip_up = d4 * versine_1_1_15_left_flip_up + root1 * np.abs(t633)
     del versine_1_1_15_left_flip_up
-    t634 = cost_1_1_15_left_flip_up <= whole_1_1
+    t635 = cost_1_1_15_left_flip_up <= whole_1_1
     del cost_1_1_15_left_flip_up
-    cosine_1_1_15_left_flip_up = _runtime.select(t634, by_c_1_1_15_left_flip_up, 1.0)
+    cosine_1_1_15_left_flip_up = _runtime.select(t635, by_c_1_1_15_left_flip_up, 1.0)
     del by_c_1_1_15_left_flip_up
-    t635 = c_1_1_15_left_flip_up * cosine_1_1_15_left_flip_up
-    sine_1_1_15_left_flip_up = _runtime.select(t634, -t632, 0.0)
-    del t632, t634
-    t636 = s_1_1_15_left_flip_up * sine_1_1_15_left_flip_up
-    c_1_1_16_left_flip_up = t635 - t636
-    del t635, t636
-    t637 = c_1_1_15_left_flip_up * sine_1_1_15_left_flip_up
+    t636 = c_1_1_15_left_flip_up * cosine_1_1_15_left_flip_up
+    sine_1_1_15_left_flip_up = _runtime.select(t635, -t633, 0.0)
+    del t633, t635
+    t637 = s_1_1_15_left_flip_up * sine_1_1_15_left_flip_up
+    c_1_1_16_left_flip_up = t636 - t637
+    del t636, t637
+    t638 = c_1_1_15_left_flip_up * sine_1_1_15_left_flip_up
     del c_1_1_15_left_flip_up, sine_1_1_15_left_flip_up
-    t638 = s_1_1_15_left_flip_up * cosine_1_1_15_left_flip_up
+    t639 = s_1_1_15_left_flip_up * cosine_1_1_15_left_flip_up
     del cosine_1_1_15_left_flip_up, s_1_1_15_left_flip_up
-    s_1_1_16_left_flip_up = t637 + t638
-    del t637, t638
+    s_1_1_16_left_flip_up = t638 + t639
+    del t638, t639
     axisx_1_1_16_left_flip_up = T13 * c_1_1_16_left_flip_up + T23 * s_1_1_16_left_flip_up
-    t639 = axisx_1_1_16_left_flip_up * axisx_1_1_16_left_flip_up
-    h_1_1_16_left_flip_up = np.sqrt(t5 + t639)
-    del t639
-    t640 = h_1_1_16_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_16_left_flip_up = w_x * c_1_1_16_left_flip_up + w_y * s_1_1_16_left_flip_up
-    t641 = h_1_1_16_left_flip_up == 0.0
-    t642 = 1.0 / h_1_1_16_left_flip_up
-    t643 = _runtime.select(t641, 0.0, T33 * t642)
-    x_1_1_16_left_flip_up = _runtime.select(t640, qx_1_1_16_left_flip_up, qx_1_1_16_left_flip_up + d5 * t643)
-    dqx_1_1_16_left_flip_up = w_y * c_1_1_16_left_flip_up - w_x * s_1_1_16_left_flip_up
-    t644 = T13 * s_1_1_16_left_flip_up - T23 * c_1_1_16_left_flip_up
-    t645 = h_1_1_16_left_flip_up * h_1_1_16_left_flip_up
-    del h_1_1_16_left_flip_up
-    spin_1_1_16_left_flip_up = _runtime.select(t640, 0.0, T33 * t644 / t645)
-    del t644, t645
-    rate_1_1_16_left_flip_up = d5 * spin_1_1_16_left_flip_up
-    t646 = _runtime.select(t641, 1.0, -(axisx_1_1_16_left_flip_up * t642))
-    del axisx_1_1_16_left_flip_up, t641, t642
-    t647 = dqx_1_1_16_left_flip_up - rate_1_1_16_left_flip_up * t646
-    dx_1_1_16_left_flip_up = _runtime.select(t640, dqx_1_1_16_left_flip_up, t647)
-    del t647
-    t648 = x_1_1_16_left_flip_up * dx_1_1_16_left_flip_up
-    del dx_1_1_16_left_flip_up
-    t649 = _runtime.select(t640, t23, t23 - d5 * t646)
-    dy_1_1_16_left_flip_up = _runtime.select(t640, 0.0, rate_1_1_16_left_flip_up * t643)
-    slope_1_1_16_left_flip_up = t648 - t649 * dy_1_1_16_left_flip_up
-    del dy_1_1_16_left_flip_up, t648
-    t650 = slope_1_1_16_left_flip_up * slope_1_1_16_left_flip_up
-    straight_1_1_16_left_flip_up = dqx_1_1_16_left_flip_up * dqx_1_1_16_left_flip_up
-    t651 = spin_1_1_16_left_flip_up * (qx_1_1_16_left_flip_up * t643 - t23 * t646)
-    del qx_1_1_16_left_flip_up, spin_1_1_16_left_flip_up, t643
-    t652 = rate_1_1_16_left_flip_up * (2.0 * dqx_1_1_16_left_flip_up * t646 + t651)
-    del dqx_1_1_16_left_flip_up, rate_1_1_16_left_flip_up, t646, t651
-    bends_1_1_16_left_flip_up = _runtime.select(t640, straight_1_1_16_left_flip_up, straight_1_1_16_left_flip_up - t652)
-    del straight_1_1_16_left_flip_up, t652
-    t653 = x_1_1_16_left_flip_up * x_1_1_16_left_flip_up
-    del x_1_1_16_left_flip_up
-    square_1_1_16_left_flip_up = t653 + t649 * t649
-    del t649, t653
-    t654 = _runtime.select(t640, t98, fold_1_1) - whole_1_1
-    t655 = np.maximum(0.0, t654)
-    del t654
-    t656 = whole_1_1 + _runtime.select(t640, t3, full_1_1)
+    t640 = axisx_1_1_16_left_flip_up * axisx_1_1_16_left_flip_up
+    h_1_1_16_left_flip_up = np.sqrt(t5 + t640)
     del t640
-    t657 = np.minimum(t656 * t656, square_1_1_16_left_flip_up)
-    del t656
-    miss_1_1_16_left_flip_up = square_1_1_16_left_flip_up - np.maximum(t655 * t655, t657)
-    del square_1_1_16_left_flip_up, t655, t657
-    t658 = bends_1_1_16_left_flip_up * miss_1_1_16_left_flip_up
-    inner_1_1_16_left_flip_up = t650 - t658
-    del t650, t658
-    t659 = inner_1_1_16_left_flip_up < 0.0
-    t660 = np.sqrt(np.maximum(0.0, inner_1_1_16_left_flip_up))
+    t641 = h_1_1_16_left_flip_up <= t89
+    qx_1_1_16_left_flip_up = w_x * c_1_1_16_left_flip_up + w_y * s_1_1_16_left_flip_up
+    t642 = h_1_1_16_left_flip_up == 0.0
+    t643 = 1.0 / h_1_1_16_left_flip_up
+    t644 = _runtime.select(t642, 0.0, T33 * t643)
+    x_1_1_16_left_flip_up = _runtime.select(t641, qx_1_1_16_left_flip_up, qx_1_1_16_left_flip_up + d5 * t644)
+    dqx_1_1_16_left_flip_up = w_y * c_1_1_16_left_flip_up - w_x * s_1_1_16_left_flip_up
+    t645 = T13 * s_1_1_16_left_flip_up - T23 * c_1_1_16_left_flip_up
+    t646 = h_1_1_16_left_flip_up * h_1_1_16_left_flip_up
+    del h_1_1_16_left_flip_up
+    spin_1_1_16_left_flip_up = _runtime.select(t641, 0.0, T33 * t645 / t646)
+    del t645, t646
+    rate_1_1_16_left_flip_up = d5 * spin_1_1_16_left_flip_up
+    t647 = _runtime.select(t642, 1.0, -(axisx_1_1_16_left_flip_up * t643))
+    del axisx_1_1_16_left_flip_up, t642, t643
+    t648 = dqx_1_1_16_left_flip_up - rate_1_1_16_left_flip_up * t647
+    dx_1_1_16_left_flip_up = _runtime.select(t641, dqx_1_1_16_left_flip_up, t648)
+    del t648
+    t649 = x_1_1_16_left_flip_up * dx_1_1_16_left_flip_up
+    del dx_1_1_16_left_flip_up
+    t650 = _runtime.select(t641, t24, t24 - d5 * t647)
+    dy_1_1_16_left_flip_up = _runtime.select(t641, 0.0, rate_1_1_16_left_flip_up * t644)
+    slope_1_1_16_left_flip_up = t649 - t650 * dy_1_1_16_left_flip_up
+    del dy_1_1_16_left_flip_up, t649
+    t651 = slope_1_1_16_left_flip_up * slope_1_1_16_left_flip_up
+    straight_1_1_16_left_flip_up = dqx_1_1_16_left_flip_up * dqx_1_1_16_left_flip_up
+    t652 = spin_1_1_16_left_flip_up * (qx_1_1_16_left_flip_up * t644 - t24 * t647)
+    del qx_1_1_16_left_flip_up, spin_1_1_16_left_flip_up, t644
+    t653 = rate_1_1_16_left_flip_up * (2.0 * dqx_1_1_16_left_flip_up * t647 + t652)
+    del dqx_1_1_16_left_flip_up, rate_1_1_16_left_flip_up, t647, t652
+    bends_1_1_16_left_flip_up = _runtime.select(t641, straight_1_1_16_left_flip_up, straight_1_1_16_left_flip_up - t653)
+    del straight_1_1_16_left_flip_up, t653
+    t654 = x_1_1_16_left_flip_up * x_1_1_16_left_flip_up
+    del x_1_1_16_left_flip_up
+    square_1_1_16_left_flip_up = t654 + t650 * t650
+    del t650, t654
+    t655 = _runtime.select(t641, t99, fold_1_1) - whole_1_1
+    t656 = np.maximum(0.0, t655)
+    del t655
+    t657 = whole_1_1 + _runtime.select(t641, t3, full_1_1)
+    del t641
+    t658 = np.minimum(t657 * t657, square_1_1_16_left_flip_up)
+    del t657
+    miss_1_1_16_left_flip_up = square_1_1_16_left_flip_up - np.maximum(t656 * t656, t658)
+    del square_1_1_16_left_flip_up, t656, t658
+    t659 = bends_1_1_16_left_flip_up * miss_1_1_16_left_flip_up
+    inner_1_1_16_left_flip_up = t651 - t659
+    del t651, t659
+    t660 = inner_1_1_16_left_flip_up < 0.0
+    t661 = np.sqrt(np.maximum(0.0, inner_1_1_16_left_flip_up))
     del inner_1_1_16_left_flip_up
-    t661 = _runtime.sign(slope_1_1_16_left_flip_up) * t660
-    del t660
-    below_1_1_16_left_flip_up = _runtime.select(t659, 2.0 * bends_1_1_16_left_flip_up, 2.0 * (slope_1_1_16_left_flip_up + t661))
-    del bends_1_1_16_left_flip_up, t661
-    above_1_1_16_left_flip_up = _runtime.select(t659, slope_1_1_16_left_flip_up, miss_1_1_16_left_flip_up)
-    del miss_1_1_16_left_flip_up, slope_1_1_16_left_flip_up, t659
-    t662 = np.abs(below_1_1_16_left_flip_up) <= np.abs(above_1_1_16_left_flip_up)
-    t663 = above_1_1_16_left_flip_up / below_1_1_16_left_flip_up
+    t662 = _runtime.sign(slope_1_1_16_left_flip_up) * t661
+    del t661
+    below_1_1_16_left_flip_up = _runtime.select(t660, 2.0 * bends_1_1_16_left_flip_up, 2.0 * (slope_1_1_16_left_flip_up + t662))
+    del bends_1_1_16_left_flip_up, t662
+    above_1_1_16_left_flip_up = _runtime.select(t660, slope_1_1_16_left_flip_up, miss_1_1_16_left_flip_up)
+    del miss_1_1_16_left_flip_up, slope_1_1_16_left_flip_up, t660
+    t663 = np.abs(below_1_1_16_left_flip_up) <= np.abs(above_1_1_16_left_flip_up)
+    t664 = above_1_1_16_left_flip_up / below_1_1_16_left_flip_up
     del above_1_1_16_left_flip_up, below_1_1_16_left_flip_up
-    t664 = _runtime.select(t662, 0.0, t663)
-    del t662, t663
-    t665 = t664 * t664
-    t666 = 1.0 / (1.0 + t665)
-    by_c_1_1_16_left_flip_up = (1.0 - t665) * t666
-    del t665
-    t667 = t666 * (2.0 * t664)
-    del t664, t666
-    t668 = t667 * t667 / (1.0 + np.abs(by_c_1_1_16_left_flip_up))
-    versine_1_1_16_left_flip_up = _runtime.select(0.0 < by_c_1_1_16_left_flip_up, t668, 1.0 - by_c_1_1_16_left_flip_up)
-    del t668
-    cost_1_1_16_left_flip_up = d4 * versine_1_1_16_left_flip_up + root1 * np.abs(t667)
+    t665 = _runtime.select(t663, 0.0, t664)
+    del t663, t664
+    t666 = t665 * t665
+    t667 = 1.0 / (1.0 + t666)
+    by_c_1_1_16_left_flip_up = (1.0 - t666) * t667
+    del t666
+    t668 = t667 * (2.0 * t665)
+    del t665, t667
+    t669 = t668 * t668 / (1.0 + np.abs(by_c_1_1_16_left_flip_up))
+    versine_1_1_16_left_flip_up = _runtime.select(0.0 < by_c_1_1_16_left_flip_up, t669, 1.0 - by_c_1_1_16_left_flip_up)
+    del t669
+    cost_1_1_16_left_flip_up = d4 * versine_1_1_16_left_flip_up + root1 * np.abs(t668)
     del versine_1_1_16_left_flip_up
-    t669 = cost_1_1_16_left_flip_up <= whole_1_1
+    t670 = cost_1_1_16_left_flip_up <= whole_1_1
     del cost_1_1_16_left_flip_up
-    cosine_1_1_16_left_flip_up = _runtime.select(t669, by_c_1_1_16_left_flip_up, 1.0)
+    cosine_1_1_16_left_flip_up = _runtime.select(t670, by_c_1_1_16_left_flip_up, 1.0)
     del by_c_1_1_16_left_flip_up
-    t670 = c_1_1_16_left_flip_up * cosine_1_1_16_left_flip_up
-    sine_1_1_16_left_flip_up = _runtime.select(t669, -t667, 0.0)
-    del t667, t669
-    t671 = s_1_1_16_left_flip_up * sine_1_1_16_left_flip_up
-    c_1_1_17_left_flip_up = t670 - t671
-    del t670, t671
-    t672 = c_1_1_16_left_flip_up * sine_1_1_16_left_flip_up
+    t671 = c_1_1_16_left_flip_up * cosine_1_1_16_left_flip_up
+    sine_1_1_16_left_flip_up = _runtime.select(t670, -t668, 0.0)
+    del t668, t670
+    t672 = s_1_1_16_left_flip_up * sine_1_1_16_left_flip_up
+    c_1_1_17_left_flip_up = t671 - t672
+    del t671, t672
+    t673 = c_1_1_16_left_flip_up * sine_1_1_16_left_flip_up
     del c_1_1_16_left_flip_up, sine_1_1_16_left_flip_up
-    t673 = s_1_1_16_left_flip_up * cosine_1_1_16_left_flip_up
+    t674 = s_1_1_16_left_flip_up * cosine_1_1_16_left_flip_up
     del cosine_1_1_16_left_flip_up, s_1_1_16_left_flip_up
-    s_1_1_17_left_flip_up = t672 + t673
-    del t672, t673
+    s_1_1_17_left_flip_up = t673 + t674
+    del t673, t674
     axisx_1_1_17_left_flip_up = T13 * c_1_1_17_left_flip_up + T23 * s_1_1_17_left_flip_up
-    t674 = axisx_1_1_17_left_flip_up * axisx_1_1_17_left_flip_up
-    h_1_1_17_left_flip_up = np.sqrt(t5 + t674)
-    del t674
-    t675 = h_1_1_17_left_flip_up <= 1.4210854715202004e-14
+    t675 = axisx_1_1_17_left_flip_up * axisx_1_1_17_left_flip_up
+    h_1_1_17_left_flip_up = np.sqrt(t5 + t675)
+    del t675
+    t676 = h_1_1_17_left_flip_up <= t89
     qx_1_1_17_left_flip_up = w_x * c_1_1_17_left_flip_up + w_y * s_1_1_17_left_flip_up
-    t676 = h_1_1_17_left_flip_up == 0.0
-    t677 = 1.0 / h_1_1_17_left_flip_up
+    t677 = h_1_1_17_left_flip_up == 0.0
+    t678 = 1.0 / h_1_1_17_left_flip_up
     del h_1_1_17_left_flip_up
-    t678 = qx_1_1_17_left_flip_up + d5 * _runtime.select(t676, 0.0, T33 * t677)
-    x_1_1_17_left_flip_up = _runtime.select(t675, qx_1_1_17_left_flip_up, t678)
-    del qx_1_1_17_left_flip_up, t678
-    t679 = x_1_1_17_left_flip_up * x_1_1_17_left_flip_up
+    t679 = qx_1_1_17_left_flip_up + d5 * _runtime.select(t677, 0.0, T33 * t678)
+    x_1_1_17_left_flip_up = _runtime.select(t676, qx_1_1_17_left_flip_up, t679)
+    del qx_1_1_17_left_flip_up, t679
+    t680 = x_1_1_17_left_flip_up * x_1_1_17_left_flip_up
     del x_1_1_17_left_flip_up
-    t680 = _runtime.select(t676, 1.0, -(axisx_1_1_17_left_flip_up * t677))
-    del axisx_1_1_17_left_flip_up, t676, t677
-    t681 = _runtime.select(t675, t23, t23 - d5 * t680)
-    del t680
-    t682 = np.sqrt(t679 + t681 * t681)
-    del t679, t681
-    t683 = np.maximum(0.0, t682 - _runtime.select(t675, t3, full_1_1))
-    missed_1_1_17_left_flip_up = np.maximum(t683, _runtime.select(t675, t98, fold_1_1) - t682)
-    del t675, t682, t683
-    x_1_1_left_flip_up = _runtime.select(t198, qx_1_1, qx_1_1 + t201)
-    del qx_1_1, t201
-    t684 = _runtime.select(t199, 1.0, -t204)
-    del t199, t204
-    dx_1_1_left_flip_up = _runtime.select(t198, dqx_1_1, dqx_1_1 + t203 * t684)
+    t681 = _runtime.select(t677, 1.0, -(axisx_1_1_17_left_flip_up * t678))
+    del axisx_1_1_17_left_flip_up, t677, t678
+    t682 = _runtime.select(t676, t24, t24 - d5 * t681)
+    del t681
+    t683 = np.sqrt(t680 + t682 * t682)
+    del t680, t682
+    t684 = np.maximum(0.0, t683 - _runtime.select(t676, t3, full_1_1))
+    missed_1_1_17_left_flip_up = np.maximum(t684, _runtime.select(t676, t99, fold_1_1) - t683)
+    del t676, t683, t684
+    x_1_1_left_flip_up = _runtime.select(t199, qx_1_1, qx_1_1 + t202)
+    del qx_1_1, t202
+    t685 = _runtime.select(t200, 1.0, -t205)
+    del t200, t205
+    dx_1_1_left_flip_up = _runtime.select(t199, dqx_1_1, dqx_1_1 + t204 * t685)
     del dqx_1_1
-    t685 = _runtime.select(t198, t23, t23 - d5 * t684)
-    slope_1_1_left_flip_up = x_1_1_left_flip_up * dx_1_1_left_flip_up + dy_1_1 * t685
+    t686 = _runtime.select(t199, t24, t24 - d5 * t685)
+    slope_1_1_left_flip_up = x_1_1_left_flip_up * dx_1_1_left_flip_up + dy_1_1 * t686
     del dx_1_1_left_flip_up, dy_1_1
-    t686 = slope_1_1_left_flip_up * slope_1_1_left_flip_up
-    t687 = t203 * (t207 * t684 - t202 * (t208 - t23 * t684))
-    del t202, t203, t207, t208, t684
-    bends_1_1_left_flip_up = _runtime.select(t198, straight_1_1, straight_1_1 + t687)
-    del straight_1_1, t198, t687
-    square_1_1_left_flip_up = x_1_1_left_flip_up * x_1_1_left_flip_up + t685 * t685
-    del t685, x_1_1_left_flip_up
-    t688 = np.minimum(high_1_1, square_1_1_left_flip_up)
+    t687 = slope_1_1_left_flip_up * slope_1_1_left_flip_up
+    t688 = t204 * (t208 * t685 - t203 * (t209 - t24 * t685))
+    del t203, t204, t208, t209, t685
+    bends_1_1_left_flip_up = _runtime.select(t199, straight_1_1, straight_1_1 + t688)
+    del straight_1_1, t199, t688
+    square_1_1_left_flip_up = x_1_1_left_flip_up * x_1_1_left_flip_up + t686 * t686
+    del t686, x_1_1_left_flip_up
+    t689 = np.minimum(high_1_1, square_1_1_left_flip_up)
     del high_1_1
-    miss_1_1_left_flip_up = square_1_1_left_flip_up - np.maximum(low_1_1, t688)
-    del low_1_1, square_1_1_left_flip_up, t688
-    t689 = bends_1_1_left_flip_up * miss_1_1_left_flip_up
-    inner_1_1_left_flip_up = t686 - t689
-    del t686, t689
-    t690 = inner_1_1_left_flip_up < 0.0
-    t691 = np.sqrt(np.maximum(0.0, inner_1_1_left_flip_up))
+    miss_1_1_left_flip_up = square_1_1_left_flip_up - np.maximum(low_1_1, t689)
+    del low_1_1, square_1_1_left_flip_up, t689
+    t690 = bends_1_1_left_flip_up * miss_1_1_left_flip_up
+    inner_1_1_left_flip_up = t687 - t690
+    del t687, t690
+    t691 = inner_1_1_left_flip_up < 0.0
+    t692 = np.sqrt(np.maximum(0.0, inner_1_1_left_flip_up))
     del inner_1_1_left_flip_up
-    outer_1_1_left_flip_up = slope_1_1_left_flip_up + _runtime.sign(slope_1_1_left_flip_up) * t691
-    del t691
-    below_1_1_left_flip_up = _runtime.select(t690, 2.0 * bends_1_1_left_flip_up, 2.0 * outer_1_1_left_flip_up)
+    outer_1_1_left_flip_up = slope_1_1_left_flip_up + _runtime.sign(slope_1_1_left_flip_up) * t692
+    del t692
+    below_1_1_left_flip_up = _runtime.select(t691, 2.0 * bends_1_1_left_flip_up, 2.0 * outer_1_1_left_flip_up)
     del bends_1_1_left_flip_up, outer_1_1_left_flip_up
-    above_1_1_left_flip_up = _runtime.select(t690, slope_1_1_left_flip_up, miss_1_1_left_flip_up)
-    del miss_1_1_left_flip_up, slope_1_1_left_flip_up, t690
-    t692 = np.abs(below_1_1_left_flip_up) <= np.abs(above_1_1_left_flip_up)
-    t693 = above_1_1_left_flip_up / below_1_1_left_flip_up
+    above_1_1_left_flip_up = _runtime.select(t691, slope_1_1_left_flip_up, miss_1_1_left_flip_up)
+    del miss_1_1_left_flip_up, slope_1_1_left_flip_up, t691
+    t693 = np.abs(below_1_1_left_flip_up) <= np.abs(above_1_1_left_flip_up)
+    t694 = above_1_1_left_flip_up / below_1_1_left_flip_up
     del above_1_1_left_flip_up, below_1_1_left_flip_up
-    t694 = _runtime.select(t692, 0.0, t693)
-    del t692, t693
-    t695 = t694 * t694
-    t696 = 1.0 / (1.0 + t695)
-    by_c_1_1_left_flip_up = (1.0 - t695) * t696
-    del t695
-    t697 = t696 * (2.0 * t694)
-    del t694, t696
-    t698 = t697 * t697 / (1.0 + np.abs(by_c_1_1_left_flip_up))
-    versine_1_1_left_flip_up = _runtime.select(0.0 < by_c_1_1_left_flip_up, t698, 1.0 - by_c_1_1_left_flip_up)
-    del t698
-    cost_1_1_left_flip_up = d4 * versine_1_1_left_flip_up + root1 * np.abs(t697)
+    t695 = _runtime.select(t693, 0.0, t694)
+    del t693, t694
+    t696 = t695 * t695
+    t697 = 1.0 / (1.0 + t696)
+    by_c_1_1_left_flip_up = (1.0 - t696) * t697
+    del t696
+    t698 = t697 * (2.0 * t695)
+    del t695, t697
+    t699 = t698 * t698 / (1.0 + np.abs(by_c_1_1_left_flip_up))
+    versine_1_1_left_flip_up = _runtime.select(0.0 < by_c_1_1_left_flip_up, t699, 1.0 - by_c_1_1_left_flip_up)
+    del t699
+    cost_1_1_left_flip_up = d4 * versine_1_1_left_flip_up + root1 * np.abs(t698)
     del versine_1_1_left_flip_up
-    t699 = cost_1_1_left_flip_up <= whole_1_1
+    t700 = cost_1_1_left_flip_up <= whole_1_1
     del cost_1_1_left_flip_up
-    cosine_1_1_left_flip_up = _runtime.select(t699, by_c_1_1_left_flip_up, 1.0)
+    cosine_1_1_left_flip_up = _runtime.select(t700, by_c_1_1_left_flip_up, 1.0)
     del by_c_1_1_left_flip_up
-    sine_1_1_left_flip_up = _runtime.select(t699, -t697, 0.0)
-    del t697, t699
+    sine_1_1_left_flip_up = _runtime.select(t700, -t698, 0.0)
+    del t698, t700
     c_1_1_2_left_flip_up = c_1_1 * cosine_1_1_left_flip_up + t13 * sine_1_1_left_flip_up
     s_1_1_2_left_flip_up = c_1_1 * sine_1_1_left_flip_up - t13 * cosine_1_1_left_flip_up
     del cosine_1_1_left_flip_up, sine_1_1_left_flip_up
     axisx_1_1_2_left_flip_up = T13 * c_1_1_2_left_flip_up + T23 * s_1_1_2_left_flip_up
-    t700 = axisx_1_1_2_left_flip_up * axisx_1_1_2_left_flip_up
-    h_1_1_2_left_flip_up = np.sqrt(t5 + t700)
-    del t700
-    t701 = h_1_1_2_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_2_left_flip_up = w_x * c_1_1_2_left_flip_up + w_y * s_1_1_2_left_flip_up
-    t702 = h_1_1_2_left_flip_up == 0.0
-    t703 = 1.0 / h_1_1_2_left_flip_up
-    t704 = _runtime.select(t702, 0.0, T33 * t703)
-    x_1_1_2_left_flip_up = _runtime.select(t701, qx_1_1_2_left_flip_up, qx_1_1_2_left_flip_up + d5 * t704)
-    dqx_1_1_2_left_flip_up = w_y * c_1_1_2_left_flip_up - w_x * s_1_1_2_left_flip_up
-    t705 = T13 * s_1_1_2_left_flip_up - T23 * c_1_1_2_left_flip_up
-    t706 = T33 * t705 / (h_1_1_2_left_flip_up * h_1_1_2_left_flip_up)
-    del h_1_1_2_left_flip_up, t705
-    spin_1_1_2_left_flip_up = _runtime.select(t701, 0.0, t706)
-    del t706
-    rate_1_1_2_left_flip_up = d5 * spin_1_1_2_left_flip_up
-    t707 = _runtime.select(t702, 1.0, -(axisx_1_1_2_left_flip_up * t703))
-    del axisx_1_1_2_left_flip_up, t702, t703
-    t708 = dqx_1_1_2_left_flip_up - rate_1_1_2_left_flip_up * t707
-    dx_1_1_2_left_flip_up = _runtime.select(t701, dqx_1_1_2_left_flip_up, t708)
-    del t708
-    t709 = _runtime.select(t701, t23, t23 - d5 * t707)
-    dy_1_1_2_left_flip_up = _runtime.select(t701, 0.0, rate_1_1_2_left_flip_up * t704)
-    slope_1_1_2_left_flip_up = x_1_1_2_left_flip_up * dx_1_1_2_left_flip_up - t709 * dy_1_1_2_left_flip_up
-    del dx_1_1_2_left_flip_up, dy_1_1_2_left_flip_up
-    t710 = slope_1_1_2_left_flip_up * slope_1_1_2_left_flip_up
-    straight_1_1_2_left_flip_up = dqx_1_1_2_left_flip_up * dqx_1_1_2_left_flip_up
-    t711 = spin_1_1_2_left_flip_up * (qx_1_1_2_left_flip_up * t704 - t23 * t707)
-    del qx_1_1_2_left_flip_up, spin_1_1_2_left_flip_up, t704
-    t712 = rate_1_1_2_left_flip_up * (2.0 * dqx_1_1_2_left_flip_up * t707 + t711)
-    del dqx_1_1_2_left_flip_up, rate_1_1_2_left_flip_up, t707, t711
-    bends_1_1_2_left_flip_up = _runtime.select(t701, straight_1_1_2_left_flip_up, straight_1_1_2_left_flip_up - t712)
-    del straight_1_1_2_left_flip_up, t712
-    square_1_1_2_left_flip_up = x_1_1_2_left_flip_up * x_1_1_2_left_flip_up + t709 * t709
-    del t709, x_1_1_2_left_flip_up
-    t713 = _runtime.select(t701, t98, fold_1_1) - whole_1_1
-    t714 = np.maximum(0.0, t713)
-    del t713
-    t715 = whole_1_1 + _runtime.select(t701, t3, full_1_1)
+    t701 = axisx_1_1_2_left_flip_up * axisx_1_1_2_left_flip_up
+    h_1_1_2_left_flip_up = np.sqrt(t5 + t701)
     del t701
-    t716 = np.minimum(t715 * t715, square_1_1_2_left_flip_up)
-    del t715
-    miss_1_1_2_left_flip_up = square_1_1_2_left_flip_up - np.maximum(t714 * t714, t716)
-    del square_1_1_2_left_flip_up, t714, t716
-    t717 = bends_1_1_2_left_flip_up * miss_1_1_2_left_flip_up
-    inner_1_1_2_left_flip_up = t710 - t717
-    del t710, t717
-    t718 = inner_1_1_2_left_flip_up < 0.0
-    t719 = np.sqrt(np.maximum(0.0, inner_1_1_2_left_flip_up))
+    t702 = h_1_1_2_left_flip_up <= t89
+    qx_1_1_2_left_flip_up = w_x * c_1_1_2_left_flip_up + w_y * s_1_1_2_left_flip_up
+    t703 = h_1_1_2_left_flip_up == 0.0
+    t704 = 1.0 / h_1_1_2_left_flip_up
+    t705 = _runtime.select(t703, 0.0, T33 * t704)
+    x_1_1_2_left_flip_up = _runtime.select(t702, qx_1_1_2_left_flip_up, qx_1_1_2_left_flip_up + d5 * t705)
+    dqx_1_1_2_left_flip_up = w_y * c_1_1_2_left_flip_up - w_x * s_1_1_2_left_flip_up
+    t706 = T13 * s_1_1_2_left_flip_up - T23 * c_1_1_2_left_flip_up
+    t707 = T33 * t706 / (h_1_1_2_left_flip_up * h_1_1_2_left_flip_up)
+    del h_1_1_2_left_flip_up, t706
+    spin_1_1_2_left_flip_up = _runtime.select(t702, 0.0, t707)
+    del t707
+    rate_1_1_2_left_flip_up = d5 * spin_1_1_2_left_flip_up
+    t708 = _runtime.select(t703, 1.0, -(axisx_1_1_2_left_flip_up * t704))
+    del axisx_1_1_2_left_flip_up, t703, t704
+    t709 = dqx_1_1_2_left_flip_up - rate_1_1_2_left_flip_up * t708
+    dx_1_1_2_left_flip_up = _runtime.select(t702, dqx_1_1_2_left_flip_up, t709)
+    del t709
+    t710 = _runtime.select(t702, t24, t24 - d5 * t708)
+    dy_1_1_2_left_flip_up = _runtime.select(t702, 0.0, rate_1_1_2_left_flip_up * t705)
+    slope_1_1_2_left_flip_up = x_1_1_2_left_flip_up * dx_1_1_2_left_flip_up - t710 * dy_1_1_2_left_flip_up
+    del dx_1_1_2_left_flip_up, dy_1_1_2_left_flip_up
+    t711 = slope_1_1_2_left_flip_up * slope_1_1_2_left_flip_up
+    straight_1_1_2_left_flip_up = dqx_1_1_2_left_flip_up * dqx_1_1_2_left_flip_up
+    t712 = spin_1_1_2_left_flip_up * (qx_1_1_2_left_flip_up * t705 - t24 * t708)
+    del qx_1_1_2_left_flip_up, spin_1_1_2_left_flip_up, t705
+    t713 = rate_1_1_2_left_flip_up * (2.0 * dqx_1_1_2_left_flip_up * t708 + t712)
+    del dqx_1_1_2_left_flip_up, rate_1_1_2_left_flip_up, t708, t712
+    bends_1_1_2_left_flip_up = _runtime.select(t702, straight_1_1_2_left_flip_up, straight_1_1_2_left_flip_up - t713)
+    del straight_1_1_2_left_flip_up, t713
+    square_1_1_2_left_flip_up = x_1_1_2_left_flip_up * x_1_1_2_left_flip_up + t710 * t710
+    del t710, x_1_1_2_left_flip_up
+    t714 = _runtime.select(t702, t99, fold_1_1) - whole_1_1
+    t715 = np.maximum(0.0, t714)
+    del t714
+    t716 = whole_1_1 + _runtime.select(t702, t3, full_1_1)
+    del t702
+    t717 = np.minimum(t716 * t716, square_1_1_2_left_flip_up)
+    del t716
+    miss_1_1_2_left_flip_up = square_1_1_2_left_flip_up - np.maximum(t715 * t715, t717)
+    del square_1_1_2_left_flip_up, t715, t717
+    t718 = bends_1_1_2_left_flip_up * miss_1_1_2_left_flip_up
+    inner_1_1_2_left_flip_up = t711 - t718
+    del t711, t718
+    t719 = inner_1_1_2_left_flip_up < 0.0
+    t720 = np.sqrt(np.maximum(0.0, inner_1_1_2_left_flip_up))
     del inner_1_1_2_left_flip_up
-    t720 = _runtime.sign(slope_1_1_2_left_flip_up) * t719
-    del t719
-    below_1_1_2_left_flip_up = _runtime.select(t718, 2.0 * bends_1_1_2_left_flip_up, 2.0 * (slope_1_1_2_left_flip_up + t720))
-    del bends_1_1_2_left_flip_up, t720
-    above_1_1_2_left_flip_up = _runtime.select(t718, slope_1_1_2_left_flip_up, miss_1_1_2_left_flip_up)
-    del miss_1_1_2_left_flip_up, slope_1_1_2_left_flip_up, t718
-    t721 = np.abs(below_1_1_2_left_flip_up) <= np.abs(above_1_1_2_left_flip_up)
-    t722 = above_1_1_2_left_flip_up / below_1_1_2_left_flip_up
+    t721 = _runtime.sign(slope_1_1_2_left_flip_up) * t720
+    del t720
+    below_1_1_2_left_flip_up = _runtime.select(t719, 2.0 * bends_1_1_2_left_flip_up, 2.0 * (slope_1_1_2_left_flip_up + t721))
+    del bends_1_1_2_left_flip_up, t721
+    above_1_1_2_left_flip_up = _runtime.select(t719, slope_1_1_2_left_flip_up, miss_1_1_2_left_flip_up)
+    del miss_1_1_2_left_flip_up, slope_1_1_2_left_flip_up, t719
+    t722 = np.abs(below_1_1_2_left_flip_up) <= np.abs(above_1_1_2_left_flip_up)
+    t723 = above_1_1_2_left_flip_up / below_1_1_2_left_flip_up
     del above_1_1_2_left_flip_up, below_1_1_2_left_flip_up
-    t723 = _runtime.select(t721, 0.0, t722)
-    del t721, t722
-    t724 = t723 * t723
-    t725 = 1.0 / (1.0 + t724)
-    by_c_1_1_2_left_flip_up = (1.0 - t724) * t725
-    del t724
-    t726 = t725 * (2.0 * t723)
-    del t723, t725
-    t727 = t726 * t726 / (1.0 + np.abs(by_c_1_1_2_left_flip_up))
-    versine_1_1_2_left_flip_up = _runtime.select(0.0 < by_c_1_1_2_left_flip_up, t727, 1.0 - by_c_1_1_2_left_flip_up)
-    del t727
-    cost_1_1_2_left_flip_up = d4 * versine_1_1_2_left_flip_up + root1 * np.abs(t726)
+    t724 = _runtime.select(t722, 0.0, t723)
+    del t722, t723
+    t725 = t724 * t724
+    t726 = 1.0 / (1.0 + t725)
+    by_c_1_1_2_left_flip_up = (1.0 - t725) * t726
+    del t725
+    t727 = t726 * (2.0 * t724)
+    del t724, t726
+    t728 = t727 * t727 / (1.0 + np.abs(by_c_1_1_2_left_flip_up))
+    versine_1_1_2_left_flip_up = _runtime.select(0.0 < by_c_1_1_2_left_flip_up, t728, 1.0 - by_c_1_1_2_left_flip_up)
+    del t728
+    cost_1_1_2_left_flip_up = d4 * versine_1_1_2_left_flip_up + root1 * np.abs(t727)
     del versine_1_1_2_left_flip_up
-    t728 = cost_1_1_2_left_flip_up <= whole_1_1
+    t729 = cost_1_1_2_left_flip_up <= whole_1_1
     del cost_1_1_2_left_flip_up
-    cosine_1_1_2_left_flip_up = _runtime.select(t728, by_c_1_1_2_left_flip_up, 1.0)
+    cosine_1_1_2_left_flip_up = _runtime.select(t729, by_c_1_1_2_left_flip_up, 1.0)
     del by_c_1_1_2_left_flip_up
-    t729 = c_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
-    sine_1_1_2_left_flip_up = _runtime.select(t728, -t726, 0.0)
-    del t726, t728
-    t730 = s_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
-    c_1_1_3_left_flip_up = t729 - t730
-    del t729, t730
-    t731 = c_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
+    t730 = c_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
+    sine_1_1_2_left_flip_up = _runtime.select(t729, -t727, 0.0)
+    del t727, t729
+    t731 = s_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
+    c_1_1_3_left_flip_up = t730 - t731
+    del t730, t731
+    t732 = c_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
     del c_1_1_2_left_flip_up, sine_1_1_2_left_flip_up
-    t732 = s_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
+    t733 = s_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
     del cosine_1_1_2_left_flip_up, s_1_1_2_left_flip_up
-    s_1_1_3_left_flip_up = t731 + t732
-    del t731, t732
+    s_1_1_3_left_flip_up = t732 + t733
+    del t732, t733
     axisx_1_1_3_left_flip_up = T13 * c_1_1_3_left_flip_up + T23 * s_1_1_3_left_flip_up
-    t733 = axisx_1_1_3_left_flip_up * axisx_1_1_3_left_flip_up
-    h_1_1_3_left_flip_up = np.sqrt(t5 + t733)
-    del t733
-    t734 = h_1_1_3_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_3_left_flip_up = w_x * c_1_1_3_left_flip_up + w_y * s_1_1_3_left_flip_up
-    t735 = h_1_1_3_left_flip_up == 0.0
-    t736 = 1.0 / h_1_1_3_left_flip_up
-    t737 = _runtime.select(t735, 0.0, T33 * t736)
-    x_1_1_3_left_flip_up = _runtime.select(t734, qx_1_1_3_left_flip_up, qx_1_1_3_left_flip_up + d5 * t737)
-    dqx_1_1_3_left_flip_up = w_y * c_1_1_3_left_flip_up - w_x * s_1_1_3_left_flip_up
-    t738 = T13 * s_1_1_3_left_flip_up - T23 * c_1_1_3_left_flip_up
-    t739 = T33 * t738 / (h_1_1_3_left_flip_up * h_1_1_3_left_flip_up)
-    del h_1_1_3_left_flip_up, t738
-    spin_1_1_3_left_flip_up = _runtime.select(t734, 0.0, t739)
-    del t739
-    rate_1_1_3_left_flip_up = d5 * spin_1_1_3_left_flip_up
-    t740 = _runtime.select(t735, 1.0, -(axisx_1_1_3_left_flip_up * t736))
-    del axisx_1_1_3_left_flip_up, t735, t736
-    t741 = dqx_1_1_3_left_flip_up - rate_1_1_3_left_flip_up * t740
-    dx_1_1_3_left_flip_up = _runtime.select(t734, dqx_1_1_3_left_flip_up, t741)
-    del t741
-    t742 = _runtime.select(t734, t23, t23 - d5 * t740)
-    dy_1_1_3_left_flip_up = _runtime.select(t734, 0.0, rate_1_1_3_left_flip_up * t737)
-    slope_1_1_3_left_flip_up = x_1_1_3_left_flip_up * dx_1_1_3_left_flip_up - t742 * dy_1_1_3_left_flip_up
-    del dx_1_1_3_left_flip_up, dy_1_1_3_left_flip_up
-    t743 = slope_1_1_3_left_flip_up * slope_1_1_3_left_flip_up
-    straight_1_1_3_left_flip_up = dqx_1_1_3_left_flip_up * dqx_1_1_3_left_flip_up
-    t744 = spin_1_1_3_left_flip_up * (qx_1_1_3_left_flip_up * t737 - t23 * t740)
-    del qx_1_1_3_left_flip_up, spin_1_1_3_left_flip_up, t737
-    t745 = rate_1_1_3_left_flip_up * (2.0 * dqx_1_1_3_left_flip_up * t740 + t744)
-    del dqx_1_1_3_left_flip_up, rate_1_1_3_left_flip_up, t740, t744
-    bends_1_1_3_left_flip_up = _runtime.select(t734, straight_1_1_3_left_flip_up, straight_1_1_3_left_flip_up - t745)
-    del straight_1_1_3_left_flip_up, t745
-    square_1_1_3_left_flip_up = x_1_1_3_left_flip_up * x_1_1_3_left_flip_up + t742 * t742
-    del t742, x_1_1_3_left_flip_up
-    t746 = _runtime.select(t734, t98, fold_1_1) - whole_1_1
-    t747 = np.maximum(0.0, t746)
-    del t746
-    t748 = whole_1_1 + _runtime.select(t734, t3, full_1_1)
+    t734 = axisx_1_1_3_left_flip_up * axisx_1_1_3_left_flip_up
+    h_1_1_3_left_flip_up = np.sqrt(t5 + t734)
     del t734
-    t749 = np.minimum(t748 * t748, square_1_1_3_left_flip_up)
-    del t748
-    miss_1_1_3_left_flip_up = square_1_1_3_left_flip_up - np.maximum(t747 * t747, t749)
-    del square_1_1_3_left_flip_up, t747, t749
-    t750 = bends_1_1_3_left_flip_up * miss_1_1_3_left_flip_up
-    inner_1_1_3_left_flip_up = t743 - t750
-    del t743, t750
-    t751 = inner_1_1_3_left_flip_up < 0.0
-    t752 = np.sqrt(np.maximum(0.0, inner_1_1_3_left_flip_up))
+    t735 = h_1_1_3_left_flip_up <= t89
+    qx_1_1_3_left_flip_up = w_x * c_1_1_3_left_flip_up + w_y * s_1_1_3_left_flip_up
+    t736 = h_1_1_3_left_flip_up == 0.0
+    t737 = 1.0 / h_1_1_3_left_flip_up
+    t738 = _runtime.select(t736, 0.0, T33 * t737)
+    x_1_1_3_left_flip_up = _runtime.select(t735, qx_1_1_3_left_flip_up, qx_1_1_3_left_flip_up + d5 * t738)
+    dqx_1_1_3_left_flip_up = w_y * c_1_1_3_left_flip_up - w_x * s_1_1_3_left_flip_up
+    t739 = T13 * s_1_1_3_left_flip_up - T23 * c_1_1_3_left_flip_up
+    t740 = T33 * t739 / (h_1_1_3_left_flip_up * h_1_1_3_left_flip_up)
+    del h_1_1_3_left_flip_up, t739
+    spin_1_1_3_left_flip_up = _runtime.select(t735, 0.0, t740)
+    del t740
+    rate_1_1_3_left_flip_up = d5 * spin_1_1_3_left_flip_up
+    t741 = _runtime.select(t736, 1.0, -(axisx_1_1_3_left_flip_up * t737))
+    del axisx_1_1_3_left_flip_up, t736, t737
+    t742 = dqx_1_1_3_left_flip_up - rate_1_1_3_left_flip_up * t741
+    dx_1_1_3_left_flip_up = _runtime.select(t735, dqx_1_1_3_left_flip_up, t742)
+    del t742
+    t743 = _runtime.select(t735, t24, t24 - d5 * t741)
+    dy_1_1_3_left_flip_up = _runtime.select(t735, 0.0, rate_1_1_3_left_flip_up * t738)
+    slope_1_1_3_left_flip_up = x_1_1_3_left_flip_up * dx_1_1_3_left_flip_up - t743 * dy_1_1_3_left_flip_up
+    del dx_1_1_3_left_flip_up, dy_1_1_3_left_flip_up
+    t744 = slope_1_1_3_left_flip_up * slope_1_1_3_left_flip_up
+    straight_1_1_3_left_flip_up = dqx_1_1_3_left_flip_up * dqx_1_1_3_left_flip_up
+    t745 = spin_1_1_3_left_flip_up * (qx_1_1_3_left_flip_up * t738 - t24 * t741)
+    del qx_1_1_3_left_flip_up, spin_1_1_3_left_flip_up, t738
+    t746 = rate_1_1_3_left_flip_up * (2.0 * dqx_1_1_3_left_flip_up * t741 + t745)
+    del dqx_1_1_3_left_flip_up, rate_1_1_3_left_flip_up, t741, t745
+    bends_1_1_3_left_flip_up = _runtime.select(t735, straight_1_1_3_left_flip_up, straight_1_1_3_left_flip_up - t746)
+    del straight_1_1_3_left_flip_up, t746
+    square_1_1_3_left_flip_up = x_1_1_3_left_flip_up * x_1_1_3_left_flip_up + t743 * t743
+    del t743, x_1_1_3_left_flip_up
+    t747 = _runtime.select(t735, t99, fold_1_1) - whole_1_1
+    t748 = np.maximum(0.0, t747)
+    del t747
+    t749 = whole_1_1 + _runtime.select(t735, t3, full_1_1)
+    del t735
+    t750 = np.minimum(t749 * t749, square_1_1_3_left_flip_up)
+    del t749
+    miss_1_1_3_left_flip_up = square_1_1_3_left_flip_up - np.maximum(t748 * t748, t750)
+    del square_1_1_3_left_flip_up, t748, t750
+    t751 = bends_1_1_3_left_flip_up * miss_1_1_3_left_flip_up
+    inner_1_1_3_left_flip_up = t744 - t751
+    del t744, t751
+    t752 = inner_1_1_3_left_flip_up < 0.0
+    t753 = np.sqrt(np.maximum(0.0, inner_1_1_3_left_flip_up))
     del inner_1_1_3_left_flip_up
-    t753 = _runtime.sign(slope_1_1_3_left_flip_up) * t752
-    del t752
-    below_1_1_3_left_flip_up = _runtime.select(t751, 2.0 * bends_1_1_3_left_flip_up, 2.0 * (slope_1_1_3_left_flip_up + t753))
-    del bends_1_1_3_left_flip_up, t753
-    above_1_1_3_left_flip_up = _runtime.select(t751, slope_1_1_3_left_flip_up, miss_1_1_3_left_flip_up)
-    del miss_1_1_3_left_flip_up, slope_1_1_3_left_flip_up, t751
-    t754 = np.abs(below_1_1_3_left_flip_up) <= np.abs(above_1_1_3_left_flip_up)
-    t755 = above_1_1_3_left_flip_up / below_1_1_3_left_flip_up
+    t754 = _runtime.sign(slope_1_1_3_left_flip_up) * t753
+    del t753
+    below_1_1_3_left_flip_up = _runtime.select(t752, 2.0 * bends_1_1_3_left_flip_up, 2.0 * (slope_1_1_3_left_flip_up + t754))
+    del bends_1_1_3_left_flip_up, t754
+    above_1_1_3_left_flip_up = _runtime.select(t752, slope_1_1_3_left_flip_up, miss_1_1_3_left_flip_up)
+    del miss_1_1_3_left_flip_up, slope_1_1_3_left_flip_up, t752
+    t755 = np.abs(below_1_1_3_left_flip_up) <= np.abs(above_1_1_3_left_flip_up)
+    t756 = above_1_1_3_left_flip_up / below_1_1_3_left_flip_up
     del above_1_1_3_left_flip_up, below_1_1_3_left_flip_up
-    t756 = _runtime.select(t754, 0.0, t755)
-    del t754, t755
-    t757 = t756 * t756
-    t758 = 1.0 / (1.0 + t757)
-    by_c_1_1_3_left_flip_up = (1.0 - t757) * t758
-    del t757
-    t759 = t758 * (2.0 * t756)
-    del t756, t758
-    t760 = t759 * t759 / (1.0 + np.abs(by_c_1_1_3_left_flip_up))
-    versine_1_1_3_left_flip_up = _runtime.select(0.0 < by_c_1_1_3_left_flip_up, t760, 1.0 - by_c_1_1_3_left_flip_up)
-    del t760
-    cost_1_1_3_left_flip_up = d4 * versine_1_1_3_left_flip_up + root1 * np.abs(t759)
+    t757 = _runtime.select(t755, 0.0, t756)
+    del t755, t756
+    t758 = t757 * t757
+    t759 = 1.0 / (1.0 + t758)
+    by_c_1_1_3_left_flip_up = (1.0 - t758) * t759
+    del t758
+    t760 = t759 * (2.0 * t757)
+    del t757, t759
+    t761 = t760 * t760 / (1.0 + np.abs(by_c_1_1_3_left_flip_up))
+    versine_1_1_3_left_flip_up = _runtime.select(0.0 < by_c_1_1_3_left_flip_up, t761, 1.0 - by_c_1_1_3_left_flip_up)
+    del t761
+    cost_1_1_3_left_flip_up = d4 * versine_1_1_3_left_flip_up + root1 * np.abs(t760)
     del versine_1_1_3_left_flip_up
-    t761 = cost_1_1_3_left_flip_up <= whole_1_1
+    t762 = cost_1_1_3_left_flip_up <= whole_1_1
     del cost_1_1_3_left_flip_up
-    cosine_1_1_3_left_flip_up = _runtime.select(t761, by_c_1_1_3_left_flip_up, 1.0)
+    cosine_1_1_3_left_flip_up = _runtime.select(t762, by_c_1_1_3_left_flip_up, 1.0)
     del by_c_1_1_3_left_flip_up
-    t762 = c_1_1_3_left_flip_up * cosine_1_1_3_left_flip_up
-    sine_1_1_3_left_flip_up = _runtime.select(t761, -t759, 0.0)
-    del t759, t761
-    t763 = s_1_1_3_left_flip_up * sine_1_1_3_left_flip_up
-    c_1_1_4_left_flip_up = t762 - t763
-    del t762, t763
-    t764 = c_1_1_3_left_flip_up * sine_1_1_3_left_flip_up
+    t763 = c_1_1_3_left_flip_up * cosine_1_1_3_left_flip_up
+    sine_1_1_3_left_flip_up = _runtime.select(t762, -t760, 0.0)
+    del t760, t762
+    t764 = s_1_1_3_left_flip_up * sine_1_1_3_left_flip_up
+    c_1_1_4_left_flip_up = t763 - t764
+    del t763, t764
+    t765 = c_1_1_3_left_flip_up * sine_1_1_3_left_flip_up
     del c_1_1_3_left_flip_up, sine_1_1_3_left_flip_up
-    t765 = s_1_1_3_left_flip_up * cosine_1_1_3_left_flip_up
+    t766 = s_1_1_3_left_flip_up * cosine_1_1_3_left_flip_up
     del cosine_1_1_3_left_flip_up, s_1_1_3_left_flip_up
-    s_1_1_4_left_flip_up = t764 + t765
-    del t764, t765
+    s_1_1_4_left_flip_up = t765 + t766
+    del t765, t766
     axisx_1_1_4_left_flip_up = T13 * c_1_1_4_left_flip_up + T23 * s_1_1_4_left_flip_up
-    t766 = axisx_1_1_4_left_flip_up * axisx_1_1_4_left_flip_up
-    t767 = T13 * s_1_1_4_left_flip_up - T23 * c_1_1_4_left_flip_up
-    most_1_1_4_left_flip_up = np.sqrt(t766 + t767 * t767)
-    t768 = most_1_1_4_left_flip_up <= 8.881784197001252e-16
+    t767 = axisx_1_1_4_left_flip_up * axisx_1_1_4_left_flip_up
+    t768 = T13 * s_1_1_4_left_flip_up - T23 * c_1_1_4_left_flip_up
+    most_1_1_4_left_flip_up = np.sqrt(t767 + t768 * t768)
+    t769 = most_1_1_4_left_flip_up <= _runtime.VANISHING
     qx_1_1_4_left_flip_up = w_x * c_1_1_4_left_flip_up + w_y * s_1_1_4_left_flip_up
-    t769 = qx_1_1_4_left_flip_up * qx_1_1_4_left_flip_up
-    r_1_1_4_left_flip_up = np.sqrt(t24 + t769)
-    del t769
-    t770 = r_1_1_4_left_flip_up <= t25
-    t771 = d5 + r_1_1_4_left_flip_up
-    h_1_1_4_left_flip_up = np.sqrt(t5 + t766)
-    del t766
-    t772 = h_1_1_4_left_flip_up == 0.0
-    t773 = 1.0 / h_1_1_4_left_flip_up
-    t774 = _runtime.select(t772, 0.0, T33 * t773)
-    t775 = qx_1_1_4_left_flip_up + d5 * t774
-    t776 = _runtime.select(t772, 1.0, -(axisx_1_1_4_left_flip_up * t773))
-    del t772, t773
-    t777 = t23 - d5 * t776
-    t778 = np.maximum(np.sqrt(t775 * t775 + t777 * t777), fold_1_1)
-    goal_1_1_4_left_flip_up = np.minimum(full_1_1, t778)
-    del t778
-    t779 = (t771 - goal_1_1_4_left_flip_up) * (t771 + goal_1_1_4_left_flip_up)
-    k_v_1_1_4_left_flip_up = np.maximum(0.0, t779)
+    t770 = qx_1_1_4_left_flip_up * qx_1_1_4_left_flip_up
+    r_1_1_4_left_flip_up = np.sqrt(t25 + t770)
+    del t770
+    t771 = r_1_1_4_left_flip_up <= t4
+    t772 = d5 + r_1_1_4_left_flip_up
+    h_1_1_4_left_flip_up = np.sqrt(t5 + t767)
+    del t767
+    t773 = h_1_1_4_left_flip_up == 0.0
+    t774 = 1.0 / h_1_1_4_left_flip_up
+    t775 = _runtime.select(t773, 0.0, T33 * t774)
+    t776 = qx_1_1_4_left_flip_up + d5 * t775
+    t777 = _runtime.select(t773, 1.0, -(axisx_1_1_4_left_flip_up * t774))
+    del t773, t774
+    t778 = t24 - d5 * t777
+    t779 = np.maximum(np.sqrt(t776 * t776 + t778 * t778), fold_1_1)
+    goal_1_1_4_left_flip_up = np.minimum(full_1_1, t779)
     del t779
-    t780 = d5 - r_1_1_4_left_flip_up
-    t781 = (goal_1_1_4_left_flip_up - t780) * (goal_1_1_4_left_flip_up + t780)
-    del goal_1_1_4_left_flip_up, t780
-    d_v_1_1_4_left_flip_up = np.maximum(0.0, t781)
-    del t781
+    t780 = (t772 - goal_1_1_4_left_flip_up) * (t772 + goal_1_1_4_left_flip_up)
+    k_v_1_1_4_left_flip_up = np.maximum(0.0, t780)
+    del t780
+    t781 = d5 - r_1_1_4_left_flip_up
+    t782 = (goal_1_1_4_left_flip_up - t781) * (goal_1_1_4_left_flip_up + t781)
+    del goal_1_1_4_left_flip_up, t781
+    d_v_1_1_4_left_flip_up = np.maximum(0.0, t782)
+    del t782
     n_v_1_1_4_left_flip_up = k_v_1_1_4_left_flip_up + d_v_1_1_4_left_flip_up
-    t782 = n_v_1_1_4_left_flip_up <= size * t771 * 8.881784197001252e-16
-    del t771
-    t783 = k_v_1_1_4_left_flip_up - d_v_1_1_4_left_flip_up
-    t784 = 1.0 / n_v_1_1_4_left_flip_up
+    t783 = n_v_1_1_4_left_flip_up <= t4 * t772
+    del t772
+    t784 = k_v_1_1_4_left_flip_up - d_v_1_1_4_left_flip_up
+    t785 = 1.0 / n_v_1_1_4_left_flip_up
     del n_v_1_1_4_left_flip_up
-    uc_v_1_1_4_left_flip_up = _runtime.select(t782, 1.0, t783 * t784)
-    del t783
-    t785 = qx_1_1_4_left_flip_up * uc_v_1_1_4_left_flip_up
-    side_1_1_4_left_flip_up = _runtime.sign(-(qx_1_1_4_left_flip_up * t776 + t23 * t774))
-    del t774, t776
-    t786 = k_v_1_1_4_left_flip_up * d_v_1_1_4_left_flip_up
+    uc_v_1_1_4_left_flip_up = _runtime.select(t783, 1.0, t784 * t785)
+    del t784
+    t786 = qx_1_1_4_left_flip_up * uc_v_1_1_4_left_flip_up
+    side_1_1_4_left_flip_up = _runtime.sign(-(qx_1_1_4_left_flip_up * t777 + t24 * t775))
+    del t775, t777
+    t787 = k_v_1_1_4_left_flip_up * d_v_1_1_4_left_flip_up
     del d_v_1_1_4_left_flip_up, k_v_1_1_4_left_flip_up
-    t787 = 2.0 * side_1_1_4_left_flip_up * np.sqrt(t786)
-    del side_1_1_4_left_flip_up, t786
-    us_v_1_1_4_left_flip_up = _runtime.select(t782, 0.0, t784 * t787)
-    del t782, t784, t787
-    t788 = t23 * us_v_1_1_4_left_flip_up
-    t789 = 1.0 / r_1_1_4_left_flip_up
+    t788 = 2.0 * side_1_1_4_left_flip_up * np.sqrt(t787)
+    del side_1_1_4_left_flip_up, t787
+    us_v_1_1_4_left_flip_up = _runtime.select(t783, 0.0, t785 * t788)
+    del t783, t785, t788
+    t789 = t24 * us_v_1_1_4_left_flip_up
+    t790 = 1.0 / r_1_1_4_left_flip_up
     del r_1_1_4_left_flip_up
-    c_v_1_1_4_left_flip_up = _runtime.select(t770, 1.0, (t785 + t788) * t789)
-    t790 = -(T33 * c_v_1_1_4_left_flip_up) < 0.0
-    t791 = qx_1_1_4_left_flip_up * us_v_1_1_4_left_flip_up
+    c_v_1_1_4_left_flip_up = _runtime.select(t771, 1.0, (t786 + t789) * t790)
+    t791 = -(T33 * c_v_1_1_4_left_flip_up) < 0.0
+    t792 = qx_1_1_4_left_flip_up * us_v_1_1_4_left_flip_up
     del us_v_1_1_4_left_flip_up
-    t792 = t23 * uc_v_1_1_4_left_flip_up
+    t793 = t24 * uc_v_1_1_4_left_flip_up
     del uc_v_1_1_4_left_flip_up
-    wc_1_1_4_left_flip_up = _runtime.select(t770, 0.0, t789 * (t791 + t792))
-    s_v_1_1_4_left_flip_up = _runtime.select(t770, 0.0, t789 * (t791 - t792))
-    del t791, t792
-    to_c_1_1_4_left_flip_up = _runtime.select(t790, wc_1_1_4_left_flip_up, -s_v_1_1_4_left_flip_up)
+    wc_1_1_4_left_flip_up = _runtime.select(t771, 0.0, t790 * (t792 + t793))
+    s_v_1_1_4_left_flip_up = _runtime.select(t771, 0.0, t790 * (t792 - t793))
+    del t792, t793
+    to_c_1_1_4_left_flip_up = _runtime.select(t791, wc_1_1_4_left_flip_up, -s_v_1_1_4_left_flip_up)
     del s_v_1_1_4_left_flip_up, wc_1_1_4_left_flip_up
-    c_w_1_1_4_left_flip_up = _runtime.select(t770, 1.0, t789 * (t785 - t788))
-    del t770, t785, t788, t789
-    to_s_1_1_4_left_flip_up = _runtime.select(t790, c_w_1_1_4_left_flip_up, c_v_1_1_4_left_flip_up)
-    del c_v_1_1_4_left_flip_up, c_w_1_1_4_left_flip_up, t790
-    t793 = T33 * to_c_1_1_4_left_flip_up * _runtime.sign(to_s_1_1_4_left_flip_up)
+    c_w_1_1_4_left_flip_up = _runtime.select(t771, 1.0, t790 * (t786 - t789))
+    del t771, t786, t789, t790
+    to_s_1_1_4_left_flip_up = _runtime.select(t791, c_w_1_1_4_left_flip_up, c_v_1_1_4_left_flip_up)
+    del c_v_1_1_4_left_flip_up, c_w_1_1_4_left_flip_up, t791
+    t794 = T33 * to_c_1_1_4_left_flip_up * _runtime.sign(to_s_1_1_4_left_flip_up)
     del to_c_1_1_4_left_flip_up
-    across_1_1_4_left_flip_up = _runtime.select(t22, 0.0, t793)
-    del t793
-    t794 = np.abs(to_s_1_1_4_left_flip_up)
+    across_1_1_4_left_flip_up = _runtime.select(t23, 0.0, t794)
+    del t794
+    t795 = np.abs(to_s_1_1_4_left_flip_up)
     del to_s_1_1_4_left_flip_up
-    t795 = most_1_1_4_left_flip_up * t794 <= np.abs(across_1_1_4_left_flip_up)
-    t796 = most_1_1_4_left_flip_up * _runtime.sign(across_1_1_4_left_flip_up)
-    t797 = _runtime.select(t795, t796, across_1_1_4_left_flip_up / t794)
-    del t794, t795, t796
-    wanted_1_1_4_left_flip_up = _runtime.select(across_1_1_4_left_flip_up == 0.0, 0.0, t797)
-    del across_1_1_4_left_flip_up, t797
-    t798 = axisx_1_1_4_left_flip_up * wanted_1_1_4_left_flip_up
-    t799 = most_1_1_4_left_flip_up - wanted_1_1_4_left_flip_up
-    t800 = most_1_1_4_left_flip_up + wanted_1_1_4_left_flip_up
-    rest_1_1_4_left_flip_up = np.sqrt(np.maximum(0.0, t799 * t800)) * _runtime.sign(-t767)
-    del t799, t800
-    t801 = most_1_1_4_left_flip_up * most_1_1_4_left_flip_up
+    t796 = most_1_1_4_left_flip_up * t795 <= np.abs(across_1_1_4_left_flip_up)
+    t797 = most_1_1_4_left_flip_up * _runtime.sign(across_1_1_4_left_flip_up)
+    t798 = _runtime.select(t796, t797, across_1_1_4_left_flip_up / t795)
+    del t795, t796, t797
+    wanted_1_1_4_left_flip_up = _runtime.select(across_1_1_4_left_flip_up == 0.0, 0.0, t798)
+    del across_1_1_4_left_flip_up, t798
+    t799 = axisx_1_1_4_left_flip_up * wanted_1_1_4_left_flip_up
+    t800 = most_1_1_4_left_flip_up - wanted_1_1_4_left_flip_up
+    t801 = most_1_1_4_left_flip_up + wanted_1_1_4_left_flip_up
+    rest_1_1_4_left_flip_up = np.sqrt(np.maximum(0.0, t800 * t801)) * _runtime.sign(-t768)
+    del t800, t801
+    t802 = most_1_1_4_left_flip_up * most_1_1_4_left_flip_up
     del most_1_1_4_left_flip_up
-    t802 = 1.0 / t801
-    del t801
-    t803 = (t798 - t767 * rest_1_1_4_left_flip_up) * t802
-    del t798
-    by_c_1_1_4_left_flip_up = _runtime.select(t768, 1.0, t803)
-    del t803
-    t804 = axisx_1_1_4_left_flip_up * rest_1_1_4_left_flip_up
+    t803 = 1.0 / t802
+    del t802
+    t804 = (t799 - t768 * rest_1_1_4_left_flip_up) * t803
+    del t799
+    by_c_1_1_4_left_flip_up = _runtime.select(t769, 1.0, t804)
+    del t804
+    t805 = axisx_1_1_4_left_flip_up * rest_1_1_4_left_flip_up
     del axisx_1_1_4_left_flip_up, rest_1_1_4_left_flip_up
-    t805 = t802 * (t804 + t767 * wanted_1_1_4_left_flip_up)
-    del t767, t802, t804, wanted_1_1_4_left_flip_up
-    t806 = _runtime.select(t768, 0.0, t805)
-    del t768, t805
-    t807 = t806 * t806 / (1.0 + np.abs(by_c_1_1_4_left_flip_up))
-    versine_1_1_4_left_flip_up = _runtime.select(0.0 < by_c_1_1_4_left_flip_up, t807, 1.0 - by_c_1_1_4_left_flip_up)
-    del t807
-    cost_1_1_4_left_flip_up = d4 * versine_1_1_4_left_flip_up + root1 * np.abs(t806)
+    t806 = t803 * (t805 + t768 * wanted_1_1_4_left_flip_up)
+    del t768, t803, t805, wanted_1_1_4_left_flip_up
+    t807 = _runtime.select(t769, 0.0, t806)
+    del t769, t806
+    t808 = t807 * t807 / (1.0 + np.abs(by_c_1_1_4_left_flip_up))
+    versine_1_1_4_left_flip_up = _runtime.select(0.0 < by_c_1_1_4_left_flip_up, t808, 1.0 - by_c_1_1_4_left_flip_up)
+    del t808
+    cost_1_1_4_left_flip_up = d4 * versine_1_1_4_left_flip_up + root1 * np.abs(t807)
     del versine_1_1_4_left_flip_up
-    t808 = cost_1_1_4_left_flip_up <= whole_1_1
+    t809 = cost_1_1_4_left_flip_up <= whole_1_1
     del cost_1_1_4_left_flip_up
-    cosine_1_1_4_left_flip_up = _runtime.select(t808, by_c_1_1_4_left_flip_up, 1.0)
+    cosine_1_1_4_left_flip_up = _runtime.select(t809, by_c_1_1_4_left_flip_up, 1.0)
     del by_c_1_1_4_left_flip_up
-    t809 = c_1_1_4_left_flip_up * cosine_1_1_4_left_flip_up
-    sine_1_1_4_left_flip_up = _runtime.select(t808, -t806, 0.0)
-    del t806, t808
-    t810 = s_1_1_4_left_flip_up * sine_1_1_4_left_flip_up
-    c_1_1_6_left_flip_up = t809 - t810
-    del t809, t810
-    t811 = c_1_1_4_left_flip_up * sine_1_1_4_left_flip_up
+    t810 = c_1_1_4_left_flip_up * cosine_1_1_4_left_flip_up
+    sine_1_1_4_left_flip_up = _runtime.select(t809, -t807, 0.0)
+    del t807, t809
+    t811 = s_1_1_4_left_flip_up * sine_1_1_4_left_flip_up
+    c_1_1_6_left_flip_up = t810 - t811
+    del t810, t811
+    t812 = c_1_1_4_left_flip_up * sine_1_1_4_left_flip_up
     del sine_1_1_4_left_flip_up
-    t812 = s_1_1_4_left_flip_up * cosine_1_1_4_left_flip_up
+    t813 = s_1_1_4_left_flip_up * cosine_1_1_4_left_flip_up
     del cosine_1_1_4_left_flip_up
-    s_1_1_6_left_flip_up = t811 + t812
-    del t811, t812
+    s_1_1_6_left_flip_up = t812 + t813
+    del t812, t813
     axisx_1_1_6_left_flip_up = T13 * c_1_1_6_left_flip_up + T23 * s_1_1_6_left_flip_up
-    t813 = axisx_1_1_6_left_flip_up * axisx_1_1_6_left_flip_up
-    h_1_1_6_left_flip_up = np.sqrt(t5 + t813)
-    del t813
-    t814 = h_1_1_6_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_6_left_flip_up = w_x * c_1_1_6_left_flip_up + w_y * s_1_1_6_left_flip_up
-    t815 = h_1_1_6_left_flip_up == 0.0
-    t816 = 1.0 / h_1_1_6_left_flip_up
-    t817 = _runtime.select(t815, 0.0, T33 * t816)
-    x_1_1_6_left_flip_up = _runtime.select(t814, qx_1_1_6_left_flip_up, qx_1_1_6_left_flip_up + d5 * t817)
-    dqx_1_1_6_left_flip_up = w_y * c_1_1_6_left_flip_up - w_x * s_1_1_6_left_flip_up
-    t818 = T13 * s_1_1_6_left_flip_up - T23 * c_1_1_6_left_flip_up
-    t819 = T33 * t818 / (h_1_1_6_left_flip_up * h_1_1_6_left_flip_up)
-    del h_1_1_6_left_flip_up, t818
-    spin_1_1_6_left_flip_up = _runtime.select(t814, 0.0, t819)
-    del t819
-    rate_1_1_6_left_flip_up = d5 * spin_1_1_6_left_flip_up
-    t820 = _runtime.select(t815, 1.0, -(axisx_1_1_6_left_flip_up * t816))
-    del axisx_1_1_6_left_flip_up, t815, t816
-    t821 = dqx_1_1_6_left_flip_up - rate_1_1_6_left_flip_up * t820
-    dx_1_1_6_left_flip_up = _runtime.select(t814, dqx_1_1_6_left_flip_up, t821)
-    del t821
-    t822 = _runtime.select(t814, t23, t23 - d5 * t820)
-    dy_1_1_6_left_flip_up = _runtime.select(t814, 0.0, rate_1_1_6_left_flip_up * t817)
-    slope_1_1_6_left_flip_up = x_1_1_6_left_flip_up * dx_1_1_6_left_flip_up - t822 * dy_1_1_6_left_flip_up
-    del dx_1_1_6_left_flip_up, dy_1_1_6_left_flip_up
-    t823 = slope_1_1_6_left_flip_up * slope_1_1_6_left_flip_up
-    straight_1_1_6_left_flip_up = dqx_1_1_6_left_flip_up * dqx_1_1_6_left_flip_up
-    t824 = spin_1_1_6_left_flip_up * (qx_1_1_6_left_flip_up * t817 - t23 * t820)
-    del qx_1_1_6_left_flip_up, spin_1_1_6_left_flip_up, t817
-    t825 = rate_1_1_6_left_flip_up * (2.0 * dqx_1_1_6_left_flip_up * t820 + t824)
-    del dqx_1_1_6_left_flip_up, rate_1_1_6_left_flip_up, t820, t824
-    bends_1_1_6_left_flip_up = _runtime.select(t814, straight_1_1_6_left_flip_up, straight_1_1_6_left_flip_up - t825)
-    del straight_1_1_6_left_flip_up, t825
-    square_1_1_6_left_flip_up = x_1_1_6_left_flip_up * x_1_1_6_left_flip_up + t822 * t822
-    del t822, x_1_1_6_left_flip_up
-    t826 = _runtime.select(t814, t98, fold_1_1) - whole_1_1
-    t827 = np.maximum(0.0, t826)
-    del t826
-    t828 = whole_1_1 + _runtime.select(t814, t3, full_1_1)
+    t814 = axisx_1_1_6_left_flip_up * axisx_1_1_6_left_flip_up
+    h_1_1_6_left_flip_up = np.sqrt(t5 + t814)
     del t814
-    t829 = np.minimum(t828 * t828, square_1_1_6_left_flip_up)
-    del t828
-    miss_1_1_6_left_flip_up = square_1_1_6_left_flip_up - np.maximum(t827 * t827, t829)
-    del square_1_1_6_left_flip_up, t827, t829
-    t830 = bends_1_1_6_left_flip_up * miss_1_1_6_left_flip_up
-    inner_1_1_6_left_flip_up = t823 - t830
-    del t823, t830
-    t831 = inner_1_1_6_left_flip_up < 0.0
-    t832 = np.sqrt(np.maximum(0.0, inner_1_1_6_left_flip_up))
+    t815 = h_1_1_6_left_flip_up <= t89
+    qx_1_1_6_left_flip_up = w_x * c_1_1_6_left_flip_up + w_y * s_1_1_6_left_flip_up
+    t816 = h_1_1_6_left_flip_up == 0.0
+    t817 = 1.0 / h_1_1_6_left_flip_up
+    t818 = _runtime.select(t816, 0.0, T33 * t817)
+    x_1_1_6_left_flip_up = _runtime.select(t815, qx_1_1_6_left_flip_up, qx_1_1_6_left_flip_up + d5 * t818)
+    dqx_1_1_6_left_flip_up = w_y * c_1_1_6_left_flip_up - w_x * s_1_1_6_left_flip_up
+    t819 = T13 * s_1_1_6_left_flip_up - T23 * c_1_1_6_left_flip_up
+    t820 = T33 * t819 / (h_1_1_6_left_flip_up * h_1_1_6_left_flip_up)
+    del h_1_1_6_left_flip_up, t819
+    spin_1_1_6_left_flip_up = _runtime.select(t815, 0.0, t820)
+    del t820
+    rate_1_1_6_left_flip_up = d5 * spin_1_1_6_left_flip_up
+    t821 = _runtime.select(t816, 1.0, -(axisx_1_1_6_left_flip_up * t817))
+    del axisx_1_1_6_left_flip_up, t816, t817
+    t822 = dqx_1_1_6_left_flip_up - rate_1_1_6_left_flip_up * t821
+    dx_1_1_6_left_flip_up = _runtime.select(t815, dqx_1_1_6_left_flip_up, t822)
+    del t822
+    t823 = _runtime.select(t815, t24, t24 - d5 * t821)
+    dy_1_1_6_left_flip_up = _runtime.select(t815, 0.0, rate_1_1_6_left_flip_up * t818)
+    slope_1_1_6_left_flip_up = x_1_1_6_left_flip_up * dx_1_1_6_left_flip_up - t823 * dy_1_1_6_left_flip_up
+    del dx_1_1_6_left_flip_up, dy_1_1_6_left_flip_up
+    t824 = slope_1_1_6_left_flip_up * slope_1_1_6_left_flip_up
+    straight_1_1_6_left_flip_up = dqx_1_1_6_left_flip_up * dqx_1_1_6_left_flip_up
+    t825 = spin_1_1_6_left_flip_up * (qx_1_1_6_left_flip_up * t818 - t24 * t821)
+    del qx_1_1_6_left_flip_up, spin_1_1_6_left_flip_up, t818
+    t826 = rate_1_1_6_left_flip_up * (2.0 * dqx_1_1_6_left_flip_up * t821 + t825)
+    del dqx_1_1_6_left_flip_up, rate_1_1_6_left_flip_up, t821, t825
+    bends_1_1_6_left_flip_up = _runtime.select(t815, straight_1_1_6_left_flip_up, straight_1_1_6_left_flip_up - t826)
+    del straight_1_1_6_left_flip_up, t826
+    square_1_1_6_left_flip_up = x_1_1_6_left_flip_up * x_1_1_6_left_flip_up + t823 * t823
+    del t823, x_1_1_6_left_flip_up
+    t827 = _runtime.select(t815, t99, fold_1_1) - whole_1_1
+    t828 = np.maximum(0.0, t827)
+    del t827
+    t829 = whole_1_1 + _runtime.select(t815, t3, full_1_1)
+    del t815
+    t830 = np.minimum(t829 * t829, square_1_1_6_left_flip_up)
+    del t829
+    miss_1_1_6_left_flip_up = square_1_1_6_left_flip_up - np.maximum(t828 * t828, t830)
+    del square_1_1_6_left_flip_up, t828, t830
+    t831 = bends_1_1_6_left_flip_up * miss_1_1_6_left_flip_up
+    inner_1_1_6_left_flip_up = t824 - t831
+    del t824, t831
+    t832 = inner_1_1_6_left_flip_up < 0.0
+    t833 = np.sqrt(np.maximum(0.0, inner_1_1_6_left_flip_up))
     del inner_1_1_6_left_flip_up
-    t833 = _runtime.sign(slope_1_1_6_left_flip_up) * t832
-    del t832
-    below_1_1_6_left_flip_up = _runtime.select(t831, 2.0 * bends_1_1_6_left_flip_up, 2.0 * (slope_1_1_6_left_flip_up + t833))
-    del bends_1_1_6_left_flip_up, t833
-    above_1_1_6_left_flip_up = _runtime.select(t831, slope_1_1_6_left_flip_up, miss_1_1_6_left_flip_up)
-    del miss_1_1_6_left_flip_up, slope_1_1_6_left_flip_up, t831
-    t834 = np.abs(below_1_1_6_left_flip_up) <= np.abs(above_1_1_6_left_flip_up)
-    t835 = above_1_1_6_left_flip_up / below_1_1_6_left_flip_up
+    t834 = _runtime.sign(slope_1_1_6_left_flip_up) * t833
+    del t833
+    below_1_1_6_left_flip_up = _runtime.select(t832, 2.0 * bends_1_1_6_left_flip_up, 2.0 * (slope_1_1_6_left_flip_up + t834))
+    del bends_1_1_6_left_flip_up, t834
+    above_1_1_6_left_flip_up = _runtime.select(t832, slope_1_1_6_left_flip_up, miss_1_1_6_left_flip_up)
+    del miss_1_1_6_left_flip_up, slope_1_1_6_left_flip_up, t832
+    t835 = np.abs(below_1_1_6_left_flip_up) <= np.abs(above_1_1_6_left_flip_up)
+    t836 = above_1_1_6_left_flip_up / below_1_1_6_left_flip_up
     del above_1_1_6_left_flip_up, below_1_1_6_left_flip_up
-    t836 = _runtime.select(t834, 0.0, t835)
-    del t834, t835
-    t837 = t836 * t836
-    t838 = 1.0 / (1.0 + t837)
-    by_c_1_1_6_left_flip_up = (1.0 - t837) * t838
-    del t837
-    t839 = t838 * (2.0 * t836)
-    del t836, t838
-    t840 = t839 * t839 / (1.0 + np.abs(by_c_1_1_6_left_flip_up))
-    versine_1_1_6_left_flip_up = _runtime.select(0.0 < by_c_1_1_6_left_flip_up, t840, 1.0 - by_c_1_1_6_left_flip_up)
-    del t840
-    cost_1_1_6_left_flip_up = d4 * versine_1_1_6_left_flip_up + root1 * np.abs(t839)
+    t837 = _runtime.select(t835, 0.0, t836)
+    del t835, t836
+    t838 = t837 * t837
+    t839 = 1.0 / (1.0 + t838)
+    by_c_1_1_6_left_flip_up = (1.0 - t838) * t839
+    del t838
+    t840 = t839 * (2.0 * t837)
+    del t837, t839
+    t841 = t840 * t840 / (1.0 + np.abs(by_c_1_1_6_left_flip_up))
+    versine_1_1_6_left_flip_up = _runtime.select(0.0 < by_c_1_1_6_left_flip_up, t841, 1.0 - by_c_1_1_6_left_flip_up)
+    del t841
+    cost_1_1_6_left_flip_up = d4 * versine_1_1_6_left_flip_up + root1 * np.abs(t840)
     del versine_1_1_6_left_flip_up
-    t841 = cost_1_1_6_left_flip_up <= whole_1_1
+    t842 = cost_1_1_6_left_flip_up <= whole_1_1
     del cost_1_1_6_left_flip_up
-    cosine_1_1_6_left_flip_up = _runtime.select(t841, by_c_1_1_6_left_flip_up, 1.0)
+    cosine_1_1_6_left_flip_up = _runtime.select(t842, by_c_1_1_6_left_flip_up, 1.0)
     del by_c_1_1_6_left_flip_up
-    t842 = c_1_1_6_left_flip_up * cosine_1_1_6_left_flip_up
-    sine_1_1_6_left_flip_up = _runtime.select(t841, -t839, 0.0)
-    del t839, t841
-    t843 = s_1_1_6_left_flip_up * sine_1_1_6_left_flip_up
-    c_1_1_7_left_flip_up = t842 - t843
-    del t842, t843
-    t844 = c_1_1_6_left_flip_up * sine_1_1_6_left_flip_up
+    t843 = c_1_1_6_left_flip_up * cosine_1_1_6_left_flip_up
+    sine_1_1_6_left_flip_up = _runtime.select(t842, -t840, 0.0)
+    del t840, t842
+    t844 = s_1_1_6_left_flip_up * sine_1_1_6_left_flip_up
+    c_1_1_7_left_flip_up = t843 - t844
+    del t843, t844
+    t845 = c_1_1_6_left_flip_up * sine_1_1_6_left_flip_up
     del c_1_1_6_left_flip_up, sine_1_1_6_left_flip_up
-    t845 = s_1_1_6_left_flip_up * cosine_1_1_6_left_flip_up
+    t846 = s_1_1_6_left_flip_up * cosine_1_1_6_left_flip_up
     del cosine_1_1_6_left_flip_up, s_1_1_6_left_flip_up
-    s_1_1_7_left_flip_up = t844 + t845
-    del t844, t845
+    s_1_1_7_left_flip_up = t845 + t846
+    del t845, t846
     axisx_1_1_7_left_flip_up = T13 * c_1_1_7_left_flip_up + T23 * s_1_1_7_left_flip_up
-    t846 = axisx_1_1_7_left_flip_up * axisx_1_1_7_left_flip_up
-    h_1_1_7_left_flip_up = np.sqrt(t5 + t846)
-    del t846
-    t847 = h_1_1_7_left_flip_up <= 1.4210854715202004e-14
-    qx_1_1_7_left_flip_up = w_x * c_1_1_7_left_flip_up + w_y * s_1_1_7_left_flip_up
-    t848 = h_1_1_7_left_flip_up == 0.0
-    t849 = 1.0 / h_1_1_7_left_flip_up
-    t850 = _runtime.select(t848, 0.0, T33 * t849)
-    x_1_1_7_left_flip_up = _runtime.select(t847, qx_1_1_7_left_flip_up, qx_1_1_7_left_flip_up + d5 * t850)
-    dqx_1_1_7_left_flip_up = w_y * c_1_1_7_left_flip_up - w_x * s_1_1_7_left_flip_up
-    t851 = T13 * s_1_1_7_left_flip_up - T23 * c_1_1_7_left_flip_up
-    t852 = T33 * t851 / (h_1_1_7_left_flip_up * h_1_1_7_left_flip_up)
-    del h_1_1_7_left_flip_up, t851
-    spin_1_1_7_left_flip_up = _runtime.select(t847, 0.0, t852)
-    del t852
-    rate_1_1_7_left_flip_up = d5 * spin_1_1_7_left_flip_up
-    t853 = _runtime.select(t848, 1.0, -(axisx_1_1_7_left_flip_up * t849))
-    del axisx_1_1_7_left_flip_up, t848, t849
-    t854 = dqx_1_1_7_left_flip_up - rate_1_1_7_left_flip_up * t853
-    dx_1_1_7_left_flip_up = _runtime.select(t847, dqx_1_1_7_left_flip_up, t854)
-    del t854
-    t855 = _runtime.select(t847, t23, t23 - d5 * t853)
-    dy_1_1_7_left_flip_up = _runtime.select(t847, 0.0, rate_1_1_7_left_flip_up * t850)
-    slope_1_1_7_left_flip_up = x_1_1_7_left_flip_up * dx_1_1_7_left_flip_up - t855 * dy_1_1_7_left_flip_up
-    del dx_1_1_7_left_flip_up, dy_1_1_7_left_flip_up
-    t856 = slope_1_1_7_left_flip_up * slope_1_1_7_left_flip_up
-    straight_1_1_7_left_flip_up = dqx_1_1_7_left_flip_up * dqx_1_1_7_left_flip_up
-    t857 = spin_1_1_7_left_flip_up * (qx_1_1_7_left_flip_up * t850 - t23 * t853)
-    del qx_1_1_7_left_flip_up, spin_1_1_7_left_flip_up, t850
-    t858 = rate_1_1_7_left_flip_up * (2.0 * dqx_1_1_7_left_flip_up * t853 + t857)
-    del dqx_1_1_7_left_flip_up, rate_1_1_7_left_flip_up, t853, t857
-    bends_1_1_7_left_flip_up = _runtime.select(t847, straight_1_1_7_left_flip_up, straight_1_1_7_left_flip_up - t858)
-    del straight_1_1_7_left_flip_up, t858
-    square_1_1_7_left_flip_up = x_1_1_7_left_flip_up * x_1_1_7_left_flip_up + t855 * t855
-    del t855, x_1_1_7_left_flip_up
-    t859 = _runtime.select(t847, t98, fold_1_1) - whole_1_1
-    t860 = np.maximum(0.0, t859)
-    del t859
-    t861 = whole_1_1 + _runtime.select(t847, t3, full_1_1)
+    t847 = axisx_1_1_7_left_flip_up * axisx_1_1_7_left_flip_up
+    h_1_1_7_left_flip_up = np.sqrt(t5 + t847)
     del t847
-    t862 = np.minimum(t861 * t861, square_1_1_7_left_flip_up)
-    del t861
-    miss_1_1_7_left_flip_up = square_1_1_7_left_flip_up - np.maximum(t860 * t860, t862)
-    del square_1_1_7_left_flip_up, t860, t862
-    t863 = bends_1_1_7_left_flip_up * miss_1_1_7_left_flip_up
-    inner_1_1_7_left_flip_up = t856 - t863
-    del t856, t863
-    t864 = inner_1_1_7_left_flip_up < 0.0
-    t865 = np.sqrt(np.maximum(0.0, inner_1_1_7_left_flip_up))
+    t848 = h_1_1_7_left_flip_up <= t89
+    qx_1_1_7_left_flip_up = w_x * c_1_1_7_left_flip_up + w_y * s_1_1_7_left_flip_up
+    t849 = h_1_1_7_left_flip_up == 0.0
+    t850 = 1.0 / h_1_1_7_left_flip_up
+    t851 = _runtime.select(t849, 0.0, T33 * t850)
+    x_1_1_7_left_flip_up = _runtime.select(t848, qx_1_1_7_left_flip_up, qx_1_1_7_left_flip_up + d5 * t851)
+    dqx_1_1_7_left_flip_up = w_y * c_1_1_7_left_flip_up - w_x * s_1_1_7_left_flip_up
+    t852 = T13 * s_1_1_7_left_flip_up - T23 * c_1_1_7_left_flip_up
+    t853 = T33 * t852 / (h_1_1_7_left_flip_up * h_1_1_7_left_flip_up)
+    del h_1_1_7_left_flip_up, t852
+    spin_1_1_7_left_flip_up = _runtime.select(t848, 0.0, t853)
+    del t853
+    rate_1_1_7_left_flip_up = d5 * spin_1_1_7_left_flip_up
+    t854 = _runtime.select(t849, 1.0, -(axisx_1_1_7_left_flip_up * t850))
+    del axisx_1_1_7_left_flip_up, t849, t850
+    t855 = dqx_1_1_7_left_flip_up - rate_1_1_7_left_flip_up * t854
+    dx_1_1_7_left_flip_up = _runtime.select(t848, dqx_1_1_7_left_flip_up, t855)
+    del t855
+    t856 = _runtime.select(t848, t24, t24 - d5 * t854)
+    dy_1_1_7_left_flip_up = _runtime.select(t848, 0.0, rate_1_1_7_left_flip_up * t851)
+    slope_1_1_7_left_flip_up = x_1_1_7_left_flip_up * dx_1_1_7_left_flip_up - t856 * dy_1_1_7_left_flip_up
+    del dx_1_1_7_left_flip_up, dy_1_1_7_left_flip_up
+    t857 = slope_1_1_7_left_flip_up * slope_1_1_7_left_flip_up
+    straight_1_1_7_left_flip_up = dqx_1_1_7_left_flip_up * dqx_1_1_7_left_flip_up
+    t858 = spin_1_1_7_left_flip_up * (qx_1_1_7_left_flip_up * t851 - t24 * t854)
+    del qx_1_1_7_left_flip_up, spin_1_1_7_left_flip_up, t851
+    t859 = rate_1_1_7_left_flip_up * (2.0 * dqx_1_1_7_left_flip_up * t854 + t858)
+    del dqx_1_1_7_left_flip_up, rate_1_1_7_left_flip_up, t854, t858
+    bends_1_1_7_left_flip_up = _runtime.select(t848, straight_1_1_7_left_flip_up, straight_1_1_7_left_flip_up - t859)
+    del straight_1_1_7_left_flip_up, t859
+    square_1_1_7_left_flip_up = x_1_1_7_left_flip_up * x_1_1_7_left_flip_up + t856 * t856
+    del t856, x_1_1_7_left_flip_up
+    t860 = _runtime.select(t848, t99, fold_1_1) - whole_1_1
+    t861 = np.maximum(0.0, t860)
+    del t860
+    t862 = whole_1_1 + _runtime.select(t848, t3, full_1_1)
+    del t848
+    t863 = np.minimum(t862 * t862, square_1_1_7_left_flip_up)
+    del t862
+    miss_1_1_7_left_flip_up = square_1_1_7_left_flip_up - np.maximum(t861 * t861, t863)
+    del square_1_1_7_left_flip_up, t861, t863
+    t864 = bends_1_1_7_left_flip_up * miss_1_1_7_left_flip_up
+    inner_1_1_7_left_flip_up = t857 - t864
+    del t857, t864
+    t865 = inner_1_1_7_left_flip_up < 0.0
+    t866 = np.sqrt(np.maximum(0.0, inner_1_1_7_left_flip_up))
     del inner_1_1_7_left_flip_up
-    t866 = _runtime.sign(slope_1_1_7_left_flip_up) * t865
-    del t865
-    below_1_1_7_left_flip_up = _runtime.select(t864, 2.0 * bends_1_1_7_left_flip_up, 2.0 * (slope_1_1_7_left_flip_up + t866))
-    del bends_1_1_7_left_flip_up, t866
-    above_1_1_7_left_flip_up = _runtime.select(t864, slope_1_1_7_left_flip_up, miss_1_1_7_left_flip_up)
-    del miss_1_1_7_left_flip_up, slope_1_1_7_left_flip_up, t864
-    t867 = np.abs(below_1_1_7_left_flip_up) <= np.abs(above_1_1_7_left_flip_up)
-    t868 = above_1_1_7_left_flip_up / below_1_1_7_left_flip_up
+    t867 = _runtime.sign(slope_1_1_7_left_flip_up) * t866
+    del t866
+    below_1_1_7_left_flip_up = _runtime.select(t865, 2.0 * bends_1_1_7_left_flip_up, 2.0 * (slope_1_1_7_left_flip_up + t867))
+    del bends_1_1_7_left_flip_up, t867
+    above_1_1_7_left_flip_up = _runtime.select(t865, slope_1_1_7_left_flip_up, miss_1_1_7_left_flip_up)
+    del miss_1_1_7_left_flip_up, slope_1_1_7_left_flip_up, t865
+    t868 = np.abs(below_1_1_7_left_flip_up) <= np.abs(above_1_1_7_left_flip_up)
+    t869 = above_1_1_7_left_flip_up / below_1_1_7_left_flip_up
     del above_1_1_7_left_flip_up, below_1_1_7_left_flip_up
-    t869 = _runtime.select(t867, 0.0, t868)
-    del t867, t868
-    t870 = t869 * t869
-    t871 = 1.0 / (1.0 + t870)
-    by_c_1_1_7_left_flip_up = (1.0 - t870) * t871
-    del t870
-    t872 = t871 * (2.0 * t869)
-    del t869, t871
-    t873 = t872 * t872 / (1.0 + np.abs(by_c_1_1_7_left_flip_up))
-    versine_1_1_7_left_flip_up = _runtime.select(0.0 < by_c_1_1_7_left_flip_up, t873, 1.0 - by_c_1_1_7_left_flip_up)
-    del t873
-    cost_1_1_7_left_flip_up = d4 * versine_1_1_7_left_flip_up + root1 * np.abs(t872)
+    t870 = _runtime.select(t868, 0.0, t869)
+    del t868, t869
+    t871 = t870 * t870
+    t872 = 1.0 / (1.0 + t871)
+    by_c_1_1_7_left_flip_up = (1.0 - t871) * t872
+    del t871
+    t873 = t872 * (2.0 * t870)
+    del t870, t872
+    t874 = t873 * t873 / (1.0 + np.abs(by_c_1_1_7_left_flip_up))
+    versine_1_1_7_left_flip_up = _runtime.select(0.0 < by_c_1_1_7_left_flip_up, t874, 1.0 - by_c_1_1_7_left_flip_up)
+    del t874
+    cost_1_1_7_left_flip_up = d4 * versine_1_1_7_left_flip_up + root1 * np.abs(t873)
     del versine_1_1_7_left_flip_up
-    t874 = cost_1_1_7_left_flip_up <= whole_1_1
+    t875 = cost_1_1_7_left_flip_up <= whole_1_1
     del cost_1_1_7_left_flip_up
-    cosine_1_1_7_left_flip_up = _runtime.select(t874, by_c_1_1_7_left_flip_up, 1.0)
+    cosine_1_1_7_left_flip_up = _runtime.select(t875, by_c_1_1_7_left_flip_up, 1.0)
     del by_c_1_1_7_left_flip_up
-    t875 = c_1_1_7_left_flip_up * cosine_1_1_7_left_flip_up
-    sine_1_1_7_left_flip_up = _runtime.select(t874, -t872, 0.0)
-    del t872, t874
-    t876 = s_1_1_7_left_flip_up * sine_1_1_7_left_flip_up
-    c_1_1_8_left_flip_up = t875 - t876
-    del t875, t876
-    t877 = c_1_1_7_left_flip_up * sine_1_1_7_left_flip_up
+    t876 = c_1_1_7_left_flip_up * cosine_1_1_7_left_flip_up
+    sine_1_1_7_left_flip_up = _runtime.select(t875, -t873, 0.0)
+    del t873, t875
+    t877 = s_1_1_7_left_flip_up * sine_1_1_7_left_flip_up
+    c_1_1_8_left_flip_up = t876 - t877
+    del t876, t877
+    t878 = c_1_1_7_left_flip_up * sine_1_1_7_left_flip_up
     del c_1_1_7_left_flip_up, sine_1_1_7_left_flip_up
-    t878 = s_1_1_7_left_flip_up * cosine_1_1_7_left_flip_up
+    t879 = s_1_1_7_left_flip_up * cosine_1_1_7_left_flip_up
     del cosine_1_1_7_left_flip_up, s_1_1_7_left_flip_up
-    s_1_1_8_left_flip_up = t877 + t878
-    del t877, t878
+    s_1_1_8_left_flip_up = t878 + t879
+    del t878, t879
     axisx_1_1_8_left_flip_up = T13 * c_1_1_8_left_flip_up + T23 * s_1_1_8_left_flip_up
-    t879 = axisx_1_1_8_left_flip_up * axisx_1_1_8_left_flip_up
-    h_1_1_8_left_flip_up = np.sqrt(t5 + t879)
-    del t879
-    t880 = h_1_1_8_left_flip_up <= 1.4210854715202004e-14
+    t880 = axisx_1_1_8_left_flip_up * axisx_1_1_8_left_flip_up
+    h_1_1_8_left_flip_up = np.sqrt(t5 + t880)
+    del t880
+    t881 = h_1_1_8_left_flip_up <= t89
     qx_1_1_8_left_flip_up = w_x * c_1_1_8_left_flip_up + w_y * s_1_1_8_left_flip_up
-    t881 = h_1_1_8_left_flip_up == 0.0
-    t882 = 1.0 / h_1_1_8_left_flip_up
+    t882 = h_1_1_8_left_flip_up == 0.0
+    t883 = 1.0 / h_1_1_8_left_flip_up
     del h_1_1_8_left_flip_up
-    t883 = qx_1_1_8_left_flip_up + d5 * _runtime.select(t881, 0.0, T33 * t882)
-    x_1_1_8_left_flip_up = _runtime.select(t880, qx_1_1_8_left_flip_up, t883)
-    del qx_1_1_8_left_flip_up, t883
-    t884 = _runtime.select(t881, 1.0, -(axisx_1_1_8_left_flip_up * t882))
-    del axisx_1_1_8_left_flip_up, t881, t882
-    t885 = _runtime.select(t880, t23, t23 - d5 * t884)
-    del t884
-    t886 = x_1_1_8_left_flip_up * x_1_1_8_left_flip_up + t885 * t885
-    del t885, x_1_1_8_left_flip_up
-    t887 = np.sqrt(t886)
-    del t886
-    t888 = np.maximum(0.0, t887 - _runtime.select(t880, t3, full_1_1))
-    missed_1_1_8_left_flip_up = np.maximum(t888, _runtime.select(t880, t98, fold_1_1) - t887)
-    del t880, t887, t888
-    t889 = h_1_1_4_left_flip_up <= 1.4210854715202004e-14
+    t884 = qx_1_1_8_left_flip_up + d5 * _runtime.select(t882, 0.0, T33 * t883)
+    x_1_1_8_left_flip_up = _runtime.select(t881, qx_1_1_8_left_flip_up, t884)
+    del qx_1_1_8_left_flip_up, t884
+    t885 = _runtime.select(t882, 1.0, -(axisx_1_1_8_left_flip_up * t883))
+    del axisx_1_1_8_left_flip_up, t882, t883
+    t886 = _runtime.select(t881, t24, t24 - d5 * t885)
+    del t885
+    t887 = x_1_1_8_left_flip_up * x_1_1_8_left_flip_up + t886 * t886
+    del t886, x_1_1_8_left_flip_up
+    t888 = np.sqrt(t887)
+    del t887
+    t889 = np.maximum(0.0, t888 - _runtime.select(t881, t3, full_1_1))
+    missed_1_1_8_left_flip_up = np.maximum(t889, _runtime.select(t881, t99, fold_1_1) - t888)
+    del t881, t888, t889
+    t890 = h_1_1_4_left_flip_up <= t89
     del h_1_1_4_left_flip_up
-    x_1_1_4_left_flip_up = _runtime.select(t889, qx_1_1_4_left_flip_up, t775)
-    del qx_1_1_4_left_flip_up, t775
-    t890 = _runtime.select(t889, t23, t777)
-    del t777
-    t891 = x_1_1_4_left_flip_up * x_1_1_4_left_flip_up + t890 * t890
-    del t890, x_1_1_4_left_flip_up
-    t892 = np.sqrt(t891)
-    del t891
-    t893 = np.maximum(0.0, t892 - _runtime.select(t889, t3, full_1_1))
-    missed_1_1_4_left_flip_up = np.maximum(t893, _runtime.select(t889, t98, fold_1_1) - t892)
-    del t889, t892, t893
-    t894 = missed_1_1_8_left_flip_up < missed_1_1_4_left_flip_up
+    x_1_1_4_left_flip_up = _runtime.select(t890, qx_1_1_4_left_flip_up, t776)
+    del qx_1_1_4_left_flip_up, t776
+    t891 = _runtime.select(t890, t24, t778)
+    del t778
+    t892 = x_1_1_4_left_flip_up * x_1_1_4_left_flip_up + t891 * t891
+    del t891, x_1_1_4_left_flip_up
+    t893 = np.sqrt(t892)
+    del t892
+    t894 = np.maximum(0.0, t893 - _runtime.select(t890, t3, full_1_1))
+    missed_1_1_4_left_flip_up = np.maximum(t894, _runtime.select(t890, t99, fold_1_1) - t893)
+    del t890, t893, t894
+    t895 = missed_1_1_8_left_flip_up < missed_1_1_4_left_flip_up
     del missed_1_1_4_left_flip_up, missed_1_1_8_left_flip_up
-    c_1_1_9_left_flip_up = _runtime.select(t894, c_1_1_8_left_flip_up, c_1_1_4_left_flip_up)
+    c_1_1_9_left_flip_up = _runtime.select(t895, c_1_1_8_left_flip_up, c_1_1_4_left_flip_up)
     del c_1_1_4_left_flip_up, c_1_1_8_left_flip_up
-    s_1_1_9_left_flip_up = _runtime.select(t894, s_1_1_8_left_flip_up, s_1_1_4_left_flip_up)
-    del s_1_1_4_left_flip_up, s_1_1_8_left_flip_up, t894
+    s_1_1_9_left_flip_up = _runtime.select(t895, s_1_1_8_left_flip_up, s_1_1_4_left_flip_up)
+    del s_1_1_4_left_flip_up, s_1_1_8_left_flip_up, t895
     axisx_1_1_9_left_flip_up = T13 * c_1_1_9_left_flip_up + T23 * s_1_1_9_left_flip_up
-    t895 = axisx_1_1_9_left_flip_up * axisx_1_1_9_left_flip_up
-    h_1_1_9_left_flip_up = np.sqrt(t5 + t895)
-    del t895
-    t896 = h_1_1_9_left_flip_up <= 1.4210854715202004e-14
+    t896 = axisx_1_1_9_left_flip_up * axisx_1_1_9_left_flip_up
+    h_1_1_9_left_flip_up = np.sqrt(t5 + t896)
+    del t896
+    t897 = h_1_1_9_left_flip_up <= t89
     qx_1_1_9_left_flip_up = w_x * c_1_1_9_left_flip_up + w_y * s_1_1_9_left_flip_up
-    t897 = h_1_1_9_left_flip_up == 0.0
-    t898 = 1.0 / h_1_1_9_left_flip_up
+    t898 = h_1_1_9_left_flip_up == 0.0
+    t899 = 1.0 / h_1_1_9_left_flip_up
     del h_1_1_9_left_flip_up
-    t899 = qx_1_1_9_left_flip_up + d5 * _runtime.select(t897, 0.0, T33 * t898)
-    x_1_1_9_left_flip_up = _runtime.select(t896, qx_1_1_9_left_flip_up, t899)
-    del qx_1_1_9_left_flip_up, t899
-    t900 = _runtime.select(t897, 1.0, -(axisx_1_1_9_left_flip_up * t898))
-    del axisx_1_1_9_left_flip_up, t897, t898
-    t901 = _runtime.select(t896, t23, t23 - d5 * t900)
-    del t900
-    t902 = x_1_1_9_left_flip_up * x_1_1_9_left_flip_up + t901 * t901
-    del t901, x_1_1_9_left_flip_up
-    t903 = np.sqrt(t902)
-    del t902
-    t904 = np.maximum(0.0, t903 - _runtime.select(t896, t3, full_1_1))
-    missed_1_1_9_left_flip_up = np.maximum(t904, _runtime.select(t896, t98, fold_1_1) - t903)
-    del t896, t903, t904
-    t905 = missed_1_1_17_left_flip_up < missed_1_1_9_left_flip_up
+    t900 = qx_1_1_9_left_flip_up + d5 * _runtime.select(t898, 0.0, T33 * t899)
+    x_1_1_9_left_flip_up = _runtime.select(t897, qx_1_1_9_left_flip_up, t900)
+    del qx_1_1_9_left_flip_up, t900
+    t901 = _runtime.select(t898, 1.0, -(axisx_1_1_9_left_flip_up * t899))
+    del axisx_1_1_9_left_flip_up, t898, t899
+    t902 = _runtime.select(t897, t24, t24 - d5 * t901)
+    del t901
+    t903 = x_1_1_9_left_flip_up * x_1_1_9_left_flip_up + t902 * t902
+    del t902, x_1_1_9_left_flip_up
+    t904 = np.sqrt(t903)
+    del t903
+    t905 = np.maximum(0.0, t904 - _runtime.select(t897, t3, full_1_1))
+    missed_1_1_9_left_flip_up = np.maximum(t905, _runtime.select(t897, t99, fold_1_1) - t904)
+    del t897, t904, t905
+    t906 = missed_1_1_17_left_flip_up < missed_1_1_9_left_flip_up
     del missed_1_1_17_left_flip_up, missed_1_1_9_left_flip_up
-    s_1_1_18_left_flip_up = _runtime.select(t905, s_1_1_17_left_flip_up, s_1_1_9_left_flip_up)
+    s_1_1_18_left_flip_up = _runtime.select(t906, s_1_1_17_left_flip_up, s_1_1_9_left_flip_up)
     del s_1_1_17_left_flip_up, s_1_1_9_left_flip_up
     s1_left_flip_up = _runtime.select(tangent1, s_1_1_18_left_flip_up, -t13)
     del s_1_1_18_left_flip_up, t13
-    c_1_1_18_left_flip_up = _runtime.select(t905, c_1_1_17_left_flip_up, c_1_1_9_left_flip_up)
-    del c_1_1_17_left_flip_up, c_1_1_9_left_flip_up, t905
+    c_1_1_18_left_flip_up = _runtime.select(t906, c_1_1_17_left_flip_up, c_1_1_9_left_flip_up)
+    del c_1_1_17_left_flip_up, c_1_1_9_left_flip_up, t906
     c1_left_flip_up = _runtime.select(tangent1, c_1_1_18_left_flip_up, c_1_1)
     del c_1_1, c_1_1_18_left_flip_up
-    t906 = _runtime.wrap_cut(np.arctan2(s1_left_flip_up, c1_left_flip_up))
+    t907 = _runtime.wrap_cut(np.arctan2(s1_left_flip_up, c1_left_flip_up))
     across_left_flip_up = w_x * c1_left_flip_up + w_y * s1_left_flip_up
     M_13_left_flip_up = T13 * c1_left_flip_up + T23 * s1_left_flip_up
     h_wrist_left_flip_up = np.sqrt(t5 + M_13_left_flip_up * M_13_left_flip_up)
-    aligned_wrist_left_flip_up = h_wrist_left_flip_up <= t369
-    t907 = t24 + across_left_flip_up * across_left_flip_up
-    r_hub_left_flip_up = np.sqrt(t907)
-    del t907
-    hub_mid_left_flip_up = r_hub_left_flip_up <= t4
-    t908 = d5 + r_hub_left_flip_up
-    t909 = d5 - r_hub_left_flip_up
-    mid_reach_left_flip_up = np.minimum(full_1_1, t908) * 0.5 + np.maximum(fold_1_1, np.abs(t909)) * 0.5
-    t910 = (t908 - mid_reach_left_flip_up) * (t908 + mid_reach_left_flip_up)
-    k_mid_left_flip_up = np.maximum(0.0, t910)
-    del t910
-    t911 = (t909 - mid_reach_left_flip_up) * (t909 + mid_reach_left_flip_up)
-    del mid_reach_left_flip_up
-    d_mid_left_flip_up = np.maximum(0.0, -t911)
-    del t911
-    n_mid_left_flip_up = k_mid_left_flip_up + d_mid_left_flip_up
-    t912 = _runtime.VANISHING * (size * t908)
-    any_mid_left_flip_up = n_mid_left_flip_up <= t912
-    t913 = 1.0 / n_mid_left_flip_up
-    del n_mid_left_flip_up
-    t914 = (k_mid_left_flip_up - d_mid_left_flip_up) * t913
-    uc_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 1.0, t914)
-    del t914
-    t915 = np.sqrt(k_mid_left_flip_up * d_mid_left_flip_up)
-    del d_mid_left_flip_up, k_mid_left_flip_up
-    us_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 0.0, t913 * (2.0 * t915))
-    del any_mid_left_flip_up, t913, t915
-    t916 = across_left_flip_up * uc_mid_left_flip_up + t23 * us_mid_left_flip_up
-    t917 = 1.0 / r_hub_left_flip_up
-    del r_hub_left_flip_up
-    c_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t916 * t917)
-    del t916
-    close_left_flip_up = root1 * h_wrist_left_flip_up - t375 <= t4
-    t918 = 1.0 / h_wrist_left_flip_up
-    t919 = _runtime.select(aligned_wrist_left_flip_up, 0.0, T33 * t918)
-    t920 = across_left_flip_up + d5 * t919
-    c_phi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, 1.0, -(M_13_left_flip_up * t918))
-    del t918
-    t921 = t23 - d5 * c_phi_left_flip_up
-    here_left_flip_up = np.sqrt(t920 * t920 + t921 * t921)
-    del t920, t921
-    in_reach_left_flip_up = np.minimum(full_1_1, np.maximum(here_left_flip_up, fold_1_1))
-    t922 = (t908 - in_reach_left_flip_up) * (t908 + in_reach_left_flip_up)
+    aligned_wrist_left_flip_up = h_wrist_left_flip_up <= t22
+    t908 = t25 + across_left_flip_up * across_left_flip_up
+    r_hub_left_flip_up = np.sqrt(t908)
     del t908
-    k_near_left_flip_up = np.maximum(0.0, t922)
-    del t922
+    hub_mid_left_flip_up = r_hub_left_flip_up <= t4
+    t909 = d5 + r_hub_left_flip_up
+    t910 = d5 - r_hub_left_flip_up
+    mid_reach_left_flip_up = np.minimum(full_1_1, t909) * 0.5 + np.maximum(fold_1_1, np.abs(t910)) * 0.5
+    t911 = (t909 - mid_reach_left_flip_up) * (t909 + mid_reach_left_flip_up)
+    k_mid_left_flip_up = np.maximum(0.0, t911)
+    del t911
+    t912 = (t910 - mid_reach_left_flip_up) * (t910 + mid_reach_left_flip_up)
+    del mid_reach_left_flip_up
+    d_mid_left_flip_up = np.maximum(0.0, -t912)
+    del t912
+    n_mid_left_flip_up = k_mid_left_flip_up + d_mid_left_flip_up
+    t913 = _runtime.VANISHING * (size * t909)
+    any_mid_left_flip_up = n_mid_left_flip_up <= t913
+    t914 = 1.0 / n_mid_left_flip_up
+    del n_mid_left_flip_up
+    t915 = (k_mid_left_flip_up - d_mid_left_flip_up) * t914
+    uc_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 1.0, t915)
+    del t915
+    t916 = np.sqrt(k_mid_left_flip_up * d_mid_left_flip_up)
+    del d_mid_left_flip_up, k_mid_left_flip_up
+    us_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 0.0, t914 * (2.0 * t916))
+    del any_mid_left_flip_up, t914, t916
+    t917 = across_left_flip_up * uc_mid_left_flip_up + t24 * us_mid_left_flip_up
+    t918 = 1.0 / r_hub_left_flip_up
+    del r_hub_left_flip_up
+    c_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t917 * t918)
+    del t917
+    close_left_flip_up = root1 * h_wrist_left_flip_up - t375 <= t4
+    t919 = 1.0 / h_wrist_left_flip_up
+    t920 = _runtime.select(aligned_wrist_left_flip_up, 0.0, T33 * t919)
+    t921 = across_left_flip_up + d5 * t920
+    c_phi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, 1.0, -(M_13_left_flip_up * t919))
+    del t919
+    t922 = t24 - d5 * c_phi_left_flip_up
+    here_left_flip_up = np.sqrt(t921 * t921 + t922 * t922)
+    del t921, t922
+    in_reach_left_flip_up = np.minimum(full_1_1, np.maximum(here_left_flip_up, fold_1_1))
     t923 = (t909 - in_reach_left_flip_up) * (t909 + in_reach_left_flip_up)
     del t909
-    d_near_left_flip_up = np.maximum(0.0, -t923)
+    k_near_left_flip_up = np.maximum(0.0, t923)
     del t923
+    t924 = (t910 - in_reach_left_flip_up) * (t910 + in_reach_left_flip_up)
+    del t910
+    d_near_left_flip_up = np.maximum(0.0, -t924)
+    del t924
     n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up
-    any_near_left_flip_up = n_near_left_flip_up <= t912
-    del t912
-    t924 = 1.0 / n_near_left_flip_up
+    any_near_left_flip_up = n_near_left_flip_up <= t913
+    del t913
+    t925 = 1.0 / n_near_left_flip_up
     del n_near_left_flip_up
-    t925 = (k_near_left_flip_up - d_near_left_flip_up) * t924
-    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t925)
-    del t925
-    t926 = across_left_flip_up * c_phi_left_flip_up + t23 * t919
-    t927 = np.abs(t926)
-    side_left_flip_up = _runtime.select(t927 <= t4, 1.0, -(t926 / t927))
-    del t926, t927
-    t928 = np.sqrt(k_near_left_flip_up * d_near_left_flip_up)
+    t926 = (k_near_left_flip_up - d_near_left_flip_up) * t925
+    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t926)
+    del t926
+    t927 = across_left_flip_up * c_phi_left_flip_up + t24 * t920
+    t928 = np.abs(t927)
+    side_left_flip_up = _runtime.select(t928 <= t4, 1.0, -(t927 / t928))
+    del t927, t928
+    t929 = np.sqrt(k_near_left_flip_up * d_near_left_flip_up)
     del d_near_left_flip_up, k_near_left_flip_up
-    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t924 * (2.0 * side_left_flip_up * t928))
-    del any_near_left_flip_up, side_left_flip_up, t924, t928
-    t929 = across_left_flip_up * uc_near_left_flip_up + t23 * us_near_left_flip_up
-    c_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t917 * t929)
-    del t929
-    t930 = t919 + c_near_left_flip_up
-    t931 = across_left_flip_up * us_near_left_flip_up - t23 * uc_near_left_flip_up
+    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t925 * (2.0 * side_left_flip_up * t929))
+    del any_near_left_flip_up, side_left_flip_up, t925, t929
+    t930 = across_left_flip_up * uc_near_left_flip_up + t24 * us_near_left_flip_up
+    c_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t918 * t930)
+    del t930
+    t931 = t920 + c_near_left_flip_up
+    t932 = across_left_flip_up * us_near_left_flip_up - t24 * uc_near_left_flip_up
     del uc_near_left_flip_up, us_near_left_flip_up
-    s_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t917 * t931)
-    del t931
-    t932 = c_phi_left_flip_up + s_near_left_flip_up
-    t933 = h_wrist_left_flip_up * np.sqrt(t930 * t930 + t932 * t932)
-    del h_wrist_left_flip_up, t930, t932
-    t934 = np.abs(here_left_flip_up - in_reach_left_flip_up)
+    s_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t918 * t932)
+    del t932
+    t933 = c_phi_left_flip_up + s_near_left_flip_up
+    t934 = h_wrist_left_flip_up * np.sqrt(t931 * t931 + t933 * t933)
+    del h_wrist_left_flip_up, t931, t933
+    t935 = np.abs(here_left_flip_up - in_reach_left_flip_up)
     del here_left_flip_up, in_reach_left_flip_up
-    t935 = (t933 - 2.2737367544323206e-13 <= t386) & np.logical_not(t934 <= t4)
-    del t933, t934
-    s_kept_left_flip_up = _runtime.select(t935, c_near_left_flip_up, -t919)
+    t936 = (t934 - t385 <= t387) & np.logical_not(t935 <= t4)
+    del t934, t935
+    s_kept_left_flip_up = _runtime.select(t936, c_near_left_flip_up, -t920)
     del c_near_left_flip_up
-    t936 = _runtime.select(close_left_flip_up, s_kept_left_flip_up, -t919)
-    del s_kept_left_flip_up, t919
-    sphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, c_mid_left_flip_up, t936)
-    del c_mid_left_flip_up, t936
-    t937 = across_left_flip_up - d5 * sphi_left_flip_up
-    t938 = across_left_flip_up * us_mid_left_flip_up - t23 * uc_mid_left_flip_up
+    t937 = _runtime.select(close_left_flip_up, s_kept_left_flip_up, -t920)
+    del s_kept_left_flip_up, t920
+    sphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, c_mid_left_flip_up, t937)
+    del c_mid_left_flip_up, t937
+    t938 = across_left_flip_up - d5 * sphi_left_flip_up
+    t939 = across_left_flip_up * us_mid_left_flip_up - t24 * uc_mid_left_flip_up
     del across_left_flip_up, uc_mid_left_flip_up, us_mid_left_flip_up
-    s_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t917 * t938)
-    del hub_mid_left_flip_up, t917, t938
-    c_kept_left_flip_up = _runtime.select(t935, -s_near_left_flip_up, c_phi_left_flip_up)
-    del s_near_left_flip_up, t935
-    t939 = _runtime.select(close_left_flip_up, c_kept_left_flip_up, c_phi_left_flip_up)
+    s_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t918 * t939)
+    del hub_mid_left_flip_up, t918, t939
+    c_kept_left_flip_up = _runtime.select(t936, -s_near_left_flip_up, c_phi_left_flip_up)
+    del s_near_left_flip_up, t936
+    t940 = _runtime.select(close_left_flip_up, c_kept_left_flip_up, c_phi_left_flip_up)
     del c_kept_left_flip_up, c_phi_left_flip_up, close_left_flip_up
-    cphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, -s_mid_left_flip_up, t939)
-    del s_mid_left_flip_up, t939
-    ey_left_flip_up = t23 - d5 * cphi_left_flip_up
-    t940 = t937 * t937 + ey_left_flip_up * ey_left_flip_up
-    r_elbow_left_flip_up = np.sqrt(t940)
-    del t940
-    t941 = full_1_1 - r_elbow_left_flip_up
-    t942 = t35 + r_elbow_left_flip_up
-    t943 = r_elbow_left_flip_up - t35
-    t944 = t368 & (t367 <= t941) & (t367 <= t942) & (t367 <= t943)
-    unreachable_2 = np.logical_not(t944)
-    del t944
-    t945 = _runtime.poison(invalid | unreachable_2)
-    t946 = t906 + t945
-    del t906
-    folded_elbow_left_flip_up = r_elbow_left_flip_up <= t4
-    t947 = folded_elbow_left_flip_up | no_link_elbow
-    A_elbow_left_flip_up = np.maximum(t941, 0.0)
+    cphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, -s_mid_left_flip_up, t940)
+    del s_mid_left_flip_up, t940
+    ey_left_flip_up = t24 - d5 * cphi_left_flip_up
+    t941 = t938 * t938 + ey_left_flip_up * ey_left_flip_up
+    r_elbow_left_flip_up = np.sqrt(t941)
     del t941
-    C_elbow_left_flip_up = np.maximum(t943, 0.0)
-    del t943
-    t948 = A_elbow_left_flip_up * C_elbow_left_flip_up
-    S_elbow_left_flip_up = full_1_1 + r_elbow_left_flip_up
-    B_elbow_left_flip_up = np.maximum(t942, 0.0)
+    t942 = full_1_1 - r_elbow_left_flip_up
+    t943 = t35 + r_elbow_left_flip_up
+    t944 = r_elbow_left_flip_up - t35
+    t945 = t369 & (t368 <= t942) & (t368 <= t943) & (t368 <= t944)
+    unreachable_2 = np.logical_not(t945)
+    del t945
+    t946 = _runtime.poison(invalid | unreachable_2)
+    t947 = t907 + t946
+    del t907
+    folded_elbow_left_flip_up = r_elbow_left_flip_up <= t4
+    t948 = folded_elbow_left_flip_up | no_link_elbow
+    A_elbow_left_flip_up = np.maximum(t942, 0.0)
     del t942
-    t949 = S_elbow_left_flip_up * B_elbow_left_flip_up
-    t950 = 1.0 / (t948 + t949)
-    c_base_elbow_left_flip_up = _runtime.select(t947, 1.0, -((t948 - t949) * t950))
-    t951 = 1.0 / r_elbow_left_flip_up
+    C_elbow_left_flip_up = np.maximum(t944, 0.0)
+    del t944
+    t949 = A_elbow_left_flip_up * C_elbow_left_flip_up
+    S_elbow_left_flip_up = full_1_1 + r_elbow_left_flip_up
+    B_elbow_left_flip_up = np.maximum(t943, 0.0)
+    del t943
+    t950 = S_elbow_left_flip_up * B_elbow_left_flip_up
+    t951 = 1.0 / (t949 + t950)
+    c_base_elbow_left_flip_up = _runtime.select(t948, 1.0, -((t949 - t950) * t951))
+    t952 = 1.0 / r_elbow_left_flip_up
     del r_elbow_left_flip_up
-    t952 = _runtime.select(folded_elbow_left_flip_up, 0.0, ey_left_flip_up * t951)
+    t953 = _runtime.select(folded_elbow_left_flip_up, 0.0, ey_left_flip_up * t952)
     del ey_left_flip_up
-    t953 = c_base_elbow_left_flip_up * t952
-    area_elbow_left_flip_up = 2.0 * np.sqrt(t948 * t949)
-    del t948, t949
-    s_base_elbow_left_flip_up = _runtime.select(t947, 0.0, t950 * area_elbow_left_flip_up)
-    del t947, t950
-    t954 = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t937 * t951))
-    del t937, t951
-    t955 = s_base_elbow_left_flip_up * t954
-    s2_left_flip_up = t953 - t955
-    t956 = c_base_elbow_left_flip_up * t954
-    del c_base_elbow_left_flip_up, t954
-    t957 = t952 * s_base_elbow_left_flip_up
-    del s_base_elbow_left_flip_up, t952
-    c2_left_flip_up = t956 + t957
-    t958 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
-    t959 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    t954 = c_base_elbow_left_flip_up * t953
+    area_elbow_left_flip_up = 2.0 * np.sqrt(t949 * t950)
+    del t949, t950
+    s_base_elbow_left_flip_up = _runtime.select(t948, 0.0, t951 * area_elbow_left_flip_up)
+    del t948, t951
+    t955 = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t938 * t952))
+    del t938, t952
+    t956 = s_base_elbow_left_flip_up * t955
+    s2_left_flip_up = t954 - t956
+    t957 = c_base_elbow_left_flip_up * t955
+    del c_base_elbow_left_flip_up, t955
+    t958 = t953 * s_base_elbow_left_flip_up
+    del s_base_elbow_left_flip_up, t953
+    c2_left_flip_up = t957 + t958
+    t959 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
+    t960 = A_elbow_left_flip_up * S_elbow_left_flip_up
     del A_elbow_left_flip_up, S_elbow_left_flip_up
-    t960 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    t961 = C_elbow_left_flip_up * B_elbow_left_flip_up
     del B_elbow_left_flip_up, C_elbow_left_flip_up
-    t961 = 1.0 / (t959 + t960)
-    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t961)
+    t962 = 1.0 / (t960 + t961)
+    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t962)
     del area_elbow_left_flip_up
-    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t961 * (t959 - t960)))
-    del t959, t960, t961
-    t962 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
-    t963 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
-    t964 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
+    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t962 * (t960 - t961)))
+    del t960, t961, t962
+    t963 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
+    t964 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
+    t965 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
     del c2_left_flip_up, s2_left_flip_up
-    t965 = c3_left_flip_up * t963 - s3_left_flip_up * t964
-    t966 = c3_left_flip_up * t964 + s3_left_flip_up * t963
-    del t963, t964
-    t967 = _runtime.wrap_cut(np.arctan2(t965, t966)) + t945
-    del t965, t966
-    t968 = M_13_left_flip_up * cphi_left_flip_up + T33 * sphi_left_flip_up
+    t966 = c3_left_flip_up * t964 - s3_left_flip_up * t965
+    t967 = c3_left_flip_up * t965 + s3_left_flip_up * t964
+    del t964, t965
+    t968 = _runtime.wrap_cut(np.arctan2(t966, t967)) + t946
+    del t966, t967
+    t969 = M_13_left_flip_up * cphi_left_flip_up + T33 * sphi_left_flip_up
     del M_13_left_flip_up
     M_33_left_flip_up = T13 * s1_left_flip_up - T23 * c1_left_flip_up
-    t969 = _runtime.wrap_cut(-np.arctan2(t968, M_33_left_flip_up))
-    del M_33_left_flip_up, t968
-    t970 = t969 + t945
-    del t969
+    t970 = _runtime.wrap_cut(-np.arctan2(t969, M_33_left_flip_up))
+    del M_33_left_flip_up, t969
+    t971 = t970 + t946
+    del t970
     M_11_left_flip_up = T11 * c1_left_flip_up + T21 * s1_left_flip_up
-    t971 = sphi_left_flip_up * M_11_left_flip_up - T31 * cphi_left_flip_up
+    t972 = sphi_left_flip_up * M_11_left_flip_up - T31 * cphi_left_flip_up
     del M_11_left_flip_up
     M_12_left_flip_up = T12 * c1_left_flip_up + T22 * s1_left_flip_up
     del c1_left_flip_up, s1_left_flip_up
-    t972 = T32 * cphi_left_flip_up - sphi_left_flip_up * M_12_left_flip_up
+    t973 = T32 * cphi_left_flip_up - sphi_left_flip_up * M_12_left_flip_up
     del M_12_left_flip_up
-    t973 = _runtime.wrap_cut(-np.arctan2(t971, t972)) + t945
-    del t971, t972
-    s2_left_flip_down = t953 + t955
-    del t953, t955
-    c2_left_flip_down = t956 - t957
-    del t956, t957
-    t974 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
-    t975 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
-    t976 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
+    t974 = _runtime.wrap_cut(-np.arctan2(t972, t973)) + t946
+    del t972, t973
+    s2_left_flip_down = t954 + t956
+    del t954, t956
+    c2_left_flip_down = t957 - t958
+    del t957, t958
+    t975 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
+    t976 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
+    t977 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
     del c2_left_flip_down, cphi_left_flip_up, s2_left_flip_down, sphi_left_flip_up
-    t977 = c3_left_flip_up * t975 + s3_left_flip_up * t976
-    t978 = c3_left_flip_up * t976 - s3_left_flip_up * t975
-    del c3_left_flip_up, s3_left_flip_up, t975, t976
-    t979 = _runtime.wrap_cut(np.arctan2(t977, t978)) + t945
-    del t977, t978
+    t978 = c3_left_flip_up * t976 + s3_left_flip_up * t977
+    t979 = c3_left_flip_up * t977 - s3_left_flip_up * t976
+    del c3_left_flip_up, s3_left_flip_up, t976, t977
+    t980 = _runtime.wrap_cut(np.arctan2(t978, t979)) + t946
+    del t978, t979
     c_1_1_right_noflip_up = _runtime.select(free1, 1.0, t8 + t10)
     del t10, t8
-    t980 = _runtime.select(free1, 0.0, t11 - t12)
+    t981 = _runtime.select(free1, 0.0, t11 - t12)
     del t11, t12
-    axisx_1_1_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t980
-    t981 = axisx_1_1_right_noflip_up * axisx_1_1_right_noflip_up
-    daxisx_1_1_right_noflip_up = T13 * t980 + T23 * c_1_1_right_noflip_up
-    t982 = daxisx_1_1_right_noflip_up * daxisx_1_1_right_noflip_up
-    most_1_1_5_right_noflip_up = np.sqrt(t981 + t982)
-    del t982
-    t983 = most_1_1_5_right_noflip_up <= 8.881784197001252e-16
+    axisx_1_1_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t981
+    t982 = axisx_1_1_right_noflip_up * axisx_1_1_right_noflip_up
+    daxisx_1_1_right_noflip_up = T13 * t981 + T23 * c_1_1_right_noflip_up
+    t983 = daxisx_1_1_right_noflip_up * daxisx_1_1_right_noflip_up
+    most_1_1_5_right_noflip_up = np.sqrt(t982 + t983)
+    del t983
+    t984 = most_1_1_5_right_noflip_up <= _runtime.VANISHING
     margin_1_1_5_right_noflip_up = most_1_1_5_right_noflip_up * most_1_1_5_right_noflip_up
     del most_1_1_5_right_noflip_up
     rest_1_1_5_right_noflip_up = np.sqrt(margin_1_1_5_right_noflip_up) * _runtime.sign(daxisx_1_1_right_noflip_up)
-    t984 = daxisx_1_1_right_noflip_up * rest_1_1_5_right_noflip_up
-    t985 = 1.0 / margin_1_1_5_right_noflip_up
+    t985 = daxisx_1_1_right_noflip_up * rest_1_1_5_right_noflip_up
+    t986 = 1.0 / margin_1_1_5_right_noflip_up
     del margin_1_1_5_right_noflip_up
-    by_c_1_1_5_right_noflip_up = _runtime.select(t983, 1.0, t984 * t985)
-    del t984
-    t986 = axisx_1_1_right_noflip_up * rest_1_1_5_right_noflip_up
+    by_c_1_1_5_right_noflip_up = _runtime.select(t984, 1.0, t985 * t986)
+    del t985
+    t987 = axisx_1_1_right_noflip_up * rest_1_1_5_right_noflip_up
     del rest_1_1_5_right_noflip_up
-    t987 = _runtime.select(t983, 0.0, t985 * t986)
-    del t983, t985, t986
-    t988 = t987 * t987 / (1.0 + np.abs(by_c_1_1_5_right_noflip_up))
-    versine_1_1_5_right_noflip_up = _runtime.select(0.0 < by_c_1_1_5_right_noflip_up, t988, 1.0 - by_c_1_1_5_right_noflip_up)
-    del t988
-    cost_1_1_5_right_noflip_up = d4 * versine_1_1_5_right_noflip_up + root1 * np.abs(t987)
+    t988 = _runtime.select(t984, 0.0, t986 * t987)
+    del t984, t986, t987
+    t989 = t988 * t988 / (1.0 + np.abs(by_c_1_1_5_right_noflip_up))
+    versine_1_1_5_right_noflip_up = _runtime.select(0.0 < by_c_1_1_5_right_noflip_up, t989, 1.0 - by_c_1_1_5_right_noflip_up)
+    del t989
+    cost_1_1_5_right_noflip_up = d4 * versine_1_1_5_right_noflip_up + root1 * np.abs(t988)
     del versine_1_1_5_right_noflip_up
-    t989 = cost_1_1_5_right_noflip_up <= whole_1_1
+    t990 = cost_1_1_5_right_noflip_up <= whole_1_1
     del cost_1_1_5_right_noflip_up
-    cosine_1_1_5_right_noflip_up = _runtime.select(t989, by_c_1_1_5_right_noflip_up, 1.0)
+    cosine_1_1_5_right_noflip_up = _runtime.select(t990, by_c_1_1_5_right_noflip_up, 1.0)
     del by_c_1_1_5_right_noflip_up
-    t990 = c_1_1_right_noflip_up * cosine_1_1_5_right_noflip_up
-    sine_1_1_5_right_noflip_up = _runtime.select(t989, -t987, 0.0)
-    del t987, t989
-    c_1_1_10_right_noflip_up = t990 + t980 * sine_1_1_5_right_noflip_up
-    del t990
-    t991 = c_1_1_right_noflip_up * sine_1_1_5_right_noflip_up
+    t991 = c_1_1_right_noflip_up * cosine_1_1_5_right_noflip_up
+    sine_1_1_5_right_noflip_up = _runtime.select(t990, -t988, 0.0)
+    del t988, t990
+    c_1_1_10_right_noflip_up = t991 + t981 * sine_1_1_5_right_noflip_up
+    del t991
+    t992 = c_1_1_right_noflip_up * sine_1_1_5_right_noflip_up
     del sine_1_1_5_right_noflip_up
-    s_1_1_10_right_noflip_up = t991 - t980 * cosine_1_1_5_right_noflip_up
-    del cosine_1_1_5_right_noflip_up, t991
+    s_1_1_10_right_noflip_up = t992 - t981 * cosine_1_1_5_right_noflip_up
+    del cosine_1_1_5_right_noflip_up, t992
     axisx_1_1_10_right_noflip_up = T13 * c_1_1_10_right_noflip_up + T23 * s_1_1_10_right_noflip_up
-    t992 = axisx_1_1_10_right_noflip_up * axisx_1_1_10_right_noflip_up
-    t993 = T13 * s_1_1_10_right_noflip_up - T23 * c_1_1_10_right_noflip_up
-    most_1_1_10_right_noflip_up = np.sqrt(t992 + t993 * t993)
-    t994 = most_1_1_10_right_noflip_up <= 8.881784197001252e-16
+    t993 = axisx_1_1_10_right_noflip_up * axisx_1_1_10_right_noflip_up
+    t994 = T13 * s_1_1_10_right_noflip_up - T23 * c_1_1_10_right_noflip_up
+    most_1_1_10_right_noflip_up = np.sqrt(t993 + t994 * t994)
+    t995 = most_1_1_10_right_noflip_up <= _runtime.VANISHING
     qx_1_1_10_right_noflip_up = w_x * c_1_1_10_right_noflip_up + w_y * s_1_1_10_right_noflip_up
-    t995 = qx_1_1_10_right_noflip_up * qx_1_1_10_right_noflip_up
-    r_1_1_10_right_noflip_up = np.sqrt(t24 + t995)
-    del t995
-    t996 = r_1_1_10_right_noflip_up <= t25
-    t997 = d5 + r_1_1_10_right_noflip_up
-    h_1_1_10_right_noflip_up = np.sqrt(t5 + t992)
-    del t992
-    t998 = h_1_1_10_right_noflip_up == 0.0
-    t999 = 1.0 / h_1_1_10_right_noflip_up
+    t996 = qx_1_1_10_right_noflip_up * qx_1_1_10_right_noflip_up
+    r_1_1_10_right_noflip_up = np.sqrt(t25 + t996)
+    del t996
+    t997 = r_1_1_10_right_noflip_up <= t4
+    t998 = d5 + r_1_1_10_right_noflip_up
+    h_1_1_10_right_noflip_up = np.sqrt(t5 + t993)
+    del t993
+    t999 = h_1_1_10_right_noflip_up == 0.0
+    t1000 = 1.0 / h_1_1_10_right_noflip_up
     del h_1_1_10_right_noflip_up
-    uc_1_1_10_right_noflip_up = _runtime.select(t998, 0.0, T33 * t999)
-    t1000 = d5 * uc_1_1_10_right_noflip_up
-    t1001 = qx_1_1_10_right_noflip_up - t1000
-    t1002 = axisx_1_1_10_right_noflip_up * t999
-    del t999
-    t1003 = _runtime.select(t998, 1.0, t1002)
-    t1004 = t23 - d5 * t1003
-    t1005 = np.maximum(np.sqrt(t1001 * t1001 + t1004 * t1004), fold_1_1)
-    del t1001, t1004
-    goal_1_1_10_right_noflip_up = np.minimum(full_1_1, t1005)
-    del t1005
-    t1006 = (t997 - goal_1_1_10_right_noflip_up) * (t997 + goal_1_1_10_right_noflip_up)
-    k_v_1_1_10_right_noflip_up = np.maximum(0.0, t1006)
+    uc_1_1_10_right_noflip_up = _runtime.select(t999, 0.0, T33 * t1000)
+    t1001 = d5 * uc_1_1_10_right_noflip_up
+    t1002 = qx_1_1_10_right_noflip_up - t1001
+    t1003 = axisx_1_1_10_right_noflip_up * t1000
+    del t1000
+    t1004 = _runtime.select(t999, 1.0, t1003)
+    t1005 = t24 - d5 * t1004
+    t1006 = np.maximum(np.sqrt(t1002 * t1002 + t1005 * t1005), fold_1_1)
+    del t1002, t1005
+    goal_1_1_10_right_noflip_up = np.minimum(full_1_1, t1006)
     del t1006
-    t1007 = d5 - r_1_1_10_right_noflip_up
-    t1008 = (goal_1_1_10_right_noflip_up - t1007) * (goal_1_1_10_right_noflip_up + t1007)
+    t1007 = (t998 - goal_1_1_10_right_noflip_up) * (t998 + goal_1_1_10_right_noflip_up)
+    k_v_1_1_10_right_noflip_up = np.maximum(0.0, t1007)
+    del t1007
+    t1008 = d5 - r_1_1_10_right_noflip_up
+    t1009 = (goal_1_1_10_right_noflip_up - t1008) * (goal_1_1_10_right_noflip_up + t1008)
     del goal_1_1_10_right_noflip_up
-    d_v_1_1_10_right_noflip_up = np.maximum(0.0, t1008)
-    del t1008
+    d_v_1_1_10_right_noflip_up = np.maximum(0.0, t1009)
+    del t1009
     n_v_1_1_10_right_noflip_up = k_v_1_1_10_right_noflip_up + d_v_1_1_10_right_noflip_up
-    t1009 = size * t997 * 8.881784197001252e-16
-    t1010 = n_v_1_1_10_right_noflip_up <= t1009
-    t1011 = k_v_1_1_10_right_noflip_up - d_v_1_1_10_right_noflip_up
-    t1012 = 1.0 / n_v_1_1_10_right_noflip_up
+    t1010 = t4 * t998
+    t1011 = n_v_1_1_10_right_noflip_up <= t1010
+    t1012 = k_v_1_1_10_right_noflip_up - d_v_1_1_10_right_noflip_up
+    t1013 = 1.0 / n_v_1_1_10_right_noflip_up
     del n_v_1_1_10_right_noflip_up
-    uc_v_1_1_10_right_noflip_up = _runtime.select(t1010, 1.0, t1011 * t1012)
-    del t1011
-    t1013 = qx_1_1_10_right_noflip_up * uc_v_1_1_10_right_noflip_up
-    t1014 = t23 * uc_1_1_10_right_noflip_up
+    uc_v_1_1_10_right_noflip_up = _runtime.select(t1011, 1.0, t1012 * t1013)
+    del t1012
+    t1014 = qx_1_1_10_right_noflip_up * uc_v_1_1_10_right_noflip_up
+    t1015 = t24 * uc_1_1_10_right_noflip_up
     del uc_1_1_10_right_noflip_up
-    side_1_1_10_right_noflip_up = _runtime.sign(t1014 - qx_1_1_10_right_noflip_up * t1003)
-    del t1003
-    t1015 = k_v_1_1_10_right_noflip_up * d_v_1_1_10_right_noflip_up
+    side_1_1_10_right_noflip_up = _runtime.sign(t1015 - qx_1_1_10_right_noflip_up * t1004)
+    del t1004
+    t1016 = k_v_1_1_10_right_noflip_up * d_v_1_1_10_right_noflip_up
     del d_v_1_1_10_right_noflip_up, k_v_1_1_10_right_noflip_up
-    t1016 = 2.0 * side_1_1_10_right_noflip_up * np.sqrt(t1015)
-    del side_1_1_10_right_noflip_up, t1015
-    us_v_1_1_10_right_noflip_up = _runtime.select(t1010, 0.0, t1012 * t1016)
-    del t1010, t1012, t1016
-    t1017 = t23 * us_v_1_1_10_right_noflip_up
-    t1018 = 1.0 / r_1_1_10_right_noflip_up
+    t1017 = 2.0 * side_1_1_10_right_noflip_up * np.sqrt(t1016)
+    del side_1_1_10_right_noflip_up, t1016
+    us_v_1_1_10_right_noflip_up = _runtime.select(t1011, 0.0, t1013 * t1017)
+    del t1011, t1013, t1017
+    t1018 = t24 * us_v_1_1_10_right_noflip_up
+    t1019 = 1.0 / r_1_1_10_right_noflip_up
     del r_1_1_10_right_noflip_up
-    c_v_1_1_10_right_noflip_up = _runtime.select(t996, 1.0, (t1013 + t1017) * t1018)
-    t1019 = T33 * c_v_1_1_10_right_noflip_up < 0.0
-    t1020 = qx_1_1_10_right_noflip_up * us_v_1_1_10_right_noflip_up
+    c_v_1_1_10_right_noflip_up = _runtime.select(t997, 1.0, (t1014 + t1018) * t1019)
+    t1020 = T33 * c_v_1_1_10_right_noflip_up < 0.0
+    t1021 = qx_1_1_10_right_noflip_up * us_v_1_1_10_right_noflip_up
     del us_v_1_1_10_right_noflip_up
-    t1021 = t23 * uc_v_1_1_10_right_noflip_up
+    t1022 = t24 * uc_v_1_1_10_right_noflip_up
     del uc_v_1_1_10_right_noflip_up
-    wc_1_1_10_right_noflip_up = _runtime.select(t996, 0.0, t1018 * (t1020 + t1021))
-    s_v_1_1_10_right_noflip_up = _runtime.select(t996, 0.0, t1018 * (t1020 - t1021))
-    del t1020, t1021
-    to_c_1_1_10_right_noflip_up = _runtime.select(t1019, wc_1_1_10_right_noflip_up, -s_v_1_1_10_right_noflip_up)
+    wc_1_1_10_right_noflip_up = _runtime.select(t997, 0.0, t1019 * (t1021 + t1022))
+    s_v_1_1_10_right_noflip_up = _runtime.select(t997, 0.0, t1019 * (t1021 - t1022))
+    del t1021, t1022
+    to_c_1_1_10_right_noflip_up = _runtime.select(t1020, wc_1_1_10_right_noflip_up, -s_v_1_1_10_right_noflip_up)
     del s_v_1_1_10_right_noflip_up, wc_1_1_10_right_noflip_up
-    c_w_1_1_10_right_noflip_up = _runtime.select(t996, 1.0, t1018 * (t1013 - t1017))
-    del t1013, t1017
-    to_s_1_1_10_right_noflip_up = _runtime.select(t1019, c_w_1_1_10_right_noflip_up, c_v_1_1_10_right_noflip_up)
-    del c_v_1_1_10_right_noflip_up, c_w_1_1_10_right_noflip_up, t1019
-    t1022 = T33 * to_c_1_1_10_right_noflip_up * _runtime.sign(to_s_1_1_10_right_noflip_up)
+    c_w_1_1_10_right_noflip_up = _runtime.select(t997, 1.0, t1019 * (t1014 - t1018))
+    del t1014, t1018
+    to_s_1_1_10_right_noflip_up = _runtime.select(t1020, c_w_1_1_10_right_noflip_up, c_v_1_1_10_right_noflip_up)
+    del c_v_1_1_10_right_noflip_up, c_w_1_1_10_right_noflip_up, t1020
+    t1023 = T33 * to_c_1_1_10_right_noflip_up * _runtime.sign(to_s_1_1_10_right_noflip_up)
     del to_c_1_1_10_right_noflip_up
-    across_1_1_10_right_noflip_up = _runtime.select(t22, 0.0, t1022)
-    del t1022
-    t1023 = np.abs(to_s_1_1_10_right_noflip_up)
+    across_1_1_10_right_noflip_up = _runtime.select(t23, 0.0, t1023)
+    del t1023
+    t1024 = np.abs(to_s_1_1_10_right_noflip_up)
     del to_s_1_1_10_right_noflip_up
-    t1024 = most_1_1_10_right_noflip_up * t1023 <= np.abs(across_1_1_10_right_noflip_up)
-    t1025 = most_1_1_10_right_noflip_up * _runtime.sign(across_1_1_10_right_noflip_up)
-    t1026 = _runtime.select(t1024, t1025, across_1_1_10_right_noflip_up / t1023)
-    del t1023, t1024, t1025
-    wanted_1_1_10_right_noflip_up = _runtime.select(across_1_1_10_right_noflip_up == 0.0, 0.0, t1026)
-    del across_1_1_10_right_noflip_up, t1026
-    t1027 = axisx_1_1_10_right_noflip_up * wanted_1_1_10_right_noflip_up
-    t1028 = most_1_1_10_right_noflip_up - wanted_1_1_10_right_noflip_up
-    t1029 = most_1_1_10_right_noflip_up + wanted_1_1_10_right_noflip_up
-    t1030 = _runtime.sign(-t993)
-    rest_1_1_10_right_noflip_up = np.sqrt(np.maximum(0.0, t1028 * t1029)) * t1030
-    del t1028, t1029
-    t1031 = most_1_1_10_right_noflip_up * most_1_1_10_right_noflip_up
-    t1032 = 1.0 / t1031
-    del t1031
-    t1033 = (t1027 - t993 * rest_1_1_10_right_noflip_up) * t1032
-    del t1027
-    by_c_1_1_10_right_noflip_up = _runtime.select(t994, 1.0, t1033)
-    del t1033
-    t1034 = axisx_1_1_10_right_noflip_up * rest_1_1_10_right_noflip_up
+    t1025 = most_1_1_10_right_noflip_up * t1024 <= np.abs(across_1_1_10_right_noflip_up)
+    t1026 = most_1_1_10_right_noflip_up * _runtime.sign(across_1_1_10_right_noflip_up)
+    t1027 = _runtime.select(t1025, t1026, across_1_1_10_right_noflip_up / t1024)
+    del t1024, t1025, t1026
+    wanted_1_1_10_right_noflip_up = _runtime.select(across_1_1_10_right_noflip_up == 0.0, 0.0, t1027)
+    del across_1_1_10_right_noflip_up, t1027
+    t1028 = axisx_1_1_10_right_noflip_up * wanted_1_1_10_right_noflip_up
+    t1029 = most_1_1_10_right_noflip_up - wanted_1_1_10_right_noflip_up
+    t1030 = most_1_1_10_right_noflip_up + wanted_1_1_10_right_noflip_up
+    t1031 = _runtime.sign(-t994)
+    rest_1_1_10_right_noflip_up = np.sqrt(np.maximum(0.0, t1029 * t1030)) * t1031
+    del t1029, t1030
+    t1032 = most_1_1_10_right_noflip_up * most_1_1_10_right_noflip_up
+    t1033 = 1.0 / t1032
+    del t1032
+    t1034 = (t1028 - t994 * rest_1_1_10_right_noflip_up) * t1033
+    del t1028
+    by_c_1_1_10_right_noflip_up = _runtime.select(t995, 1.0, t1034)
+    del t1034
+    t1035 = axisx_1_1_10_right_noflip_up * rest_1_1_10_right_noflip_up
     del rest_1_1_10_right_noflip_up
-    t1035 = t1032 * (t1034 + t993 * wanted_1_1_10_right_noflip_up)
-    del t1034, wanted_1_1_10_right_noflip_up
-    t1036 = _runtime.select(t994, 0.0, t1035)
-    del t1035
-    t1037 = t1036 * t1036 / (1.0 + np.abs(by_c_1_1_10_right_noflip_up))
-    versine_1_1_10_right_noflip_up = _runtime.select(0.0 < by_c_1_1_10_right_noflip_up, t1037, 1.0 - by_c_1_1_10_right_noflip_up)
-    del t1037
-    cost_1_1_10_right_noflip_up = d4 * versine_1_1_10_right_noflip_up + root1 * np.abs(t1036)
+    t1036 = t1033 * (t1035 + t994 * wanted_1_1_10_right_noflip_up)
+    del t1035, wanted_1_1_10_right_noflip_up
+    t1037 = _runtime.select(t995, 0.0, t1036)
+    del t1036
+    t1038 = t1037 * t1037 / (1.0 + np.abs(by_c_1_1_10_right_noflip_up))
+    versine_1_1_10_right_noflip_up = _runtime.select(0.0 < by_c_1_1_10_right_noflip_up, t1038, 1.0 - by_c_1_1_10_right_noflip_up)
+    del t1038
+    cost_1_1_10_right_noflip_up = d4 * versine_1_1_10_right_noflip_up + root1 * np.abs(t1037)
     del versine_1_1_10_right_noflip_up
-    t1038 = cost_1_1_10_right_noflip_up <= whole_1_1
+    t1039 = cost_1_1_10_right_noflip_up <= whole_1_1
     del cost_1_1_10_right_noflip_up
-    cosine_1_1_10_right_noflip_up = _runtime.select(t1038, by_c_1_1_10_right_noflip_up, 1.0)
+    cosine_1_1_10_right_noflip_up = _runtime.select(t1039, by_c_1_1_10_right_noflip_up, 1.0)
     del by_c_1_1_10_right_noflip_up
-    t1039 = c_1_1_10_right_noflip_up * cosine_1_1_10_right_noflip_up
-    sine_1_1_10_right_noflip_up = _runtime.select(t1038, -t1036, 0.0)
-    del t1036, t1038
-    t1040 = s_1_1_10_right_noflip_up * sine_1_1_10_right_noflip_up
-    c_1_1_11_right_noflip_up = t1039 - t1040
-    del t1039, t1040
-    t1041 = c_1_1_10_right_noflip_up * sine_1_1_10_right_noflip_up
+    t1040 = c_1_1_10_right_noflip_up * cosine_1_1_10_right_noflip_up
+    sine_1_1_10_right_noflip_up = _runtime.select(t1039, -t1037, 0.0)
+    del t1037, t1039
+    t1041 = s_1_1_10_right_noflip_up * sine_1_1_10_right_noflip_up
+    c_1_1_11_right_noflip_up = t1040 - t1041
+    del t1040, t1041
+    t1042 = c_1_1_10_right_noflip_up * sine_1_1_10_right_noflip_up
     del sine_1_1_10_right_noflip_up
-    t1042 = s_1_1_10_right_noflip_up * cosine_1_1_10_right_noflip_up
+    t1043 = s_1_1_10_right_noflip_up * cosine_1_1_10_right_noflip_up
     del cosine_1_1_10_right_noflip_up
-    s_1_1_11_right_noflip_up = t1041 + t1042
-    del t1041, t1042
+    s_1_1_11_right_noflip_up = t1042 + t1043
+    del t1042, t1043
     axisx_1_1_11_right_noflip_up = T13 * c_1_1_11_right_noflip_up + T23 * s_1_1_11_right_noflip_up
-    t1043 = axisx_1_1_11_right_noflip_up * axisx_1_1_11_right_noflip_up
-    t1044 = T13 * s_1_1_11_right_noflip_up - T23 * c_1_1_11_right_noflip_up
-    most_1_1_11_right_noflip_up = np.sqrt(t1043 + t1044 * t1044)
-    t1045 = most_1_1_11_right_noflip_up <= 8.881784197001252e-16
+    t1044 = axisx_1_1_11_right_noflip_up * axisx_1_1_11_right_noflip_up
+    t1045 = T13 * s_1_1_11_right_noflip_up - T23 * c_1_1_11_right_noflip_up
+    most_1_1_11_right_noflip_up = np.sqrt(t1044 + t1045 * t1045)
+    t1046 = most_1_1_11_right_noflip_up <= _runtime.VANISHING
     qx_1_1_11_right_noflip_up = w_x * c_1_1_11_right_noflip_up + w_y * s_1_1_11_right_noflip_up
-    t1046 = qx_1_1_11_right_noflip_up * qx_1_1_11_right_noflip_up
-    r_1_1_11_right_noflip_up = np.sqrt(t24 + t1046)
-    del t1046
-    t1047 = r_1_1_11_right_noflip_up <= t25
-    t1048 = d5 + r_1_1_11_right_noflip_up
-    h_1_1_11_right_noflip_up = np.sqrt(t5 + t1043)
-    del t1043
-    t1049 = h_1_1_11_right_noflip_up == 0.0
-    t1050 = 1.0 / h_1_1_11_right_noflip_up
+    t1047 = qx_1_1_11_right_noflip_up * qx_1_1_11_right_noflip_up
+    r_1_1_11_right_noflip_up = np.sqrt(t25 + t1047)
+    del t1047
+    t1048 = r_1_1_11_right_noflip_up <= t4
+    t1049 = d5 + r_1_1_11_right_noflip_up
+    h_1_1_11_right_noflip_up = np.sqrt(t5 + t1044)
+    del t1044
+    t1050 = h_1_1_11_right_noflip_up == 0.0
+    t1051 = 1.0 / h_1_1_11_right_noflip_up
     del h_1_1_11_right_noflip_up
-    uc_1_1_11_right_noflip_up = _runtime.select(t1049, 0.0, T33 * t1050)
-    t1051 = qx_1_1_11_right_noflip_up - d5 * uc_1_1_11_right_noflip_up
-    t1052 = _runtime.select(t1049, 1.0, axisx_1_1_11_right_noflip_up * t1050)
-    del t1049, t1050
-    t1053 = t23 - d5 * t1052
-    t1054 = np.maximum(np.sqrt(t1051 * t1051 + t1053 * t1053), fold_1_1)
-    del t1051, t1053
-    goal_1_1_11_right_noflip_up = np.minimum(full_1_1, t1054)
-    del t1054
-    t1055 = (t1048 - goal_1_1_11_right_noflip_up) * (t1048 + goal_1_1_11_right_noflip_up)
-    k_v_1_1_11_right_noflip_up = np.maximum(0.0, t1055)
+    uc_1_1_11_right_noflip_up = _runtime.select(t1050, 0.0, T33 * t1051)
+    t1052 = qx_1_1_11_right_noflip_up - d5 * uc_1_1_11_right_noflip_up
+    t1053 = _runtime.select(t1050, 1.0, axisx_1_1_11_right_noflip_up * t1051)
+    del t1050, t1051
+    t1054 = t24 - d5 * t1053
+    t1055 = np.maximum(np.sqrt(t1052 * t1052 + t1054 * t1054), fold_1_1)
+    del t1052, t1054
+    goal_1_1_11_right_noflip_up = np.minimum(full_1_1, t1055)
     del t1055
-    t1056 = d5 - r_1_1_11_right_noflip_up
-    t1057 = (goal_1_1_11_right_noflip_up - t1056) * (goal_1_1_11_right_noflip_up + t1056)
-    del goal_1_1_11_right_noflip_up, t1056
-    d_v_1_1_11_right_noflip_up = np.maximum(0.0, t1057)
-    del t1057
+    t1056 = (t1049 - goal_1_1_11_right_noflip_up) * (t1049 + goal_1_1_11_right_noflip_up)
+    k_v_1_1_11_right_noflip_up = np.maximum(0.0, t1056)
+    del t1056
+    t1057 = d5 - r_1_1_11_right_noflip_up
+    t1058 = (goal_1_1_11_right_noflip_up - t1057) * (goal_1_1_11_right_noflip_up + t1057)
+    del goal_1_1_11_right_noflip_up, t1057
+    d_v_1_1_11_right_noflip_up = np.maximum(0.0, t1058)
+    del t1058
     n_v_1_1_11_right_noflip_up = k_v_1_1_11_right_noflip_up + d_v_1_1_11_right_noflip_up
-    t1058 = n_v_1_1_11_right_noflip_up <= size * t1048 * 8.881784197001252e-16
-    del t1048
-    t1059 = k_v_1_1_11_right_noflip_up - d_v_1_1_11_right_noflip_up
-    t1060 = 1.0 / n_v_1_1_11_right_noflip_up
+    t1059 = n_v_1_1_11_right_noflip_up <= t4 * t1049
+    del t1049
+    t1060 = k_v_1_1_11_right_noflip_up - d_v_1_1_11_right_noflip_up
+    t1061 = 1.0 / n_v_1_1_11_right_noflip_up
     del n_v_1_1_11_right_noflip_up
-    uc_v_1_1_11_right_noflip_up = _runtime.select(t1058, 1.0, t1059 * t1060)
-    del t1059
-    t1061 = qx_1_1_11_right_noflip_up * uc_v_1_1_11_right_noflip_up
-    t1062 = t23 * uc_1_1_11_right_noflip_up - qx_1_1_11_right_noflip_up * t1052
-    del t1052, uc_1_1_11_right_noflip_up
-    t1063 = k_v_1_1_11_right_noflip_up * d_v_1_1_11_right_noflip_up
+    uc_v_1_1_11_right_noflip_up = _runtime.select(t1059, 1.0, t1060 * t1061)
+    del t1060
+    t1062 = qx_1_1_11_right_noflip_up * uc_v_1_1_11_right_noflip_up
+    t1063 = t24 * uc_1_1_11_right_noflip_up - qx_1_1_11_right_noflip_up * t1053
+    del t1053, uc_1_1_11_right_noflip_up
+    t1064 = k_v_1_1_11_right_noflip_up * d_v_1_1_11_right_noflip_up
     del d_v_1_1_11_right_noflip_up, k_v_1_1_11_right_noflip_up
-    t1064 = t1060 * (2.0 * _runtime.sign(t1062) * np.sqrt(t1063))
-    del t1060, t1062, t1063
-    us_v_1_1_11_right_noflip_up = _runtime.select(t1058, 0.0, t1064)
-    del t1058, t1064
-    t1065 = t23 * us_v_1_1_11_right_noflip_up
-    t1066 = 1.0 / r_1_1_11_right_noflip_up
+    t1065 = t1061 * (2.0 * _runtime.sign(t1063) * np.sqrt(t1064))
+    del t1061, t1063, t1064
+    us_v_1_1_11_right_noflip_up = _runtime.select(t1059, 0.0, t1065)
+    del t1059, t1065
+    t1066 = t24 * us_v_1_1_11_right_noflip_up
+    t1067 = 1.0 / r_1_1_11_right_noflip_up
     del r_1_1_11_right_noflip_up
-    c_v_1_1_11_right_noflip_up = _runtime.select(t1047, 1.0, (t1061 + t1065) * t1066)
-    t1067 = T33 * c_v_1_1_11_right_noflip_up < 0.0
-    t1068 = qx_1_1_11_right_noflip_up * us_v_1_1_11_right_noflip_up
+    c_v_1_1_11_right_noflip_up = _runtime.select(t1048, 1.0, (t1062 + t1066) * t1067)
+    t1068 = T33 * c_v_1_1_11_right_noflip_up < 0.0
+    t1069 = qx_1_1_11_right_noflip_up * us_v_1_1_11_right_noflip_up
     del qx_1_1_11_right_noflip_up, us_v_1_1_11_right_noflip_up
-    t1069 = t23 * uc_v_1_1_11_right_noflip_up
+    t1070 = t24 * uc_v_1_1_11_right_noflip_up
     del uc_v_1_1_11_right_noflip_up
-    wc_1_1_11_right_noflip_up = _runtime.select(t1047, 0.0, t1066 * (t1068 + t1069))
-    s_v_1_1_11_right_noflip_up = _runtime.select(t1047, 0.0, t1066 * (t1068 - t1069))
-    del t1068, t1069
-    to_c_1_1_11_right_noflip_up = _runtime.select(t1067, wc_1_1_11_right_noflip_up, -s_v_1_1_11_right_noflip_up)
+    wc_1_1_11_right_noflip_up = _runtime.select(t1048, 0.0, t1067 * (t1069 + t1070))
+    s_v_1_1_11_right_noflip_up = _runtime.select(t1048, 0.0, t1067 * (t1069 - t1070))
+    del t1069, t1070
+    to_c_1_1_11_right_noflip_up = _runtime.select(t1068, wc_1_1_11_right_noflip_up, -s_v_1_1_11_right_noflip_up)
     del s_v_1_1_11_right_noflip_up, wc_1_1_11_right_noflip_up
-    c_w_1_1_11_right_noflip_up = _runtime.select(t1047, 1.0, t1066 * (t1061 - t1065))
-    del t1047, t1061, t1065, t1066
-    to_s_1_1_11_right_noflip_up = _runtime.select(t1067, c_w_1_1_11_right_noflip_up, c_v_1_1_11_right_noflip_up)
-    del c_v_1_1_11_right_noflip_up, c_w_1_1_11_right_noflip_up, t1067
-    t1070 = T33 * to_c_1_1_11_right_noflip_up * _runtime.sign(to_s_1_1_11_right_noflip_up)
+    c_w_1_1_11_right_noflip_up = _runtime.select(t1048, 1.0, t1067 * (t1062 - t1066))
+    del t1048, t1062, t1066, t1067
+    to_s_1_1_11_right_noflip_up = _runtime.select(t1068, c_w_1_1_11_right_noflip_up, c_v_1_1_11_right_noflip_up)
+    del c_v_1_1_11_right_noflip_up, c_w_1_1_11_right_noflip_up, t1068
+    t1071 = T33 * to_c_1_1_11_right_noflip_up * _runtime.sign(to_s_1_1_11_right_noflip_up)
     del to_c_1_1_11_right_noflip_up
-    across_1_1_11_right_noflip_up = _runtime.select(t22, 0.0, t1070)
-    del t1070
-    t1071 = np.abs(to_s_1_1_11_right_noflip_up)
+    across_1_1_11_right_noflip_up = _runtime.select(t23, 0.0, t1071)
+    del t1071
+    t1072 = np.abs(to_s_1_1_11_right_noflip_up)
     del to_s_1_1_11_right_noflip_up
-    t1072 = most_1_1_11_right_noflip_up * t1071 <= np.abs(across_1_1_11_right_noflip_up)
-    t1073 = most_1_1_11_right_noflip_up * _runtime.sign(across_1_1_11_right_noflip_up)
-    t1074 = _runtime.select(t1072, t1073, across_1_1_11_right_noflip_up / t1071)
-    del t1071, t1072, t1073
-    wanted_1_1_11_right_noflip_up = _runtime.select(across_1_1_11_right_noflip_up == 0.0, 0.0, t1074)
-    del across_1_1_11_right_noflip_up, t1074
-    t1075 = axisx_1_1_11_right_noflip_up * wanted_1_1_11_right_noflip_up
-    t1076 = most_1_1_11_right_noflip_up - wanted_1_1_11_right_noflip_up
-    t1077 = most_1_1_11_right_noflip_up + wanted_1_1_11_right_noflip_up
-    rest_1_1_11_right_noflip_up = np.sqrt(np.maximum(0.0, t1076 * t1077)) * _runtime.sign(-t1044)
-    del t1076, t1077
-    t1078 = most_1_1_11_right_noflip_up * most_1_1_11_right_noflip_up
+    t1073 = most_1_1_11_right_noflip_up * t1072 <= np.abs(across_1_1_11_right_noflip_up)
+    t1074 = most_1_1_11_right_noflip_up * _runtime.sign(across_1_1_11_right_noflip_up)
+    t1075 = _runtime.select(t1073, t1074, across_1_1_11_right_noflip_up / t1072)
+    del t1072, t1073, t1074
+    wanted_1_1_11_right_noflip_up = _runtime.select(across_1_1_11_right_noflip_up == 0.0, 0.0, t1075)
+    del across_1_1_11_right_noflip_up, t1075
+    t1076 = axisx_1_1_11_right_noflip_up * wanted_1_1_11_right_noflip_up
+    t1077 = most_1_1_11_right_noflip_up - wanted_1_1_11_right_noflip_up
+    t1078 = most_1_1_11_right_noflip_up + wanted_1_1_11_right_noflip_up
+    rest_1_1_11_right_noflip_up = np.sqrt(np.maximum(0.0, t1077 * t1078)) * _runtime.sign(-t1045)
+    del t1077, t1078
+    t1079 = most_1_1_11_right_noflip_up * most_1_1_11_right_noflip_up
     del most_1_1_11_right_noflip_up
-    t1079 = 1.0 / t1078
-    del t1078
-    t1080 = (t1075 - t1044 * rest_1_1_11_right_noflip_up) * t1079
-    del t1075
-    by_c_1_1_11_right_noflip_up = _runtime.select(t1045, 1.0, t1080)
-    del t1080
-    t1081 = axisx_1_1_11_right_noflip_up * rest_1_1_11_right_noflip_up
+    t1080 = 1.0 / t1079
+    del t1079
+    t1081 = (t1076 - t1045 * rest_1_1_11_right_noflip_up) * t1080
+    del t1076
+    by_c_1_1_11_right_noflip_up = _runtime.select(t1046, 1.0, t1081)
+    del t1081
+    t1082 = axisx_1_1_11_right_noflip_up * rest_1_1_11_right_noflip_up
     del axisx_1_1_11_right_noflip_up, rest_1_1_11_right_noflip_up
-    t1082 = t1081 + t1044 * wanted_1_1_11_right_noflip_up
-    del t1044, t1081, wanted_1_1_11_right_noflip_up
-    t1083 = _runtime.select(t1045, 0.0, t1079 * t1082)
-    del t1045, t1079, t1082
-    t1084 = t1083 * t1083 / (1.0 + np.abs(by_c_1_1_11_right_noflip_up))
-    versine_1_1_11_right_noflip_up = _runtime.select(0.0 < by_c_1_1_11_right_noflip_up, t1084, 1.0 - by_c_1_1_11_right_noflip_up)
-    del t1084
-    cost_1_1_11_right_noflip_up = d4 * versine_1_1_11_right_noflip_up + root1 * np.abs(t1083)
+    t1083 = t1082 + t1045 * wanted_1_1_11_right_noflip_up
+    del t1045, t1082, wanted_1_1_11_right_noflip_up
+    t1084 = _runtime.select(t1046, 0.0, t1080 * t1083)
+    del t1046, t1080, t1083
+    t1085 = t1084 * t1084 / (1.0 + np.abs(by_c_1_1_11_right_noflip_up))
+    versine_1_1_11_right_noflip_up = _runtime.select(0.0 < by_c_1_1_11_right_noflip_up, t1085, 1.0 - by_c_1_1_11_right_noflip_up)
+    del t1085
+    cost_1_1_11_right_noflip_up = d4 * versine_1_1_11_right_noflip_up + root1 * np.abs(t1084)
     del versine_1_1_11_right_noflip_up
-    t1085 = cost_1_1_11_right_noflip_up <= whole_1_1
+    t1086 = cost_1_1_11_right_noflip_up <= whole_1_1
     del cost_1_1_11_right_noflip_up
-    cosine_1_1_11_right_noflip_up = _runtime.select(t1085, by_c_1_1_11_right_noflip_up, 1.0)
+    cosine_1_1_11_right_noflip_up = _runtime.select(t1086, by_c_1_1_11_right_noflip_up, 1.0)
     del by_c_1_1_11_right_noflip_up
-    t1086 = c_1_1_11_right_noflip_up * cosine_1_1_11_right_noflip_up
-    sine_1_1_11_right_noflip_up = _runtime.select(t1085, -t1083, 0.0)
-    del t1083, t1085
-    t1087 = s_1_1_11_right_noflip_up * sine_1_1_11_right_noflip_up
-    c_1_1_12_right_noflip_up = t1086 - t1087
-    del t1086, t1087
-    t1088 = c_1_1_11_right_noflip_up * sine_1_1_11_right_noflip_up
+    t1087 = c_1_1_11_right_noflip_up * cosine_1_1_11_right_noflip_up
+    sine_1_1_11_right_noflip_up = _runtime.select(t1086, -t1084, 0.0)
+    del t1084, t1086
+    t1088 = s_1_1_11_right_noflip_up * sine_1_1_11_right_noflip_up
+    c_1_1_12_right_noflip_up = t1087 - t1088
+    del t1087, t1088
+    t1089 = c_1_1_11_right_noflip_up * sine_1_1_11_right_noflip_up
     del c_1_1_11_right_noflip_up, sine_1_1_11_right_noflip_up
-    t1089 = s_1_1_11_right_noflip_up * cosine_1_1_11_right_noflip_up
+    t1090 = s_1_1_11_right_noflip_up * cosine_1_1_11_right_noflip_up
     del cosine_1_1_11_right_noflip_up, s_1_1_11_right_noflip_up
-    s_1_1_12_right_noflip_up = t1088 + t1089
-    del t1088, t1089
+    s_1_1_12_right_noflip_up = t1089 + t1090
+    del t1089, t1090
     axisx_1_1_12_right_noflip_up = T13 * c_1_1_12_right_noflip_up + T23 * s_1_1_12_right_noflip_up
-    t1090 = axisx_1_1_12_right_noflip_up * axisx_1_1_12_right_noflip_up
-    h_1_1_12_right_noflip_up = np.sqrt(t5 + t1090)
-    del t1090
-    t1091 = h_1_1_12_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_12_right_noflip_up = w_x * c_1_1_12_right_noflip_up + w_y * s_1_1_12_right_noflip_up
-    t1092 = h_1_1_12_right_noflip_up == 0.0
-    t1093 = 1.0 / h_1_1_12_right_noflip_up
-    uc_1_1_12_right_noflip_up = _runtime.select(t1092, 0.0, T33 * t1093)
-    t1094 = qx_1_1_12_right_noflip_up - d5 * uc_1_1_12_right_noflip_up
-    x_1_1_12_right_noflip_up = _runtime.select(t1091, qx_1_1_12_right_noflip_up, t1094)
-    del t1094
-    dqx_1_1_12_right_noflip_up = w_y * c_1_1_12_right_noflip_up - w_x * s_1_1_12_right_noflip_up
-    t1095 = T13 * s_1_1_12_right_noflip_up - T23 * c_1_1_12_right_noflip_up
-    t1096 = h_1_1_12_right_noflip_up * h_1_1_12_right_noflip_up
-    del h_1_1_12_right_noflip_up
-    spin_1_1_12_right_noflip_up = _runtime.select(t1091, 0.0, T33 * t1095 / t1096)
-    del t1095, t1096
-    rate_1_1_12_right_noflip_up = d5 * spin_1_1_12_right_noflip_up
-    t1097 = _runtime.select(t1092, 1.0, axisx_1_1_12_right_noflip_up * t1093)
-    del axisx_1_1_12_right_noflip_up, t1092, t1093
-    t1098 = dqx_1_1_12_right_noflip_up - rate_1_1_12_right_noflip_up * t1097
-    dx_1_1_12_right_noflip_up = _runtime.select(t1091, dqx_1_1_12_right_noflip_up, t1098)
-    del t1098
-    t1099 = x_1_1_12_right_noflip_up * dx_1_1_12_right_noflip_up
-    del dx_1_1_12_right_noflip_up
-    t1100 = _runtime.select(t1091, t23, t23 - d5 * t1097)
-    t1101 = rate_1_1_12_right_noflip_up * uc_1_1_12_right_noflip_up
-    slope_1_1_12_right_noflip_up = t1099 + t1100 * _runtime.select(t1091, 0.0, t1101)
-    del t1099, t1101
-    t1102 = slope_1_1_12_right_noflip_up * slope_1_1_12_right_noflip_up
-    straight_1_1_12_right_noflip_up = dqx_1_1_12_right_noflip_up * dqx_1_1_12_right_noflip_up
-    t1103 = qx_1_1_12_right_noflip_up * uc_1_1_12_right_noflip_up
-    del qx_1_1_12_right_noflip_up, uc_1_1_12_right_noflip_up
-    t1104 = spin_1_1_12_right_noflip_up * (t1103 + t23 * t1097)
-    del spin_1_1_12_right_noflip_up, t1103
-    t1105 = 2.0 * dqx_1_1_12_right_noflip_up * t1097 - t1104
-    del dqx_1_1_12_right_noflip_up, t1097, t1104
-    t1106 = straight_1_1_12_right_noflip_up - rate_1_1_12_right_noflip_up * t1105
-    del rate_1_1_12_right_noflip_up, t1105
-    bends_1_1_12_right_noflip_up = _runtime.select(t1091, straight_1_1_12_right_noflip_up, t1106)
-    del straight_1_1_12_right_noflip_up, t1106
-    t1107 = x_1_1_12_right_noflip_up * x_1_1_12_right_noflip_up
-    del x_1_1_12_right_noflip_up
-    square_1_1_12_right_noflip_up = t1107 + t1100 * t1100
-    del t1100, t1107
-    t1108 = _runtime.select(t1091, t98, fold_1_1) - whole_1_1
-    t1109 = np.maximum(0.0, t1108)
-    del t1108
-    t1110 = whole_1_1 + _runtime.select(t1091, t3, full_1_1)
+    t1091 = axisx_1_1_12_right_noflip_up * axisx_1_1_12_right_noflip_up
+    h_1_1_12_right_noflip_up = np.sqrt(t5 + t1091)
     del t1091
-    t1111 = np.minimum(t1110 * t1110, square_1_1_12_right_noflip_up)
-    del t1110
-    miss_1_1_12_right_noflip_up = square_1_1_12_right_noflip_up - np.maximum(t1109 * t1109, t1111)
-    del square_1_1_12_right_noflip_up, t1109, t1111
-    t1112 = bends_1_1_12_right_noflip_up * miss_1_1_12_right_noflip_up
-    inner_1_1_12_right_noflip_up = t1102 - t1112
-    del t1102, t1112
-    t1113 = inner_1_1_12_right_noflip_up < 0.0
-    t1114 = np.maximum(0.0, inner_1_1_12_right_noflip_up)
+    t1092 = h_1_1_12_right_noflip_up <= t89
+    qx_1_1_12_right_noflip_up = w_x * c_1_1_12_right_noflip_up + w_y * s_1_1_12_right_noflip_up
+    t1093 = h_1_1_12_right_noflip_up == 0.0
+    t1094 = 1.0 / h_1_1_12_right_noflip_up
+    uc_1_1_12_right_noflip_up = _runtime.select(t1093, 0.0, T33 * t1094)
+    t1095 = qx_1_1_12_right_noflip_up - d5 * uc_1_1_12_right_noflip_up
+    x_1_1_12_right_noflip_up = _runtime.select(t1092, qx_1_1_12_right_noflip_up, t1095)
+    del t1095
+    dqx_1_1_12_right_noflip_up = w_y * c_1_1_12_right_noflip_up - w_x * s_1_1_12_right_noflip_up
+    t1096 = T13 * s_1_1_12_right_noflip_up - T23 * c_1_1_12_right_noflip_up
+    t1097 = h_1_1_12_right_noflip_up * h_1_1_12_right_noflip_up
+    del h_1_1_12_right_noflip_up
+    spin_1_1_12_right_noflip_up = _runtime.select(t1092, 0.0, T33 * t1096 / t1097)
+    del t1096, t1097
+    rate_1_1_12_right_noflip_up = d5 * spin_1_1_12_right_noflip_up
+    t1098 = _runtime.select(t1093, 1.0, axisx_1_1_12_right_noflip_up * t1094)
+    del axisx_1_1_12_right_noflip_up, t1093, t1094
+    t1099 = dqx_1_1_12_right_noflip_up - rate_1_1_12_right_noflip_up * t1098
+    dx_1_1_12_right_noflip_up = _runtime.select(t1092, dqx_1_1_12_right_noflip_up, t1099)
+    del t1099
+    t1100 = x_1_1_12_right_noflip_up * dx_1_1_12_right_noflip_up
+    del dx_1_1_12_right_noflip_up
+    t1101 = _runtime.select(t1092, t24, t24 - d5 * t1098)
+    t1102 = rate_1_1_12_right_noflip_up * uc_1_1_12_right_noflip_up
+    slope_1_1_12_right_noflip_up = t1100 + t1101 * _runtime.select(t1092, 0.0, t1102)
+    del t1100, t1102
+    t1103 = slope_1_1_12_right_noflip_up * slope_1_1_12_right_noflip_up
+    straight_1_1_12_right_noflip_up = dqx_1_1_12_right_noflip_up * dqx_1_1_12_right_noflip_up
+    t1104 = qx_1_1_12_right_noflip_up * uc_1_1_12_right_noflip_up
+    del qx_1_1_12_right_noflip_up, uc_1_1_12_right_noflip_up
+    t1105 = spin_1_1_12_right_noflip_up * (t1104 + t24 * t1098)
+    del spin_1_1_12_right_noflip_up, t1104
+    t1106 = 2.0 * dqx_1_1_12_right_noflip_up * t1098 - t1105
+    del dqx_1_1_12_right_noflip_up, t1098, t1105
+    t1107 = straight_1_1_12_right_noflip_up - rate_1_1_12_right_noflip_up * t1106
+    del rate_1_1_12_right_noflip_up, t1106
+    bends_1_1_12_right_noflip_up = _runtime.select(t1092, straight_1_1_12_right_noflip_up, t1107)
+    del straight_1_1_12_right_noflip_up, t1107
+    t1108 = x_1_1_12_right_noflip_up * x_1_1_12_right_noflip_up
+    del x_1_1_12_right_noflip_up
+    square_1_1_12_right_noflip_up = t1108 + t1101 * t1101
+    del t1101, t1108
+    t1109 = _runtime.select(t1092, t99, fold_1_1) - whole_1_1
+    t1110 = np.maximum(0.0, t1109)
+    del t1109
+    t1111 = whole_1_1 + _runtime.select(t1092, t3, full_1_1)
+    del t1092
+    t1112 = np.minimum(t1111 * t1111, square_1_1_12_right_noflip_up)
+    del t1111
+    miss_1_1_12_right_noflip_up = square_1_1_12_right_noflip_up - np.maximum(t1110 * t1110, t1112)
+    del square_1_1_12_right_noflip_up, t1110, t1112
+    t1113 = bends_1_1_12_right_noflip_up * miss_1_1_12_right_noflip_up
+    inner_1_1_12_right_noflip_up = t1103 - t1113
+    del t1103, t1113
+    t1114 = inner_1_1_12_right_noflip_up < 0.0
+    t1115 = np.maximum(0.0, inner_1_1_12_right_noflip_up)
     del inner_1_1_12_right_noflip_up
-    t1115 = _runtime.sign(slope_1_1_12_right_noflip_up) * np.sqrt(t1114)
-    del t1114
-    below_1_1_12_right_noflip_up = _runtime.select(t1113, 2.0 * bends_1_1_12_right_noflip_up, 2.0 * (slope_1_1_12_right_noflip_up + t1115))
-    del bends_1_1_12_right_noflip_up, t1115
-    above_1_1_12_right_noflip_up = _runtime.select(t1113, slope_1_1_12_right_noflip_up, miss_1_1_12_right_noflip_up)
-    del miss_1_1_12_right_noflip_up, slope_1_1_12_right_noflip_up, t1113
-    t1116 = np.abs(below_1_1_12_right_noflip_up) <= np.abs(above_1_1_12_right_noflip_up)
-    t1117 = above_1_1_12_right_noflip_up / below_1_1_12_right_noflip_up
+    t1116 = _runtime.sign(slope_1_1_12_right_noflip_up) * np.sqrt(t1115)
+    del t1115
+    below_1_1_12_right_noflip_up = _runtime.select(t1114, 2.0 * bends_1_1_12_right_noflip_up, 2.0 * (slope_1_1_12_right_noflip_up + t1116))
+    del bends_1_1_12_right_noflip_up, t1116
+    above_1_1_12_right_noflip_up = _runtime.select(t1114, slope_1_1_12_right_noflip_up, miss_1_1_12_right_noflip_up)
+    del miss_1_1_12_right_noflip_up, slope_1_1_12_right_noflip_up, t1114
+    t1117 = np.abs(below_1_1_12_right_noflip_up) <= np.abs(above_1_1_12_right_noflip_up)
+    t1118 = above_1_1_12_right_noflip_up / below_1_1_12_right_noflip_up
     del above_1_1_12_right_noflip_up, below_1_1_12_right_noflip_up
-    t1118 = _runtime.select(t1116, 0.0, t1117)
-    del t1116, t1117
-    t1119 = t1118 * t1118
-    t1120 = 1.0 / (1.0 + t1119)
-    by_c_1_1_12_right_noflip_up = (1.0 - t1119) * t1120
-    del t1119
-    t1121 = t1120 * (2.0 * t1118)
-    del t1118, t1120
-    t1122 = t1121 * t1121 / (1.0 + np.abs(by_c_1_1_12_right_noflip_up))
-    versine_1_1_12_right_noflip_up = _runtime.select(0.0 < by_c_1_1_12_right_noflip_up, t1122, 1.0 - by_c_1_1_12_right_noflip_up)
-    del t1122
-    cost_1_1_12_right_noflip_up = d4 * versine_1_1_12_right_noflip_up + root1 * np.abs(t1121)
+    t1119 = _runtime.select(t1117, 0.0, t1118)
+    del t1117, t1118
+    t1120 = t1119 * t1119
+    t1121 = 1.0 / (1.0 + t1120)
+    by_c_1_1_12_right_noflip_up = (1.0 - t1120) * t1121
+    del t1120
+    t1122 = t1121 * (2.0 * t1119)
+    del t1119, t1121
+    t1123 = t1122 * t1122 / (1.0 + np.abs(by_c_1_1_12_right_noflip_up))
+    versine_1_1_12_right_noflip_up = _runtime.select(0.0 < by_c_1_1_12_right_noflip_up, t1123, 1.0 - by_c_1_1_12_right_noflip_up)
+    del t1123
+    cost_1_1_12_right_noflip_up = d4 * versine_1_1_12_right_noflip_up + root1 * np.abs(t1122)
     del versine_1_1_12_right_noflip_up
-    t1123 = cost_1_1_12_right_noflip_up <= whole_1_1
+    t1124 = cost_1_1_12_right_noflip_up <= whole_1_1
     del cost_1_1_12_right_noflip_up
-    cosine_1_1_12_right_noflip_up = _runtime.select(t1123, by_c_1_1_12_right_noflip_up, 1.0)
+    cosine_1_1_12_right_noflip_up = _runtime.select(t1124, by_c_1_1_12_right_noflip_up, 1.0)
     del by_c_1_1_12_right_noflip_up
-    t1124 = c_1_1_12_right_noflip_up * cosine_1_1_12_right_noflip_up
-    sine_1_1_12_right_noflip_up = _runtime.select(t1123, -t1121, 0.0)
-    del t1121, t1123
-    t1125 = s_1_1_12_right_noflip_up * sine_1_1_12_right_noflip_up
-    c_1_1_13_right_noflip_up = t1124 - t1125
-    del t1124, t1125
-    t1126 = c_1_1_12_right_noflip_up * sine_1_1_12_right_noflip_up
+    t1125 = c_1_1_12_right_noflip_up * cosine_1_1_12_right_noflip_up
+    sine_1_1_12_right_noflip_up = _runtime.select(t1124, -t1122, 0.0)
+    del t1122, t1124
+    t1126 = s_1_1_12_right_noflip_up * sine_1_1_12_right_noflip_up
+    c_1_1_13_right_noflip_up = t1125 - t1126
+    del t1125, t1126
+    t1127 = c_1_1_12_right_noflip_up * sine_1_1_12_right_noflip_up
     del c_1_1_12_right_noflip_up, sine_1_1_12_right_noflip_up
-    t1127 = s_1_1_12_right_noflip_up * cosine_1_1_12_right_noflip_up
+    t1128 = s_1_1_12_right_noflip_up * cosine_1_1_12_right_noflip_up
     del cosine_1_1_12_right_noflip_up, s_1_1_12_right_noflip_up
-    s_1_1_13_right_noflip_up = t1126 + t1127
-    del t1126, t1127
+    s_1_1_13_right_noflip_up = t1127 + t1128
+    del t1127, t1128
     axisx_1_1_13_right_noflip_up = T13 * c_1_1_13_right_noflip_up + T23 * s_1_1_13_right_noflip_up
-    t1128 = axisx_1_1_13_right_noflip_up * axisx_1_1_13_right_noflip_up
-    h_1_1_13_right_noflip_up = np.sqrt(t5 + t1128)
-    del t1128
-    t1129 = h_1_1_13_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_13_right_noflip_up = w_x * c_1_1_13_right_noflip_up + w_y * s_1_1_13_right_noflip_up
-    t1130 = h_1_1_13_right_noflip_up == 0.0
-    t1131 = 1.0 / h_1_1_13_right_noflip_up
-    uc_1_1_13_right_noflip_up = _runtime.select(t1130, 0.0, T33 * t1131)
-    t1132 = qx_1_1_13_right_noflip_up - d5 * uc_1_1_13_right_noflip_up
-    x_1_1_13_right_noflip_up = _runtime.select(t1129, qx_1_1_13_right_noflip_up, t1132)
-    del t1132
-    dqx_1_1_13_right_noflip_up = w_y * c_1_1_13_right_noflip_up - w_x * s_1_1_13_right_noflip_up
-    t1133 = T13 * s_1_1_13_right_noflip_up - T23 * c_1_1_13_right_noflip_up
-    t1134 = h_1_1_13_right_noflip_up * h_1_1_13_right_noflip_up
-    del h_1_1_13_right_noflip_up
-    spin_1_1_13_right_noflip_up = _runtime.select(t1129, 0.0, T33 * t1133 / t1134)
-    del t1133, t1134
-    rate_1_1_13_right_noflip_up = d5 * spin_1_1_13_right_noflip_up
-    t1135 = _runtime.select(t1130, 1.0, axisx_1_1_13_right_noflip_up * t1131)
-    del axisx_1_1_13_right_noflip_up, t1130, t1131
-    t1136 = dqx_1_1_13_right_noflip_up - rate_1_1_13_right_noflip_up * t1135
-    dx_1_1_13_right_noflip_up = _runtime.select(t1129, dqx_1_1_13_right_noflip_up, t1136)
-    del t1136
-    t1137 = x_1_1_13_right_noflip_up * dx_1_1_13_right_noflip_up
-    del dx_1_1_13_right_noflip_up
-    t1138 = _runtime.select(t1129, t23, t23 - d5 * t1135)
-    t1139 = rate_1_1_13_right_noflip_up * uc_1_1_13_right_noflip_up
-    slope_1_1_13_right_noflip_up = t1137 + t1138 * _runtime.select(t1129, 0.0, t1139)
-    del t1137, t1139
-    t1140 = slope_1_1_13_right_noflip_up * slope_1_1_13_right_noflip_up
-    straight_1_1_13_right_noflip_up = dqx_1_1_13_right_noflip_up * dqx_1_1_13_right_noflip_up
-    t1141 = qx_1_1_13_right_noflip_up * uc_1_1_13_right_noflip_up
-    del qx_1_1_13_right_noflip_up, uc_1_1_13_right_noflip_up
-    t1142 = spin_1_1_13_right_noflip_up * (t1141 + t23 * t1135)
-    del spin_1_1_13_right_noflip_up, t1141
-    t1143 = 2.0 * dqx_1_1_13_right_noflip_up * t1135 - t1142
-    del dqx_1_1_13_right_noflip_up, t1135, t1142
-    t1144 = straight_1_1_13_right_noflip_up - rate_1_1_13_right_noflip_up * t1143
-    del rate_1_1_13_right_noflip_up, t1143
-    bends_1_1_13_right_noflip_up = _runtime.select(t1129, straight_1_1_13_right_noflip_up, t1144)
-    del straight_1_1_13_right_noflip_up, t1144
-    t1145 = x_1_1_13_right_noflip_up * x_1_1_13_right_noflip_up
-    del x_1_1_13_right_noflip_up
-    square_1_1_13_right_noflip_up = t1145 + t1138 * t1138
-    del t1138, t1145
-    t1146 = _runtime.select(t1129, t98, fold_1_1) - whole_1_1
-    t1147 = np.maximum(0.0, t1146)
-    del t1146
-    t1148 = whole_1_1 + _runtime.select(t1129, t3, full_1_1)
+    t1129 = axisx_1_1_13_right_noflip_up * axisx_1_1_13_right_noflip_up
+    h_1_1_13_right_noflip_up = np.sqrt(t5 + t1129)
     del t1129
-    t1149 = np.minimum(t1148 * t1148, square_1_1_13_right_noflip_up)
-    del t1148
-    miss_1_1_13_right_noflip_up = square_1_1_13_right_noflip_up - np.maximum(t1147 * t1147, t1149)
-    del square_1_1_13_right_noflip_up, t1147, t1149
-    t1150 = bends_1_1_13_right_noflip_up * miss_1_1_13_right_noflip_up
-    inner_1_1_13_right_noflip_up = t1140 - t1150
-    del t1140, t1150
-    t1151 = inner_1_1_13_right_noflip_up < 0.0
-    t1152 = np.maximum(0.0, inner_1_1_13_right_noflip_up)
+    t1130 = h_1_1_13_right_noflip_up <= t89
+    qx_1_1_13_right_noflip_up = w_x * c_1_1_13_right_noflip_up + w_y * s_1_1_13_right_noflip_up
+    t1131 = h_1_1_13_right_noflip_up == 0.0
+    t1132 = 1.0 / h_1_1_13_right_noflip_up
+    uc_1_1_13_right_noflip_up = _runtime.select(t1131, 0.0, T33 * t1132)
+    t1133 = qx_1_1_13_right_noflip_up - d5 * uc_1_1_13_right_noflip_up
+    x_1_1_13_right_noflip_up = _runtime.select(t1130, qx_1_1_13_right_noflip_up, t1133)
+    del t1133
+    dqx_1_1_13_right_noflip_up = w_y * c_1_1_13_right_noflip_up - w_x * s_1_1_13_right_noflip_up
+    t1134 = T13 * s_1_1_13_right_noflip_up - T23 * c_1_1_13_right_noflip_up
+    t1135 = h_1_1_13_right_noflip_up * h_1_1_13_right_noflip_up
+    del h_1_1_13_right_noflip_up
+    spin_1_1_13_right_noflip_up = _runtime.select(t1130, 0.0, T33 * t1134 / t1135)
+    del t1134, t1135
+    rate_1_1_13_right_noflip_up = d5 * spin_1_1_13_right_noflip_up
+    t1136 = _runtime.select(t1131, 1.0, axisx_1_1_13_right_noflip_up * t1132)
+    del axisx_1_1_13_right_noflip_up, t1131, t1132
+    t1137 = dqx_1_1_13_right_noflip_up - rate_1_1_13_right_noflip_up * t1136
+    dx_1_1_13_right_noflip_up = _runtime.select(t1130, dqx_1_1_13_right_noflip_up, t1137)
+    del t1137
+    t1138 = x_1_1_13_right_noflip_up * dx_1_1_13_right_noflip_up
+    del dx_1_1_13_right_noflip_up
+    t1139 = _runtime.select(t1130, t24, t24 - d5 * t1136)
+    t1140 = rate_1_1_13_right_noflip_up * uc_1_1_13_right_noflip_up
+    slope_1_1_13_right_noflip_up = t1138 + t1139 * _runtime.select(t1130, 0.0, t1140)
+    del t1138, t1140
+    t1141 = slope_1_1_13_right_noflip_up * slope_1_1_13_right_noflip_up
+    straight_1_1_13_right_noflip_up = dqx_1_1_13_right_noflip_up * dqx_1_1_13_right_noflip_up
+    t1142 = qx_1_1_13_right_noflip_up * uc_1_1_13_right_noflip_up
+    del qx_1_1_13_right_noflip_up, uc_1_1_13_right_noflip_up
+    t1143 = spin_1_1_13_right_noflip_up * (t1142 + t24 * t1136)
+    del spin_1_1_13_right_noflip_up, t1142
+    t1144 = 2.0 * dqx_1_1_13_right_noflip_up * t1136 - t1143
+    del dqx_1_1_13_right_noflip_up, t1136, t1143
+    t1145 = straight_1_1_13_right_noflip_up - rate_1_1_13_right_noflip_up * t1144
+    del rate_1_1_13_right_noflip_up, t1144
+    bends_1_1_13_right_noflip_up = _runtime.select(t1130, straight_1_1_13_right_noflip_up, t1145)
+    del straight_1_1_13_right_noflip_up, t1145
+    t1146 = x_1_1_13_right_noflip_up * x_1_1_13_right_noflip_up
+    del x_1_1_13_right_noflip_up
+    square_1_1_13_right_noflip_up = t1146 + t1139 * t1139
+    del t1139, t1146
+    t1147 = _runtime.select(t1130, t99, fold_1_1) - whole_1_1
+    t1148 = np.maximum(0.0, t1147)
+    del t1147
+    t1149 = whole_1_1 + _runtime.select(t1130, t3, full_1_1)
+    del t1130
+    t1150 = np.minimum(t1149 * t1149, square_1_1_13_right_noflip_up)
+    del t1149
+    miss_1_1_13_right_noflip_up = square_1_1_13_right_noflip_up - np.maximum(t1148 * t1148, t1150)
+    del square_1_1_13_right_noflip_up, t1148, t1150
+    t1151 = bends_1_1_13_right_noflip_up * miss_1_1_13_right_noflip_up
+    inner_1_1_13_right_noflip_up = t1141 - t1151
+    del t1141, t1151
+    t1152 = inner_1_1_13_right_noflip_up < 0.0
+    t1153 = np.maximum(0.0, inner_1_1_13_right_noflip_up)
     del inner_1_1_13_right_noflip_up
-    t1153 = _runtime.sign(slope_1_1_13_right_noflip_up) * np.sqrt(t1152)
-    del t1152
-    below_1_1_13_right_noflip_up = _runtime.select(t1151, 2.0 * bends_1_1_13_right_noflip_up, 2.0 * (slope_1_1_13_right_noflip_up + t1153))
-    del bends_1_1_13_right_noflip_up, t1153
-    above_1_1_13_right_noflip_up = _runtime.select(t1151, slope_1_1_13_right_noflip_up, miss_1_1_13_right_noflip_up)
-    del miss_1_1_13_right_noflip_up, slope_1_1_13_right_noflip_up, t1151
-    t1154 = np.abs(below_1_1_13_right_noflip_up) <= np.abs(above_1_1_13_right_noflip_up)
-    t1155 = above_1_1_13_right_noflip_up / below_1_1_13_right_noflip_up
+    t1154 = _runtime.sign(slope_1_1_13_right_noflip_up) * np.sqrt(t1153)
+    del t1153
+    below_1_1_13_right_noflip_up = _runtime.select(t1152, 2.0 * bends_1_1_13_right_noflip_up, 2.0 * (slope_1_1_13_right_noflip_up + t1154))
+    del bends_1_1_13_right_noflip_up, t1154
+    above_1_1_13_right_noflip_up = _runtime.select(t1152, slope_1_1_13_right_noflip_up, miss_1_1_13_right_noflip_up)
+    del miss_1_1_13_right_noflip_up, slope_1_1_13_right_noflip_up, t1152
+    t1155 = np.abs(below_1_1_13_right_noflip_up) <= np.abs(above_1_1_13_right_noflip_up)
+    t1156 = above_1_1_13_right_noflip_up / below_1_1_13_right_noflip_up
     del above_1_1_13_right_noflip_up, below_1_1_13_right_noflip_up
-    t1156 = _runtime.select(t1154, 0.0, t1155)
-    del t1154, t1155
-    t1157 = t1156 * t1156
-    t1158 = 1.0 / (1.0 + t1157)
-    by_c_1_1_13_right_noflip_up = (1.0 - t1157) * t1158
-    del t1157
-    t1159 = t1158 * (2.0 * t1156)
-    del t1156, t1158
-    t1160 = t1159 * t1159 / (1.0 + np.abs(by_c_1_1_13_right_noflip_up))
-    versine_1_1_13_right_noflip_up = _runtime.select(0.0 < by_c_1_1_13_right_noflip_up, t1160, 1.0 - by_c_1_1_13_right_noflip_up)
-    del t1160
-    cost_1_1_13_right_noflip_up = d4 * versine_1_1_13_right_noflip_up + root1 * np.abs(t1159)
+    t1157 = _runtime.select(t1155, 0.0, t1156)
+    del t1155, t1156
+    t1158 = t1157 * t1157
+    t1159 = 1.0 / (1.0 + t1158)
+    by_c_1_1_13_right_noflip_up = (1.0 - t1158) * t1159
+    del t1158
+    t1160 = t1159 * (2.0 * t1157)
+    del t1157, t1159
+    t1161 = t1160 * t1160 / (1.0 + np.abs(by_c_1_1_13_right_noflip_up))
+    versine_1_1_13_right_noflip_up = _runtime.select(0.0 < by_c_1_1_13_right_noflip_up, t1161, 1.0 - by_c_1_1_13_right_noflip_up)
+    del t1161
+    cost_1_1_13_right_noflip_up = d4 * versine_1_1_13_right_noflip_up + root1 * np.abs(t1160)
     del versine_1_1_13_right_noflip_up
-    t1161 = cost_1_1_13_right_noflip_up <= whole_1_1
+    t1162 = cost_1_1_13_right_noflip_up <= whole_1_1
     del cost_1_1_13_right_noflip_up
-    cosine_1_1_13_right_noflip_up = _runtime.select(t1161, by_c_1_1_13_right_noflip_up, 1.0)
+    cosine_1_1_13_right_noflip_up = _runtime.select(t1162, by_c_1_1_13_right_noflip_up, 1.0)
     del by_c_1_1_13_right_noflip_up
-    t1162 = c_1_1_13_right_noflip_up * cosine_1_1_13_right_noflip_up
-    sine_1_1_13_right_noflip_up = _runtime.select(t1161, -t1159, 0.0)
-    del t1159, t1161
-    t1163 = s_1_1_13_right_noflip_up * sine_1_1_13_right_noflip_up
-    c_1_1_14_right_noflip_up = t1162 - t1163
-    del t1162, t1163
-    t1164 = c_1_1_13_right_noflip_up * sine_1_1_13_right_noflip_up
+    t1163 = c_1_1_13_right_noflip_up * cosine_1_1_13_right_noflip_up
+    sine_1_1_13_right_noflip_up = _runtime.select(t1162, -t1160, 0.0)
+    del t1160, t1162
+    t1164 = s_1_1_13_right_noflip_up * sine_1_1_13_right_noflip_up
+    c_1_1_14_right_noflip_up = t1163 - t1164
+    del t1163, t1164
+    t1165 = c_1_1_13_right_noflip_up * sine_1_1_13_right_noflip_up
     del c_1_1_13_right_noflip_up, sine_1_1_13_right_noflip_up
-    t1165 = s_1_1_13_right_noflip_up * cosine_1_1_13_right_noflip_up
+    t1166 = s_1_1_13_right_noflip_up * cosine_1_1_13_right_noflip_up
     del cosine_1_1_13_right_noflip_up, s_1_1_13_right_noflip_up
-    s_1_1_14_right_noflip_up = t1164 + t1165
-    del t1164, t1165
+    s_1_1_14_right_noflip_up = t1165 + t1166
+    del t1165, t1166
     axisx_1_1_14_right_noflip_up = T13 * c_1_1_14_right_noflip_up + T23 * s_1_1_14_right_noflip_up
-    t1166 = axisx_1_1_14_right_noflip_up * axisx_1_1_14_right_noflip_up
-    h_1_1_14_right_noflip_up = np.sqrt(t5 + t1166)
-    del t1166
-    t1167 = h_1_1_14_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_14_right_noflip_up = w_x * c_1_1_14_right_noflip_up + w_y * s_1_1_14_right_noflip_up
-    t1168 = h_1_1_14_right_noflip_up == 0.0
-    t1169 = 1.0 / h_1_1_14_right_noflip_up
-    uc_1_1_14_right_noflip_up = _runtime.select(t1168, 0.0, T33 * t1169)
-    t1170 = qx_1_1_14_right_noflip_up - d5 * uc_1_1_14_right_noflip_up
-    x_1_1_14_right_noflip_up = _runtime.select(t1167, qx_1_1_14_right_noflip_up, t1170)
-    del t1170
-    dqx_1_1_14_right_noflip_up = w_y * c_1_1_14_right_noflip_up - w_x * s_1_1_14_right_noflip_up
-    t1171 = T13 * s_1_1_14_right_noflip_up - T23 * c_1_1_14_right_noflip_up
-    t1172 = h_1_1_14_right_noflip_up * h_1_1_14_right_noflip_up
-    del h_1_1_14_right_noflip_up
-    spin_1_1_14_right_noflip_up = _runtime.select(t1167, 0.0, T33 * t1171 / t1172)
-    del t1171, t1172
-    rate_1_1_14_right_noflip_up = d5 * spin_1_1_14_right_noflip_up
-    t1173 = _runtime.select(t1168, 1.0, axisx_1_1_14_right_noflip_up * t1169)
-    del axisx_1_1_14_right_noflip_up, t1168, t1169
-    t1174 = dqx_1_1_14_right_noflip_up - rate_1_1_14_right_noflip_up * t1173
-    dx_1_1_14_right_noflip_up = _runtime.select(t1167, dqx_1_1_14_right_noflip_up, t1174)
-    del t1174
-    t1175 = x_1_1_14_right_noflip_up * dx_1_1_14_right_noflip_up
-    del dx_1_1_14_right_noflip_up
-    t1176 = _runtime.select(t1167, t23, t23 - d5 * t1173)
-    t1177 = rate_1_1_14_right_noflip_up * uc_1_1_14_right_noflip_up
-    slope_1_1_14_right_noflip_up = t1175 + t1176 * _runtime.select(t1167, 0.0, t1177)
-    del t1175, t1177
-    t1178 = slope_1_1_14_right_noflip_up * slope_1_1_14_right_noflip_up
-    straight_1_1_14_right_noflip_up = dqx_1_1_14_right_noflip_up * dqx_1_1_14_right_noflip_up
-    t1179 = qx_1_1_14_right_noflip_up * uc_1_1_14_right_noflip_up
-    del qx_1_1_14_right_noflip_up, uc_1_1_14_right_noflip_up
-    t1180 = spin_1_1_14_right_noflip_up * (t1179 + t23 * t1173)
-    del spin_1_1_14_right_noflip_up, t1179
-    t1181 = 2.0 * dqx_1_1_14_right_noflip_up * t1173 - t1180
-    del dqx_1_1_14_right_noflip_up, t1173, t1180
-    t1182 = straight_1_1_14_right_noflip_up - rate_1_1_14_right_noflip_up * t1181
-    del rate_1_1_14_right_noflip_up, t1181
-    bends_1_1_14_right_noflip_up = _runtime.select(t1167, straight_1_1_14_right_noflip_up, t1182)
-    del straight_1_1_14_right_noflip_up, t1182
-    t1183 = x_1_1_14_right_noflip_up * x_1_1_14_right_noflip_up
-    del x_1_1_14_right_noflip_up
-    square_1_1_14_right_noflip_up = t1183 + t1176 * t1176
-    del t1176, t1183
-    t1184 = _runtime.select(t1167, t98, fold_1_1) - whole_1_1
-    t1185 = np.maximum(0.0, t1184)
-    del t1184
-    t1186 = whole_1_1 + _runtime.select(t1167, t3, full_1_1)
+    t1167 = axisx_1_1_14_right_noflip_up * axisx_1_1_14_right_noflip_up
+    h_1_1_14_right_noflip_up = np.sqrt(t5 + t1167)
     del t1167
-    t1187 = np.minimum(t1186 * t1186, square_1_1_14_right_noflip_up)
-    del t1186
-    miss_1_1_14_right_noflip_up = square_1_1_14_right_noflip_up - np.maximum(t1185 * t1185, t1187)
-    del square_1_1_14_right_noflip_up, t1185, t1187
-    t1188 = bends_1_1_14_right_noflip_up * miss_1_1_14_right_noflip_up
-    inner_1_1_14_right_noflip_up = t1178 - t1188
-    del t1178, t1188
-    t1189 = inner_1_1_14_right_noflip_up < 0.0
-    t1190 = np.maximum(0.0, inner_1_1_14_right_noflip_up)
+    t1168 = h_1_1_14_right_noflip_up <= t89
+    qx_1_1_14_right_noflip_up = w_x * c_1_1_14_right_noflip_up + w_y * s_1_1_14_right_noflip_up
+    t1169 = h_1_1_14_right_noflip_up == 0.0
+    t1170 = 1.0 / h_1_1_14_right_noflip_up
+    uc_1_1_14_right_noflip_up = _runtime.select(t1169, 0.0, T33 * t1170)
+    t1171 = qx_1_1_14_right_noflip_up - d5 * uc_1_1_14_right_noflip_up
+    x_1_1_14_right_noflip_up = _runtime.select(t1168, qx_1_1_14_right_noflip_up, t1171)
+    del t1171
+    dqx_1_1_14_right_noflip_up = w_y * c_1_1_14_right_noflip_up - w_x * s_1_1_14_right_noflip_up
+    t1172 = T13 * s_1_1_14_right_noflip_up - T23 * c_1_1_14_right_noflip_up
+    t1173 = h_1_1_14_right_noflip_up * h_1_1_14_right_noflip_up
+    del h_1_1_14_right_noflip_up
+    spin_1_1_14_right_noflip_up = _runtime.select(t1168, 0.0, T33 * t1172 / t1173)
+    del t1172, t1173
+    rate_1_1_14_right_noflip_up = d5 * spin_1_1_14_right_noflip_up
+    t1174 = _runtime.select(t1169, 1.0, axisx_1_1_14_right_noflip_up * t1170)
+    del axisx_1_1_14_right_noflip_up, t1169, t1170
+    t1175 = dqx_1_1_14_right_noflip_up - rate_1_1_14_right_noflip_up * t1174
+    dx_1_1_14_right_noflip_up = _runtime.select(t1168, dqx_1_1_14_right_noflip_up, t1175)
+    del t1175
+    t1176 = x_1_1_14_right_noflip_up * dx_1_1_14_right_noflip_up
+    del dx_1_1_14_right_noflip_up
+    t1177 = _runtime.select(t1168, t24, t24 - d5 * t1174)
+    t1178 = rate_1_1_14_right_noflip_up * uc_1_1_14_right_noflip_up
+    slope_1_1_14_right_noflip_up = t1176 + t1177 * _runtime.select(t1168, 0.0, t1178)
+    del t1176, t1178
+    t1179 = slope_1_1_14_right_noflip_up * slope_1_1_14_right_noflip_up
+    straight_1_1_14_right_noflip_up = dqx_1_1_14_right_noflip_up * dqx_1_1_14_right_noflip_up
+    t1180 = qx_1_1_14_right_noflip_up * uc_1_1_14_right_noflip_up
+    del qx_1_1_14_right_noflip_up, uc_1_1_14_right_noflip_up
+    t1181 = spin_1_1_14_right_noflip_up * (t1180 + t24 * t1174)
+    del spin_1_1_14_right_noflip_up, t1180
+    t1182 = 2.0 * dqx_1_1_14_right_noflip_up * t1174 - t1181
+    del dqx_1_1_14_right_noflip_up, t1174, t1181
+    t1183 = straight_1_1_14_right_noflip_up - rate_1_1_14_right_noflip_up * t1182
+    del rate_1_1_14_right_noflip_up, t1182
+    bends_1_1_14_right_noflip_up = _runtime.select(t1168, straight_1_1_14_right_noflip_up, t1183)
+    del straight_1_1_14_right_noflip_up, t1183
+    t1184 = x_1_1_14_right_noflip_up * x_1_1_14_right_noflip_up
+    del x_1_1_14_right_noflip_up
+    square_1_1_14_right_noflip_up = t1184 + t1177 * t1177
+    del t1177, t1184
+    t1185 = _runtime.select(t1168, t99, fold_1_1) - whole_1_1
+    t1186 = np.maximum(0.0, t1185)
+    del t1185
+    t1187 = whole_1_1 + _runtime.select(t1168, t3, full_1_1)
+    del t1168
+    t1188 = np.minimum(t1187 * t1187, square_1_1_14_right_noflip_up)
+    del t1187
+    miss_1_1_14_right_noflip_up = square_1_1_14_right_noflip_up - np.maximum(t1186 * t1186, t1188)
+    del square_1_1_14_right_noflip_up, t1186, t1188
+    t1189 = bends_1_1_14_right_noflip_up * miss_1_1_14_right_noflip_up
+    inner_1_1_14_right_noflip_up = t1179 - t1189
+    del t1179, t1189
+    t1190 = inner_1_1_14_right_noflip_up < 0.0
+    t1191 = np.maximum(0.0, inner_1_1_14_right_noflip_up)
     del inner_1_1_14_right_noflip_up
-    t1191 = _runtime.sign(slope_1_1_14_right_noflip_up) * np.sqrt(t1190)
-    del t1190
-    below_1_1_14_right_noflip_up = _runtime.select(t1189, 2.0 * bends_1_1_14_right_noflip_up, 2.0 * (slope_1_1_14_right_noflip_up + t1191))
-    del bends_1_1_14_right_noflip_up, t1191
-    above_1_1_14_right_noflip_up = _runtime.select(t1189, slope_1_1_14_right_noflip_up, miss_1_1_14_right_noflip_up)
-    del miss_1_1_14_right_noflip_up, slope_1_1_14_right_noflip_up, t1189
-    t1192 = np.abs(below_1_1_14_right_noflip_up) <= np.abs(above_1_1_14_right_noflip_up)
-    t1193 = above_1_1_14_right_noflip_up / below_1_1_14_right_noflip_up
+    t1192 = _runtime.sign(slope_1_1_14_right_noflip_up) * np.sqrt(t1191)
+    del t1191
+    below_1_1_14_right_noflip_up = _runtime.select(t1190, 2.0 * bends_1_1_14_right_noflip_up, 2.0 * (slope_1_1_14_right_noflip_up + t1192))
+    del bends_1_1_14_right_noflip_up, t1192
+    above_1_1_14_right_noflip_up = _runtime.select(t1190, slope_1_1_14_right_noflip_up, miss_1_1_14_right_noflip_up)
+    del miss_1_1_14_right_noflip_up, slope_1_1_14_right_noflip_up, t1190
+    t1193 = np.abs(below_1_1_14_right_noflip_up) <= np.abs(above_1_1_14_right_noflip_up)
+    t1194 = above_1_1_14_right_noflip_up / below_1_1_14_right_noflip_up
     del above_1_1_14_right_noflip_up, below_1_1_14_right_noflip_up
-    t1194 = _runtime.select(t1192, 0.0, t1193)
-    del t1192, t1193
-    t1195 = t1194 * t1194
-    t1196 = 1.0 / (1.0 + t1195)
-    by_c_1_1_14_right_noflip_up = (1.0 - t1195) * t1196
-    del t1195
-    t1197 = t1196 * (2.0 * t1194)
-    del t1194, t1196
-    t1198 = t1197 * t1197 / (1.0 + np.abs(by_c_1_1_14_right_noflip_up))
-    versine_1_1_14_right_noflip_up = _runtime.select(0.0 < by_c_1_1_14_right_noflip_up, t1198, 1.0 - by_c_1_1_14_right_noflip_up)
-    del t1198
-    cost_1_1_14_right_noflip_up = d4 * versine_1_1_14_right_noflip_up + root1 * np.abs(t1197)
+    t1195 = _runtime.select(t1193, 0.0, t1194)
+    del t1193, t1194
+    t1196 = t1195 * t1195
+    t1197 = 1.0 / (1.0 + t1196)
+    by_c_1_1_14_right_noflip_up = (1.0 - t1196) * t1197
+    del t1196
+    t1198 = t1197 * (2.0 * t1195)
+    del t1195, t1197
+    t1199 = t1198 * t1198 / (1.0 + np.abs(by_c_1_1_14_right_noflip_up))
+    versine_1_1_14_right_noflip_up = _runtime.select(0.0 < by_c_1_1_14_right_noflip_up, t1199, 1.0 - by_c_1_1_14_right_noflip_up)
+    del t1199
+    cost_1_1_14_right_noflip_up = d4 * versine_1_1_14_right_noflip_up + root1 * np.abs(t1198)
     del versine_1_1_14_right_noflip_up
-    t1199 = cost_1_1_14_right_noflip_up <= whole_1_1
+    t1200 = cost_1_1_14_right_noflip_up <= whole_1_1
     del cost_1_1_14_right_noflip_up
-    cosine_1_1_14_right_noflip_up = _runtime.select(t1199, by_c_1_1_14_right_noflip_up, 1.0)
+    cosine_1_1_14_right_noflip_up = _runtime.select(t1200, by_c_1_1_14_right_noflip_up, 1.0)
     del by_c_1_1_14_right_noflip_up
-    t1200 = c_1_1_14_right_noflip_up * cosine_1_1_14_right_noflip_up
-    sine_1_1_14_right_noflip_up = _runtime.select(t1199, -t1197, 0.0)
-    del t1197, t1199
-    t1201 = s_1_1_14_right_noflip_up * sine_1_1_14_right_noflip_up
-    c_1_1_15_right_noflip_up = t1200 - t1201
-    del t1200, t1201
-    t1202 = c_1_1_14_right_noflip_up * sine_1_1_14_right_noflip_up
+    t1201 = c_1_1_14_right_noflip_up * cosine_1_1_14_right_noflip_up
+    sine_1_1_14_right_noflip_up = _runtime.select(t1200, -t1198, 0.0)
+    del t1198, t1200
+    t1202 = s_1_1_14_right_noflip_up * sine_1_1_14_right_noflip_up
+    c_1_1_15_right_noflip_up = t1201 - t1202
+    del t1201, t1202
+    t1203 = c_1_1_14_right_noflip_up * sine_1_1_14_right_noflip_up
     del c_1_1_14_right_noflip_up, sine_1_1_14_right_noflip_up
-    t1203 = s_1_1_14_right_noflip_up * cosine_1_1_14_right_noflip_up
+    t1204 = s_1_1_14_right_noflip_up * cosine_1_1_14_right_noflip_up
     del cosine_1_1_14_right_noflip_up, s_1_1_14_right_noflip_up
-    s_1_1_15_right_noflip_up = t1202 + t1203
-    del t1202, t1203
+    s_1_1_15_right_noflip_up = t1203 + t1204
+    del t1203, t1204
     axisx_1_1_15_right_noflip_up = T13 * c_1_1_15_right_noflip_up + T23 * s_1_1_15_right_noflip_up
-    t1204 = axisx_1_1_15_right_noflip_up * axisx_1_1_15_right_noflip_up
-    h_1_1_15_right_noflip_up = np.sqrt(t5 + t1204)
-    del t1204
-    t1205 = h_1_1_15_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_15_right_noflip_up = w_x * c_1_1_15_right_noflip_up + w_y * s_1_1_15_right_noflip_up
-    t1206 = h_1_1_15_right_noflip_up == 0.0
-    t1207 = 1.0 / h_1_1_15_right_noflip_up
-    uc_1_1_15_right_noflip_up = _runtime.select(t1206, 0.0, T33 * t1207)
-    t1208 = qx_1_1_15_right_noflip_up - d5 * uc_1_1_15_right_noflip_up
-    x_1_1_15_right_noflip_up = _runtime.select(t1205, qx_1_1_15_right_noflip_up, t1208)
-    del t1208
-    dqx_1_1_15_right_noflip_up = w_y * c_1_1_15_right_noflip_up - w_x * s_1_1_15_right_noflip_up
-    t1209 = T13 * s_1_1_15_right_noflip_up - T23 * c_1_1_15_right_noflip_up
-    t1210 = h_1_1_15_right_noflip_up * h_1_1_15_right_noflip_up
-    del h_1_1_15_right_noflip_up
-    spin_1_1_15_right_noflip_up = _runtime.select(t1205, 0.0, T33 * t1209 / t1210)
-    del t1209, t1210
-    rate_1_1_15_right_noflip_up = d5 * spin_1_1_15_right_noflip_up
-    t1211 = _runtime.select(t1206, 1.0, axisx_1_1_15_right_noflip_up * t1207)
-    del axisx_1_1_15_right_noflip_up, t1206, t1207
-    t1212 = dqx_1_1_15_right_noflip_up - rate_1_1_15_right_noflip_up * t1211
-    dx_1_1_15_right_noflip_up = _runtime.select(t1205, dqx_1_1_15_right_noflip_up, t1212)
-    del t1212
-    t1213 = x_1_1_15_right_noflip_up * dx_1_1_15_right_noflip_up
-    del dx_1_1_15_right_noflip_up
-    t1214 = _runtime.select(t1205, t23, t23 - d5 * t1211)
-    t1215 = rate_1_1_15_right_noflip_up * uc_1_1_15_right_noflip_up
-    slope_1_1_15_right_noflip_up = t1213 + t1214 * _runtime.select(t1205, 0.0, t1215)
-    del t1213, t1215
-    t1216 = slope_1_1_15_right_noflip_up * slope_1_1_15_right_noflip_up
-    straight_1_1_15_right_noflip_up = dqx_1_1_15_right_noflip_up * dqx_1_1_15_right_noflip_up
-    t1217 = qx_1_1_15_right_noflip_up * uc_1_1_15_right_noflip_up
-    del qx_1_1_15_right_noflip_up, uc_1_1_15_right_noflip_up
-    t1218 = spin_1_1_15_right_noflip_up * (t1217 + t23 * t1211)
-    del spin_1_1_15_right_noflip_up, t1217
-    t1219 = 2.0 * dqx_1_1_15_right_noflip_up * t1211 - t1218
-    del dqx_1_1_15_right_noflip_up, t1211, t1218
-    t1220 = straight_1_1_15_right_noflip_up - rate_1_1_15_right_noflip_up * t1219
-    del rate_1_1_15_right_noflip_up, t1219
-    bends_1_1_15_right_noflip_up = _runtime.select(t1205, straight_1_1_15_right_noflip_up, t1220)
-    del straight_1_1_15_right_noflip_up, t1220
-    t1221 = x_1_1_15_right_noflip_up * x_1_1_15_right_noflip_up
-    del x_1_1_15_right_noflip_up
-    square_1_1_15_right_noflip_up = t1221 + t1214 * t1214
-    del t1214, t1221
-    t1222 = _runtime.select(t1205, t98, fold_1_1) - whole_1_1
-    t1223 = np.maximum(0.0, t1222)
-    del t1222
-    t1224 = whole_1_1 + _runtime.select(t1205, t3, full_1_1)
+    t1205 = axisx_1_1_15_right_noflip_up * axisx_1_1_15_right_noflip_up
+    h_1_1_15_right_noflip_up = np.sqrt(t5 + t1205)
     del t1205
-    t1225 = np.minimum(t1224 * t1224, square_1_1_15_right_noflip_up)
-    del t1224
-    miss_1_1_15_right_noflip_up = square_1_1_15_right_noflip_up - np.maximum(t1223 * t1223, t1225)
-    del square_1_1_15_right_noflip_up, t1223, t1225
-    t1226 = bends_1_1_15_right_noflip_up * miss_1_1_15_right_noflip_up
-    inner_1_1_15_right_noflip_up = t1216 - t1226
-    del t1216, t1226
-    t1227 = inner_1_1_15_right_noflip_up < 0.0
-    t1228 = np.maximum(0.0, inner_1_1_15_right_noflip_up)
+    t1206 = h_1_1_15_right_noflip_up <= t89
+    qx_1_1_15_right_noflip_up = w_x * c_1_1_15_right_noflip_up + w_y * s_1_1_15_right_noflip_up
+    t1207 = h_1_1_15_right_noflip_up == 0.0
+    t1208 = 1.0 / h_1_1_15_right_noflip_up
+    uc_1_1_15_right_noflip_up = _runtime.select(t1207, 0.0, T33 * t1208)
+    t1209 = qx_1_1_15_right_noflip_up - d5 * uc_1_1_15_right_noflip_up
+    x_1_1_15_right_noflip_up = _runtime.select(t1206, qx_1_1_15_right_noflip_up, t1209)
+    del t1209
+    dqx_1_1_15_right_noflip_up = w_y * c_1_1_15_right_noflip_up - w_x * s_1_1_15_right_noflip_up
+    t1210 = T13 * s_1_1_15_right_noflip_up - T23 * c_1_1_15_right_noflip_up
+    t1211 = h_1_1_15_right_noflip_up * h_1_1_15_right_noflip_up
+    del h_1_1_15_right_noflip_up
+    spin_1_1_15_right_noflip_up = _runtime.select(t1206, 0.0, T33 * t1210 / t1211)
+    del t1210, t1211
+    rate_1_1_15_right_noflip_up = d5 * spin_1_1_15_right_noflip_up
+    t1212 = _runtime.select(t1207, 1.0, axisx_1_1_15_right_noflip_up * t1208)
+    del axisx_1_1_15_right_noflip_up, t1207, t1208
+    t1213 = dqx_1_1_15_right_noflip_up - rate_1_1_15_right_noflip_up * t1212
+    dx_1_1_15_right_noflip_up = _runtime.select(t1206, dqx_1_1_15_right_noflip_up, t1213)
+    del t1213
+    t1214 = x_1_1_15_right_noflip_up * dx_1_1_15_right_noflip_up
+    del dx_1_1_15_right_noflip_up
+    t1215 = _runtime.select(t1206, t24, t24 - d5 * t1212)
+    t1216 = rate_1_1_15_right_noflip_up * uc_1_1_15_right_noflip_up
+    slope_1_1_15_right_noflip_up = t1214 + t1215 * _runtime.select(t1206, 0.0, t1216)
+    del t1214, t1216
+    t1217 = slope_1_1_15_right_noflip_up * slope_1_1_15_right_noflip_up
+    straight_1_1_15_right_noflip_up = dqx_1_1_15_right_noflip_up * dqx_1_1_15_right_noflip_up
+    t1218 = qx_1_1_15_right_noflip_up * uc_1_1_15_right_noflip_up
+    del qx_1_1_15_right_noflip_up, uc_1_1_15_right_noflip_up
+    t1219 = spin_1_1_15_right_noflip_up * (t1218 + t24 * t1212)
+    del spin_1_1_15_right_noflip_up, t1218
+    t1220 = 2.0 * dqx_1_1_15_right_noflip_up * t1212 - t1219
+    del dqx_1_1_15_right_noflip_up, t1212, t1219
+    t1221 = straight_1_1_15_right_noflip_up - rate_1_1_15_right_noflip_up * t1220
+    del rate_1_1_15_right_noflip_up, t1220
+    bends_1_1_15_right_noflip_up = _runtime.select(t1206, straight_1_1_15_right_noflip_up, t1221)
+    del straight_1_1_15_right_noflip_up, t1221
+    t1222 = x_1_1_15_right_noflip_up * x_1_1_15_right_noflip_up
+    del x_1_1_15_right_noflip_up
+    square_1_1_15_right_noflip_up = t1222 + t1215 * t1215
+    del t1215, t1222
+    t1223 = _runtime.select(t1206, t99, fold_1_1) - whole_1_1
+    t1224 = np.maximum(0.0, t1223)
+    del t1223
+    t1225 = whole_1_1 + _runtime.select(t1206, t3, full_1_1)
+    del t1206
+    t1226 = np.minimum(t1225 * t1225, square_1_1_15_right_noflip_up)
+    del t1225
+    miss_1_1_15_right_noflip_up = square_1_1_15_right_noflip_up - np.maximum(t1224 * t1224, t1226)
+    del square_1_1_15_right_noflip_up, t1224, t1226
+    t1227 = bends_1_1_15_right_noflip_up * miss_1_1_15_right_noflip_up
+    inner_1_1_15_right_noflip_up = t1217 - t1227
+    del t1217, t1227
+    t1228 = inner_1_1_15_right_noflip_up < 0.0
+    t1229 = np.maximum(0.0, inner_1_1_15_right_noflip_up)
     del inner_1_1_15_right_noflip_up
-    t1229 = _runtime.sign(slope_1_1_15_right_noflip_up) * np.sqrt(t1228)
-    del t1228
-    below_1_1_15_right_noflip_up = _runtime.select(t1227, 2.0 * bends_1_1_15_right_noflip_up, 2.0 * (slope_1_1_15_right_noflip_up + t1229))
-    del bends_1_1_15_right_noflip_up, t1229
-    above_1_1_15_right_noflip_up = _runtime.select(t1227, slope_1_1_15_right_noflip_up, miss_1_1_15_right_noflip_up)
-    del miss_1_1_15_right_noflip_up, slope_1_1_15_right_noflip_up, t1227
-    t1230 = np.abs(below_1_1_15_right_noflip_up) <= np.abs(above_1_1_15_right_noflip_up)
-    t1231 = above_1_1_15_right_noflip_up / below_1_1_15_right_noflip_up
+    t1230 = _runtime.sign(slope_1_1_15_right_noflip_up) * np.sqrt(t1229)
+    del t1229
+    below_1_1_15_right_noflip_up = _runtime.select(t1228, 2.0 * bends_1_1_15_right_noflip_up, 2.0 * (slope_1_1_15_right_noflip_up + t1230))
+    del bends_1_1_15_right_noflip_up, t1230
+    above_1_1_15_right_noflip_up = _runtime.select(t1228, slope_1_1_15_right_noflip_up, miss_1_1_15_right_noflip_up)
+    del miss_1_1_15_right_noflip_up, slope_1_1_15_right_noflip_up, t1228
+    t1231 = np.abs(below_1_1_15_right_noflip_up) <= np.abs(above_1_1_15_right_noflip_up)
+    t1232 = above_1_1_15_right_noflip_up / below_1_1_15_right_noflip_up
     del above_1_1_15_right_noflip_up, below_1_1_15_right_noflip_up
-    t1232 = _runtime.select(t1230, 0.0, t1231)
-    del t1230, t1231
-    t1233 = t1232 * t1232
-    t1234 = 1.0 / (1.0 + t1233)
-    by_c_1_1_15_right_noflip_up = (1.0 - t1233) * t1234
-    del t1233
-    t1235 = t1234 * (2.0 * t1232)
-    del t1232, t1234
-    t1236 = t1235 * t1235 / (1.0 + np.abs(by_c_1_1_15_right_noflip_up))
-    versine_1_1_15_right_noflip_up = _runtime.select(0.0 < by_c_1_1_15_right_noflip_up, t1236, 1.0 - by_c_1_1_15_right_noflip_up)
-    del t1236
-    cost_1_1_15_right_noflip_up = d4 * versine_1_1_15_right_noflip_up + root1 * np.abs(t1235)
+    t1233 = _runtime.select(t1231, 0.0, t1232)
+    del t1231, t1232
+    t1234 = t1233 * t1233
+    t1235 = 1.0 / (1.0 + t1234)
+    by_c_1_1_15_right_noflip_up = (1.0 - t1234) * t1235
+    del t1234
+    t1236 = t1235 * (2.0 * t1233)
+    del t1233, t1235
+    t1237 = t1236 * t1236 / (1.0 + np.abs(by_c_1_1_15_right_noflip_up))
+    versine_1_1_15_right_noflip_up = _runtime.select(0.0 < by_c_1_1_15_right_noflip_up, t1237, 1.0 - by_c_1_1_15_right_noflip_up)
+    del t1237
+    cost_1_1_15_right_noflip_up = d4 * versine_1_1_15_right_noflip_up + root1 * np.abs(t1236)
     del versine_1_1_15_right_noflip_up
-    t1237 = cost_1_1_15_right_noflip_up <= whole_1_1
+    t1238 = cost_1_1_15_right_noflip_up <= whole_1_1
     del cost_1_1_15_right_noflip_up
-    cosine_1_1_15_right_noflip_up = _runtime.select(t1237, by_c_1_1_15_right_noflip_up, 1.0)
+    cosine_1_1_15_right_noflip_up = _runtime.select(t1238, by_c_1_1_15_right_noflip_up, 1.0)
     del by_c_1_1_15_right_noflip_up
-    t1238 = c_1_1_15_right_noflip_up * cosine_1_1_15_right_noflip_up
-    sine_1_1_15_right_noflip_up = _runtime.select(t1237, -t1235, 0.0)
-    del t1235, t1237
-    t1239 = s_1_1_15_right_noflip_up * sine_1_1_15_right_noflip_up
-    c_1_1_16_right_noflip_up = t1238 - t1239
-    del t1238, t1239
-    t1240 = c_1_1_15_right_noflip_up * sine_1_1_15_right_noflip_up
+    t1239 = c_1_1_15_right_noflip_up * cosine_1_1_15_right_noflip_up
+    sine_1_1_15_right_noflip_up = _runtime.select(t1238, -t1236, 0.0)
+    del t1236, t1238
+    t1240 = s_1_1_15_right_noflip_up * sine_1_1_15_right_noflip_up
+    c_1_1_16_right_noflip_up = t1239 - t1240
+    del t1239, t1240
+    t1241 = c_1_1_15_right_noflip_up * sine_1_1_15_right_noflip_up
     del c_1_1_15_right_noflip_up, sine_1_1_15_right_noflip_up
-    t1241 = s_1_1_15_right_noflip_up * cosine_1_1_15_right_noflip_up
+    t1242 = s_1_1_15_right_noflip_up * cosine_1_1_15_right_noflip_up
     del cosine_1_1_15_right_noflip_up, s_1_1_15_right_noflip_up
-    s_1_1_16_right_noflip_up = t1240 + t1241
-    del t1240, t1241
+    s_1_1_16_right_noflip_up = t1241 + t1242
+    del t1241, t1242
     axisx_1_1_16_right_noflip_up = T13 * c_1_1_16_right_noflip_up + T23 * s_1_1_16_right_noflip_up
-    t1242 = axisx_1_1_16_right_noflip_up * axisx_1_1_16_right_noflip_up
-    h_1_1_16_right_noflip_up = np.sqrt(t5 + t1242)
-    del t1242
-    t1243 = h_1_1_16_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_16_right_noflip_up = w_x * c_1_1_16_right_noflip_up + w_y * s_1_1_16_right_noflip_up
-    t1244 = h_1_1_16_right_noflip_up == 0.0
-    t1245 = 1.0 / h_1_1_16_right_noflip_up
-    uc_1_1_16_right_noflip_up = _runtime.select(t1244, 0.0, T33 * t1245)
-    t1246 = qx_1_1_16_right_noflip_up - d5 * uc_1_1_16_right_noflip_up
-    x_1_1_16_right_noflip_up = _runtime.select(t1243, qx_1_1_16_right_noflip_up, t1246)
-    del t1246
-    dqx_1_1_16_right_noflip_up = w_y * c_1_1_16_right_noflip_up - w_x * s_1_1_16_right_noflip_up
-    t1247 = T13 * s_1_1_16_right_noflip_up - T23 * c_1_1_16_right_noflip_up
-    t1248 = h_1_1_16_right_noflip_up * h_1_1_16_right_noflip_up
-    del h_1_1_16_right_noflip_up
-    spin_1_1_16_right_noflip_up = _runtime.select(t1243, 0.0, T33 * t1247 / t1248)
-    del t1247, t1248
-    rate_1_1_16_right_noflip_up = d5 * spin_1_1_16_right_noflip_up
-    t1249 = _runtime.select(t1244, 1.0, axisx_1_1_16_right_noflip_up * t1245)
-    del axisx_1_1_16_right_noflip_up, t1244, t1245
-    t1250 = dqx_1_1_16_right_noflip_up - rate_1_1_16_right_noflip_up * t1249
-    dx_1_1_16_right_noflip_up = _runtime.select(t1243, dqx_1_1_16_right_noflip_up, t1250)
-    del t1250
-    t1251 = x_1_1_16_right_noflip_up * dx_1_1_16_right_noflip_up
-    del dx_1_1_16_right_noflip_up
-    t1252 = _runtime.select(t1243, t23, t23 - d5 * t1249)
-    t1253 = rate_1_1_16_right_noflip_up * uc_1_1_16_right_noflip_up
-    slope_1_1_16_right_noflip_up = t1251 + t1252 * _runtime.select(t1243, 0.0, t1253)
-    del t1251, t1253
-    t1254 = slope_1_1_16_right_noflip_up * slope_1_1_16_right_noflip_up
-    straight_1_1_16_right_noflip_up = dqx_1_1_16_right_noflip_up * dqx_1_1_16_right_noflip_up
-    t1255 = qx_1_1_16_right_noflip_up * uc_1_1_16_right_noflip_up
-    del qx_1_1_16_right_noflip_up, uc_1_1_16_right_noflip_up
-    t1256 = spin_1_1_16_right_noflip_up * (t1255 + t23 * t1249)
-    del spin_1_1_16_right_noflip_up, t1255
-    t1257 = 2.0 * dqx_1_1_16_right_noflip_up * t1249 - t1256
-    del dqx_1_1_16_right_noflip_up, t1249, t1256
-    t1258 = straight_1_1_16_right_noflip_up - rate_1_1_16_right_noflip_up * t1257
-    del rate_1_1_16_right_noflip_up, t1257
-    bends_1_1_16_right_noflip_up = _runtime.select(t1243, straight_1_1_16_right_noflip_up, t1258)
-    del straight_1_1_16_right_noflip_up, t1258
-    t1259 = x_1_1_16_right_noflip_up * x_1_1_16_right_noflip_up
-    del x_1_1_16_right_noflip_up
-    square_1_1_16_right_noflip_up = t1259 + t1252 * t1252
-    del t1252, t1259
-    t1260 = _runtime.select(t1243, t98, fold_1_1) - whole_1_1
-    t1261 = np.maximum(0.0, t1260)
-    del t1260
-    t1262 = whole_1_1 + _runtime.select(t1243, t3, full_1_1)
+    t1243 = axisx_1_1_16_right_noflip_up * axisx_1_1_16_right_noflip_up
+    h_1_1_16_right_noflip_up = np.sqrt(t5 + t1243)
     del t1243
-    t1263 = np.minimum(t1262 * t1262, square_1_1_16_right_noflip_up)
-    del t1262
-    miss_1_1_16_right_noflip_up = square_1_1_16_right_noflip_up - np.maximum(t1261 * t1261, t1263)
-    del square_1_1_16_right_noflip_up, t1261, t1263
-    t1264 = bends_1_1_16_right_noflip_up * miss_1_1_16_right_noflip_up
-    inner_1_1_16_right_noflip_up = t1254 - t1264
-    del t1254, t1264
-    t1265 = inner_1_1_16_right_noflip_up < 0.0
-    t1266 = np.maximum(0.0, inner_1_1_16_right_noflip_up)
+    t1244 = h_1_1_16_right_noflip_up <= t89
+    qx_1_1_16_right_noflip_up = w_x * c_1_1_16_right_noflip_up + w_y * s_1_1_16_right_noflip_up
+    t1245 = h_1_1_16_right_noflip_up == 0.0
+    t1246 = 1.0 / h_1_1_16_right_noflip_up
+    uc_1_1_16_right_noflip_up = _runtime.select(t1245, 0.0, T33 * t1246)
+    t1247 = qx_1_1_16_right_noflip_up - d5 * uc_1_1_16_right_noflip_up
+    x_1_1_16_right_noflip_up = _runtime.select(t1244, qx_1_1_16_right_noflip_up, t1247)
+    del t1247
+    dqx_1_1_16_right_noflip_up = w_y * c_1_1_16_right_noflip_up - w_x * s_1_1_16_right_noflip_up
+    t1248 = T13 * s_1_1_16_right_noflip_up - T23 * c_1_1_16_right_noflip_up
+    t1249 = h_1_1_16_right_noflip_up * h_1_1_16_right_noflip_up
+    del h_1_1_16_right_noflip_up
+    spin_1_1_16_right_noflip_up = _runtime.select(t1244, 0.0, T33 * t1248 / t1249)
+    del t1248, t1249
+    rate_1_1_16_right_noflip_up = d5 * spin_1_1_16_right_noflip_up
+    t1250 = _runtime.select(t1245, 1.0, axisx_1_1_16_right_noflip_up * t1246)
+    del axisx_1_1_16_right_noflip_up, t1245, t1246
+    t1251 = dqx_1_1_16_right_noflip_up - rate_1_1_16_right_noflip_up * t1250
+    dx_1_1_16_right_noflip_up = _runtime.select(t1244, dqx_1_1_16_right_noflip_up, t1251)
+    del t1251
+    t1252 = x_1_1_16_right_noflip_up * dx_1_1_16_right_noflip_up
+    del dx_1_1_16_right_noflip_up
+    t1253 = _runtime.select(t1244, t24, t24 - d5 * t1250)
+    t1254 = rate_1_1_16_right_noflip_up * uc_1_1_16_right_noflip_up
+    slope_1_1_16_right_noflip_up = t1252 + t1253 * _runtime.select(t1244, 0.0, t1254)
+    del t1252, t1254
+    t1255 = slope_1_1_16_right_noflip_up * slope_1_1_16_right_noflip_up
+    straight_1_1_16_right_noflip_up = dqx_1_1_16_right_noflip_up * dqx_1_1_16_right_noflip_up
+    t1256 = qx_1_1_16_right_noflip_up * uc_1_1_16_right_noflip_up
+    del qx_1_1_16_right_noflip_up, uc_1_1_16_right_noflip_up
+    t1257 = spin_1_1_16_right_noflip_up * (t1256 + t24 * t1250)
+    del spin_1_1_16_right_noflip_up, t1256
+    t1258 = 2.0 * dqx_1_1_16_right_noflip_up * t1250 - t1257
+    del dqx_1_1_16_right_noflip_up, t1250, t1257
+    t1259 = straight_1_1_16_right_noflip_up - rate_1_1_16_right_noflip_up * t1258
+    del rate_1_1_16_right_noflip_up, t1258
+    bends_1_1_16_right_noflip_up = _runtime.select(t1244, straight_1_1_16_right_noflip_up, t1259)
+    del straight_1_1_16_right_noflip_up, t1259
+    t1260 = x_1_1_16_right_noflip_up * x_1_1_16_right_noflip_up
+    del x_1_1_16_right_noflip_up
+    square_1_1_16_right_noflip_up = t1260 + t1253 * t1253
+    del t1253, t1260
+    t1261 = _runtime.select(t1244, t99, fold_1_1) - whole_1_1
+    t1262 = np.maximum(0.0, t1261)
+    del t1261
+    t1263 = whole_1_1 + _runtime.select(t1244, t3, full_1_1)
+    del t1244
+    t1264 = np.minimum(t1263 * t1263, square_1_1_16_right_noflip_up)
+    del t1263
+    miss_1_1_16_right_noflip_up = square_1_1_16_right_noflip_up - np.maximum(t1262 * t1262, t1264)
+    del square_1_1_16_right_noflip_up, t1262, t1264
+    t1265 = bends_1_1_16_right_noflip_up * miss_1_1_16_right_noflip_up
+    inner_1_1_16_right_noflip_up = t1255 - t1265
+    del t1255, t1265
+    t1266 = inner_1_1_16_right_noflip_up < 0.0
+    t1267 = np.maximum(0.0, inner_1_1_16_right_noflip_up)
     del inner_1_1_16_right_noflip_up
-    t1267 = _runtime.sign(slope_1_1_16_right_noflip_up) * np.sqrt(t1266)
-    del t1266
-    below_1_1_16_right_noflip_up = _runtime.select(t1265, 2.0 * bends_1_1_16_right_noflip_up, 2.0 * (slope_1_1_16_right_noflip_up + t1267))
-    del bends_1_1_16_right_noflip_up, t1267
-    above_1_1_16_right_noflip_up = _runtime.select(t1265, slope_1_1_16_right_noflip_up, miss_1_1_16_right_noflip_up)
-    del miss_1_1_16_right_noflip_up, slope_1_1_16_right_noflip_up, t1265
-    t1268 = np.abs(below_1_1_16_right_noflip_up) <= np.abs(above_1_1_16_right_noflip_up)
-    t1269 = above_1_1_16_right_noflip_up / below_1_1_16_right_noflip_up
+    t1268 = _runtime.sign(slope_1_1_16_right_noflip_up) * np.sqrt(t1267)
+    del t1267
+    below_1_1_16_right_noflip_up = _runtime.select(t1266, 2.0 * bends_1_1_16_right_noflip_up, 2.0 * (slope_1_1_16_right_noflip_up + t1268))
+    del bends_1_1_16_right_noflip_up, t1268
+    above_1_1_16_right_noflip_up = _runtime.select(t1266, slope_1_1_16_right_noflip_up, miss_1_1_16_right_noflip_up)
+    del miss_1_1_16_right_noflip_up, slope_1_1_16_right_noflip_up, t1266
+    t1269 = np.abs(below_1_1_16_right_noflip_up) <= np.abs(above_1_1_16_right_noflip_up)
+    t1270 = above_1_1_16_right_noflip_up / below_1_1_16_right_noflip_up
     del above_1_1_16_right_noflip_up, below_1_1_16_right_noflip_up
-    t1270 = _runtime.select(t1268, 0.0, t1269)
-    del t1268, t1269
-    t1271 = t1270 * t1270
-    t1272 = 1.0 / (1.0 + t1271)
-    by_c_1_1_16_right_noflip_up = (1.0 - t1271) * t1272
-    del t1271
-    t1273 = t1272 * (2.0 * t1270)
-    del t1270, t1272
-    t1274 = t1273 * t1273 / (1.0 + np.abs(by_c_1_1_16_right_noflip_up))
-    versine_1_1_16_right_noflip_up = _runtime.select(0.0 < by_c_1_1_16_right_noflip_up, t1274, 1.0 - by_c_1_1_16_right_noflip_up)
-    del t1274
-    cost_1_1_16_right_noflip_up = d4 * versine_1_1_16_right_noflip_up + root1 * np.abs(t1273)
+    t1271 = _runtime.select(t1269, 0.0, t1270)
+    del t1269, t1270
+    t1272 = t1271 * t1271
+    t1273 = 1.0 / (1.0 + t1272)
+    by_c_1_1_16_right_noflip_up = (1.0 - t1272) * t1273
+    del t1272
+    t1274 = t1273 * (2.0 * t1271)
+    del t1271, t1273
+    t1275 = t1274 * t1274 / (1.0 + np.abs(by_c_1_1_16_right_noflip_up))
+    versine_1_1_16_right_noflip_up = _runtime.select(0.0 < by_c_1_1_16_right_noflip_up, t1275, 1.0 - by_c_1_1_16_right_noflip_up)
+    del t1275
+    cost_1_1_16_right_noflip_up = d4 * versine_1_1_16_right_noflip_up + root1 * np.abs(t1274)
     del versine_1_1_16_right_noflip_up
-    t1275 = cost_1_1_16_right_noflip_up <= whole_1_1
+    t1276 = cost_1_1_16_right_noflip_up <= whole_1_1
     del cost_1_1_16_right_noflip_up
-    cosine_1_1_16_right_noflip_up = _runtime.select(t1275, by_c_1_1_16_right_noflip_up, 1.0)
+    cosine_1_1_16_right_noflip_up = _runtime.select(t1276, by_c_1_1_16_right_noflip_up, 1.0)
     del by_c_1_1_16_right_noflip_up
-    t1276 = c_1_1_16_right_noflip_up * cosine_1_1_16_right_noflip_up
-    sine_1_1_16_right_noflip_up = _runtime.select(t1275, -t1273, 0.0)
-    del t1273, t1275
-    t1277 = s_1_1_16_right_noflip_up * sine_1_1_16_right_noflip_up
-    c_1_1_17_right_noflip_up = t1276 - t1277
-    del t1276, t1277
-    t1278 = c_1_1_16_right_noflip_up * sine_1_1_16_right_noflip_up
+    t1277 = c_1_1_16_right_noflip_up * cosine_1_1_16_right_noflip_up
+    sine_1_1_16_right_noflip_up = _runtime.select(t1276, -t1274, 0.0)
+    del t1274, t1276
+    t1278 = s_1_1_16_right_noflip_up * sine_1_1_16_right_noflip_up
+    c_1_1_17_right_noflip_up = t1277 - t1278
+    del t1277, t1278
+    t1279 = c_1_1_16_right_noflip_up * sine_1_1_16_right_noflip_up
     del c_1_1_16_right_noflip_up, sine_1_1_16_right_noflip_up
-    t1279 = s_1_1_16_right_noflip_up * cosine_1_1_16_right_noflip_up
+    t1280 = s_1_1_16_right_noflip_up * cosine_1_1_16_right_noflip_up
     del cosine_1_1_16_right_noflip_up, s_1_1_16_right_noflip_up
-    s_1_1_17_right_noflip_up = t1278 + t1279
-    del t1278, t1279
+    s_1_1_17_right_noflip_up = t1279 + t1280
+    del t1279, t1280
     axisx_1_1_17_right_noflip_up = T13 * c_1_1_17_right_noflip_up + T23 * s_1_1_17_right_noflip_up
-    t1280 = axisx_1_1_17_right_noflip_up * axisx_1_1_17_right_noflip_up
-    h_1_1_17_right_noflip_up = np.sqrt(t5 + t1280)
-    del t1280
-    t1281 = h_1_1_17_right_noflip_up <= 1.4210854715202004e-14
+    t1281 = axisx_1_1_17_right_noflip_up * axisx_1_1_17_right_noflip_up
+    h_1_1_17_right_noflip_up = np.sqrt(t5 + t1281)
+    del t1281
+    t1282 = h_1_1_17_right_noflip_up <= t89
     qx_1_1_17_right_noflip_up = w_x * c_1_1_17_right_noflip_up + w_y * s_1_1_17_right_noflip_up
-    t1282 = h_1_1_17_right_noflip_up == 0.0
-    t1283 = 1.0 / h_1_1_17_right_noflip_up
+    t1283 = h_1_1_17_right_noflip_up == 0.0
+    t1284 = 1.0 / h_1_1_17_right_noflip_up
     del h_1_1_17_right_noflip_up
-    t1284 = d5 * _runtime.select(t1282, 0.0, T33 * t1283)
-    x_1_1_17_right_noflip_up = _runtime.select(t1281, qx_1_1_17_right_noflip_up, qx_1_1_17_right_noflip_up - t1284)
-    del qx_1_1_17_right_noflip_up, t1284
-    t1285 = x_1_1_17_right_noflip_up * x_1_1_17_right_noflip_up
+    t1285 = d5 * _runtime.select(t1283, 0.0, T33 * t1284)
+    x_1_1_17_right_noflip_up = _runtime.select(t1282, qx_1_1_17_right_noflip_up, qx_1_1_17_right_noflip_up - t1285)
+    del qx_1_1_17_right_noflip_up, t1285
+    t1286 = x_1_1_17_right_noflip_up * x_1_1_17_right_noflip_up
     del x_1_1_17_right_noflip_up
-    t1286 = _runtime.select(t1282, 1.0, axisx_1_1_17_right_noflip_up * t1283)
-    del axisx_1_1_17_right_noflip_up, t1282, t1283
-    t1287 = _runtime.select(t1281, t23, t23 - d5 * t1286)
-    del t1286
-    t1288 = np.sqrt(t1285 + t1287 * t1287)
-    del t1285, t1287
-    t1289 = np.maximum(0.0, t1288 - _runtime.select(t1281, t3, full_1_1))
-    t1290 = _runtime.select(t1281, t98, fold_1_1) - t1288
-    del t1281, t1288
-    h_1_1_right_noflip_up = np.sqrt(t5 + t981)
-    del t981
-    t1291 = h_1_1_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t980
-    t1292 = h_1_1_right_noflip_up == 0.0
-    t1293 = 1.0 / h_1_1_right_noflip_up
-    uc_1_1_right_noflip_up = _runtime.select(t1292, 0.0, T33 * t1293)
-    t1294 = d5 * uc_1_1_right_noflip_up
-    x_1_1_right_noflip_up = _runtime.select(t1291, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up - t1294)
-    dqx_1_1_right_noflip_up = w_y * c_1_1_right_noflip_up + w_x * t980
-    t1295 = h_1_1_right_noflip_up * h_1_1_right_noflip_up
+    t1287 = _runtime.select(t1283, 1.0, axisx_1_1_17_right_noflip_up * t1284)
+    del axisx_1_1_17_right_noflip_up, t1283, t1284
+    t1288 = _runtime.select(t1282, t24, t24 - d5 * t1287)
+    del t1287
+    t1289 = np.sqrt(t1286 + t1288 * t1288)
+    del t1286, t1288
+    t1290 = np.maximum(0.0, t1289 - _runtime.select(t1282, t3, full_1_1))
+    t1291 = _runtime.select(t1282, t99, fold_1_1) - t1289
+    del t1282, t1289
+    h_1_1_right_noflip_up = np.sqrt(t5 + t982)
+    del t982
+    t1292 = h_1_1_right_noflip_up <= t89
+    qx_1_1_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t981
+    t1293 = h_1_1_right_noflip_up == 0.0
+    t1294 = 1.0 / h_1_1_right_noflip_up
+    uc_1_1_right_noflip_up = _runtime.select(t1293, 0.0, T33 * t1294)
+    t1295 = d5 * uc_1_1_right_noflip_up
+    x_1_1_right_noflip_up = _runtime.select(t1292, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up - t1295)
+    dqx_1_1_right_noflip_up = w_y * c_1_1_right_noflip_up + w_x * t981
+    t1296 = h_1_1_right_noflip_up * h_1_1_right_noflip_up
     del h_1_1_right_noflip_up
-    t1296 = _runtime.select(t1291, 0.0, T33 * daxisx_1_1_right_noflip_up / t1295)
-    del daxisx_1_1_right_noflip_up, t1295
-    t1297 = d5 * t1296
-    t1298 = axisx_1_1_right_noflip_up * t1293
-    del axisx_1_1_right_noflip_up, t1293
-    t1299 = _runtime.select(t1292, 1.0, t1298)
-    dx_1_1_right_noflip_up = _runtime.select(t1291, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t1297 * t1299)
-    t1300 = x_1_1_right_noflip_up * dx_1_1_right_noflip_up
+    t1297 = _runtime.select(t1292, 0.0, T33 * daxisx_1_1_right_noflip_up / t1296)
+    del daxisx_1_1_right_noflip_up, t1296
+    t1298 = d5 * t1297
+    t1299 = axisx_1_1_right_noflip_up * t1294
+    del axisx_1_1_right_noflip_up, t1294
+    t1300 = _runtime.select(t1293, 1.0, t1299)
+    dx_1_1_right_noflip_up = _runtime.select(t1292, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t1298 * t1300)
+    t1301 = x_1_1_right_noflip_up * dx_1_1_right_noflip_up
     del dx_1_1_right_noflip_up
-    t1301 = _runtime.select(t1291, t23, t23 - d5 * t1299)
-    t1302 = _runtime.select(t1291, 0.0, t1297 * uc_1_1_right_noflip_up)
-    slope_1_1_right_noflip_up = t1300 - t1301 * t1302
-    del t1300
-    t1303 = slope_1_1_right_noflip_up * slope_1_1_right_noflip_up
+    t1302 = _runtime.select(t1292, t24, t24 - d5 * t1300)
+    t1303 = _runtime.select(t1292, 0.0, t1298 * uc_1_1_right_noflip_up)
+    slope_1_1_right_noflip_up = t1301 - t1302 * t1303
+    del t1301
+    t1304 = slope_1_1_right_noflip_up * slope_1_1_right_noflip_up
     straight_1_1_right_noflip_up = dqx_1_1_right_noflip_up * dqx_1_1_right_noflip_up
-    t1304 = 2.0 * dqx_1_1_right_noflip_up
-    t1305 = qx_1_1_right_noflip_up * uc_1_1_right_noflip_up
+    t1305 = 2.0 * dqx_1_1_right_noflip_up
+    t1306 = qx_1_1_right_noflip_up * uc_1_1_right_noflip_up
     del uc_1_1_right_noflip_up
-    t1306 = t1304 * t1299 + t1296 * (t1305 + t23 * t1299)
-    del t1299
-    bends_1_1_right_noflip_up = _runtime.select(t1291, straight_1_1_right_noflip_up, straight_1_1_right_noflip_up + t1297 * t1306)
-    del t1306
-    t1307 = x_1_1_right_noflip_up * x_1_1_right_noflip_up
+    t1307 = t1305 * t1300 + t1297 * (t1306 + t24 * t1300)
+    del t1300
+    bends_1_1_right_noflip_up = _runtime.select(t1292, straight_1_1_right_noflip_up, straight_1_1_right_noflip_up + t1298 * t1307)
+    del t1307
+    t1308 = x_1_1_right_noflip_up * x_1_1_right_noflip_up
     del x_1_1_right_noflip_up
-    square_1_1_right_noflip_up = t1307 + t1301 * t1301
-    del t1301, t1307
-    t1308 = _runtime.select(t1291, t98, fold_1_1) - whole_1_1
-    t1309 = np.maximum(0.0, t1308)
-    del t1308
-    low_1_1_right_noflip_up = t1309 * t1309
+    square_1_1_right_noflip_up = t1308 + t1302 * t1302
+    del t1302, t1308
+    t1309 = _runtime.select(t1292, t99, fold_1_1) - whole_1_1
+    t1310 = np.maximum(0.0, t1309)
     del t1309
-    t1310 = whole_1_1 + _runtime.select(t1291, t3, full_1_1)
-    high_1_1_right_noflip_up = t1310 * t1310
+    low_1_1_right_noflip_up = t1310 * t1310
     del t1310
-    t1311 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_noflip_up)
-    miss_1_1_right_noflip_up = square_1_1_right_noflip_up - np.maximum(low_1_1_right_noflip_up, t1311)
-    del square_1_1_right_noflip_up, t1311
-    t1312 = bends_1_1_right_noflip_up * miss_1_1_right_noflip_up
-    inner_1_1_right_noflip_up = t1303 - t1312
-    del t1303, t1312
-    t1313 = inner_1_1_right_noflip_up < 0.0
-    t1314 = np.sqrt(np.maximum(0.0, inner_1_1_right_noflip_up))
+    t1311 = whole_1_1 + _runtime.select(t1292, t3, full_1_1)
+    high_1_1_right_noflip_up = t1311 * t1311
+    del t1311
+    t1312 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_noflip_up)
+    miss_1_1_right_noflip_up = square_1_1_right_noflip_up - np.maximum(low_1_1_right_noflip_up, t1312)
+    del square_1_1_right_noflip_up, t1312
+    t1313 = bends_1_1_right_noflip_up * miss_1_1_right_noflip_up
+    inner_1_1_right_noflip_up = t1304 - t1313
+    del t1304, t1313
+    t1314 = inner_1_1_right_noflip_up < 0.0
+    t1315 = np.sqrt(np.maximum(0.0, inner_1_1_right_noflip_up))
     del inner_1_1_right_noflip_up
-    t1315 = _runtime.sign(slope_1_1_right_noflip_up) * t1314
-    del t1314
-    below_1_1_right_noflip_up = _runtime.select(t1313, 2.0 * bends_1_1_right_noflip_up, 2.0 * (slope_1_1_right_noflip_up + t1315))
-    del bends_1_1_right_noflip_up, t1315
-    above_1_1_right_noflip_up = _runtime.select(t1313, slope_1_1_right_noflip_up, miss_1_1_right_noflip_up)
-    del miss_1_1_right_noflip_up, slope_1_1_right_noflip_up, t1313
-    t1316 = np.abs(below_1_1_right_noflip_up) <= np.abs(above_1_1_right_noflip_up)
-    t1317 = above_1_1_right_noflip_up / below_1_1_right_noflip_up
+    t1316 = _runtime.sign(slope_1_1_right_noflip_up) * t1315
+    del t1315
+    below_1_1_right_noflip_up = _runtime.select(t1314, 2.0 * bends_1_1_right_noflip_up, 2.0 * (slope_1_1_right_noflip_up + t1316))
+    del bends_1_1_right_noflip_up, t1316
+    above_1_1_right_noflip_up = _runtime.select(t1314, slope_1_1_right_noflip_up, miss_1_1_right_noflip_up)
+    del miss_1_1_right_noflip_up, slope_1_1_right_noflip_up, t1314
+    t1317 = np.abs(below_1_1_right_noflip_up) <= np.abs(above_1_1_right_noflip_up)
+    t1318 = above_1_1_right_noflip_up / below_1_1_right_noflip_up
     del above_1_1_right_noflip_up, below_1_1_right_noflip_up
-    t1318 = _runtime.select(t1316, 0.0, t1317)
-    del t1316, t1317
-    t1319 = t1318 * t1318
-    t1320 = 1.0 / (1.0 + t1319)
-    by_c_1_1_right_noflip_up = (1.0 - t1319) * t1320
-    del t1319
-    t1321 = t1320 * (2.0 * t1318)
-    del t1318, t1320
-    t1322 = t1321 * t1321 / (1.0 + np.abs(by_c_1_1_right_noflip_up))
-    versine_1_1_right_noflip_up = _runtime.select(0.0 < by_c_1_1_right_noflip_up, t1322, 1.0 - by_c_1_1_right_noflip_up)
-    del t1322
-    cost_1_1_right_noflip_up = d4 * versine_1_1_right_noflip_up + root1 * np.abs(t1321)
+    t1319 = _runtime.select(t1317, 0.0, t1318)
+    del t1317, t1318
+    t1320 = t1319 * t1319
+    t1321 = 1.0 / (1.0 + t1320)
+    by_c_1_1_right_noflip_up = (1.0 - t1320) * t1321
+    del t1320
+    t1322 = t1321 * (2.0 * t1319)
+    del t1319, t1321
+    t1323 = t1322 * t1322 / (1.0 + np.abs(by_c_1_1_right_noflip_up))
+    versine_1_1_right_noflip_up = _runtime.select(0.0 < by_c_1_1_right_noflip_up, t1323, 1.0 - by_c_1_1_right_noflip_up)
+    del t1323
+    cost_1_1_right_noflip_up = d4 * versine_1_1_right_noflip_up + root1 * np.abs(t1322)
     del versine_1_1_right_noflip_up
-    t1323 = cost_1_1_right_noflip_up <= whole_1_1
+    t1324 = cost_1_1_right_noflip_up <= whole_1_1
     del cost_1_1_right_noflip_up
-    cosine_1_1_right_noflip_up = _runtime.select(t1323, by_c_1_1_right_noflip_up, 1.0)
+    cosine_1_1_right_noflip_up = _runtime.select(t1324, by_c_1_1_right_noflip_up, 1.0)
     del by_c_1_1_right_noflip_up
-    t1324 = c_1_1_right_noflip_up * cosine_1_1_right_noflip_up
-    sine_1_1_right_noflip_up = _runtime.select(t1323, -t1321, 0.0)
-    del t1321, t1323
-    c_1_1_2_right_noflip_up = t1324 + t980 * sine_1_1_right_noflip_up
-    del t1324
-    t1325 = c_1_1_right_noflip_up * sine_1_1_right_noflip_up
+    t1325 = c_1_1_right_noflip_up * cosine_1_1_right_noflip_up
+    sine_1_1_right_noflip_up = _runtime.select(t1324, -t1322, 0.0)
+    del t1322, t1324
+    c_1_1_2_right_noflip_up = t1325 + t981 * sine_1_1_right_noflip_up
+    del t1325
+    t1326 = c_1_1_right_noflip_up * sine_1_1_right_noflip_up
     del sine_1_1_right_noflip_up
-    s_1_1_2_right_noflip_up = t1325 - t980 * cosine_1_1_right_noflip_up
-    del cosine_1_1_right_noflip_up, t1325
+    s_1_1_2_right_noflip_up = t1326 - t981 * cosine_1_1_right_noflip_up
+    del cosine_1_1_right_noflip_up, t1326
     axisx_1_1_2_right_noflip_up = T13 * c_1_1_2_right_noflip_up + T23 * s_1_1_2_right_noflip_up
-    t1326 = axisx_1_1_2_right_noflip_up * axisx_1_1_2_right_noflip_up
-    h_1_1_2_right_noflip_up = np.sqrt(t5 + t1326)
-    del t1326
-    t1327 = h_1_1_2_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_2_right_noflip_up = w_x * c_1_1_2_right_noflip_up + w_y * s_1_1_2_right_noflip_up
-    t1328 = h_1_1_2_right_noflip_up == 0.0
-    t1329 = 1.0 / h_1_1_2_right_noflip_up
-    uc_1_1_2_right_noflip_up = _runtime.select(t1328, 0.0, T33 * t1329)
-    t1330 = qx_1_1_2_right_noflip_up - d5 * uc_1_1_2_right_noflip_up
-    x_1_1_2_right_noflip_up = _runtime.select(t1327, qx_1_1_2_right_noflip_up, t1330)
-    del t1330
-    dqx_1_1_2_right_noflip_up = w_y * c_1_1_2_right_noflip_up - w_x * s_1_1_2_right_noflip_up
-    t1331 = T13 * s_1_1_2_right_noflip_up - T23 * c_1_1_2_right_noflip_up
-    t1332 = h_1_1_2_right_noflip_up * h_1_1_2_right_noflip_up
-    del h_1_1_2_right_noflip_up
-    spin_1_1_2_right_noflip_up = _runtime.select(t1327, 0.0, T33 * t1331 / t1332)
-    del t1331, t1332
-    rate_1_1_2_right_noflip_up = d5 * spin_1_1_2_right_noflip_up
-    t1333 = _runtime.select(t1328, 1.0, axisx_1_1_2_right_noflip_up * t1329)
-    del axisx_1_1_2_right_noflip_up, t1328, t1329
-    t1334 = dqx_1_1_2_right_noflip_up - rate_1_1_2_right_noflip_up * t1333
-    dx_1_1_2_right_noflip_up = _runtime.select(t1327, dqx_1_1_2_right_noflip_up, t1334)
-    del t1334
-    t1335 = x_1_1_2_right_noflip_up * dx_1_1_2_right_noflip_up
-    del dx_1_1_2_right_noflip_up
-    t1336 = _runtime.select(t1327, t23, t23 - d5 * t1333)
-    t1337 = rate_1_1_2_right_noflip_up * uc_1_1_2_right_noflip_up
-    slope_1_1_2_right_noflip_up = t1335 + t1336 * _runtime.select(t1327, 0.0, t1337)
-    del t1335, t1337
-    t1338 = slope_1_1_2_right_noflip_up * slope_1_1_2_right_noflip_up
-    straight_1_1_2_right_noflip_up = dqx_1_1_2_right_noflip_up * dqx_1_1_2_right_noflip_up
-    t1339 = qx_1_1_2_right_noflip_up * uc_1_1_2_right_noflip_up
-    del qx_1_1_2_right_noflip_up, uc_1_1_2_right_noflip_up
-    t1340 = spin_1_1_2_right_noflip_up * (t1339 + t23 * t1333)
-    del spin_1_1_2_right_noflip_up, t1339
-    t1341 = 2.0 * dqx_1_1_2_right_noflip_up * t1333 - t1340
-    del dqx_1_1_2_right_noflip_up, t1333, t1340
-    t1342 = straight_1_1_2_right_noflip_up - rate_1_1_2_right_noflip_up * t1341
-    del rate_1_1_2_right_noflip_up, t1341
-    bends_1_1_2_right_noflip_up = _runtime.select(t1327, straight_1_1_2_right_noflip_up, t1342)
-    del straight_1_1_2_right_noflip_up, t1342
-    t1343 = x_1_1_2_right_noflip_up * x_1_1_2_right_noflip_up
-    del x_1_1_2_right_noflip_up
-    square_1_1_2_right_noflip_up = t1343 + t1336 * t1336
-    del t1336, t1343
-    t1344 = _runtime.select(t1327, t98, fold_1_1) - whole_1_1
-    t1345 = np.maximum(0.0, t1344)
-    del t1344
-    t1346 = whole_1_1 + _runtime.select(t1327, t3, full_1_1)
+    t1327 = axisx_1_1_2_right_noflip_up * axisx_1_1_2_right_noflip_up
+    h_1_1_2_right_noflip_up = np.sqrt(t5 + t1327)
     del t1327
-    t1347 = np.minimum(t1346 * t1346, square_1_1_2_right_noflip_up)
-    del t1346
-    miss_1_1_2_right_noflip_up = square_1_1_2_right_noflip_up - np.maximum(t1345 * t1345, t1347)
-    del square_1_1_2_right_noflip_up, t1345, t1347
-    t1348 = bends_1_1_2_right_noflip_up * miss_1_1_2_right_noflip_up
-    inner_1_1_2_right_noflip_up = t1338 - t1348
-    del t1338, t1348
-    t1349 = inner_1_1_2_right_noflip_up < 0.0
-    t1350 = np.sqrt(np.maximum(0.0, inner_1_1_2_right_noflip_up))
+    t1328 = h_1_1_2_right_noflip_up <= t89
+    qx_1_1_2_right_noflip_up = w_x * c_1_1_2_right_noflip_up + w_y * s_1_1_2_right_noflip_up
+    t1329 = h_1_1_2_right_noflip_up == 0.0
+    t1330 = 1.0 / h_1_1_2_right_noflip_up
+    uc_1_1_2_right_noflip_up = _runtime.select(t1329, 0.0, T33 * t1330)
+    t1331 = qx_1_1_2_right_noflip_up - d5 * uc_1_1_2_right_noflip_up
+    x_1_1_2_right_noflip_up = _runtime.select(t1328, qx_1_1_2_right_noflip_up, t1331)
+    del t1331
+    dqx_1_1_2_right_noflip_up = w_y * c_1_1_2_right_noflip_up - w_x * s_1_1_2_right_noflip_up
+    t1332 = T13 * s_1_1_2_right_noflip_up - T23 * c_1_1_2_right_noflip_up
+    t1333 = h_1_1_2_right_noflip_up * h_1_1_2_right_noflip_up
+    del h_1_1_2_right_noflip_up
+    spin_1_1_2_right_noflip_up = _runtime.select(t1328, 0.0, T33 * t1332 / t1333)
+    del t1332, t1333
+    rate_1_1_2_right_noflip_up = d5 * spin_1_1_2_right_noflip_up
+    t1334 = _runtime.select(t1329, 1.0, axisx_1_1_2_right_noflip_up * t1330)
+    del axisx_1_1_2_right_noflip_up, t1329, t1330
+    t1335 = dqx_1_1_2_right_noflip_up - rate_1_1_2_right_noflip_up * t1334
+    dx_1_1_2_right_noflip_up = _runtime.select(t1328, dqx_1_1_2_right_noflip_up, t1335)
+    del t1335
+    t1336 = x_1_1_2_right_noflip_up * dx_1_1_2_right_noflip_up
+    del dx_1_1_2_right_noflip_up
+    t1337 = _runtime.select(t1328, t24, t24 - d5 * t1334)
+    t1338 = rate_1_1_2_right_noflip_up * uc_1_1_2_right_noflip_up
+    slope_1_1_2_right_noflip_up = t1336 + t1337 * _runtime.select(t1328, 0.0, t1338)
+    del t1336, t1338
+    t1339 = slope_1_1_2_right_noflip_up * slope_1_1_2_right_noflip_up
+    straight_1_1_2_right_noflip_up = dqx_1_1_2_right_noflip_up * dqx_1_1_2_right_noflip_up
+    t1340 = qx_1_1_2_right_noflip_up * uc_1_1_2_right_noflip_up
+    del qx_1_1_2_right_noflip_up, uc_1_1_2_right_noflip_up
+    t1341 = spin_1_1_2_right_noflip_up * (t1340 + t24 * t1334)
+    del spin_1_1_2_right_noflip_up, t1340
+    t1342 = 2.0 * dqx_1_1_2_right_noflip_up * t1334 - t1341
+    del dqx_1_1_2_right_noflip_up, t1334, t1341
+    t1343 = straight_1_1_2_right_noflip_up - rate_1_1_2_right_noflip_up * t1342
+    del rate_1_1_2_right_noflip_up, t1342
+    bends_1_1_2_right_noflip_up = _runtime.select(t1328, straight_1_1_2_right_noflip_up, t1343)
+    del straight_1_1_2_right_noflip_up, t1343
+    t1344 = x_1_1_2_right_noflip_up * x_1_1_2_right_noflip_up
+    del x_1_1_2_right_noflip_up
+    square_1_1_2_right_noflip_up = t1344 + t1337 * t1337
+    del t1337, t1344
+    t1345 = _runtime.select(t1328, t99, fold_1_1) - whole_1_1
+    t1346 = np.maximum(0.0, t1345)
+    del t1345
+    t1347 = whole_1_1 + _runtime.select(t1328, t3, full_1_1)
+    del t1328
+    t1348 = np.minimum(t1347 * t1347, square_1_1_2_right_noflip_up)
+    del t1347
+    miss_1_1_2_right_noflip_up = square_1_1_2_right_noflip_up - np.maximum(t1346 * t1346, t1348)
+    del square_1_1_2_right_noflip_up, t1346, t1348
+    t1349 = bends_1_1_2_right_noflip_up * miss_1_1_2_right_noflip_up
+    inner_1_1_2_right_noflip_up = t1339 - t1349
+    del t1339, t1349
+    t1350 = inner_1_1_2_right_noflip_up < 0.0
+    t1351 = np.sqrt(np.maximum(0.0, inner_1_1_2_right_noflip_up))
     del inner_1_1_2_right_noflip_up
-    t1351 = _runtime.sign(slope_1_1_2_right_noflip_up) * t1350
-    del t1350
-    below_1_1_2_right_noflip_up = _runtime.select(t1349, 2.0 * bends_1_1_2_right_noflip_up, 2.0 * (slope_1_1_2_right_noflip_up + t1351))
-    del bends_1_1_2_right_noflip_up, t1351
-    above_1_1_2_right_noflip_up = _runtime.select(t1349, slope_1_1_2_right_noflip_up, miss_1_1_2_right_noflip_up)
-    del miss_1_1_2_right_noflip_up, slope_1_1_2_right_noflip_up, t1349
-    t1352 = np.abs(below_1_1_2_right_noflip_up) <= np.abs(above_1_1_2_right_noflip_up)
-    t1353 = above_1_1_2_right_noflip_up / below_1_1_2_right_noflip_up
+    t1352 = _runtime.sign(slope_1_1_2_right_noflip_up) * t1351
+    del t1351
+    below_1_1_2_right_noflip_up = _runtime.select(t1350, 2.0 * bends_1_1_2_right_noflip_up, 2.0 * (slope_1_1_2_right_noflip_up + t1352))
+    del bends_1_1_2_right_noflip_up, t1352
+    above_1_1_2_right_noflip_up = _runtime.select(t1350, slope_1_1_2_right_noflip_up, miss_1_1_2_right_noflip_up)
+    del miss_1_1_2_right_noflip_up, slope_1_1_2_right_noflip_up, t1350
+    t1353 = np.abs(below_1_1_2_right_noflip_up) <= np.abs(above_1_1_2_right_noflip_up)
+    t1354 = above_1_1_2_right_noflip_up / below_1_1_2_right_noflip_up
     del above_1_1_2_right_noflip_up, below_1_1_2_right_noflip_up
-    t1354 = _runtime.select(t1352, 0.0, t1353)
-    del t1352, t1353
-    t1355 = t1354 * t1354
-    t1356 = 1.0 / (1.0 + t1355)
-    by_c_1_1_2_right_noflip_up = (1.0 - t1355) * t1356
-    del t1355
-    t1357 = t1356 * (2.0 * t1354)
-    del t1354, t1356
-    t1358 = t1357 * t1357 / (1.0 + np.abs(by_c_1_1_2_right_noflip_up))
-    versine_1_1_2_right_noflip_up = _runtime.select(0.0 < by_c_1_1_2_right_noflip_up, t1358, 1.0 - by_c_1_1_2_right_noflip_up)
-    del t1358
-    cost_1_1_2_right_noflip_up = d4 * versine_1_1_2_right_noflip_up + root1 * np.abs(t1357)
+    t1355 = _runtime.select(t1353, 0.0, t1354)
+    del t1353, t1354
+    t1356 = t1355 * t1355
+    t1357 = 1.0 / (1.0 + t1356)
+    by_c_1_1_2_right_noflip_up = (1.0 - t1356) * t1357
+    del t1356
+    t1358 = t1357 * (2.0 * t1355)
+    del t1355, t1357
+    t1359 = t1358 * t1358 / (1.0 + np.abs(by_c_1_1_2_right_noflip_up))
+    versine_1_1_2_right_noflip_up = _runtime.select(0.0 < by_c_1_1_2_right_noflip_up, t1359, 1.0 - by_c_1_1_2_right_noflip_up)
+    del t1359
+    cost_1_1_2_right_noflip_up = d4 * versine_1_1_2_right_noflip_up + root1 * np.abs(t1358)
     del versine_1_1_2_right_noflip_up
-    t1359 = cost_1_1_2_right_noflip_up <= whole_1_1
+    t1360 = cost_1_1_2_right_noflip_up <= whole_1_1
     del cost_1_1_2_right_noflip_up
-    cosine_1_1_2_right_noflip_up = _runtime.select(t1359, by_c_1_1_2_right_noflip_up, 1.0)
+    cosine_1_1_2_right_noflip_up = _runtime.select(t1360, by_c_1_1_2_right_noflip_up, 1.0)
     del by_c_1_1_2_right_noflip_up
-    t1360 = c_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
-    sine_1_1_2_right_noflip_up = _runtime.select(t1359, -t1357, 0.0)
-    del t1357, t1359
-    t1361 = s_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
-    c_1_1_3_right_noflip_up = t1360 - t1361
-    del t1360, t1361
-    t1362 = c_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
+    t1361 = c_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
+    sine_1_1_2_right_noflip_up = _runtime.select(t1360, -t1358, 0.0)
+    del t1358, t1360
+    t1362 = s_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
+    c_1_1_3_right_noflip_up = t1361 - t1362
+    del t1361, t1362
+    t1363 = c_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
     del c_1_1_2_right_noflip_up, sine_1_1_2_right_noflip_up
-    t1363 = s_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
+    t1364 = s_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
     del cosine_1_1_2_right_noflip_up, s_1_1_2_right_noflip_up
-    s_1_1_3_right_noflip_up = t1362 + t1363
-    del t1362, t1363
+    s_1_1_3_right_noflip_up = t1363 + t1364
+    del t1363, t1364
     axisx_1_1_3_right_noflip_up = T13 * c_1_1_3_right_noflip_up + T23 * s_1_1_3_right_noflip_up
-    t1364 = axisx_1_1_3_right_noflip_up * axisx_1_1_3_right_noflip_up
-    h_1_1_3_right_noflip_up = np.sqrt(t5 + t1364)
-    del t1364
-    t1365 = h_1_1_3_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_3_right_noflip_up = w_x * c_1_1_3_right_noflip_up + w_y * s_1_1_3_right_noflip_up
-    t1366 = h_1_1_3_right_noflip_up == 0.0
-    t1367 = 1.0 / h_1_1_3_right_noflip_up
-    uc_1_1_3_right_noflip_up = _runtime.select(t1366, 0.0, T33 * t1367)
-    t1368 = qx_1_1_3_right_noflip_up - d5 * uc_1_1_3_right_noflip_up
-    x_1_1_3_right_noflip_up = _runtime.select(t1365, qx_1_1_3_right_noflip_up, t1368)
-    del t1368
-    dqx_1_1_3_right_noflip_up = w_y * c_1_1_3_right_noflip_up - w_x * s_1_1_3_right_noflip_up
-    t1369 = T13 * s_1_1_3_right_noflip_up - T23 * c_1_1_3_right_noflip_up
-    t1370 = h_1_1_3_right_noflip_up * h_1_1_3_right_noflip_up
-    del h_1_1_3_right_noflip_up
-    spin_1_1_3_right_noflip_up = _runtime.select(t1365, 0.0, T33 * t1369 / t1370)
-    del t1369, t1370
-    rate_1_1_3_right_noflip_up = d5 * spin_1_1_3_right_noflip_up
-    t1371 = _runtime.select(t1366, 1.0, axisx_1_1_3_right_noflip_up * t1367)
-    del axisx_1_1_3_right_noflip_up, t1366, t1367
-    t1372 = dqx_1_1_3_right_noflip_up - rate_1_1_3_right_noflip_up * t1371
-    dx_1_1_3_right_noflip_up = _runtime.select(t1365, dqx_1_1_3_right_noflip_up, t1372)
-    del t1372
-    t1373 = x_1_1_3_right_noflip_up * dx_1_1_3_right_noflip_up
-    del dx_1_1_3_right_noflip_up
-    t1374 = _runtime.select(t1365, t23, t23 - d5 * t1371)
-    t1375 = rate_1_1_3_right_noflip_up * uc_1_1_3_right_noflip_up
-    slope_1_1_3_right_noflip_up = t1373 + t1374 * _runtime.select(t1365, 0.0, t1375)
-    del t1373, t1375
-    t1376 = slope_1_1_3_right_noflip_up * slope_1_1_3_right_noflip_up
-    straight_1_1_3_right_noflip_up = dqx_1_1_3_right_noflip_up * dqx_1_1_3_right_noflip_up
-    t1377 = qx_1_1_3_right_noflip_up * uc_1_1_3_right_noflip_up
-    del qx_1_1_3_right_noflip_up, uc_1_1_3_right_noflip_up
-    t1378 = spin_1_1_3_right_noflip_up * (t1377 + t23 * t1371)
-    del spin_1_1_3_right_noflip_up, t1377
-    t1379 = 2.0 * dqx_1_1_3_right_noflip_up * t1371 - t1378
-    del dqx_1_1_3_right_noflip_up, t1371, t1378
-    t1380 = straight_1_1_3_right_noflip_up - rate_1_1_3_right_noflip_up * t1379
-    del rate_1_1_3_right_noflip_up, t1379
-    bends_1_1_3_right_noflip_up = _runtime.select(t1365, straight_1_1_3_right_noflip_up, t1380)
-    del straight_1_1_3_right_noflip_up, t1380
-    t1381 = x_1_1_3_right_noflip_up * x_1_1_3_right_noflip_up
-    del x_1_1_3_right_noflip_up
-    square_1_1_3_right_noflip_up = t1381 + t1374 * t1374
-    del t1374, t1381
-    t1382 = _runtime.select(t1365, t98, fold_1_1) - whole_1_1
-    t1383 = np.maximum(0.0, t1382)
-    del t1382
-    t1384 = whole_1_1 + _runtime.select(t1365, t3, full_1_1)
+    t1365 = axisx_1_1_3_right_noflip_up * axisx_1_1_3_right_noflip_up
+    h_1_1_3_right_noflip_up = np.sqrt(t5 + t1365)
     del t1365
-    t1385 = np.minimum(t1384 * t1384, square_1_1_3_right_noflip_up)
-    del t1384
-    miss_1_1_3_right_noflip_up = square_1_1_3_right_noflip_up - np.maximum(t1383 * t1383, t1385)
-    del square_1_1_3_right_noflip_up, t1383, t1385
-    t1386 = bends_1_1_3_right_noflip_up * miss_1_1_3_right_noflip_up
-    inner_1_1_3_right_noflip_up = t1376 - t1386
-    del t1376, t1386
-    t1387 = inner_1_1_3_right_noflip_up < 0.0
-    t1388 = np.sqrt(np.maximum(0.0, inner_1_1_3_right_noflip_up))
+    t1366 = h_1_1_3_right_noflip_up <= t89
+    qx_1_1_3_right_noflip_up = w_x * c_1_1_3_right_noflip_up + w_y * s_1_1_3_right_noflip_up
+    t1367 = h_1_1_3_right_noflip_up == 0.0
+    t1368 = 1.0 / h_1_1_3_right_noflip_up
+    uc_1_1_3_right_noflip_up = _runtime.select(t1367, 0.0, T33 * t1368)
+    t1369 = qx_1_1_3_right_noflip_up - d5 * uc_1_1_3_right_noflip_up
+    x_1_1_3_right_noflip_up = _runtime.select(t1366, qx_1_1_3_right_noflip_up, t1369)
+    del t1369
+    dqx_1_1_3_right_noflip_up = w_y * c_1_1_3_right_noflip_up - w_x * s_1_1_3_right_noflip_up
+    t1370 = T13 * s_1_1_3_right_noflip_up - T23 * c_1_1_3_right_noflip_up
+    t1371 = h_1_1_3_right_noflip_up * h_1_1_3_right_noflip_up
+    del h_1_1_3_right_noflip_up
+    spin_1_1_3_right_noflip_up = _runtime.select(t1366, 0.0, T33 * t1370 / t1371)
+    del t1370, t1371
+    rate_1_1_3_right_noflip_up = d5 * spin_1_1_3_right_noflip_up
+    t1372 = _runtime.select(t1367, 1.0, axisx_1_1_3_right_noflip_up * t1368)
+    del axisx_1_1_3_right_noflip_up, t1367, t1368
+    t1373 = dqx_1_1_3_right_noflip_up - rate_1_1_3_right_noflip_up * t1372
+    dx_1_1_3_right_noflip_up = _runtime.select(t1366, dqx_1_1_3_right_noflip_up, t1373)
+    del t1373
+    t1374 = x_1_1_3_right_noflip_up * dx_1_1_3_right_noflip_up
+    del dx_1_1_3_right_noflip_up
+    t1375 = _runtime.select(t1366, t24, t24 - d5 * t1372)
+    t1376 = rate_1_1_3_right_noflip_up * uc_1_1_3_right_noflip_up
+    slope_1_1_3_right_noflip_up = t1374 + t1375 * _runtime.select(t1366, 0.0, t1376)
+    del t1374, t1376
+    t1377 = slope_1_1_3_right_noflip_up * slope_1_1_3_right_noflip_up
+    straight_1_1_3_right_noflip_up = dqx_1_1_3_right_noflip_up * dqx_1_1_3_right_noflip_up
+    t1378 = qx_1_1_3_right_noflip_up * uc_1_1_3_right_noflip_up
+    del qx_1_1_3_right_noflip_up, uc_1_1_3_right_noflip_up
+    t1379 = spin_1_1_3_right_noflip_up * (t1378 + t24 * t1372)
+    del spin_1_1_3_right_noflip_up, t1378
+    t1380 = 2.0 * dqx_1_1_3_right_noflip_up * t1372 - t1379
+    del dqx_1_1_3_right_noflip_up, t1372, t1379
+    t1381 = straight_1_1_3_right_noflip_up - rate_1_1_3_right_noflip_up * t1380
+    del rate_1_1_3_right_noflip_up, t1380
+    bends_1_1_3_right_noflip_up = _runtime.select(t1366, straight_1_1_3_right_noflip_up, t1381)
+    del straight_1_1_3_right_noflip_up, t1381
+    t1382 = x_1_1_3_right_noflip_up * x_1_1_3_right_noflip_up
+    del x_1_1_3_right_noflip_up
+    square_1_1_3_right_noflip_up = t1382 + t1375 * t1375
+    del t1375, t1382
+    t1383 = _runtime.select(t1366, t99, fold_1_1) - whole_1_1
+    t1384 = np.maximum(0.0, t1383)
+    del t1383
+    t1385 = whole_1_1 + _runtime.select(t1366, t3, full_1_1)
+    del t1366
+    t1386 = np.minimum(t1385 * t1385, square_1_1_3_right_noflip_up)
+    del t1385
+    miss_1_1_3_right_noflip_up = square_1_1_3_right_noflip_up - np.maximum(t1384 * t1384, t1386)
+    del square_1_1_3_right_noflip_up, t1384, t1386
+    t1387 = bends_1_1_3_right_noflip_up * miss_1_1_3_right_noflip_up
+    inner_1_1_3_right_noflip_up = t1377 - t1387
+    del t1377, t1387
+    t1388 = inner_1_1_3_right_noflip_up < 0.0
+    t1389 = np.sqrt(np.maximum(0.0, inner_1_1_3_right_noflip_up))
     del inner_1_1_3_right_noflip_up
-    t1389 = _runtime.sign(slope_1_1_3_right_noflip_up) * t1388
-    del t1388
-    below_1_1_3_right_noflip_up = _runtime.select(t1387, 2.0 * bends_1_1_3_right_noflip_up, 2.0 * (slope_1_1_3_right_noflip_up + t1389))
-    del bends_1_1_3_right_noflip_up, t1389
-    above_1_1_3_right_noflip_up = _runtime.select(t1387, slope_1_1_3_right_noflip_up, miss_1_1_3_right_noflip_up)
-    del miss_1_1_3_right_noflip_up, slope_1_1_3_right_noflip_up, t1387
-    t1390 = np.abs(below_1_1_3_right_noflip_up) <= np.abs(above_1_1_3_right_noflip_up)
-    t1391 = above_1_1_3_right_noflip_up / below_1_1_3_right_noflip_up
+    t1390 = _runtime.sign(slope_1_1_3_right_noflip_up) * t1389
+    del t1389
+    below_1_1_3_right_noflip_up = _runtime.select(t1388, 2.0 * bends_1_1_3_right_noflip_up, 2.0 * (slope_1_1_3_right_noflip_up + t1390))
+    del bends_1_1_3_right_noflip_up, t1390
+    above_1_1_3_right_noflip_up = _runtime.select(t1388, slope_1_1_3_right_noflip_up, miss_1_1_3_right_noflip_up)
+    del miss_1_1_3_right_noflip_up, slope_1_1_3_right_noflip_up, t1388
+    t1391 = np.abs(below_1_1_3_right_noflip_up) <= np.abs(above_1_1_3_right_noflip_up)
+    t1392 = above_1_1_3_right_noflip_up / below_1_1_3_right_noflip_up
     del above_1_1_3_right_noflip_up, below_1_1_3_right_noflip_up
-    t1392 = _runtime.select(t1390, 0.0, t1391)
-    del t1390, t1391
-    t1393 = t1392 * t1392
-    t1394 = 1.0 / (1.0 + t1393)
-    by_c_1_1_3_right_noflip_up = (1.0 - t1393) * t1394
-    del t1393
-    t1395 = t1394 * (2.0 * t1392)
-    del t1392, t1394
-    t1396 = t1395 * t1395 / (1.0 + np.abs(by_c_1_1_3_right_noflip_up))
-    versine_1_1_3_right_noflip_up = _runtime.select(0.0 < by_c_1_1_3_right_noflip_up, t1396, 1.0 - by_c_1_1_3_right_noflip_up)
-    del t1396
-    cost_1_1_3_right_noflip_up = d4 * versine_1_1_3_right_noflip_up + root1 * np.abs(t1395)
+    t1393 = _runtime.select(t1391, 0.0, t1392)
+    del t1391, t1392
+    t1394 = t1393 * t1393
+    t1395 = 1.0 / (1.0 + t1394)
+    by_c_1_1_3_right_noflip_up = (1.0 - t1394) * t1395
+    del t1394
+    t1396 = t1395 * (2.0 * t1393)
+    del t1393, t1395
+    t1397 = t1396 * t1396 / (1.0 + np.abs(by_c_1_1_3_right_noflip_up))
+    versine_1_1_3_right_noflip_up = _runtime.select(0.0 < by_c_1_1_3_right_noflip_up, t1397, 1.0 - by_c_1_1_3_right_noflip_up)
+    del t1397
+    cost_1_1_3_right_noflip_up = d4 * versine_1_1_3_right_noflip_up + root1 * np.abs(t1396)
     del versine_1_1_3_right_noflip_up
-    t1397 = cost_1_1_3_right_noflip_up <= whole_1_1
+    t1398 = cost_1_1_3_right_noflip_up <= whole_1_1
     del cost_1_1_3_right_noflip_up
-    cosine_1_1_3_right_noflip_up = _runtime.select(t1397, by_c_1_1_3_right_noflip_up, 1.0)
+    cosine_1_1_3_right_noflip_up = _runtime.select(t1398, by_c_1_1_3_right_noflip_up, 1.0)
     del by_c_1_1_3_right_noflip_up
-    t1398 = c_1_1_3_right_noflip_up * cosine_1_1_3_right_noflip_up
-    sine_1_1_3_right_noflip_up = _runtime.select(t1397, -t1395, 0.0)
-    del t1395, t1397
-    t1399 = s_1_1_3_right_noflip_up * sine_1_1_3_right_noflip_up
-    c_1_1_4_right_noflip_up = t1398 - t1399
-    del t1398, t1399
-    t1400 = c_1_1_3_right_noflip_up * sine_1_1_3_right_noflip_up
+    t1399 = c_1_1_3_right_noflip_up * cosine_1_1_3_right_noflip_up
+    sine_1_1_3_right_noflip_up = _runtime.select(t1398, -t1396, 0.0)
+    del t1396, t1398
+    t1400 = s_1_1_3_right_noflip_up * sine_1_1_3_right_noflip_up
+    c_1_1_4_right_noflip_up = t1399 - t1400
+    del t1399, t1400
+    t1401 = c_1_1_3_right_noflip_up * sine_1_1_3_right_noflip_up
     del c_1_1_3_right_noflip_up, sine_1_1_3_right_noflip_up
-    t1401 = s_1_1_3_right_noflip_up * cosine_1_1_3_right_noflip_up
+    t1402 = s_1_1_3_right_noflip_up * cosine_1_1_3_right_noflip_up
     del cosine_1_1_3_right_noflip_up, s_1_1_3_right_noflip_up
-    s_1_1_4_right_noflip_up = t1400 + t1401
-    del t1400, t1401
+    s_1_1_4_right_noflip_up = t1401 + t1402
+    del t1401, t1402
     axisx_1_1_4_right_noflip_up = T13 * c_1_1_4_right_noflip_up + T23 * s_1_1_4_right_noflip_up
-    t1402 = axisx_1_1_4_right_noflip_up * axisx_1_1_4_right_noflip_up
-    t1403 = T13 * s_1_1_4_right_noflip_up - T23 * c_1_1_4_right_noflip_up
-    most_1_1_4_right_noflip_up = np.sqrt(t1402 + t1403 * t1403)
-    t1404 = most_1_1_4_right_noflip_up <= 8.881784197001252e-16
+    t1403 = axisx_1_1_4_right_noflip_up * axisx_1_1_4_right_noflip_up
+    t1404 = T13 * s_1_1_4_right_noflip_up - T23 * c_1_1_4_right_noflip_up
+    most_1_1_4_right_noflip_up = np.sqrt(t1403 + t1404 * t1404)
+    t1405 = most_1_1_4_right_noflip_up <= _runtime.VANISHING
     qx_1_1_4_right_noflip_up = w_x * c_1_1_4_right_noflip_up + w_y * s_1_1_4_right_noflip_up
-    t1405 = qx_1_1_4_right_noflip_up * qx_1_1_4_right_noflip_up
-    r_1_1_4_right_noflip_up = np.sqrt(t24 + t1405)
-    del t1405
-    t1406 = r_1_1_4_right_noflip_up <= t25
-    t1407 = d5 + r_1_1_4_right_noflip_up
-    h_1_1_4_right_noflip_up = np.sqrt(t5 + t1402)
-    del t1402
-    t1408 = h_1_1_4_right_noflip_up == 0.0
-    t1409 = 1.0 / h_1_1_4_right_noflip_up
-    uc_1_1_4_right_noflip_up = _runtime.select(t1408, 0.0, T33 * t1409)
-    t1410 = qx_1_1_4_right_noflip_up - d5 * uc_1_1_4_right_noflip_up
-    t1411 = _runtime.select(t1408, 1.0, axisx_1_1_4_right_noflip_up * t1409)
-    del t1408, t1409
-    t1412 = t23 - d5 * t1411
-    t1413 = np.maximum(np.sqrt(t1410 * t1410 + t1412 * t1412), fold_1_1)
-    goal_1_1_4_right_noflip_up = np.minimum(full_1_1, t1413)
-    del t1413
-    t1414 = (t1407 - goal_1_1_4_right_noflip_up) * (t1407 + goal_1_1_4_right_noflip_up)
-    k_v_1_1_4_right_noflip_up = np.maximum(0.0, t1414)
+    t1406 = qx_1_1_4_right_noflip_up * qx_1_1_4_right_noflip_up
+    r_1_1_4_right_noflip_up = np.sqrt(t25 + t1406)
+    del t1406
+    t1407 = r_1_1_4_right_noflip_up <= t4
+    t1408 = d5 + r_1_1_4_right_noflip_up
+    h_1_1_4_right_noflip_up = np.sqrt(t5 + t1403)
+    del t1403
+    t1409 = h_1_1_4_right_noflip_up == 0.0
+    t1410 = 1.0 / h_1_1_4_right_noflip_up
+    uc_1_1_4_right_noflip_up = _runtime.select(t1409, 0.0, T33 * t1410)
+    t1411 = qx_1_1_4_right_noflip_up - d5 * uc_1_1_4_right_noflip_up
+    t1412 = _runtime.select(t1409, 1.0, axisx_1_1_4_right_noflip_up * t1410)
+    del t1409, t1410
+    t1413 = t24 - d5 * t1412
+    t1414 = np.maximum(np.sqrt(t1411 * t1411 + t1413 * t1413), fold_1_1)
+    goal_1_1_4_right_noflip_up = np.minimum(full_1_1, t1414)
     del t1414
-    t1415 = d5 - r_1_1_4_right_noflip_up
-    t1416 = (goal_1_1_4_right_noflip_up - t1415) * (goal_1_1_4_right_noflip_up + t1415)
-    del goal_1_1_4_right_noflip_up, t1415
-    d_v_1_1_4_right_noflip_up = np.maximum(0.0, t1416)
-    del t1416
+    t1415 = (t1408 - goal_1_1_4_right_noflip_up) * (t1408 + goal_1_1_4_right_noflip_up)
+    k_v_1_1_4_right_noflip_up = np.maximum(0.0, t1415)
+    del t1415
+    t1416 = d5 - r_1_1_4_right_noflip_up
+    t1417 = (goal_1_1_4_right_noflip_up - t1416) * (goal_1_1_4_right_noflip_up + t1416)
+    del goal_1_1_4_right_noflip_up, t1416
+    d_v_1_1_4_right_noflip_up = np.maximum(0.0, t1417)
+    del t1417
     n_v_1_1_4_right_noflip_up = k_v_1_1_4_right_noflip_up + d_v_1_1_4_right_noflip_up
-    t1417 = n_v_1_1_4_right_noflip_up <= size * t1407 * 8.881784197001252e-16
-    del t1407
-    t1418 = k_v_1_1_4_right_noflip_up - d_v_1_1_4_right_noflip_up
-    t1419 = 1.0 / n_v_1_1_4_right_noflip_up
+    t1418 = n_v_1_1_4_right_noflip_up <= t4 * t1408
+    del t1408
+    t1419 = k_v_1_1_4_right_noflip_up - d_v_1_1_4_right_noflip_up
+    t1420 = 1.0 / n_v_1_1_4_right_noflip_up
     del n_v_1_1_4_right_noflip_up
-    uc_v_1_1_4_right_noflip_up = _runtime.select(t1417, 1.0, t1418 * t1419)
-    del t1418
-    t1420 = qx_1_1_4_right_noflip_up * uc_v_1_1_4_right_noflip_up
-    t1421 = t23 * uc_1_1_4_right_noflip_up - qx_1_1_4_right_noflip_up * t1411
-    del t1411, uc_1_1_4_right_noflip_up
-    t1422 = k_v_1_1_4_right_noflip_up * d_v_1_1_4_right_noflip_up
+    uc_v_1_1_4_right_noflip_up = _runtime.select(t1418, 1.0, t1419 * t1420)
+    del t1419
+    t1421 = qx_1_1_4_right_noflip_up * uc_v_1_1_4_right_noflip_up
+    t1422 = t24 * uc_1_1_4_right_noflip_up - qx_1_1_4_right_noflip_up * t1412
+    del t1412, uc_1_1_4_right_noflip_up
+    t1423 = k_v_1_1_4_right_noflip_up * d_v_1_1_4_right_noflip_up
     del d_v_1_1_4_right_noflip_up, k_v_1_1_4_right_noflip_up
-    t1423 = t1419 * (2.0 * _runtime.sign(t1421) * np.sqrt(t1422))
-    del t1419, t1421, t1422
-    us_v_1_1_4_right_noflip_up = _runtime.select(t1417, 0.0, t1423)
-    del t1417, t1423
-    t1424 = t23 * us_v_1_1_4_right_noflip_up
-    t1425 = 1.0 / r_1_1_4_right_noflip_up
+    t1424 = t1420 * (2.0 * _runtime.sign(t1422) * np.sqrt(t1423))
+    del t1420, t1422, t1423
+    us_v_1_1_4_right_noflip_up = _runtime.select(t1418, 0.0, t1424)
+    del t1418, t1424
+    t1425 = t24 * us_v_1_1_4_right_noflip_up
+    t1426 = 1.0 / r_1_1_4_right_noflip_up
     del r_1_1_4_right_noflip_up
-    c_v_1_1_4_right_noflip_up = _runtime.select(t1406, 1.0, (t1420 + t1424) * t1425)
-    t1426 = T33 * c_v_1_1_4_right_noflip_up < 0.0
-    t1427 = qx_1_1_4_right_noflip_up * us_v_1_1_4_right_noflip_up
+    c_v_1_1_4_right_noflip_up = _runtime.select(t1407, 1.0, (t1421 + t1425) * t1426)
+    t1427 = T33 * c_v_1_1_4_right_noflip_up < 0.0
+    t1428 = qx_1_1_4_right_noflip_up * us_v_1_1_4_right_noflip_up
     del us_v_1_1_4_right_noflip_up
-    t1428 = t23 * uc_v_1_1_4_right_noflip_up
+    t1429 = t24 * uc_v_1_1_4_right_noflip_up
     del uc_v_1_1_4_right_noflip_up
-    wc_1_1_4_right_noflip_up = _runtime.select(t1406, 0.0, t1425 * (t1427 + t1428))
-    s_v_1_1_4_right_noflip_up = _runtime.select(t1406, 0.0, t1425 * (t1427 - t1428))
-    del t1427, t1428
-    to_c_1_1_4_right_noflip_up = _runtime.select(t1426, wc_1_1_4_right_noflip_up, -s_v_1_1_4_right_noflip_up)
+    wc_1_1_4_right_noflip_up = _runtime.select(t1407, 0.0, t1426 * (t1428 + t1429))
+    s_v_1_1_4_right_noflip_up = _runtime.select(t1407, 0.0, t1426 * (t1428 - t1429))
+    del t1428, t1429
+    to_c_1_1_4_right_noflip_up = _runtime.select(t1427, wc_1_1_4_right_noflip_up, -s_v_1_1_4_right_noflip_up)
     del s_v_1_1_4_right_noflip_up, wc_1_1_4_right_noflip_up
-    c_w_1_1_4_right_noflip_up = _runtime.select(t1406, 1.0, t1425 * (t1420 - t1424))
-    del t1406, t1420, t1424, t1425
-    to_s_1_1_4_right_noflip_up = _runtime.select(t1426, c_w_1_1_4_right_noflip_up, c_v_1_1_4_right_noflip_up)
-    del c_v_1_1_4_right_noflip_up, c_w_1_1_4_right_noflip_up, t1426
-    t1429 = T33 * to_c_1_1_4_right_noflip_up * _runtime.sign(to_s_1_1_4_right_noflip_up)
+    c_w_1_1_4_right_noflip_up = _runtime.select(t1407, 1.0, t1426 * (t1421 - t1425))
+    del t1407, t1421, t1425, t1426
+    to_s_1_1_4_right_noflip_up = _runtime.select(t1427, c_w_1_1_4_right_noflip_up, c_v_1_1_4_right_noflip_up)
+    del c_v_1_1_4_right_noflip_up, c_w_1_1_4_right_noflip_up, t1427
+    t1430 = T33 * to_c_1_1_4_right_noflip_up * _runtime.sign(to_s_1_1_4_right_noflip_up)
     del to_c_1_1_4_right_noflip_up
-    across_1_1_4_right_noflip_up = _runtime.select(t22, 0.0, t1429)
-    del t1429
-    t1430 = np.abs(to_s_1_1_4_right_noflip_up)
+    across_1_1_4_right_noflip_up = _runtime.select(t23, 0.0, t1430)
+    del t1430
+    t1431 = np.abs(to_s_1_1_4_right_noflip_up)
     del to_s_1_1_4_right_noflip_up
-    t1431 = most_1_1_4_right_noflip_up * t1430 <= np.abs(across_1_1_4_right_noflip_up)
-    t1432 = most_1_1_4_right_noflip_up * _runtime.sign(across_1_1_4_right_noflip_up)
-    t1433 = _runtime.select(t1431, t1432, across_1_1_4_right_noflip_up / t1430)
-    del t1430, t1431, t1432
-    wanted_1_1_4_right_noflip_up = _runtime.select(across_1_1_4_right_noflip_up == 0.0, 0.0, t1433)
-    del across_1_1_4_right_noflip_up, t1433
-    t1434 = axisx_1_1_4_right_noflip_up * wanted_1_1_4_right_noflip_up
-    t1435 = most_1_1_4_right_noflip_up - wanted_1_1_4_right_noflip_up
-    t1436 = most_1_1_4_right_noflip_up + wanted_1_1_4_right_noflip_up
-    rest_1_1_4_right_noflip_up = np.sqrt(np.maximum(0.0, t1435 * t1436)) * _runtime.sign(-t1403)
-    del t1435, t1436
-    t1437 = most_1_1_4_right_noflip_up * most_1_1_4_right_noflip_up
+    t1432 = most_1_1_4_right_noflip_up * t1431 <= np.abs(across_1_1_4_right_noflip_up)
+    t1433 = most_1_1_4_right_noflip_up * _runtime.sign(across_1_1_4_right_noflip_up)
+    t1434 = _runtime.select(t1432, t1433, across_1_1_4_right_noflip_up / t1431)
+    del t1431, t1432, t1433
+    wanted_1_1_4_right_noflip_up = _runtime.select(across_1_1_4_right_noflip_up == 0.0, 0.0, t1434)
+    del across_1_1_4_right_noflip_up, t1434
+    t1435 = axisx_1_1_4_right_noflip_up * wanted_1_1_4_right_noflip_up
+    t1436 = most_1_1_4_right_noflip_up - wanted_1_1_4_right_noflip_up
+    t1437 = most_1_1_4_right_noflip_up + wanted_1_1_4_right_noflip_up
+    rest_1_1_4_right_noflip_up = np.sqrt(np.maximum(0.0, t1436 * t1437)) * _runtime.sign(-t1404)
+    del t1436, t1437
+    t1438 = most_1_1_4_right_noflip_up * most_1_1_4_right_noflip_up
     del most_1_1_4_right_noflip_up
-    t1438 = 1.0 / t1437
-    del t1437
-    t1439 = (t1434 - t1403 * rest_1_1_4_right_noflip_up) * t1438
-    del t1434
-    by_c_1_1_4_right_noflip_up = _runtime.select(t1404, 1.0, t1439)
-    del t1439
-    t1440 = axisx_1_1_4_right_noflip_up * rest_1_1_4_right_noflip_up
+    t1439 = 1.0 / t1438
+    del t1438
+    t1440 = (t1435 - t1404 * rest_1_1_4_right_noflip_up) * t1439
+    del t1435
+    by_c_1_1_4_right_noflip_up = _runtime.select(t1405, 1.0, t1440)
+    del t1440
+    t1441 = axisx_1_1_4_right_noflip_up * rest_1_1_4_right_noflip_up
     del axisx_1_1_4_right_noflip_up, rest_1_1_4_right_noflip_up
-    t1441 = t1438 * (t1440 + t1403 * wanted_1_1_4_right_noflip_up)
-    del t1403, t1438, t1440, wanted_1_1_4_right_noflip_up
-    t1442 = _runtime.select(t1404, 0.0, t1441)
-    del t1404, t1441
-    t1443 = t1442 * t1442 / (1.0 + np.abs(by_c_1_1_4_right_noflip_up))
-    versine_1_1_4_right_noflip_up = _runtime.select(0.0 < by_c_1_1_4_right_noflip_up, t1443, 1.0 - by_c_1_1_4_right_noflip_up)
-    del t1443
-    cost_1_1_4_right_noflip_up = d4 * versine_1_1_4_right_noflip_up + root1 * np.abs(t1442)
+    t1442 = t1439 * (t1441 + t1404 * wanted_1_1_4_right_noflip_up)
+    del t1404, t1439, t1441, wanted_1_1_4_right_noflip_up
+    t1443 = _runtime.select(t1405, 0.0, t1442)
+    del t1405, t1442
+    t1444 = t1443 * t1443 / (1.0 + np.abs(by_c_1_1_4_right_noflip_up))
+    versine_1_1_4_right_noflip_up = _runtime.select(0.0 < by_c_1_1_4_right_noflip_up, t1444, 1.0 - by_c_1_1_4_right_noflip_up)
+    del t1444
+    cost_1_1_4_right_noflip_up = d4 * versine_1_1_4_right_noflip_up + root1 * np.abs(t1443)
     del versine_1_1_4_right_noflip_up
-    t1444 = cost_1_1_4_right_noflip_up <= whole_1_1
+    t1445 = cost_1_1_4_right_noflip_up <= whole_1_1
     del cost_1_1_4_right_noflip_up
-    cosine_1_1_4_right_noflip_up = _runtime.select(t1444, by_c_1_1_4_right_noflip_up, 1.0)
+    cosine_1_1_4_right_noflip_up = _runtime.select(t1445, by_c_1_1_4_right_noflip_up, 1.0)
     del by_c_1_1_4_right_noflip_up
-    t1445 = c_1_1_4_right_noflip_up * cosine_1_1_4_right_noflip_up
-    sine_1_1_4_right_noflip_up = _runtime.select(t1444, -t1442, 0.0)
-    del t1442, t1444
-    t1446 = s_1_1_4_right_noflip_up * sine_1_1_4_right_noflip_up
-    c_1_1_6_right_noflip_up = t1445 - t1446
-    del t1445, t1446
-    t1447 = c_1_1_4_right_noflip_up * sine_1_1_4_right_noflip_up
+    t1446 = c_1_1_4_right_noflip_up * cosine_1_1_4_right_noflip_up
+    sine_1_1_4_right_noflip_up = _runtime.select(t1445, -t1443, 0.0)
+    del t1443, t1445
+    t1447 = s_1_1_4_right_noflip_up * sine_1_1_4_right_noflip_up
+    c_1_1_6_right_noflip_up = t1446 - t1447
+    del t1446, t1447
+    t1448 = c_1_1_4_right_noflip_up * sine_1_1_4_right_noflip_up
     del sine_1_1_4_right_noflip_up
-    t1448 = s_1_1_4_right_noflip_up * cosine_1_1_4_right_noflip_up
+    t1449 = s_1_1_4_right_noflip_up * cosine_1_1_4_right_noflip_up
     del cosine_1_1_4_right_noflip_up
-    s_1_1_6_right_noflip_up = t1447 + t1448
-    del t1447, t1448
+    s_1_1_6_right_noflip_up = t1448 + t1449
+    del t1448, t1449
     axisx_1_1_6_right_noflip_up = T13 * c_1_1_6_right_noflip_up + T23 * s_1_1_6_right_noflip_up
-    t1449 = axisx_1_1_6_right_noflip_up * axisx_1_1_6_right_noflip_up
-    h_1_1_6_right_noflip_up = np.sqrt(t5 + t1449)
-    del t1449
-    t1450 = h_1_1_6_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_6_right_noflip_up = w_x * c_1_1_6_right_noflip_up + w_y * s_1_1_6_right_noflip_up
-    t1451 = h_1_1_6_right_noflip_up == 0.0
-    t1452 = 1.0 / h_1_1_6_right_noflip_up
-    uc_1_1_6_right_noflip_up = _runtime.select(t1451, 0.0, T33 * t1452)
-    t1453 = qx_1_1_6_right_noflip_up - d5 * uc_1_1_6_right_noflip_up
-    x_1_1_6_right_noflip_up = _runtime.select(t1450, qx_1_1_6_right_noflip_up, t1453)
-    del t1453
-    dqx_1_1_6_right_noflip_up = w_y * c_1_1_6_right_noflip_up - w_x * s_1_1_6_right_noflip_up
-    t1454 = T13 * s_1_1_6_right_noflip_up - T23 * c_1_1_6_right_noflip_up
-    t1455 = h_1_1_6_right_noflip_up * h_1_1_6_right_noflip_up
-    del h_1_1_6_right_noflip_up
-    spin_1_1_6_right_noflip_up = _runtime.select(t1450, 0.0, T33 * t1454 / t1455)
-    del t1454, t1455
-    rate_1_1_6_right_noflip_up = d5 * spin_1_1_6_right_noflip_up
-    t1456 = _runtime.select(t1451, 1.0, axisx_1_1_6_right_noflip_up * t1452)
-    del axisx_1_1_6_right_noflip_up, t1451, t1452
-    t1457 = dqx_1_1_6_right_noflip_up - rate_1_1_6_right_noflip_up * t1456
-    dx_1_1_6_right_noflip_up = _runtime.select(t1450, dqx_1_1_6_right_noflip_up, t1457)
-    del t1457
-    t1458 = x_1_1_6_right_noflip_up * dx_1_1_6_right_noflip_up
-    del dx_1_1_6_right_noflip_up
-    t1459 = _runtime.select(t1450, t23, t23 - d5 * t1456)
-    t1460 = rate_1_1_6_right_noflip_up * uc_1_1_6_right_noflip_up
-    slope_1_1_6_right_noflip_up = t1458 + t1459 * _runtime.select(t1450, 0.0, t1460)
-    del t1458, t1460
-    t1461 = slope_1_1_6_right_noflip_up * slope_1_1_6_right_noflip_up
-    straight_1_1_6_right_noflip_up = dqx_1_1_6_right_noflip_up * dqx_1_1_6_right_noflip_up
-    t1462 = qx_1_1_6_right_noflip_up * uc_1_1_6_right_noflip_up
-    del qx_1_1_6_right_noflip_up, uc_1_1_6_right_noflip_up
-    t1463 = spin_1_1_6_right_noflip_up * (t1462 + t23 * t1456)
-    del spin_1_1_6_right_noflip_up, t1462
-    t1464 = 2.0 * dqx_1_1_6_right_noflip_up * t1456 - t1463
-    del dqx_1_1_6_right_noflip_up, t1456, t1463
-    t1465 = straight_1_1_6_right_noflip_up - rate_1_1_6_right_noflip_up * t1464
-    del rate_1_1_6_right_noflip_up, t1464
-    bends_1_1_6_right_noflip_up = _runtime.select(t1450, straight_1_1_6_right_noflip_up, t1465)
-    del straight_1_1_6_right_noflip_up, t1465
-    t1466 = x_1_1_6_right_noflip_up * x_1_1_6_right_noflip_up
-    del x_1_1_6_right_noflip_up
-    square_1_1_6_right_noflip_up = t1466 + t1459 * t1459
-    del t1459, t1466
-    t1467 = _runtime.select(t1450, t98, fold_1_1) - whole_1_1
-    t1468 = np.maximum(0.0, t1467)
-    del t1467
-    t1469 = whole_1_1 + _runtime.select(t1450, t3, full_1_1)
+    t1450 = axisx_1_1_6_right_noflip_up * axisx_1_1_6_right_noflip_up
+    h_1_1_6_right_noflip_up = np.sqrt(t5 + t1450)
     del t1450
-    t1470 = np.minimum(t1469 * t1469, square_1_1_6_right_noflip_up)
-    del t1469
-    miss_1_1_6_right_noflip_up = square_1_1_6_right_noflip_up - np.maximum(t1468 * t1468, t1470)
-    del square_1_1_6_right_noflip_up, t1468, t1470
-    t1471 = bends_1_1_6_right_noflip_up * miss_1_1_6_right_noflip_up
-    inner_1_1_6_right_noflip_up = t1461 - t1471
-    del t1461, t1471
-    t1472 = inner_1_1_6_right_noflip_up < 0.0
-    t1473 = np.sqrt(np.maximum(0.0, inner_1_1_6_right_noflip_up))
+    t1451 = h_1_1_6_right_noflip_up <= t89
+    qx_1_1_6_right_noflip_up = w_x * c_1_1_6_right_noflip_up + w_y * s_1_1_6_right_noflip_up
+    t1452 = h_1_1_6_right_noflip_up == 0.0
+    t1453 = 1.0 / h_1_1_6_right_noflip_up
+    uc_1_1_6_right_noflip_up = _runtime.select(t1452, 0.0, T33 * t1453)
+    t1454 = qx_1_1_6_right_noflip_up - d5 * uc_1_1_6_right_noflip_up
+    x_1_1_6_right_noflip_up = _runtime.select(t1451, qx_1_1_6_right_noflip_up, t1454)
+    del t1454
+    dqx_1_1_6_right_noflip_up = w_y * c_1_1_6_right_noflip_up - w_x * s_1_1_6_right_noflip_up
+    t1455 = T13 * s_1_1_6_right_noflip_up - T23 * c_1_1_6_right_noflip_up
+    t1456 = h_1_1_6_right_noflip_up * h_1_1_6_right_noflip_up
+    del h_1_1_6_right_noflip_up
+    spin_1_1_6_right_noflip_up = _runtime.select(t1451, 0.0, T33 * t1455 / t1456)
+    del t1455, t1456
+    rate_1_1_6_right_noflip_up = d5 * spin_1_1_6_right_noflip_up
+    t1457 = _runtime.select(t1452, 1.0, axisx_1_1_6_right_noflip_up * t1453)
+    del axisx_1_1_6_right_noflip_up, t1452, t1453
+    t1458 = dqx_1_1_6_right_noflip_up - rate_1_1_6_right_noflip_up * t1457
+    dx_1_1_6_right_noflip_up = _runtime.select(t1451, dqx_1_1_6_right_noflip_up, t1458)
+    del t1458
+    t1459 = x_1_1_6_right_noflip_up * dx_1_1_6_right_noflip_up
+    del dx_1_1_6_right_noflip_up
+    t1460 = _runtime.select(t1451, t24, t24 - d5 * t1457)
+    t1461 = rate_1_1_6_right_noflip_up * uc_1_1_6_right_noflip_up
+    slope_1_1_6_right_noflip_up = t1459 + t1460 * _runtime.select(t1451, 0.0, t1461)
+    del t1459, t1461
+    t1462 = slope_1_1_6_right_noflip_up * slope_1_1_6_right_noflip_up
+    straight_1_1_6_right_noflip_up = dqx_1_1_6_right_noflip_up * dqx_1_1_6_right_noflip_up
+    t1463 = qx_1_1_6_right_noflip_up * uc_1_1_6_right_noflip_up
+    del qx_1_1_6_right_noflip_up, uc_1_1_6_right_noflip_up
+    t1464 = spin_1_1_6_right_noflip_up * (t1463 + t24 * t1457)
+    del spin_1_1_6_right_noflip_up, t1463
+    t1465 = 2.0 * dqx_1_1_6_right_noflip_up * t1457 - t1464
+    del dqx_1_1_6_right_noflip_up, t1457, t1464
+    t1466 = straight_1_1_6_right_noflip_up - rate_1_1_6_right_noflip_up * t1465
+    del rate_1_1_6_right_noflip_up, t1465
+    bends_1_1_6_right_noflip_up = _runtime.select(t1451, straight_1_1_6_right_noflip_up, t1466)
+    del straight_1_1_6_right_noflip_up, t1466
+    t1467 = x_1_1_6_right_noflip_up * x_1_1_6_right_noflip_up
+    del x_1_1_6_right_noflip_up
+    square_1_1_6_right_noflip_up = t1467 + t1460 * t1460
+    del t1460, t1467
+    t1468 = _runtime.select(t1451, t99, fold_1_1) - whole_1_1
+    t1469 = np.maximum(0.0, t1468)
+    del t1468
+    t1470 = whole_1_1 + _runtime.select(t1451, t3, full_1_1)
+    del t1451
+    t1471 = np.minimum(t1470 * t1470, square_1_1_6_right_noflip_up)
+    del t1470
+    miss_1_1_6_right_noflip_up = square_1_1_6_right_noflip_up - np.maximum(t1469 * t1469, t1471)
+    del square_1_1_6_right_noflip_up, t1469, t1471
+    t1472 = bends_1_1_6_right_noflip_up * miss_1_1_6_right_noflip_up
+    inner_1_1_6_right_noflip_up = t1462 - t1472
+    del t1462, t1472
+    t1473 = inner_1_1_6_right_noflip_up < 0.0
+    t1474 = np.sqrt(np.maximum(0.0, inner_1_1_6_right_noflip_up))
     del inner_1_1_6_right_noflip_up
-    t1474 = _runtime.sign(slope_1_1_6_right_noflip_up) * t1473
-    del t1473
-    below_1_1_6_right_noflip_up = _runtime.select(t1472, 2.0 * bends_1_1_6_right_noflip_up, 2.0 * (slope_1_1_6_right_noflip_up + t1474))
-    del bends_1_1_6_right_noflip_up, t1474
-    above_1_1_6_right_noflip_up = _runtime.select(t1472, slope_1_1_6_right_noflip_up, miss_1_1_6_right_noflip_up)
-    del miss_1_1_6_right_noflip_up, slope_1_1_6_right_noflip_up, t1472
-    t1475 = np.abs(below_1_1_6_right_noflip_up) <= np.abs(above_1_1_6_right_noflip_up)
-    t1476 = above_1_1_6_right_noflip_up / below_1_1_6_right_noflip_up
+    t1475 = _runtime.sign(slope_1_1_6_right_noflip_up) * t1474
+    del t1474
+    below_1_1_6_right_noflip_up = _runtime.select(t1473, 2.0 * bends_1_1_6_right_noflip_up, 2.0 * (slope_1_1_6_right_noflip_up + t1475))
+    del bends_1_1_6_right_noflip_up, t1475
+    above_1_1_6_right_noflip_up = _runtime.select(t1473, slope_1_1_6_right_noflip_up, miss_1_1_6_right_noflip_up)
+    del miss_1_1_6_right_noflip_up, slope_1_1_6_right_noflip_up, t1473
+    t1476 = np.abs(below_1_1_6_right_noflip_up) <= np.abs(above_1_1_6_right_noflip_up)
+    t1477 = above_1_1_6_right_noflip_up / below_1_1_6_right_noflip_up
     del above_1_1_6_right_noflip_up, below_1_1_6_right_noflip_up
-    t1477 = _runtime.select(t1475, 0.0, t1476)
-    del t1475, t1476
-    t1478 = t1477 * t1477
-    t1479 = 1.0 / (1.0 + t1478)
-    by_c_1_1_6_right_noflip_up = (1.0 - t1478) * t1479
-    del t1478
-    t1480 = t1479 * (2.0 * t1477)
-    del t1477, t1479
-    t1481 = t1480 * t1480 / (1.0 + np.abs(by_c_1_1_6_right_noflip_up))
-    versine_1_1_6_right_noflip_up = _runtime.select(0.0 < by_c_1_1_6_right_noflip_up, t1481, 1.0 - by_c_1_1_6_right_noflip_up)
-    del t1481
-    cost_1_1_6_right_noflip_up = d4 * versine_1_1_6_right_noflip_up + root1 * np.abs(t1480)
+    t1478 = _runtime.select(t1476, 0.0, t1477)
+    del t1476, t1477
+    t1479 = t1478 * t1478
+    t1480 = 1.0 / (1.0 + t1479)
+    by_c_1_1_6_right_noflip_up = (1.0 - t1479) * t1480
+    del t1479
+    t1481 = t1480 * (2.0 * t1478)
+    del t1478, t1480
+    t1482 = t1481 * t1481 / (1.0 + np.abs(by_c_1_1_6_right_noflip_up))
+    versine_1_1_6_right_noflip_up = _runtime.select(0.0 < by_c_1_1_6_right_noflip_up, t1482, 1.0 - by_c_1_1_6_right_noflip_up)
+    del t1482
+    cost_1_1_6_right_noflip_up = d4 * versine_1_1_6_right_noflip_up + root1 * np.abs(t1481)
     del versine_1_1_6_right_noflip_up
-    t1482 = cost_1_1_6_right_noflip_up <= whole_1_1
+    t1483 = cost_1_1_6_right_noflip_up <= whole_1_1
     del cost_1_1_6_right_noflip_up
-    cosine_1_1_6_right_noflip_up = _runtime.select(t1482, by_c_1_1_6_right_noflip_up, 1.0)
+    cosine_1_1_6_right_noflip_up = _runtime.select(t1483, by_c_1_1_6_right_noflip_up, 1.0)
     del by_c_1_1_6_right_noflip_up
-    t1483 = c_1_1_6_right_noflip_up * cosine_1_1_6_right_noflip_up
-    sine_1_1_6_right_noflip_up = _runtime.select(t1482, -t1480, 0.0)
-    del t1480, t1482
-    t1484 = s_1_1_6_right_noflip_up * sine_1_1_6_right_noflip_up
-    c_1_1_7_right_noflip_up = t1483 - t1484
-    del t1483, t1484
-    t1485 = c_1_1_6_right_noflip_up * sine_1_1_6_right_noflip_up
+    t1484 = c_1_1_6_right_noflip_up * cosine_1_1_6_right_noflip_up
+    sine_1_1_6_right_noflip_up = _runtime.select(t1483, -t1481, 0.0)
+    del t1481, t1483
+    t1485 = s_1_1_6_right_noflip_up * sine_1_1_6_right_noflip_up
+    c_1_1_7_right_noflip_up = t1484 - t1485
+    del t1484, t1485
+    t1486 = c_1_1_6_right_noflip_up * sine_1_1_6_right_noflip_up
     del c_1_1_6_right_noflip_up, sine_1_1_6_right_noflip_up
-    t1486 = s_1_1_6_right_noflip_up * cosine_1_1_6_right_noflip_up
+    t1487 = s_1_1_6_right_noflip_up * cosine_1_1_6_right_noflip_up
     del cosine_1_1_6_right_noflip_up, s_1_1_6_right_noflip_up
-    s_1_1_7_right_noflip_up = t1485 + t1486
-    del t1485, t1486
+    s_1_1_7_right_noflip_up = t1486 + t1487
+    del t1486, t1487
     axisx_1_1_7_right_noflip_up = T13 * c_1_1_7_right_noflip_up + T23 * s_1_1_7_right_noflip_up
-    t1487 = axisx_1_1_7_right_noflip_up * axisx_1_1_7_right_noflip_up
-    h_1_1_7_right_noflip_up = np.sqrt(t5 + t1487)
-    del t1487
-    t1488 = h_1_1_7_right_noflip_up <= 1.4210854715202004e-14
-    qx_1_1_7_right_noflip_up = w_x * c_1_1_7_right_noflip_up + w_y * s_1_1_7_right_noflip_up
-    t1489 = h_1_1_7_right_noflip_up == 0.0
-    t1490 = 1.0 / h_1_1_7_right_noflip_up
-    uc_1_1_7_right_noflip_up = _runtime.select(t1489, 0.0, T33 * t1490)
-    t1491 = qx_1_1_7_right_noflip_up - d5 * uc_1_1_7_right_noflip_up
-    x_1_1_7_right_noflip_up = _runtime.select(t1488, qx_1_1_7_right_noflip_up, t1491)
-    del t1491
-    dqx_1_1_7_right_noflip_up = w_y * c_1_1_7_right_noflip_up - w_x * s_1_1_7_right_noflip_up
-    t1492 = T13 * s_1_1_7_right_noflip_up - T23 * c_1_1_7_right_noflip_up
-    t1493 = h_1_1_7_right_noflip_up * h_1_1_7_right_noflip_up
-    del h_1_1_7_right_noflip_up
-    spin_1_1_7_right_noflip_up = _runtime.select(t1488, 0.0, T33 * t1492 / t1493)
-    del t1492, t1493
-    rate_1_1_7_right_noflip_up = d5 * spin_1_1_7_right_noflip_up
-    t1494 = _runtime.select(t1489, 1.0, axisx_1_1_7_right_noflip_up * t1490)
-    del axisx_1_1_7_right_noflip_up, t1489, t1490
-    t1495 = dqx_1_1_7_right_noflip_up - rate_1_1_7_right_noflip_up * t1494
-    dx_1_1_7_right_noflip_up = _runtime.select(t1488, dqx_1_1_7_right_noflip_up, t1495)
-    del t1495
-    t1496 = x_1_1_7_right_noflip_up * dx_1_1_7_right_noflip_up
-    del dx_1_1_7_right_noflip_up
-    t1497 = _runtime.select(t1488, t23, t23 - d5 * t1494)
-    t1498 = rate_1_1_7_right_noflip_up * uc_1_1_7_right_noflip_up
-    slope_1_1_7_right_noflip_up = t1496 + t1497 * _runtime.select(t1488, 0.0, t1498)
-    del t1496, t1498
-    t1499 = slope_1_1_7_right_noflip_up * slope_1_1_7_right_noflip_up
-    straight_1_1_7_right_noflip_up = dqx_1_1_7_right_noflip_up * dqx_1_1_7_right_noflip_up
-    t1500 = qx_1_1_7_right_noflip_up * uc_1_1_7_right_noflip_up
-    del qx_1_1_7_right_noflip_up, uc_1_1_7_right_noflip_up
-    t1501 = spin_1_1_7_right_noflip_up * (t1500 + t23 * t1494)
-    del spin_1_1_7_right_noflip_up, t1500
-    t1502 = 2.0 * dqx_1_1_7_right_noflip_up * t1494 - t1501
-    del dqx_1_1_7_right_noflip_up, t1494, t1501
-    t1503 = straight_1_1_7_right_noflip_up - rate_1_1_7_right_noflip_up * t1502
-    del rate_1_1_7_right_noflip_up, t1502
-    bends_1_1_7_right_noflip_up = _runtime.select(t1488, straight_1_1_7_right_noflip_up, t1503)
-    del straight_1_1_7_right_noflip_up, t1503
-    t1504 = x_1_1_7_right_noflip_up * x_1_1_7_right_noflip_up
-    del x_1_1_7_right_noflip_up
-    square_1_1_7_right_noflip_up = t1504 + t1497 * t1497
-    del t1497, t1504
-    t1505 = _runtime.select(t1488, t98, fold_1_1) - whole_1_1
-    t1506 = np.maximum(0.0, t1505)
-    del t1505
-    t1507 = whole_1_1 + _runtime.select(t1488, t3, full_1_1)
+    t1488 = axisx_1_1_7_right_noflip_up * axisx_1_1_7_right_noflip_up
+    h_1_1_7_right_noflip_up = np.sqrt(t5 + t1488)
     del t1488
-    t1508 = np.minimum(t1507 * t1507, square_1_1_7_right_noflip_up)
-    del t1507
-    miss_1_1_7_right_noflip_up = square_1_1_7_right_noflip_up - np.maximum(t1506 * t1506, t1508)
-    del square_1_1_7_right_noflip_up, t1506, t1508
-    t1509 = bends_1_1_7_right_noflip_up * miss_1_1_7_right_noflip_up
-    inner_1_1_7_right_noflip_up = t1499 - t1509
-    del t1499, t1509
-    t1510 = inner_1_1_7_right_noflip_up < 0.0
-    t1511 = np.sqrt(np.maximum(0.0, inner_1_1_7_right_noflip_up))
+    t1489 = h_1_1_7_right_noflip_up <= t89
+    qx_1_1_7_right_noflip_up = w_x * c_1_1_7_right_noflip_up + w_y * s_1_1_7_right_noflip_up
+    t1490 = h_1_1_7_right_noflip_up == 0.0
+    t1491 = 1.0 / h_1_1_7_right_noflip_up
+    uc_1_1_7_right_noflip_up = _runtime.select(t1490, 0.0, T33 * t1491)
+    t1492 = qx_1_1_7_right_noflip_up - d5 * uc_1_1_7_right_noflip_up
+    x_1_1_7_right_noflip_up = _runtime.select(t1489, qx_1_1_7_right_noflip_up, t1492)
+    del t1492
+    dqx_1_1_7_right_noflip_up = w_y * c_1_1_7_right_noflip_up - w_x * s_1_1_7_right_noflip_up
+    t1493 = T13 * s_1_1_7_right_noflip_up - T23 * c_1_1_7_right_noflip_up
+    t1494 = h_1_1_7_right_noflip_up * h_1_1_7_right_noflip_up
+    del h_1_1_7_right_noflip_up
+    spin_1_1_7_right_noflip_up = _runtime.select(t1489, 0.0, T33 * t1493 / t1494)
+    del t1493, t1494
+    rate_1_1_7_right_noflip_up = d5 * spin_1_1_7_right_noflip_up
+    t1495 = _runtime.select(t1490, 1.0, axisx_1_1_7_right_noflip_up * t1491)
+    del axisx_1_1_7_right_noflip_up, t1490, t1491
+    t1496 = dqx_1_1_7_right_noflip_up - rate_1_1_7_right_noflip_up * t1495
+    dx_1_1_7_right_noflip_up = _runtime.select(t1489, dqx_1_1_7_right_noflip_up, t1496)
+    del t1496
+    t1497 = x_1_1_7_right_noflip_up * dx_1_1_7_right_noflip_up
+    del dx_1_1_7_right_noflip_up
+    t1498 = _runtime.select(t1489, t24, t24 - d5 * t1495)
+    t1499 = rate_1_1_7_right_noflip_up * uc_1_1_7_right_noflip_up
+    slope_1_1_7_right_noflip_up = t1497 + t1498 * _runtime.select(t1489, 0.0, t1499)
+    del t1497, t1499
+    t1500 = slope_1_1_7_right_noflip_up * slope_1_1_7_right_noflip_up
+    straight_1_1_7_right_noflip_up = dqx_1_1_7_right_noflip_up * dqx_1_1_7_right_noflip_up
+    t1501 = qx_1_1_7_right_noflip_up * uc_1_1_7_right_noflip_up
+    del qx_1_1_7_right_noflip_up, uc_1_1_7_right_noflip_up
+    t1502 = spin_1_1_7_right_noflip_up * (t1501 + t24 * t1495)
+    del spin_1_1_7_right_noflip_up, t1501
+    t1503 = 2.0 * dqx_1_1_7_right_noflip_up * t1495 - t1502
+    del dqx_1_1_7_right_noflip_up, t1495, t1502
+    t1504 = straight_1_1_7_right_noflip_up - rate_1_1_7_right_noflip_up * t1503
+    del rate_1_1_7_right_noflip_up, t1503
+    bends_1_1_7_right_noflip_up = _runtime.select(t1489, straight_1_1_7_right_noflip_up, t1504)
+    del straight_1_1_7_right_noflip_up, t1504
+    t1505 = x_1_1_7_right_noflip_up * x_1_1_7_right_noflip_up
+    del x_1_1_7_right_noflip_up
+    square_1_1_7_right_noflip_up = t1505 + t1498 * t1498
+    del t1498, t1505
+    t1506 = _runtime.select(t1489, t99, fold_1_1) - whole_1_1
+    t1507 = np.maximum(0.0, t1506)
+    del t1506
+    t1508 = whole_1_1 + _runtime.select(t1489, t3, full_1_1)
+    del t1489
+    t1509 = np.minimum(t1508 * t1508, square_1_1_7_right_noflip_up)
+    del t1508
+    miss_1_1_7_right_noflip_up = square_1_1_7_right_noflip_up - np.maximum(t1507 * t1507, t1509)
+    del square_1_1_7_right_noflip_up, t1507, t1509
+    t1510 = bends_1_1_7_right_noflip_up * miss_1_1_7_right_noflip_up
+    inner_1_1_7_right_noflip_up = t1500 - t1510
+    del t1500, t1510
+    t1511 = inner_1_1_7_right_noflip_up < 0.0
+    t1512 = np.sqrt(np.maximum(0.0, inner_1_1_7_right_noflip_up))
     del inner_1_1_7_right_noflip_up
-    t1512 = _runtime.sign(slope_1_1_7_right_noflip_up) * t1511
-    del t1511
-    below_1_1_7_right_noflip_up = _runtime.select(t1510, 2.0 * bends_1_1_7_right_noflip_up, 2.0 * (slope_1_1_7_right_noflip_up + t1512))
-    del bends_1_1_7_right_noflip_up, t1512
-    above_1_1_7_right_noflip_up = _runtime.select(t1510, slope_1_1_7_right_noflip_up, miss_1_1_7_right_noflip_up)
-    del miss_1_1_7_right_noflip_up, slope_1_1_7_right_noflip_up, t1510
-    t1513 = np.abs(below_1_1_7_right_noflip_up) <= np.abs(above_1_1_7_right_noflip_up)
-    t1514 = above_1_1_7_right_noflip_up / below_1_1_7_right_noflip_up
+    t1513 = _runtime.sign(slope_1_1_7_right_noflip_up) * t1512
+    del t1512
+    below_1_1_7_right_noflip_up = _runtime.select(t1511, 2.0 * bends_1_1_7_right_noflip_up, 2.0 * (slope_1_1_7_right_noflip_up + t1513))
+    del bends_1_1_7_right_noflip_up, t1513
+    above_1_1_7_right_noflip_up = _runtime.select(t1511, slope_1_1_7_right_noflip_up, miss_1_1_7_right_noflip_up)
+    del miss_1_1_7_right_noflip_up, slope_1_1_7_right_noflip_up, t1511
+    t1514 = np.abs(below_1_1_7_right_noflip_up) <= np.abs(above_1_1_7_right_noflip_up)
+    t1515 = above_1_1_7_right_noflip_up / below_1_1_7_right_noflip_up
     del above_1_1_7_right_noflip_up, below_1_1_7_right_noflip_up
-    t1515 = _runtime.select(t1513, 0.0, t1514)
-    del t1513, t1514
-    t1516 = t1515 * t1515
-    t1517 = 1.0 / (1.0 + t1516)
-    by_c_1_1_7_right_noflip_up = (1.0 - t1516) * t1517
-    del t1516
-    t1518 = t1517 * (2.0 * t1515)
-    del t1515, t1517
-    t1519 = t1518 * t1518 / (1.0 + np.abs(by_c_1_1_7_right_noflip_up))
-    versine_1_1_7_right_noflip_up = _runtime.select(0.0 < by_c_1_1_7_right_noflip_up, t1519, 1.0 - by_c_1_1_7_right_noflip_up)
-    del t1519
-    cost_1_1_7_right_noflip_up = d4 * versine_1_1_7_right_noflip_up + root1 * np.abs(t1518)
+    t1516 = _runtime.select(t1514, 0.0, t1515)
+    del t1514, t1515
+    t1517 = t1516 * t1516
+    t1518 = 1.0 / (1.0 + t1517)
+    by_c_1_1_7_right_noflip_up = (1.0 - t1517) * t1518
+    del t1517
+    t1519 = t1518 * (2.0 * t1516)
+    del t1516, t1518
+    t1520 = t1519 * t1519 / (1.0 + np.abs(by_c_1_1_7_right_noflip_up))
+    versine_1_1_7_right_noflip_up = _runtime.select(0.0 < by_c_1_1_7_right_noflip_up, t1520, 1.0 - by_c_1_1_7_right_noflip_up)
+    del t1520
+    cost_1_1_7_right_noflip_up = d4 * versine_1_1_7_right_noflip_up + root1 * np.abs(t1519)
     del versine_1_1_7_right_noflip_up
-    t1520 = cost_1_1_7_right_noflip_up <= whole_1_1
+    t1521 = cost_1_1_7_right_noflip_up <= whole_1_1
     del cost_1_1_7_right_noflip_up
-    cosine_1_1_7_right_noflip_up = _runtime.select(t1520, by_c_1_1_7_right_noflip_up, 1.0)
+    cosine_1_1_7_right_noflip_up = _runtime.select(t1521, by_c_1_1_7_right_noflip_up, 1.0)
     del by_c_1_1_7_right_noflip_up
-    t1521 = c_1_1_7_right_noflip_up * cosine_1_1_7_right_noflip_up
-    sine_1_1_7_right_noflip_up = _runtime.select(t1520, -t1518, 0.0)
-    del t1518, t1520
-    t1522 = s_1_1_7_right_noflip_up * sine_1_1_7_right_noflip_up
-    c_1_1_8_right_noflip_up = t1521 - t1522
-    del t1521, t1522
-    t1523 = c_1_1_7_right_noflip_up * sine_1_1_7_right_noflip_up
+    t1522 = c_1_1_7_right_noflip_up * cosine_1_1_7_right_noflip_up
+    sine_1_1_7_right_noflip_up = _runtime.select(t1521, -t1519, 0.0)
+    del t1519, t1521
+    t1523 = s_1_1_7_right_noflip_up * sine_1_1_7_right_noflip_up
+    c_1_1_8_right_noflip_up = t1522 - t1523
+    del t1522, t1523
+    t1524 = c_1_1_7_right_noflip_up * sine_1_1_7_right_noflip_up
     del c_1_1_7_right_noflip_up, sine_1_1_7_right_noflip_up
-    t1524 = s_1_1_7_right_noflip_up * cosine_1_1_7_right_noflip_up
+    t1525 = s_1_1_7_right_noflip_up * cosine_1_1_7_right_noflip_up
     del cosine_1_1_7_right_noflip_up, s_1_1_7_right_noflip_up
-    s_1_1_8_right_noflip_up = t1523 + t1524
-    del t1523, t1524
+    s_1_1_8_right_noflip_up = t1524 + t1525
+    del t1524, t1525
     axisx_1_1_8_right_noflip_up = T13 * c_1_1_8_right_noflip_up + T23 * s_1_1_8_right_noflip_up
-    t1525 = axisx_1_1_8_right_noflip_up * axisx_1_1_8_right_noflip_up
-    h_1_1_8_right_noflip_up = np.sqrt(t5 + t1525)
-    del t1525
-    t1526 = h_1_1_8_right_noflip_up <= 1.4210854715202004e-14
+    t1526 = axisx_1_1_8_right_noflip_up * axisx_1_1_8_right_noflip_up
+    h_1_1_8_right_noflip_up = np.sqrt(t5 + t1526)
+    del t1526
+    t1527 = h_1_1_8_right_noflip_up <= t89
     qx_1_1_8_right_noflip_up = w_x * c_1_1_8_right_noflip_up + w_y * s_1_1_8_right_noflip_up
-    t1527 = h_1_1_8_right_noflip_up == 0.0
-    t1528 = 1.0 / h_1_1_8_right_noflip_up
+    t1528 = h_1_1_8_right_noflip_up == 0.0
+    t1529 = 1.0 / h_1_1_8_right_noflip_up
     del h_1_1_8_right_noflip_up
-    t1529 = d5 * _runtime.select(t1527, 0.0, T33 * t1528)
-    x_1_1_8_right_noflip_up = _runtime.select(t1526, qx_1_1_8_right_noflip_up, qx_1_1_8_right_noflip_up - t1529)
-    del qx_1_1_8_right_noflip_up, t1529
-    t1530 = x_1_1_8_right_noflip_up * x_1_1_8_right_noflip_up
+    t1530 = d5 * _runtime.select(t1528, 0.0, T33 * t1529)
+    x_1_1_8_right_noflip_up = _runtime.select(t1527, qx_1_1_8_right_noflip_up, qx_1_1_8_right_noflip_up - t1530)
+    del qx_1_1_8_right_noflip_up, t1530
+    t1531 = x_1_1_8_right_noflip_up * x_1_1_8_right_noflip_up
     del x_1_1_8_right_noflip_up
-    t1531 = _runtime.select(t1527, 1.0, axisx_1_1_8_right_noflip_up * t1528)
-    del axisx_1_1_8_right_noflip_up, t1527, t1528
-    t1532 = _runtime.select(t1526, t23, t23 - d5 * t1531)
-    del t1531
-    t1533 = np.sqrt(t1530 + t1532 * t1532)
-    del t1530, t1532
-    t1534 = np.maximum(0.0, t1533 - _runtime.select(t1526, t3, full_1_1))
-    t1535 = _runtime.select(t1526, t98, fold_1_1) - t1533
-    del t1526, t1533
-    t1536 = h_1_1_4_right_noflip_up <= 1.4210854715202004e-14
+    t1532 = _runtime.select(t1528, 1.0, axisx_1_1_8_right_noflip_up * t1529)
+    del axisx_1_1_8_right_noflip_up, t1528, t1529
+    t1533 = _runtime.select(t1527, t24, t24 - d5 * t1532)
+    del t1532
+    t1534 = np.sqrt(t1531 + t1533 * t1533)
+    del t1531, t1533
+    t1535 = np.maximum(0.0, t1534 - _runtime.select(t1527, t3, full_1_1))
+    t1536 = _runtime.select(t1527, t99, fold_1_1) - t1534
+    del t1527, t1534
+    t1537 = h_1_1_4_right_noflip_up <= t89
     del h_1_1_4_right_noflip_up
-    x_1_1_4_right_noflip_up = _runtime.select(t1536, qx_1_1_4_right_noflip_up, t1410)
-    del qx_1_1_4_right_noflip_up, t1410
-    t1537 = x_1_1_4_right_noflip_up * x_1_1_4_right_noflip_up
+    x_1_1_4_right_noflip_up = _runtime.select(t1537, qx_1_1_4_right_noflip_up, t1411)
+    del qx_1_1_4_right_noflip_up, t1411
+    t1538 = x_1_1_4_right_noflip_up * x_1_1_4_right_noflip_up
     del x_1_1_4_right_noflip_up
-    t1538 = _runtime.select(t1536, t23, t1412)
-    del t1412
-    t1539 = np.sqrt(t1537 + t1538 * t1538)
-    del t1537, t1538
-    t1540 = np.maximum(0.0, t1539 - _runtime.select(t1536, t3, full_1_1))
-    t1541 = _runtime.select(t1536, t98, fold_1_1) - t1539
-    del t1536, t1539
-    t1542 = np.maximum(t1534, t1535) < np.maximum(t1540, t1541)
-    del t1534, t1535, t1540, t1541
-    c_1_1_9_right_noflip_up = _runtime.select(t1542, c_1_1_8_right_noflip_up, c_1_1_4_right_noflip_up)
+    t1539 = _runtime.select(t1537, t24, t1413)
+    del t1413
+    t1540 = np.sqrt(t1538 + t1539 * t1539)
+    del t1538, t1539
+    t1541 = np.maximum(0.0, t1540 - _runtime.select(t1537, t3, full_1_1))
+    t1542 = _runtime.select(t1537, t99, fold_1_1) - t1540
+    del t1537, t1540
+    t1543 = np.maximum(t1535, t1536) < np.maximum(t1541, t1542)
+    del t1535, t1536, t1541, t1542
+    c_1_1_9_right_noflip_up = _runtime.select(t1543, c_1_1_8_right_noflip_up, c_1_1_4_right_noflip_up)
     del c_1_1_4_right_noflip_up, c_1_1_8_right_noflip_up
-    s_1_1_9_right_noflip_up = _runtime.select(t1542, s_1_1_8_right_noflip_up, s_1_1_4_right_noflip_up)
-    del s_1_1_4_right_noflip_up, s_1_1_8_right_noflip_up, t1542
+    s_1_1_9_right_noflip_up = _runtime.select(t1543, s_1_1_8_right_noflip_up, s_1_1_4_right_noflip_up)
+    del s_1_1_4_right_noflip_up, s_1_1_8_right_noflip_up, t1543
     axisx_1_1_9_right_noflip_up = T13 * c_1_1_9_right_noflip_up + T23 * s_1_1_9_right_noflip_up
-    t1543 = axisx_1_1_9_right_noflip_up * axisx_1_1_9_right_noflip_up
-    h_1_1_9_right_noflip_up = np.sqrt(t5 + t1543)
-    del t1543
-    t1544 = h_1_1_9_right_noflip_up <= 1.4210854715202004e-14
+    t1544 = axisx_1_1_9_right_noflip_up * axisx_1_1_9_right_noflip_up
+    h_1_1_9_right_noflip_up = np.sqrt(t5 + t1544)
+    del t1544
+    t1545 = h_1_1_9_right_noflip_up <= t89
     qx_1_1_9_right_noflip_up = w_x * c_1_1_9_right_noflip_up + w_y * s_1_1_9_right_noflip_up
-    t1545 = h_1_1_9_right_noflip_up == 0.0
-    t1546 = 1.0 / h_1_1_9_right_noflip_up
+    t1546 = h_1_1_9_right_noflip_up == 0.0
+    t1547 = 1.0 / h_1_1_9_right_noflip_up
     del h_1_1_9_right_noflip_up
-    t1547 = d5 * _runtime.select(t1545, 0.0, T33 * t1546)
-    x_1_1_9_right_noflip_up = _runtime.select(t1544, qx_1_1_9_right_noflip_up, qx_1_1_9_right_noflip_up - t1547)
-    del qx_1_1_9_right_noflip_up, t1547
-    t1548 = x_1_1_9_right_noflip_up * x_1_1_9_right_noflip_up
+    t1548 = d5 * _runtime.select(t1546, 0.0, T33 * t1547)
+    x_1_1_9_right_noflip_up = _runtime.select(t1545, qx_1_1_9_right_noflip_up, qx_1_1_9_right_noflip_up - t1548)
+    del qx_1_1_9_right_noflip_up, t1548
+    t1549 = x_1_1_9_right_noflip_up * x_1_1_9_right_noflip_up
     del x_1_1_9_right_noflip_up
-    t1549 = _runtime.select(t1545, 1.0, axisx_1_1_9_right_noflip_up * t1546)
-    del axisx_1_1_9_right_noflip_up, t1545, t1546
-    t1550 = _runtime.select(t1544, t23, t23 - d5 * t1549)
-    del t1549
-    t1551 = np.sqrt(t1548 + t1550 * t1550)
-    del t1548, t1550
-    t1552 = np.maximum(0.0, t1551 - _runtime.select(t1544, t3, full_1_1))
-    t1553 = _runtime.select(t1544, t98, fold_1_1) - t1551
-    del t1544, t1551
-    t1554 = np.maximum(t1289, t1290) < np.maximum(t1552, t1553)
-    del t1289, t1290, t1552, t1553
-    s_1_1_18_right_noflip_up = _runtime.select(t1554, s_1_1_17_right_noflip_up, s_1_1_9_right_noflip_up)
+    t1550 = _runtime.select(t1546, 1.0, axisx_1_1_9_right_noflip_up * t1547)
+    del axisx_1_1_9_right_noflip_up, t1546, t1547
+    t1551 = _runtime.select(t1545, t24, t24 - d5 * t1550)
+    del t1550
+    t1552 = np.sqrt(t1549 + t1551 * t1551)
+    del t1549, t1551
+    t1553 = np.maximum(0.0, t1552 - _runtime.select(t1545, t3, full_1_1))
+    t1554 = _runtime.select(t1545, t99, fold_1_1) - t1552
+    del t1545, t1552
+    t1555 = np.maximum(t1290, t1291) < np.maximum(t1553, t1554)
+    del t1290, t1291, t1553, t1554
+    s_1_1_18_right_noflip_up = _runtime.select(t1555, s_1_1_17_right_noflip_up, s_1_1_9_right_noflip_up)
     del s_1_1_17_right_noflip_up, s_1_1_9_right_noflip_up
-    s1_right_noflip_up = _runtime.select(tangent1, s_1_1_18_right_noflip_up, -t980)
+    s1_right_noflip_up = _runtime.select(tangent1, s_1_1_18_right_noflip_up, -t981)
     del s_1_1_18_right_noflip_up
-    c_1_1_18_right_noflip_up = _runtime.select(t1554, c_1_1_17_right_noflip_up, c_1_1_9_right_noflip_up)
-    del c_1_1_17_right_noflip_up, c_1_1_9_right_noflip_up, t1554
+    c_1_1_18_right_noflip_up = _runtime.select(t1555, c_1_1_17_right_noflip_up, c_1_1_9_right_noflip_up)
+    del c_1_1_17_right_noflip_up, c_1_1_9_right_noflip_up, t1555
     c1_right_noflip_up = _runtime.select(tangent1, c_1_1_18_right_noflip_up, c_1_1_right_noflip_up)
     del c_1_1_18_right_noflip_up
-    t1555 = np.arctan2(s1_right_noflip_up, c1_right_noflip_up)
+    t1556 = np.arctan2(s1_right_noflip_up, c1_right_noflip_up)
     across_right_noflip_up = w_x * c1_right_noflip_up + w_y * s1_right_noflip_up
     M_13_right_noflip_up = T13 * c1_right_noflip_up + T23 * s1_right_noflip_up
-    t1556 = t5 + M_13_right_noflip_up * M_13_right_noflip_up
-    h_wrist_right_noflip_up = np.sqrt(t1556)
-    del t1556
-    aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t369
-    t1557 = across_right_noflip_up * across_right_noflip_up
-    r_hub_right_noflip_up = np.sqrt(t24 + t1557)
+    t1557 = t5 + M_13_right_noflip_up * M_13_right_noflip_up
+    h_wrist_right_noflip_up = np.sqrt(t1557)
     del t1557
-    hub_mid_right_noflip_up = r_hub_right_noflip_up <= t4
-    t1558 = d5 + r_hub_right_noflip_up
-    t1559 = d5 - r_hub_right_noflip_up
-    mid_reach_right_noflip_up = np.minimum(full_1_1, t1558) * 0.5 + np.maximum(fold_1_1, np.abs(t1559)) * 0.5
-    t1560 = (t1558 - mid_reach_right_noflip_up) * (t1558 + mid_reach_right_noflip_up)
-    k_mid_right_noflip_up = np.maximum(0.0, t1560)
-    del t1560
-    t1561 = (t1559 - mid_reach_right_noflip_up) * (t1559 + mid_reach_right_noflip_up)
-    del mid_reach_right_noflip_up
-    d_mid_right_noflip_up = np.maximum(0.0, -t1561)
-    del t1561
-    n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
-    t1562 = _runtime.VANISHING * (size * t1558)
-    any_mid_right_noflip_up = n_mid_right_noflip_up <= t1562
-    t1563 = k_mid_right_noflip_up - d_mid_right_noflip_up
-    t1564 = 1.0 / n_mid_right_noflip_up
-    del n_mid_right_noflip_up
-    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t1563 * t1564)
-    del t1563
-    t1565 = across_right_noflip_up * uc_mid_right_noflip_up
-    t1566 = k_mid_right_noflip_up * d_mid_right_noflip_up
-    del d_mid_right_noflip_up, k_mid_right_noflip_up
-    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t1564 * (2.0 * np.sqrt(t1566)))
-    del any_mid_right_noflip_up, t1564, t1566
-    t1567 = 1.0 / r_hub_right_noflip_up
-    del r_hub_right_noflip_up
-    t1568 = (t1565 + t23 * us_mid_right_noflip_up) * t1567
-    del t1565
-    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t1568)
-    del t1568
-    close_right_noflip_up = root1 * h_wrist_right_noflip_up - t375 <= t4
-    t1569 = 1.0 / h_wrist_right_noflip_up
-    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t1569)
-    t1570 = across_right_noflip_up - d5 * s_phi_right_noflip_up
-    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, M_13_right_noflip_up * t1569)
-    del t1569
-    t1571 = t23 - d5 * c_phi_right_noflip_up
-    here_right_noflip_up = np.sqrt(t1570 * t1570 + t1571 * t1571)
-    del t1570, t1571
-    in_reach_right_noflip_up = np.minimum(full_1_1, np.maximum(here_right_noflip_up, fold_1_1))
-    t1572 = (t1558 - in_reach_right_noflip_up) * (t1558 + in_reach_right_noflip_up)
+    aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t22
+    t1558 = across_right_noflip_up * across_right_noflip_up
+    r_hub_right_noflip_up = np.sqrt(t25 + t1558)
     del t1558
-    k_near_right_noflip_up = np.maximum(0.0, t1572)
-    del t1572
+    hub_mid_right_noflip_up = r_hub_right_noflip_up <= t4
+    t1559 = d5 + r_hub_right_noflip_up
+    t1560 = d5 - r_hub_right_noflip_up
+    mid_reach_right_noflip_up = np.minimum(full_1_1, t1559) * 0.5 + np.maximum(fold_1_1, np.abs(t1560)) * 0.5
+    t1561 = (t1559 - mid_reach_right_noflip_up) * (t1559 + mid_reach_right_noflip_up)
+    k_mid_right_noflip_up = np.maximum(0.0, t1561)
+    del t1561
+    t1562 = (t1560 - mid_reach_right_noflip_up) * (t1560 + mid_reach_right_noflip_up)
+    del mid_reach_right_noflip_up
+    d_mid_right_noflip_up = np.maximum(0.0, -t1562)
+    del t1562
+    n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
+    t1563 = _runtime.VANISHING * (size * t1559)
+    any_mid_right_noflip_up = n_mid_right_noflip_up <= t1563
+    t1564 = k_mid_right_noflip_up - d_mid_right_noflip_up
+    t1565 = 1.0 / n_mid_right_noflip_up
+    del n_mid_right_noflip_up
+    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t1564 * t1565)
+    del t1564
+    t1566 = across_right_noflip_up * uc_mid_right_noflip_up
+    t1567 = k_mid_right_noflip_up * d_mid_right_noflip_up
+    del d_mid_right_noflip_up, k_mid_right_noflip_up
+    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t1565 * (2.0 * np.sqrt(t1567)))
+    del any_mid_right_noflip_up, t1565, t1567
+    t1568 = 1.0 / r_hub_right_noflip_up
+    del r_hub_right_noflip_up
+    t1569 = (t1566 + t24 * us_mid_right_noflip_up) * t1568
+    del t1566
+    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t1569)
+    del t1569
+    close_right_noflip_up = root1 * h_wrist_right_noflip_up - t375 <= t4
+    t1570 = 1.0 / h_wrist_right_noflip_up
+    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t1570)
+    t1571 = across_right_noflip_up - d5 * s_phi_right_noflip_up
+    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, M_13_right_noflip_up * t1570)
+    del t1570
+    t1572 = t24 - d5 * c_phi_right_noflip_up
+    here_right_noflip_up = np.sqrt(t1571 * t1571 + t1572 * t1572)
+    del t1571, t1572
+    in_reach_right_noflip_up = np.minimum(full_1_1, np.maximum(here_right_noflip_up, fold_1_1))
     t1573 = (t1559 - in_reach_right_noflip_up) * (t1559 + in_reach_right_noflip_up)
     del t1559
-    d_near_right_noflip_up = np.maximum(0.0, -t1573)
+    k_near_right_noflip_up = np.maximum(0.0, t1573)
     del t1573
-    n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
-    any_near_right_noflip_up = n_near_right_noflip_up <= t1562
-    del t1562
-    t1574 = k_near_right_noflip_up - d_near_right_noflip_up
-    t1575 = 1.0 / n_near_right_noflip_up
-    del n_near_right_noflip_up
-    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t1574 * t1575)
+    t1574 = (t1560 - in_reach_right_noflip_up) * (t1560 + in_reach_right_noflip_up)
+    del t1560
+    d_near_right_noflip_up = np.maximum(0.0, -t1574)
     del t1574
-    t1576 = across_right_noflip_up * uc_near_right_noflip_up
-    t1577 = across_right_noflip_up * c_phi_right_noflip_up
-    t1578 = t1577 - t23 * s_phi_right_noflip_up
-    del t1577
-    t1579 = np.abs(t1578)
-    side_right_noflip_up = _runtime.select(t1579 <= t4, 1.0, -(t1578 / t1579))
-    del t1578, t1579
-    t1580 = k_near_right_noflip_up * d_near_right_noflip_up
+    n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
+    any_near_right_noflip_up = n_near_right_noflip_up <= t1563
+    del t1563
+    t1575 = k_near_right_noflip_up - d_near_right_noflip_up
+    t1576 = 1.0 / n_near_right_noflip_up
+    del n_near_right_noflip_up
+    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t1575 * t1576)
+    del t1575
+    t1577 = across_right_noflip_up * uc_near_right_noflip_up
+    t1578 = across_right_noflip_up * c_phi_right_noflip_up
+    t1579 = t1578 - t24 * s_phi_right_noflip_up
+    del t1578
+    t1580 = np.abs(t1579)
+    side_right_noflip_up = _runtime.select(t1580 <= t4, 1.0, -(t1579 / t1580))
+    del t1579, t1580
+    t1581 = k_near_right_noflip_up * d_near_right_noflip_up
     del d_near_right_noflip_up, k_near_right_noflip_up
-    t1581 = t1575 * (2.0 * side_right_noflip_up * np.sqrt(t1580))
-    del side_right_noflip_up, t1575, t1580
-    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t1581)
-    del any_near_right_noflip_up, t1581
-    t1582 = t1567 * (t1576 + t23 * us_near_right_noflip_up)
-    del t1576
-    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t1582)
-    del t1582
-    t1583 = s_phi_right_noflip_up - c_near_right_noflip_up
-    t1584 = across_right_noflip_up * us_near_right_noflip_up
+    t1582 = t1576 * (2.0 * side_right_noflip_up * np.sqrt(t1581))
+    del side_right_noflip_up, t1576, t1581
+    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t1582)
+    del any_near_right_noflip_up, t1582
+    t1583 = t1568 * (t1577 + t24 * us_near_right_noflip_up)
+    del t1577
+    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t1583)
+    del t1583
+    t1584 = s_phi_right_noflip_up - c_near_right_noflip_up
+    t1585 = across_right_noflip_up * us_near_right_noflip_up
     del us_near_right_noflip_up
-    t1585 = t1567 * (t1584 - t23 * uc_near_right_noflip_up)
-    del t1584, uc_near_right_noflip_up
-    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t1585)
-    del t1585
-    t1586 = c_phi_right_noflip_up + s_near_right_noflip_up
-    t1587 = h_wrist_right_noflip_up * np.sqrt(t1583 * t1583 + t1586 * t1586)
-    del h_wrist_right_noflip_up, t1583, t1586
-    t1588 = here_right_noflip_up - in_reach_right_noflip_up
+    t1586 = t1568 * (t1585 - t24 * uc_near_right_noflip_up)
+    del t1585, uc_near_right_noflip_up
+    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t1586)
+    del t1586
+    t1587 = c_phi_right_noflip_up + s_near_right_noflip_up
+    t1588 = h_wrist_right_noflip_up * np.sqrt(t1584 * t1584 + t1587 * t1587)
+    del h_wrist_right_noflip_up, t1584, t1587
+    t1589 = here_right_noflip_up - in_reach_right_noflip_up
     del here_right_noflip_up, in_reach_right_noflip_up
-    t1589 = (t1587 - 2.2737367544323206e-13 <= t386) & np.logical_not(np.abs(t1588) <= t4)
-    del t1587, t1588
-    s_kept_right_noflip_up = _runtime.select(t1589, c_near_right_noflip_up, s_phi_right_noflip_up)
+    t1590 = (t1588 - t385 <= t387) & np.logical_not(np.abs(t1589) <= t4)
+    del t1588, t1589
+    s_kept_right_noflip_up = _runtime.select(t1590, c_near_right_noflip_up, s_phi_right_noflip_up)
     del c_near_right_noflip_up
-    t1590 = _runtime.select(close_right_noflip_up, s_kept_right_noflip_up, s_phi_right_noflip_up)
+    t1591 = _runtime.select(close_right_noflip_up, s_kept_right_noflip_up, s_phi_right_noflip_up)
     del s_kept_right_noflip_up, s_phi_right_noflip_up
-    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t1590)
-    del c_mid_right_noflip_up, t1590
-    t1591 = across_right_noflip_up - d5 * sphi_right_noflip_up
-    t1592 = across_right_noflip_up * us_mid_right_noflip_up
+    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t1591)
+    del c_mid_right_noflip_up, t1591
+    t1592 = across_right_noflip_up - d5 * sphi_right_noflip_up
+    t1593 = across_right_noflip_up * us_mid_right_noflip_up
     del across_right_noflip_up, us_mid_right_noflip_up
-    t1593 = t1567 * (t1592 - t23 * uc_mid_right_noflip_up)
-    del t1567, t1592, uc_mid_right_noflip_up
-    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t1593)
-    del hub_mid_right_noflip_up, t1593
-    c_kept_right_noflip_up = _runtime.select(t1589, -s_near_right_noflip_up, c_phi_right_noflip_up)
-    del s_near_right_noflip_up, t1589
-    t1594 = _runtime.select(close_right_noflip_up, c_kept_right_noflip_up, c_phi_right_noflip_up)
+    t1594 = t1568 * (t1593 - t24 * uc_mid_right_noflip_up)
+    del t1568, t1593, uc_mid_right_noflip_up
+    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t1594)
+    del hub_mid_right_noflip_up, t1594
+    c_kept_right_noflip_up = _runtime.select(t1590, -s_near_right_noflip_up, c_phi_right_noflip_up)
+    del s_near_right_noflip_up, t1590
+    t1595 = _runtime.select(close_right_noflip_up, c_kept_right_noflip_up, c_phi_right_noflip_up)
     del c_kept_right_noflip_up, c_phi_right_noflip_up, close_right_noflip_up
-    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t1594)
-    del s_mid_right_noflip_up, t1594
-    ey_right_noflip_up = t23 - d5 * cphi_right_noflip_up
-    t1595 = t1591 * t1591 + ey_right_noflip_up * ey_right_noflip_up
-    r_elbow_right_noflip_up = np.sqrt(t1595)
-    del t1595
-    t1596 = full_1_1 - r_elbow_right_noflip_up
-    t1597 = t35 + r_elbow_right_noflip_up
-    t1598 = r_elbow_right_noflip_up - t35
-    t1599 = t368 & (t367 <= t1596) & (t367 <= t1597) & (t367 <= t1598)
-    unreachable_3 = np.logical_not(t1599)
-    del t1599
-    t1600 = _runtime.poison(invalid | unreachable_3)
-    t1601 = _runtime.wrap_cut(t1555) + t1600
-    del t1555
-    folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t4
-    t1602 = folded_elbow_right_noflip_up | no_link_elbow
-    A_elbow_right_noflip_up = np.maximum(t1596, 0.0)
+    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t1595)
+    del s_mid_right_noflip_up, t1595
+    ey_right_noflip_up = t24 - d5 * cphi_right_noflip_up
+    t1596 = t1592 * t1592 + ey_right_noflip_up * ey_right_noflip_up
+    r_elbow_right_noflip_up = np.sqrt(t1596)
     del t1596
-    C_elbow_right_noflip_up = np.maximum(t1598, 0.0)
-    del t1598
-    t1603 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
-    S_elbow_right_noflip_up = full_1_1 + r_elbow_right_noflip_up
-    B_elbow_right_noflip_up = np.maximum(t1597, 0.0)
+    t1597 = full_1_1 - r_elbow_right_noflip_up
+    t1598 = t35 + r_elbow_right_noflip_up
+    t1599 = r_elbow_right_noflip_up - t35
+    t1600 = t369 & (t368 <= t1597) & (t368 <= t1598) & (t368 <= t1599)
+    unreachable_3 = np.logical_not(t1600)
+    del t1600
+    t1601 = _runtime.poison(invalid | unreachable_3)
+    t1602 = _runtime.wrap_cut(t1556) + t1601
+    del t1556
+    folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t4
+    t1603 = folded_elbow_right_noflip_up | no_link_elbow
+    A_elbow_right_noflip_up = np.maximum(t1597, 0.0)
     del t1597
-    t1604 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
-    t1605 = 1.0 / (t1603 + t1604)
-    c_base_elbow_right_noflip_up = _runtime.select(t1602, 1.0, -((t1603 - t1604) * t1605))
-    t1606 = 1.0 / r_elbow_right_noflip_up
+    C_elbow_right_noflip_up = np.maximum(t1599, 0.0)
+    del t1599
+    t1604 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
+    S_elbow_right_noflip_up = full_1_1 + r_elbow_right_noflip_up
+    B_elbow_right_noflip_up = np.maximum(t1598, 0.0)
+    del t1598
+    t1605 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t1606 = 1.0 / (t1604 + t1605)
+    c_base_elbow_right_noflip_up = _runtime.select(t1603, 1.0, -((t1604 - t1605) * t1606))
+    t1607 = 1.0 / r_elbow_right_noflip_up
     del r_elbow_right_noflip_up
-    t1607 = _runtime.select(folded_elbow_right_noflip_up, 0.0, ey_right_noflip_up * t1606)
+    t1608 = _runtime.select(folded_elbow_right_noflip_up, 0.0, ey_right_noflip_up * t1607)
     del ey_right_noflip_up
-    t1608 = c_base_elbow_right_noflip_up * t1607
-    area_elbow_right_noflip_up = 2.0 * np.sqrt(t1603 * t1604)
-    del t1603, t1604
-    s_base_elbow_right_noflip_up = _runtime.select(t1602, 0.0, t1605 * area_elbow_right_noflip_up)
-    del t1602, t1605
-    t1609 = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t1591 * t1606))
-    del t1591, t1606
-    t1610 = s_base_elbow_right_noflip_up * t1609
-    s2_right_noflip_up = t1608 - t1610
-    t1611 = c_base_elbow_right_noflip_up * t1609
-    del c_base_elbow_right_noflip_up, t1609
-    t1612 = t1607 * s_base_elbow_right_noflip_up
-    del s_base_elbow_right_noflip_up, t1607
-    c2_right_noflip_up = t1611 + t1612
-    t1613 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
-    t1614 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    t1609 = c_base_elbow_right_noflip_up * t1608
+    area_elbow_right_noflip_up = 2.0 * np.sqrt(t1604 * t1605)
+    del t1604, t1605
+    s_base_elbow_right_noflip_up = _runtime.select(t1603, 0.0, t1606 * area_elbow_right_noflip_up)
+    del t1603, t1606
+    t1610 = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t1592 * t1607))
+    del t1592, t1607
+    t1611 = s_base_elbow_right_noflip_up * t1610
+    s2_right_noflip_up = t1609 - t1611
+    t1612 = c_base_elbow_right_noflip_up * t1610
+    del c_base_elbow_right_noflip_up, t1610
+    t1613 = t1608 * s_base_elbow_right_noflip_up
+    del s_base_elbow_right_noflip_up, t1608
+    c2_right_noflip_up = t1612 + t1613
+    t1614 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
+    t1615 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
     del A_elbow_right_noflip_up, S_elbow_right_noflip_up
-    t1615 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t1616 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
     del B_elbow_right_noflip_up, C_elbow_right_noflip_up
-    t1616 = 1.0 / (t1614 + t1615)
-    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t1616)
+    t1617 = 1.0 / (t1615 + t1616)
+    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t1617)
     del area_elbow_right_noflip_up
-    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t1616 * (t1614 - t1615)))
-    del t1614, t1615, t1616
-    t1617 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
-    t1618 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
-    t1619 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
+    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t1617 * (t1615 - t1616)))
+    del t1615, t1616, t1617
+    t1618 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
+    t1619 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
+    t1620 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
     del c2_right_noflip_up, s2_right_noflip_up
-    t1620 = c3_right_noflip_up * t1618 - s3_right_noflip_up * t1619
-    t1621 = c3_right_noflip_up * t1619 + s3_right_noflip_up * t1618
-    del t1618, t1619
-    t1622 = _runtime.wrap_cut(np.arctan2(t1620, t1621)) + t1600
-    del t1620, t1621
-    t1623 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
+    t1621 = c3_right_noflip_up * t1619 - s3_right_noflip_up * t1620
+    t1622 = c3_right_noflip_up * t1620 + s3_right_noflip_up * t1619
+    del t1619, t1620
+    t1623 = _runtime.wrap_cut(np.arctan2(t1621, t1622)) + t1601
+    del t1621, t1622
+    t1624 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
     del M_13_right_noflip_up
     M_33_right_noflip_up = T13 * s1_right_noflip_up - T23 * c1_right_noflip_up
-    t1624 = _runtime.wrap_cut(-np.arctan2(t1623, M_33_right_noflip_up))
-    del M_33_right_noflip_up, t1623
-    t1625 = t1624 + t1600
-    del t1624
+    t1625 = _runtime.wrap_cut(-np.arctan2(t1624, M_33_right_noflip_up))
+    del M_33_right_noflip_up, t1624
+    t1626 = t1625 + t1601
+    del t1625
     M_11_right_noflip_up = T11 * c1_right_noflip_up + T21 * s1_right_noflip_up
-    t1626 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
+    t1627 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
     del M_11_right_noflip_up
     M_12_right_noflip_up = T12 * c1_right_noflip_up + T22 * s1_right_noflip_up
     del c1_right_noflip_up, s1_right_noflip_up
-    t1627 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
+    t1628 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
     del M_12_right_noflip_up
-    t1628 = _runtime.wrap_cut(-np.arctan2(t1626, t1627)) + t1600
-    del t1626, t1627
-    s2_right_noflip_down = t1608 + t1610
-    del t1608, t1610
-    c2_right_noflip_down = t1611 - t1612
-    del t1611, t1612
-    t1629 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
-    t1630 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
-    t1631 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
+    t1629 = _runtime.wrap_cut(-np.arctan2(t1627, t1628)) + t1601
+    del t1627, t1628
+    s2_right_noflip_down = t1609 + t1611
+    del t1609, t1611
+    c2_right_noflip_down = t1612 - t1613
+    del t1612, t1613
+    t1630 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
+    t1631 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
+    t1632 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
     del c2_right_noflip_down, cphi_right_noflip_up, s2_right_noflip_down, sphi_right_noflip_up
-    t1632 = c3_right_noflip_up * t1630 + s3_right_noflip_up * t1631
-    t1633 = c3_right_noflip_up * t1631 - s3_right_noflip_up * t1630
-    del c3_right_noflip_up, s3_right_noflip_up, t1630, t1631
-    t1634 = _runtime.wrap_cut(np.arctan2(t1632, t1633)) + t1600
-    del t1632, t1633
-    t1635 = qx_1_1_10_right_noflip_up + t1000
-    del t1000
-    t1636 = _runtime.select(t998, 1.0, -t1002)
-    del t1002, t998
-    t1637 = t23 - d5 * t1636
-    t1638 = np.maximum(np.sqrt(t1635 * t1635 + t1637 * t1637), fold_1_1)
-    del t1635, t1637
-    goal_1_1_10_right_flip_up = np.minimum(full_1_1, t1638)
-    del t1638
-    t1639 = (t997 - goal_1_1_10_right_flip_up) * (t997 + goal_1_1_10_right_flip_up)
-    del t997
-    k_v_1_1_10_right_flip_up = np.maximum(0.0, t1639)
+    t1633 = c3_right_noflip_up * t1631 + s3_right_noflip_up * t1632
+    t1634 = c3_right_noflip_up * t1632 - s3_right_noflip_up * t1631
+    del c3_right_noflip_up, s3_right_noflip_up, t1631, t1632
+    t1635 = _runtime.wrap_cut(np.arctan2(t1633, t1634)) + t1601
+    del t1633, t1634
+    t1636 = qx_1_1_10_right_noflip_up + t1001
+    del t1001
+    t1637 = _runtime.select(t999, 1.0, -t1003)
+    del t1003, t999
+    t1638 = t24 - d5 * t1637
+    t1639 = np.maximum(np.sqrt(t1636 * t1636 + t1638 * t1638), fold_1_1)
+    del t1636, t1638
+    goal_1_1_10_right_flip_up = np.minimum(full_1_1, t1639)
     del t1639
-    t1640 = (t1007 - goal_1_1_10_right_flip_up) * (t1007 + goal_1_1_10_right_flip_up)
-    del goal_1_1_10_right_flip_up, t1007
-    d_v_1_1_10_right_flip_up = np.maximum(0.0, -t1640)
+    t1640 = (t998 - goal_1_1_10_right_flip_up) * (t998 + goal_1_1_10_right_flip_up)
+    del t998
+    k_v_1_1_10_right_flip_up = np.maximum(0.0, t1640)
     del t1640
+    t1641 = (t1008 - goal_1_1_10_right_flip_up) * (t1008 + goal_1_1_10_right_flip_up)
+    del goal_1_1_10_right_flip_up, t1008
+    d_v_1_1_10_right_flip_up = np.maximum(0.0, -t1641)
+    del t1641
     n_v_1_1_10_right_flip_up = k_v_1_1_10_right_flip_up + d_v_1_1_10_right_flip_up
-    t1641 = n_v_1_1_10_right_flip_up <= t1009
-    del t1009
-    t1642 = k_v_1_1_10_right_flip_up - d_v_1_1_10_right_flip_up
-    t1643 = 1.0 / n_v_1_1_10_right_flip_up
+    t1642 = n_v_1_1_10_right_flip_up <= t1010
+    del t1010
+    t1643 = k_v_1_1_10_right_flip_up - d_v_1_1_10_right_flip_up
+    t1644 = 1.0 / n_v_1_1_10_right_flip_up
     del n_v_1_1_10_right_flip_up
-    uc_v_1_1_10_right_flip_up = _runtime.select(t1641, 1.0, t1642 * t1643)
-    del t1642
-    t1644 = qx_1_1_10_right_noflip_up * uc_v_1_1_10_right_flip_up
-    side_1_1_10_right_flip_up = _runtime.sign(-(t1014 + qx_1_1_10_right_noflip_up * t1636))
-    del t1014, t1636
-    t1645 = k_v_1_1_10_right_flip_up * d_v_1_1_10_right_flip_up
+    uc_v_1_1_10_right_flip_up = _runtime.select(t1642, 1.0, t1643 * t1644)
+    del t1643
+    t1645 = qx_1_1_10_right_noflip_up * uc_v_1_1_10_right_flip_up
+    side_1_1_10_right_flip_up = _runtime.sign(-(t1015 + qx_1_1_10_right_noflip_up * t1637))
+    del t1015, t1637
+    t1646 = k_v_1_1_10_right_flip_up * d_v_1_1_10_right_flip_up
     del d_v_1_1_10_right_flip_up, k_v_1_1_10_right_flip_up
-    t1646 = 2.0 * side_1_1_10_right_flip_up * np.sqrt(t1645)
-    del side_1_1_10_right_flip_up, t1645
-    us_v_1_1_10_right_flip_up = _runtime.select(t1641, 0.0, t1643 * t1646)
-    del t1641, t1643, t1646
-    t1647 = t23 * us_v_1_1_10_right_flip_up
-    c_v_1_1_10_right_flip_up = _runtime.select(t996, 1.0, t1018 * (t1644 + t1647))
-    t1648 = -(T33 * c_v_1_1_10_right_flip_up) < 0.0
-    t1649 = qx_1_1_10_right_noflip_up * us_v_1_1_10_right_flip_up
+    t1647 = 2.0 * side_1_1_10_right_flip_up * np.sqrt(t1646)
+    del side_1_1_10_right_flip_up, t1646
+    us_v_1_1_10_right_flip_up = _runtime.select(t1642, 0.0, t1644 * t1647)
+    del t1642, t1644, t1647
+    t1648 = t24 * us_v_1_1_10_right_flip_up
+    c_v_1_1_10_right_flip_up = _runtime.select(t997, 1.0, t1019 * (t1645 + t1648))
+    t1649 = -(T33 * c_v_1_1_10_right_flip_up) < 0.0
+    t1650 = qx_1_1_10_right_noflip_up * us_v_1_1_10_right_flip_up
     del qx_1_1_10_right_noflip_up, us_v_1_1_10_right_flip_up
-    t1650 = t23 * uc_v_1_1_10_right_flip_up
+    t1651 = t24 * uc_v_1_1_10_right_flip_up
     del uc_v_1_1_10_right_flip_up
-    wc_1_1_10_right_flip_up = _runtime.select(t996, 0.0, t1018 * (t1649 + t1650))
-    s_v_1_1_10_right_flip_up = _runtime.select(t996, 0.0, t1018 * (t1649 - t1650))
-    del t1649, t1650
-    to_c_1_1_10_right_flip_up = _runtime.select(t1648, wc_1_1_10_right_flip_up, -s_v_1_1_10_right_flip_up)
+    wc_1_1_10_right_flip_up = _runtime.select(t997, 0.0, t1019 * (t1650 + t1651))
+    s_v_1_1_10_right_flip_up = _runtime.select(t997, 0.0, t1019 * (t1650 - t1651))
+    del t1650, t1651
+    to_c_1_1_10_right_flip_up = _runtime.select(t1649, wc_1_1_10_right_flip_up, -s_v_1_1_10_right_flip_up)
     del s_v_1_1_10_right_flip_up, wc_1_1_10_right_flip_up
-    c_w_1_1_10_right_flip_up = _runtime.select(t996, 1.0, t1018 * (t1644 - t1647))
-    del t1018, t1644, t1647, t996
-    to_s_1_1_10_right_flip_up = _runtime.select(t1648, c_w_1_1_10_right_flip_up, c_v_1_1_10_right_flip_up)
-    del c_v_1_1_10_right_flip_up, c_w_1_1_10_right_flip_up, t1648
-    t1651 = T33 * to_c_1_1_10_right_flip_up * _runtime.sign(to_s_1_1_10_right_flip_up)
+    c_w_1_1_10_right_flip_up = _runtime.select(t997, 1.0, t1019 * (t1645 - t1648))
+    del t1019, t1645, t1648, t997
+    to_s_1_1_10_right_flip_up = _runtime.select(t1649, c_w_1_1_10_right_flip_up, c_v_1_1_10_right_flip_up)
+    del c_v_1_1_10_right_flip_up, c_w_1_1_10_right_flip_up, t1649
+    t1652 = T33 * to_c_1_1_10_right_flip_up * _runtime.sign(to_s_1_1_10_right_flip_up)
     del to_c_1_1_10_right_flip_up
-    across_1_1_10_right_flip_up = _runtime.select(t22, 0.0, t1651)
-    del t1651
-    t1652 = np.abs(to_s_1_1_10_right_flip_up)
+    across_1_1_10_right_flip_up = _runtime.select(t23, 0.0, t1652)
+    del t1652
+    t1653 = np.abs(to_s_1_1_10_right_flip_up)
     del to_s_1_1_10_right_flip_up
-    t1653 = most_1_1_10_right_noflip_up * t1652 <= np.abs(across_1_1_10_right_flip_up)
-    t1654 = most_1_1_10_right_noflip_up * _runtime.sign(across_1_1_10_right_flip_up)
-    t1655 = _runtime.select(t1653, t1654, across_1_1_10_right_flip_up / t1652)
-    del t1652, t1653, t1654
-    wanted_1_1_10_right_flip_up = _runtime.select(across_1_1_10_right_flip_up == 0.0, 0.0, t1655)
-    del across_1_1_10_right_flip_up, t1655
-    t1656 = axisx_1_1_10_right_noflip_up * wanted_1_1_10_right_flip_up
-    t1657 = most_1_1_10_right_noflip_up - wanted_1_1_10_right_flip_up
-    t1658 = most_1_1_10_right_noflip_up + wanted_1_1_10_right_flip_up
+    t1654 = most_1_1_10_right_noflip_up * t1653 <= np.abs(across_1_1_10_right_flip_up)
+    t1655 = most_1_1_10_right_noflip_up * _runtime.sign(across_1_1_10_right_flip_up)
+    t1656 = _runtime.select(t1654, t1655, across_1_1_10_right_flip_up / t1653)
+    del t1653, t1654, t1655
+    wanted_1_1_10_right_flip_up = _runtime.select(across_1_1_10_right_flip_up == 0.0, 0.0, t1656)
+    del across_1_1_10_right_flip_up, t1656
+    t1657 = axisx_1_1_10_right_noflip_up * wanted_1_1_10_right_flip_up
+    t1658 = most_1_1_10_right_noflip_up - wanted_1_1_10_right_flip_up
+    t1659 = most_1_1_10_right_noflip_up + wanted_1_1_10_right_flip_up
     del most_1_1_10_right_noflip_up
-    rest_1_1_10_right_flip_up = t1030 * np.sqrt(np.maximum(0.0, t1657 * t1658))
-    del t1030, t1657, t1658
-    t1659 = t1032 * (t1656 - t993 * rest_1_1_10_right_flip_up)
-    del t1656
-    by_c_1_1_10_right_flip_up = _runtime.select(t994, 1.0, t1659)
-    del t1659
-    t1660 = axisx_1_1_10_right_noflip_up * rest_1_1_10_right_flip_up
+    rest_1_1_10_right_flip_up = t1031 * np.sqrt(np.maximum(0.0, t1658 * t1659))
+    del t1031, t1658, t1659
+    t1660 = t1033 * (t1657 - t994 * rest_1_1_10_right_flip_up)
+    del t1657
+    by_c_1_1_10_right_flip_up = _runtime.select(t995, 1.0, t1660)
+    del t1660
+    t1661 = axisx_1_1_10_right_noflip_up * rest_1_1_10_right_flip_up
     del axisx_1_1_10_right_noflip_up, rest_1_1_10_right_flip_up
-    t1661 = t1032 * (t1660 + t993 * wanted_1_1_10_right_flip_up)
-    del t1032, t1660, t993, wanted_1_1_10_right_flip_up
-    t1662 = _runtime.select(t994, 0.0, t1661)
-    del t1661, t994
-    t1663 = t1662 * t1662 / (1.0 + np.abs(by_c_1_1_10_right_flip_up))
-    versine_1_1_10_right_flip_up = _runtime.select(0.0 < by_c_1_1_10_right_flip_up, t1663, 1.0 - by_c_1_1_10_right_flip_up)
-    del t1663
-    cost_1_1_10_right_flip_up = d4 * versine_1_1_10_right_flip_up + root1 * np.abs(t1662)
+    t1662 = t1033 * (t1661 + t994 * wanted_1_1_10_right_flip_up)
+    del t1033, t1661, t994, wanted_1_1_10_right_flip_up
+    t1663 = _runtime.select(t995, 0.0, t1662)
+    del t1662, t995
+    t1664 = t1663 * t1663 / (1.0 + np.abs(by_c_1_1_10_right_flip_up))
+    versine_1_1_10_right_flip_up = _runtime.select(0.0 < by_c_1_1_10_right_flip_up, t1664, 1.0 - by_c_1_1_10_right_flip_up)
+    del t1664
+    cost_1_1_10_right_flip_up = d4 * versine_1_1_10_right_flip_up + root1 * np.abs(t1663)
     del versine_1_1_10_right_flip_up
-    t1664 = cost_1_1_10_right_flip_up <= whole_1_1
+    t1665 = cost_1_1_10_right_flip_up <= whole_1_1
     del cost_1_1_10_right_flip_up
-    cosine_1_1_10_right_flip_up = _runtime.select(t1664, by_c_1_1_10_right_flip_up, 1.0)
+    cosine_1_1_10_right_flip_up = _runtime.select(t1665, by_c_1_1_10_right_flip_up, 1.0)
     del by_c_1_1_10_right_flip_up
-    t1665 = c_1_1_10_right_noflip_up * cosine_1_1_10_right_flip_up
-    sine_1_1_10_right_flip_up = _runtime.select(t1664, -t1662, 0.0)
-    del t1662, t1664
-    t1666 = s_1_1_10_right_noflip_up * sine_1_1_10_right_flip_up
-    c_1_1_11_right_flip_up = t1665 - t1666
-    del t1665, t1666
-    t1667 = c_1_1_10_right_noflip_up * sine_1_1_10_right_flip_up
+    t1666 = c_1_1_10_right_noflip_up * cosine_1_1_10_right_flip_up
+    sine_1_1_10_right_flip_up = _runtime.select(t1665, -t1663, 0.0)
+    del t1663, t1665
+    t1667 = s_1_1_10_right_noflip_up * sine_1_1_10_right_flip_up
+    c_1_1_11_right_flip_up = t1666 - t1667
+    del t1666, t1667
+    t1668 = c_1_1_10_right_noflip_up * sine_1_1_10_right_flip_up
     del c_1_1_10_right_noflip_up, sine_1_1_10_right_flip_up
-    t1668 = s_1_1_10_right_noflip_up * cosine_1_1_10_right_flip_up
+    t1669 = s_1_1_10_right_noflip_up * cosine_1_1_10_right_flip_up
     del cosine_1_1_10_right_flip_up, s_1_1_10_right_noflip_up
-    s_1_1_11_right_flip_up = t1667 + t1668
-    del t1667, t1668
+    s_1_1_11_right_flip_up = t1668 + t1669
+    del t1668, t1669
     axisx_1_1_11_right_flip_up = T13 * c_1_1_11_right_flip_up + T23 * s_1_1_11_right_flip_up
-    t1669 = axisx_1_1_11_right_flip_up * axisx_1_1_11_right_flip_up
-    t1670 = T13 * s_1_1_11_right_flip_up - T23 * c_1_1_11_right_flip_up
-    most_1_1_11_right_flip_up = np.sqrt(t1669 + t1670 * t1670)
-    t1671 = most_1_1_11_right_flip_up <= 8.881784197001252e-16
+    t1670 = axisx_1_1_11_right_flip_up * axisx_1_1_11_right_flip_up
+    t1671 = T13 * s_1_1_11_right_flip_up - T23 * c_1_1_11_right_flip_up
+    most_1_1_11_right_flip_up = np.sqrt(t1670 + t1671 * t1671)
+    t1672 = most_1_1_11_right_flip_up <= _runtime.VANISHING
     qx_1_1_11_right_flip_up = w_x * c_1_1_11_right_flip_up + w_y * s_1_1_11_right_flip_up
-    t1672 = qx_1_1_11_right_flip_up * qx_1_1_11_right_flip_up
-    r_1_1_11_right_flip_up = np.sqrt(t24 + t1672)
-    del t1672
-    t1673 = r_1_1_11_right_flip_up <= t25
-    t1674 = d5 + r_1_1_11_right_flip_up
-    h_1_1_11_right_flip_up = np.sqrt(t5 + t1669)
-    del t1669
-    t1675 = h_1_1_11_right_flip_up == 0.0
-    t1676 = 1.0 / h_1_1_11_right_flip_up
+    t1673 = qx_1_1_11_right_flip_up * qx_1_1_11_right_flip_up
+    r_1_1_11_right_flip_up = np.sqrt(t25 + t1673)
+    del t1673
+    t1674 = r_1_1_11_right_flip_up <= t4
+    t1675 = d5 + r_1_1_11_right_flip_up
+    h_1_1_11_right_flip_up = np.sqrt(t5 + t1670)
+    del t1670
+    t1676 = h_1_1_11_right_flip_up == 0.0
+    t1677 = 1.0 / h_1_1_11_right_flip_up
     del h_1_1_11_right_flip_up
-    t1677 = _runtime.select(t1675, 0.0, T33 * t1676)
-    t1678 = qx_1_1_11_right_flip_up + d5 * t1677
-    t1679 = _runtime.select(t1675, 1.0, -(axisx_1_1_11_right_flip_up * t1676))
-    del t1675, t1676
-    t1680 = t23 - d5 * t1679
-    t1681 = np.maximum(np.sqrt(t1678 * t1678 + t1680 * t1680), fold_1_1)
-    del t1678, t1680
-    goal_1_1_11_right_flip_up = np.minimum(full_1_1, t1681)
-    del t1681
-    t1682 = (t1674 - goal_1_1_11_right_flip_up) * (t1674 + goal_1_1_11_right_flip_up)
-    k_v_1_1_11_right_flip_up = np.maximum(0.0, t1682)
+    t1678 = _runtime.select(t1676, 0.0, T33 * t1677)
+    t1679 = qx_1_1_11_right_flip_up + d5 * t1678
+    t1680 = _runtime.select(t1676, 1.0, -(axisx_1_1_11_right_flip_up * t1677))
+    del t1676, t1677
+    t1681 = t24 - d5 * t1680
+    t1682 = np.maximum(np.sqrt(t1679 * t1679 + t1681 * t1681), fold_1_1)
+    del t1679, t1681
+    goal_1_1_11_right_flip_up = np.minimum(full_1_1, t1682)
     del t1682
-    t1683 = d5 - r_1_1_11_right_flip_up
-    t1684 = (goal_1_1_11_right_flip_up - t1683) * (goal_1_1_11_right_flip_up + t1683)
-    del goal_1_1_11_right_flip_up, t1683
-    d_v_1_1_11_right_flip_up = np.maximum(0.0, t1684)
-    del t1684
+    t1683 = (t1675 - goal_1_1_11_right_flip_up) * (t1675 + goal_1_1_11_right_flip_up)
+    k_v_1_1_11_right_flip_up = np.maximum(0.0, t1683)
+    del t1683
+    t1684 = d5 - r_1_1_11_right_flip_up
+    t1685 = (goal_1_1_11_right_flip_up - t1684) * (goal_1_1_11_right_flip_up + t1684)
+    del goal_1_1_11_right_flip_up, t1684
+    d_v_1_1_11_right_flip_up = np.maximum(0.0, t1685)
+    del t1685
     n_v_1_1_11_right_flip_up = k_v_1_1_11_right_flip_up + d_v_1_1_11_right_flip_up
-    t1685 = n_v_1_1_11_right_flip_up <= size * t1674 * 8.881784197001252e-16
-    del t1674
-    t1686 = k_v_1_1_11_right_flip_up - d_v_1_1_11_right_flip_up
-    t1687 = 1.0 / n_v_1_1_11_right_flip_up
+    t1686 = n_v_1_1_11_right_flip_up <= t4 * t1675
+    del t1675
+    t1687 = k_v_1_1_11_right_flip_up - d_v_1_1_11_right_flip_up
+    t1688 = 1.0 / n_v_1_1_11_right_flip_up
     del n_v_1_1_11_right_flip_up
-    uc_v_1_1_11_right_flip_up = _runtime.select(t1685, 1.0, t1686 * t1687)
-    del t1686
-    t1688 = qx_1_1_11_right_flip_up * uc_v_1_1_11_right_flip_up
-    t1689 = qx_1_1_11_right_flip_up * t1679 + t23 * t1677
-    del t1677, t1679
-    t1690 = k_v_1_1_11_right_flip_up * d_v_1_1_11_right_flip_up
+    uc_v_1_1_11_right_flip_up = _runtime.select(t1686, 1.0, t1687 * t1688)
+    del t1687
+    t1689 = qx_1_1_11_right_flip_up * uc_v_1_1_11_right_flip_up
+    t1690 = qx_1_1_11_right_flip_up * t1680 + t24 * t1678
+    del t1678, t1680
+    t1691 = k_v_1_1_11_right_flip_up * d_v_1_1_11_right_flip_up
     del d_v_1_1_11_right_flip_up, k_v_1_1_11_right_flip_up
-    t1691 = t1687 * (2.0 * _runtime.sign(-t1689) * np.sqrt(t1690))
-    del t1687, t1689, t1690
-    us_v_1_1_11_right_flip_up = _runtime.select(t1685, 0.0, t1691)
-    del t1685, t1691
-    t1692 = t23 * us_v_1_1_11_right_flip_up
-    t1693 = 1.0 / r_1_1_11_right_flip_up
+    t1692 = t1688 * (2.0 * _runtime.sign(-t1690) * np.sqrt(t1691))
+    del t1688, t1690, t1691
+    us_v_1_1_11_right_flip_up = _runtime.select(t1686, 0.0, t1692)
+    del t1686, t1692
+    t1693 = t24 * us_v_1_1_11_right_flip_up
+    t1694 = 1.0 / r_1_1_11_right_flip_up
     del r_1_1_11_right_flip_up
-    c_v_1_1_11_right_flip_up = _runtime.select(t1673, 1.0, (t1688 + t1692) * t1693)
-    t1694 = -(T33 * c_v_1_1_11_right_flip_up) < 0.0
-    t1695 = qx_1_1_11_right_flip_up * us_v_1_1_11_right_flip_up
+    c_v_1_1_11_right_flip_up = _runtime.select(t1674, 1.0, (t1689 + t1693) * t1694)
+    t1695 = -(T33 * c_v_1_1_11_right_flip_up) < 0.0
+    t1696 = qx_1_1_11_right_flip_up * us_v_1_1_11_right_flip_up
     del qx_1_1_11_right_flip_up, us_v_1_1_11_right_flip_up
-    t1696 = t23 * uc_v_1_1_11_right_flip_up
+    t1697 = t24 * uc_v_1_1_11_right_flip_up
     del uc_v_1_1_11_right_flip_up
-    wc_1_1_11_right_flip_up = _runtime.select(t1673, 0.0, t1693 * (t1695 + t1696))
-    s_v_1_1_11_right_flip_up = _runtime.select(t1673, 0.0, t1693 * (t1695 - t1696))
-    del t1695, t1696
-    to_c_1_1_11_right_flip_up = _runtime.select(t1694, wc_1_1_11_right_flip_up, -s_v_1_1_11_right_flip_up)
+    wc_1_1_11_right_flip_up = _runtime.select(t1674, 0.0, t1694 * (t1696 + t1697))
+    s_v_1_1_11_right_flip_up = _runtime.select(t1674, 0.0, t1694 * (t1696 - t1697))
+    del t1696, t1697
+    to_c_1_1_11_right_flip_up = _runtime.select(t1695, wc_1_1_11_right_flip_up, -s_v_1_1_11_right_flip_up)
     del s_v_1_1_11_right_flip_up, wc_1_1_11_right_flip_up
-    c_w_1_1_11_right_flip_up = _runtime.select(t1673, 1.0, t1693 * (t1688 - t1692))
-    del t1673, t1688, t1692, t1693
-    to_s_1_1_11_right_flip_up = _runtime.select(t1694, c_w_1_1_11_right_flip_up, c_v_1_1_11_right_flip_up)
-    del c_v_1_1_11_right_flip_up, c_w_1_1_11_right_flip_up, t1694
-    t1697 = T33 * to_c_1_1_11_right_flip_up * _runtime.sign(to_s_1_1_11_right_flip_up)
+    c_w_1_1_11_right_flip_up = _runtime.select(t1674, 1.0, t1694 * (t1689 - t1693))
+    del t1674, t1689, t1693, t1694
+    to_s_1_1_11_right_flip_up = _runtime.select(t1695, c_w_1_1_11_right_flip_up, c_v_1_1_11_right_flip_up)
+    del c_v_1_1_11_right_flip_up, c_w_1_1_11_right_flip_up, t1695
+    t1698 = T33 * to_c_1_1_11_right_flip_up * _runtime.sign(to_s_1_1_11_right_flip_up)
     del to_c_1_1_11_right_flip_up
-    across_1_1_11_right_flip_up = _runtime.select(t22, 0.0, t1697)
-    del t1697
-    t1698 = np.abs(to_s_1_1_11_right_flip_up)
+    across_1_1_11_right_flip_up = _runtime.select(t23, 0.0, t1698)
+    del t1698
+    t1699 = np.abs(to_s_1_1_11_right_flip_up)
     del to_s_1_1_11_right_flip_up
-    t1699 = most_1_1_11_right_flip_up * t1698 <= np.abs(across_1_1_11_right_flip_up)
-    t1700 = most_1_1_11_right_flip_up * _runtime.sign(across_1_1_11_right_flip_up)
-    t1701 = _runtime.select(t1699, t1700, across_1_1_11_right_flip_up / t1698)
-    del t1698, t1699, t1700
-    wanted_1_1_11_right_flip_up = _runtime.select(across_1_1_11_right_flip_up == 0.0, 0.0, t1701)
-    del across_1_1_11_right_flip_up, t1701
-    t1702 = axisx_1_1_11_right_flip_up * wanted_1_1_11_right_flip_up
-    t1703 = most_1_1_11_right_flip_up - wanted_1_1_11_right_flip_up
-    t1704 = most_1_1_11_right_flip_up + wanted_1_1_11_right_flip_up
-    rest_1_1_11_right_flip_up = np.sqrt(np.maximum(0.0, t1703 * t1704)) * _runtime.sign(-t1670)
-    del t1703, t1704
-    t1705 = most_1_1_11_right_flip_up * most_1_1_11_right_flip_up
+    t1700 = most_1_1_11_right_flip_up * t1699 <= np.abs(across_1_1_11_right_flip_up)
+    t1701 = most_1_1_11_right_flip_up * _runtime.sign(across_1_1_11_right_flip_up)
+    t1702 = _runtime.select(t1700, t1701, across_1_1_11_right_flip_up / t1699)
+    del t1699, t1700, t1701
+    wanted_1_1_11_right_flip_up = _runtime.select(across_1_1_11_right_flip_up == 0.0, 0.0, t1702)
+    del across_1_1_11_right_flip_up, t1702
+    t1703 = axisx_1_1_11_right_flip_up * wanted_1_1_11_right_flip_up
+    t1704 = most_1_1_11_right_flip_up - wanted_1_1_11_right_flip_up
+    t1705 = most_1_1_11_right_flip_up + wanted_1_1_11_right_flip_up
+    rest_1_1_11_right_flip_up = np.sqrt(np.maximum(0.0, t1704 * t1705)) * _runtime.sign(-t1671)
+    del t1704, t1705
+    t1706 = most_1_1_11_right_flip_up * most_1_1_11_right_flip_up
     del most_1_1_11_right_flip_up
-    t1706 = 1.0 / t1705
-    del t1705
-    t1707 = (t1702 - t1670 * rest_1_1_11_right_flip_up) * t1706
-    del t1702
-    by_c_1_1_11_right_flip_up = _runtime.select(t1671, 1.0, t1707)
-    del t1707
-    t1708 = axisx_1_1_11_right_flip_up * rest_1_1_11_right_flip_up
+    t1707 = 1.0 / t1706
+    del t1706
+    t1708 = (t1703 - t1671 * rest_1_1_11_right_flip_up) * t1707
+    del t1703
+    by_c_1_1_11_right_flip_up = _runtime.select(t1672, 1.0, t1708)
+    del t1708
+    t1709 = axisx_1_1_11_right_flip_up * rest_1_1_11_right_flip_up
     del axisx_1_1_11_right_flip_up, rest_1_1_11_right_flip_up
-    t1709 = t1706 * (t1708 + t1670 * wanted_1_1_11_right_flip_up)
-    del t1670, t1706, t1708, wanted_1_1_11_right_flip_up
-    t1710 = _runtime.select(t1671, 0.0, t1709)
-    del t1671, t1709
-    t1711 = t1710 * t1710 / (1.0 + np.abs(by_c_1_1_11_right_flip_up))
-    versine_1_1_11_right_flip_up = _runtime.select(0.0 < by_c_1_1_11_right_flip_up, t1711, 1.0 - by_c_1_1_11_right_flip_up)
-    del t1711
-    cost_1_1_11_right_flip_up = d4 * versine_1_1_11_right_flip_up + root1 * np.abs(t1710)
+    t1710 = t1707 * (t1709 + t1671 * wanted_1_1_11_right_flip_up)
+    del t1671, t1707, t1709, wanted_1_1_11_right_flip_up
+    t1711 = _runtime.select(t1672, 0.0, t1710)
+    del t1672, t1710
+    t1712 = t1711 * t1711 / (1.0 + np.abs(by_c_1_1_11_right_flip_up))
+    versine_1_1_11_right_flip_up = _runtime.select(0.0 < by_c_1_1_11_right_flip_up, t1712, 1.0 - by_c_1_1_11_right_flip_up)
+    del t1712
+    cost_1_1_11_right_flip_up = d4 * versine_1_1_11_right_flip_up + root1 * np.abs(t1711)
     del versine_1_1_11_right_flip_up
-    t1712 = cost_1_1_11_right_flip_up <= whole_1_1
+    t1713 = cost_1_1_11_right_flip_up <= whole_1_1
     del cost_1_1_11_right_flip_up
-    cosine_1_1_11_right_flip_up = _runtime.select(t1712, by_c_1_1_11_right_flip_up, 1.0)
+    cosine_1_1_11_right_flip_up = _runtime.select(t1713, by_c_1_1_11_right_flip_up, 1.0)
     del by_c_1_1_11_right_flip_up
-    t1713 = c_1_1_11_right_flip_up * cosine_1_1_11_right_flip_up
-    sine_1_1_11_right_flip_up = _runtime.select(t1712, -t1710, 0.0)
-    del t1710, t1712
-    t1714 = s_1_1_11_right_flip_up * sine_1_1_11_right_flip_up
-    c_1_1_12_right_flip_up = t1713 - t1714
-    del t1713, t1714
-    t1715 = c_1_1_11_right_flip_up * sine_1_1_11_right_flip_up
+    t1714 = c_1_1_11_right_flip_up * cosine_1_1_11_right_flip_up
+    sine_1_1_11_right_flip_up = _runtime.select(t1713, -t1711, 0.0)
+    del t1711, t1713
+    t1715 = s_1_1_11_right_flip_up * sine_1_1_11_right_flip_up
+    c_1_1_12_right_flip_up = t1714 - t1715
+    del t1714, t1715
+    t1716 = c_1_1_11_right_flip_up * sine_1_1_11_right_flip_up
     del c_1_1_11_right_flip_up, sine_1_1_11_right_flip_up
-    t1716 = s_1_1_11_right_flip_up * cosine_1_1_11_right_flip_up
+    t1717 = s_1_1_11_right_flip_up * cosine_1_1_11_right_flip_up
     del cosine_1_1_11_right_flip_up, s_1_1_11_right_flip_up
-    s_1_1_12_right_flip_up = t1715 + t1716
-    del t1715, t1716
+    s_1_1_12_right_flip_up = t1716 + t1717
+    del t1716, t1717
     axisx_1_1_12_right_flip_up = T13 * c_1_1_12_right_flip_up + T23 * s_1_1_12_right_flip_up
-    t1717 = axisx_1_1_12_right_flip_up * axisx_1_1_12_right_flip_up
-    h_1_1_12_right_flip_up = np.sqrt(t5 + t1717)
-    del t1717
-    t1718 = h_1_1_12_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_12_right_flip_up = w_x * c_1_1_12_right_flip_up + w_y * s_1_1_12_right_flip_up
-    t1719 = h_1_1_12_right_flip_up == 0.0
-    t1720 = 1.0 / h_1_1_12_right_flip_up
-    t1721 = _runtime.select(t1719, 0.0, T33 * t1720)
-    x_1_1_12_right_flip_up = _runtime.select(t1718, qx_1_1_12_right_flip_up, qx_1_1_12_right_flip_up + d5 * t1721)
-    dqx_1_1_12_right_flip_up = w_y * c_1_1_12_right_flip_up - w_x * s_1_1_12_right_flip_up
-    t1722 = T13 * s_1_1_12_right_flip_up - T23 * c_1_1_12_right_flip_up
-    t1723 = h_1_1_12_right_flip_up * h_1_1_12_right_flip_up
-    del h_1_1_12_right_flip_up
-    spin_1_1_12_right_flip_up = _runtime.select(t1718, 0.0, T33 * t1722 / t1723)
-    del t1722, t1723
-    rate_1_1_12_right_flip_up = d5 * spin_1_1_12_right_flip_up
-    t1724 = _runtime.select(t1719, 1.0, -(axisx_1_1_12_right_flip_up * t1720))
-    del axisx_1_1_12_right_flip_up, t1719, t1720
-    t1725 = dqx_1_1_12_right_flip_up - rate_1_1_12_right_flip_up * t1724
-    dx_1_1_12_right_flip_up = _runtime.select(t1718, dqx_1_1_12_right_flip_up, t1725)
-    del t1725
-    t1726 = x_1_1_12_right_flip_up * dx_1_1_12_right_flip_up
-    del dx_1_1_12_right_flip_up
-    t1727 = _runtime.select(t1718, t23, t23 - d5 * t1724)
-    dy_1_1_12_right_flip_up = _runtime.select(t1718, 0.0, rate_1_1_12_right_flip_up * t1721)
-    slope_1_1_12_right_flip_up = t1726 - t1727 * dy_1_1_12_right_flip_up
-    del dy_1_1_12_right_flip_up, t1726
-    t1728 = slope_1_1_12_right_flip_up * slope_1_1_12_right_flip_up
-    straight_1_1_12_right_flip_up = dqx_1_1_12_right_flip_up * dqx_1_1_12_right_flip_up
-    t1729 = qx_1_1_12_right_flip_up * t1721 - t23 * t1724
-    del qx_1_1_12_right_flip_up, t1721
-    t1730 = 2.0 * dqx_1_1_12_right_flip_up * t1724 + spin_1_1_12_right_flip_up * t1729
-    del dqx_1_1_12_right_flip_up, spin_1_1_12_right_flip_up, t1724, t1729
-    t1731 = straight_1_1_12_right_flip_up - rate_1_1_12_right_flip_up * t1730
-    del rate_1_1_12_right_flip_up, t1730
-    bends_1_1_12_right_flip_up = _runtime.select(t1718, straight_1_1_12_right_flip_up, t1731)
-    del straight_1_1_12_right_flip_up, t1731
-    t1732 = x_1_1_12_right_flip_up * x_1_1_12_right_flip_up
-    del x_1_1_12_right_flip_up
-    square_1_1_12_right_flip_up = t1732 + t1727 * t1727
-    del t1727, t1732
-    t1733 = _runtime.select(t1718, t98, fold_1_1) - whole_1_1
-    t1734 = np.maximum(0.0, t1733)
-    del t1733
-    t1735 = whole_1_1 + _runtime.select(t1718, t3, full_1_1)
+    t1718 = axisx_1_1_12_right_flip_up * axisx_1_1_12_right_flip_up
+    h_1_1_12_right_flip_up = np.sqrt(t5 + t1718)
     del t1718
-    t1736 = np.minimum(t1735 * t1735, square_1_1_12_right_flip_up)
-    del t1735
-    miss_1_1_12_right_flip_up = square_1_1_12_right_flip_up - np.maximum(t1734 * t1734, t1736)
-    del square_1_1_12_right_flip_up, t1734, t1736
-    t1737 = bends_1_1_12_right_flip_up * miss_1_1_12_right_flip_up
-    inner_1_1_12_right_flip_up = t1728 - t1737
-    del t1728, t1737
-    t1738 = inner_1_1_12_right_flip_up < 0.0
-    t1739 = np.sqrt(np.maximum(0.0, inner_1_1_12_right_flip_up))
+    t1719 = h_1_1_12_right_flip_up <= t89
+    qx_1_1_12_right_flip_up = w_x * c_1_1_12_right_flip_up + w_y * s_1_1_12_right_flip_up
+    t1720 = h_1_1_12_right_flip_up == 0.0
+    t1721 = 1.0 / h_1_1_12_right_flip_up
+    t1722 = _runtime.select(t1720, 0.0, T33 * t1721)
+    x_1_1_12_right_flip_up = _runtime.select(t1719, qx_1_1_12_right_flip_up, qx_1_1_12_right_flip_up + d5 * t1722)
+    dqx_1_1_12_right_flip_up = w_y * c_1_1_12_right_flip_up - w_x * s_1_1_12_right_flip_up
+    t1723 = T13 * s_1_1_12_right_flip_up - T23 * c_1_1_12_right_flip_up
+    t1724 = h_1_1_12_right_flip_up * h_1_1_12_right_flip_up
+    del h_1_1_12_right_flip_up
+    spin_1_1_12_right_flip_up = _runtime.select(t1719, 0.0, T33 * t1723 / t1724)
+    del t1723, t1724
+    rate_1_1_12_right_flip_up = d5 * spin_1_1_12_right_flip_up
+    t1725 = _runtime.select(t1720, 1.0, -(axisx_1_1_12_right_flip_up * t1721))
+    del axisx_1_1_12_right_flip_up, t1720, t1721
+    t1726 = dqx_1_1_12_right_flip_up - rate_1_1_12_right_flip_up * t1725
+    dx_1_1_12_right_flip_up = _runtime.select(t1719, dqx_1_1_12_right_flip_up, t1726)
+    del t1726
+    t1727 = x_1_1_12_right_flip_up * dx_1_1_12_right_flip_up
+    del dx_1_1_12_right_flip_up
+    t1728 = _runtime.select(t1719, t24, t24 - d5 * t1725)
+    dy_1_1_12_right_flip_up = _runtime.select(t1719, 0.0, rate_1_1_12_right_flip_up * t1722)
+    slope_1_1_12_right_flip_up = t1727 - t1728 * dy_1_1_12_right_flip_up
+    del dy_1_1_12_right_flip_up, t1727
+    t1729 = slope_1_1_12_right_flip_up * slope_1_1_12_right_flip_up
+    straight_1_1_12_right_flip_up = dqx_1_1_12_right_flip_up * dqx_1_1_12_right_flip_up
+    t1730 = qx_1_1_12_right_flip_up * t1722 - t24 * t1725
+    del qx_1_1_12_right_flip_up, t1722
+    t1731 = 2.0 * dqx_1_1_12_right_flip_up * t1725 + spin_1_1_12_right_flip_up * t1730
+    del dqx_1_1_12_right_flip_up, spin_1_1_12_right_flip_up, t1725, t1730
+    t1732 = straight_1_1_12_right_flip_up - rate_1_1_12_right_flip_up * t1731
+    del rate_1_1_12_right_flip_up, t1731
+    bends_1_1_12_right_flip_up = _runtime.select(t1719, straight_1_1_12_right_flip_up, t1732)
+    del straight_1_1_12_right_flip_up, t1732
+    t1733 = x_1_1_12_right_flip_up * x_1_1_12_right_flip_up
+    del x_1_1_12_right_flip_up
+    square_1_1_12_right_flip_up = t1733 + t1728 * t1728
+    del t1728, t1733
+    t1734 = _runtime.select(t1719, t99, fold_1_1) - whole_1_1
+    t1735 = np.maximum(0.0, t1734)
+    del t1734
+    t1736 = whole_1_1 + _runtime.select(t1719, t3, full_1_1)
+    del t1719
+    t1737 = np.minimum(t1736 * t1736, square_1_1_12_right_flip_up)
+    del t1736
+    miss_1_1_12_right_flip_up = square_1_1_12_right_flip_up - np.maximum(t1735 * t1735, t1737)
+    del square_1_1_12_right_flip_up, t1735, t1737
+    t1738 = bends_1_1_12_right_flip_up * miss_1_1_12_right_flip_up
+    inner_1_1_12_right_flip_up = t1729 - t1738
+    del t1729, t1738
+    t1739 = inner_1_1_12_right_flip_up < 0.0
+    t1740 = np.sqrt(np.maximum(0.0, inner_1_1_12_right_flip_up))
     del inner_1_1_12_right_flip_up
-    t1740 = _runtime.sign(slope_1_1_12_right_flip_up) * t1739
-    del t1739
-    below_1_1_12_right_flip_up = _runtime.select(t1738, 2.0 * bends_1_1_12_right_flip_up, 2.0 * (slope_1_1_12_right_flip_up + t1740))
-    del bends_1_1_12_right_flip_up, t1740
-    above_1_1_12_right_flip_up = _runtime.select(t1738, slope_1_1_12_right_flip_up, miss_1_1_12_right_flip_up)
-    del miss_1_1_12_right_flip_up, slope_1_1_12_right_flip_up, t1738
-    t1741 = np.abs(below_1_1_12_right_flip_up) <= np.abs(above_1_1_12_right_flip_up)
-    t1742 = above_1_1_12_right_flip_up / below_1_1_12_right_flip_up
+    t1741 = _runtime.sign(slope_1_1_12_right_flip_up) * t1740
+    del t1740
+    below_1_1_12_right_flip_up = _runtime.select(t1739, 2.0 * bends_1_1_12_right_flip_up, 2.0 * (slope_1_1_12_right_flip_up + t1741))
+    del bends_1_1_12_right_flip_up, t1741
+    above_1_1_12_right_flip_up = _runtime.select(t1739, slope_1_1_12_right_flip_up, miss_1_1_12_right_flip_up)
+    del miss_1_1_12_right_flip_up, slope_1_1_12_right_flip_up, t1739
+    t1742 = np.abs(below_1_1_12_right_flip_up) <= np.abs(above_1_1_12_right_flip_up)
+    t1743 = above_1_1_12_right_flip_up / below_1_1_12_right_flip_up
     del above_1_1_12_right_flip_up, below_1_1_12_right_flip_up
-    t1743 = _runtime.select(t1741, 0.0, t1742)
-    del t1741, t1742
-    t1744 = t1743 * t1743
-    t1745 = 1.0 / (1.0 + t1744)
-    by_c_1_1_12_right_flip_up = (1.0 - t1744) * t1745
-    del t1744
-    t1746 = t1745 * (2.0 * t1743)
-    del t1743, t1745
-    t1747 = t1746 * t1746 / (1.0 + np.abs(by_c_1_1_12_right_flip_up))
-    versine_1_1_12_right_flip_up = _runtime.select(0.0 < by_c_1_1_12_right_flip_up, t1747, 1.0 - by_c_1_1_12_right_flip_up)
-    del t1747
-    cost_1_1_12_right_flip_up = d4 * versine_1_1_12_right_flip_up + root1 * np.abs(t1746)
+    t1744 = _runtime.select(t1742, 0.0, t1743)
+    del t1742, t1743
+    t1745 = t1744 * t1744
+    t1746 = 1.0 / (1.0 + t1745)
+    by_c_1_1_12_right_flip_up = (1.0 - t1745) * t1746
+    del t1745
+    t1747 = t1746 * (2.0 * t1744)
+    del t1744, t1746
+    t1748 = t1747 * t1747 / (1.0 + np.abs(by_c_1_1_12_right_flip_up))
+    versine_1_1_12_right_flip_up = _runtime.select(0.0 < by_c_1_1_12_right_flip_up, t1748, 1.0 - by_c_1_1_12_right_flip_up)
+    del t1748
+    cost_1_1_12_right_flip_up = d4 * versine_1_1_12_right_flip_up + root1 * np.abs(t1747)
     del versine_1_1_12_right_flip_up
-    t1748 = cost_1_1_12_right_flip_up <= whole_1_1
+    t1749 = cost_1_1_12_right_flip_up <= whole_1_1
     del cost_1_1_12_right_flip_up
-    cosine_1_1_12_right_flip_up = _runtime.select(t1748, by_c_1_1_12_right_flip_up, 1.0)
+    cosine_1_1_12_right_flip_up = _runtime.select(t1749, by_c_1_1_12_right_flip_up, 1.0)
     del by_c_1_1_12_right_flip_up
-    t1749 = c_1_1_12_right_flip_up * cosine_1_1_12_right_flip_up
-    sine_1_1_12_right_flip_up = _runtime.select(t1748, -t1746, 0.0)
-    del t1746, t1748
-    t1750 = s_1_1_12_right_flip_up * sine_1_1_12_right_flip_up
-    c_1_1_13_right_flip_up = t1749 - t1750
-    del t1749, t1750
-    t1751 = c_1_1_12_right_flip_up * sine_1_1_12_right_flip_up
+    t1750 = c_1_1_12_right_flip_up * cosine_1_1_12_right_flip_up
+    sine_1_1_12_right_flip_up = _runtime.select(t1749, -t1747, 0.0)
+    del t1747, t1749
+    t1751 = s_1_1_12_right_flip_up * sine_1_1_12_right_flip_up
+    c_1_1_13_right_flip_up = t1750 - t1751
+    del t1750, t1751
+    t1752 = c_1_1_12_right_flip_up * sine_1_1_12_right_flip_up
     del c_1_1_12_right_flip_up, sine_1_1_12_right_flip_up
-    t1752 = s_1_1_12_right_flip_up * cosine_1_1_12_right_flip_up
+    t1753 = s_1_1_12_right_flip_up * cosine_1_1_12_right_flip_up
     del cosine_1_1_12_right_flip_up, s_1_1_12_right_flip_up
-    s_1_1_13_right_flip_up = t1751 + t1752
-    del t1751, t1752
+    s_1_1_13_right_flip_up = t1752 + t1753
+    del t1752, t1753
     axisx_1_1_13_right_flip_up = T13 * c_1_1_13_right_flip_up + T23 * s_1_1_13_right_flip_up
-    t1753 = axisx_1_1_13_right_flip_up * axisx_1_1_13_right_flip_up
-    h_1_1_13_right_flip_up = np.sqrt(t5 + t1753)
-    del t1753
-    t1754 = h_1_1_13_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_13_right_flip_up = w_x * c_1_1_13_right_flip_up + w_y * s_1_1_13_right_flip_up
-    t1755 = h_1_1_13_right_flip_up == 0.0
-    t1756 = 1.0 / h_1_1_13_right_flip_up
-    t1757 = _runtime.select(t1755, 0.0, T33 * t1756)
-    x_1_1_13_right_flip_up = _runtime.select(t1754, qx_1_1_13_right_flip_up, qx_1_1_13_right_flip_up + d5 * t1757)
-    dqx_1_1_13_right_flip_up = w_y * c_1_1_13_right_flip_up - w_x * s_1_1_13_right_flip_up
-    t1758 = T13 * s_1_1_13_right_flip_up - T23 * c_1_1_13_right_flip_up
-    t1759 = h_1_1_13_right_flip_up * h_1_1_13_right_flip_up
-    del h_1_1_13_right_flip_up
-    spin_1_1_13_right_flip_up = _runtime.select(t1754, 0.0, T33 * t1758 / t1759)
-    del t1758, t1759
-    rate_1_1_13_right_flip_up = d5 * spin_1_1_13_right_flip_up
-    t1760 = _runtime.select(t1755, 1.0, -(axisx_1_1_13_right_flip_up * t1756))
-    del axisx_1_1_13_right_flip_up, t1755, t1756
-    t1761 = dqx_1_1_13_right_flip_up - rate_1_1_13_right_flip_up * t1760
-    dx_1_1_13_right_flip_up = _runtime.select(t1754, dqx_1_1_13_right_flip_up, t1761)
-    del t1761
-    t1762 = x_1_1_13_right_flip_up * dx_1_1_13_right_flip_up
-    del dx_1_1_13_right_flip_up
-    t1763 = _runtime.select(t1754, t23, t23 - d5 * t1760)
-    dy_1_1_13_right_flip_up = _runtime.select(t1754, 0.0, rate_1_1_13_right_flip_up * t1757)
-    slope_1_1_13_right_flip_up = t1762 - t1763 * dy_1_1_13_right_flip_up
-    del dy_1_1_13_right_flip_up, t1762
-    t1764 = slope_1_1_13_right_flip_up * slope_1_1_13_right_flip_up
-    straight_1_1_13_right_flip_up = dqx_1_1_13_right_flip_up * dqx_1_1_13_right_flip_up
-    t1765 = qx_1_1_13_right_flip_up * t1757 - t23 * t1760
-    del qx_1_1_13_right_flip_up, t1757
-    t1766 = 2.0 * dqx_1_1_13_right_flip_up * t1760 + spin_1_1_13_right_flip_up * t1765
-    del dqx_1_1_13_right_flip_up, spin_1_1_13_right_flip_up, t1760, t1765
-    t1767 = straight_1_1_13_right_flip_up - rate_1_1_13_right_flip_up * t1766
-    del rate_1_1_13_right_flip_up, t1766
-    bends_1_1_13_right_flip_up = _runtime.select(t1754, straight_1_1_13_right_flip_up, t1767)
-    del straight_1_1_13_right_flip_up, t1767
-    t1768 = x_1_1_13_right_flip_up * x_1_1_13_right_flip_up
-    del x_1_1_13_right_flip_up
-    square_1_1_13_right_flip_up = t1768 + t1763 * t1763
-    del t1763, t1768
-    t1769 = _runtime.select(t1754, t98, fold_1_1) - whole_1_1
-    t1770 = np.maximum(0.0, t1769)
-    del t1769
-    t1771 = whole_1_1 + _runtime.select(t1754, t3, full_1_1)
+    t1754 = axisx_1_1_13_right_flip_up * axisx_1_1_13_right_flip_up
+    h_1_1_13_right_flip_up = np.sqrt(t5 + t1754)
     del t1754
-    t1772 = np.minimum(t1771 * t1771, square_1_1_13_right_flip_up)
-    del t1771
-    miss_1_1_13_right_flip_up = square_1_1_13_right_flip_up - np.maximum(t1770 * t1770, t1772)
-    del square_1_1_13_right_flip_up, t1770, t1772
-    t1773 = bends_1_1_13_right_flip_up * miss_1_1_13_right_flip_up
-    inner_1_1_13_right_flip_up = t1764 - t1773
-    del t1764, t1773
-    t1774 = inner_1_1_13_right_flip_up < 0.0
-    t1775 = np.sqrt(np.maximum(0.0, inner_1_1_13_right_flip_up))
+    t1755 = h_1_1_13_right_flip_up <= t89
+    qx_1_1_13_right_flip_up = w_x * c_1_1_13_right_flip_up + w_y * s_1_1_13_right_flip_up
+    t1756 = h_1_1_13_right_flip_up == 0.0
+    t1757 = 1.0 / h_1_1_13_right_flip_up
+    t1758 = _runtime.select(t1756, 0.0, T33 * t1757)
+    x_1_1_13_right_flip_up = _runtime.select(t1755, qx_1_1_13_right_flip_up, qx_1_1_13_right_flip_up + d5 * t1758)
+    dqx_1_1_13_right_flip_up = w_y * c_1_1_13_right_flip_up - w_x * s_1_1_13_right_flip_up
+    t1759 = T13 * s_1_1_13_right_flip_up - T23 * c_1_1_13_right_flip_up
+    t1760 = h_1_1_13_right_flip_up * h_1_1_13_right_flip_up
+    del h_1_1_13_right_flip_up
+    spin_1_1_13_right_flip_up = _runtime.select(t1755, 0.0, T33 * t1759 / t1760)
+    del t1759, t1760
+    rate_1_1_13_right_flip_up = d5 * spin_1_1_13_right_flip_up
+    t1761 = _runtime.select(t1756, 1.0, -(axisx_1_1_13_right_flip_up * t1757))
+    del axisx_1_1_13_right_flip_up, t1756, t1757
+    t1762 = dqx_1_1_13_right_flip_up - rate_1_1_13_right_flip_up * t1761
+    dx_1_1_13_right_flip_up = _runtime.select(t1755, dqx_1_1_13_right_flip_up, t1762)
+    del t1762
+    t1763 = x_1_1_13_right_flip_up * dx_1_1_13_right_flip_up
+    del dx_1_1_13_right_flip_up
+    t1764 = _runtime.select(t1755, t24, t24 - d5 * t1761)
+    dy_1_1_13_right_flip_up = _runtime.select(t1755, 0.0, rate_1_1_13_right_flip_up * t1758)
+    slope_1_1_13_right_flip_up = t1763 - t1764 * dy_1_1_13_right_flip_up
+    del dy_1_1_13_right_flip_up, t1763
+    t1765 = slope_1_1_13_right_flip_up * slope_1_1_13_right_flip_up
+    straight_1_1_13_right_flip_up = dqx_1_1_13_right_flip_up * dqx_1_1_13_right_flip_up
+    t1766 = qx_1_1_13_right_flip_up * t1758 - t24 * t1761
+    del qx_1_1_13_right_flip_up, t1758
+    t1767 = 2.0 * dqx_1_1_13_right_flip_up * t1761 + spin_1_1_13_right_flip_up * t1766
+    del dqx_1_1_13_right_flip_up, spin_1_1_13_right_flip_up, t1761, t1766
+    t1768 = straight_1_1_13_right_flip_up - rate_1_1_13_right_flip_up * t1767
+    del rate_1_1_13_right_flip_up, t1767
+    bends_1_1_13_right_flip_up = _runtime.select(t1755, straight_1_1_13_right_flip_up, t1768)
+    del straight_1_1_13_right_flip_up, t1768
+    t1769 = x_1_1_13_right_flip_up * x_1_1_13_right_flip_up
+    del x_1_1_13_right_flip_up
+    square_1_1_13_right_flip_up = t1769 + t1764 * t1764
+    del t1764, t1769
+    t1770 = _runtime.select(t1755, t99, fold_1_1) - whole_1_1
+    t1771 = np.maximum(0.0, t1770)
+    del t1770
+    t1772 = whole_1_1 + _runtime.select(t1755, t3, full_1_1)
+    del t1755
+    t1773 = np.minimum(t1772 * t1772, square_1_1_13_right_flip_up)
+    del t1772
+    miss_1_1_13_right_flip_up = square_1_1_13_right_flip_up - np.maximum(t1771 * t1771, t1773)
+    del square_1_1_13_right_flip_up, t1771, t1773
+    t1774 = bends_1_1_13_right_flip_up * miss_1_1_13_right_flip_up
+    inner_1_1_13_right_flip_up = t1765 - t1774
+    del t1765, t1774
+    t1775 = inner_1_1_13_right_flip_up < 0.0
+    t1776 = np.sqrt(np.maximum(0.0, inner_1_1_13_right_flip_up))
     del inner_1_1_13_right_flip_up
-    t1776 = _runtime.sign(slope_1_1_13_right_flip_up) * t1775
-    del t1775
-    below_1_1_13_right_flip_up = _runtime.select(t1774, 2.0 * bends_1_1_13_right_flip_up, 2.0 * (slope_1_1_13_right_flip_up + t1776))
-    del bends_1_1_13_right_flip_up, t1776
-    above_1_1_13_right_flip_up = _runtime.select(t1774, slope_1_1_13_right_flip_up, miss_1_1_13_right_flip_up)
-    del miss_1_1_13_right_flip_up, slope_1_1_13_right_flip_up, t1774
-    t1777 = np.abs(below_1_1_13_right_flip_up) <= np.abs(above_1_1_13_right_flip_up)
-    t1778 = above_1_1_13_right_flip_up / below_1_1_13_right_flip_up
+    t1777 = _runtime.sign(slope_1_1_13_right_flip_up) * t1776
+    del t1776
+    below_1_1_13_right_flip_up = _runtime.select(t1775, 2.0 * bends_1_1_13_right_flip_up, 2.0 * (slope_1_1_13_right_flip_up + t1777))
+    del bends_1_1_13_right_flip_up, t1777
+    above_1_1_13_right_flip_up = _runtime.select(t1775, slope_1_1_13_right_flip_up, miss_1_1_13_right_flip_up)
+    del miss_1_1_13_right_flip_up, slope_1_1_13_right_flip_up, t1775
+    t1778 = np.abs(below_1_1_13_right_flip_up) <= np.abs(above_1_1_13_right_flip_up)
+    t1779 = above_1_1_13_right_flip_up / below_1_1_13_right_flip_up
     del above_1_1_13_right_flip_up, below_1_1_13_right_flip_up
-    t1779 = _runtime.select(t1777, 0.0, t1778)
-    del t1777, t1778
-    t1780 = t1779 * t1779
-    t1781 = 1.0 / (1.0 + t1780)
-    by_c_1_1_13_right_flip_up = (1.0 - t1780) * t1781
-    del t1780
-    t1782 = t1781 * (2.0 * t1779)
-    del t1779, t1781
-    t1783 = t1782 * t1782 / (1.0 + np.abs(by_c_1_1_13_right_flip_up))
-    versine_1_1_13_right_flip_up = _runtime.select(0.0 < by_c_1_1_13_right_flip_up, t1783, 1.0 - by_c_1_1_13_right_flip_up)
-    del t1783
-    cost_1_1_13_right_flip_up = d4 * versine_1_1_13_right_flip_up + root1 * np.abs(t1782)
+    t1780 = _runtime.select(t1778, 0.0, t1779)
+    del t1778, t1779
+    t1781 = t1780 * t1780
+    t1782 = 1.0 / (1.0 + t1781)
+    by_c_1_1_13_right_flip_up = (1.0 - t1781) * t1782
+    del t1781
+    t1783 = t1782 * (2.0 * t1780)
+    del t1780, t1782
+    t1784 = t1783 * t1783 / (1.0 + np.abs(by_c_1_1_13_right_flip_up))
+    versine_1_1_13_right_flip_up = _runtime.select(0.0 < by_c_1_1_13_right_flip_up, t1784, 1.0 - by_c_1_1_13_right_flip_up)
+    del t1784
+    cost_1_1_13_right_flip_up = d4 * versine_1_1_13_right_flip_up + root1 * np.abs(t1783)
     del versine_1_1_13_right_flip_up
-    t1784 = cost_1_1_13_right_flip_up <= whole_1_1
+    t1785 = cost_1_1_13_right_flip_up <= whole_1_1
     del cost_1_1_13_right_flip_up
-    cosine_1_1_13_right_flip_up = _runtime.select(t1784, by_c_1_1_13_right_flip_up, 1.0)
+    cosine_1_1_13_right_flip_up = _runtime.select(t1785, by_c_1_1_13_right_flip_up, 1.0)
     del by_c_1_1_13_right_flip_up
-    t1785 = c_1_1_13_right_flip_up * cosine_1_1_13_right_flip_up
-    sine_1_1_13_right_flip_up = _runtime.select(t1784, -t1782, 0.0)
-    del t1782, t1784
-    t1786 = s_1_1_13_right_flip_up * sine_1_1_13_right_flip_up
-    c_1_1_14_right_flip_up = t1785 - t1786
-    del t1785, t1786
-    t1787 = c_1_1_13_right_flip_up * sine_1_1_13_right_flip_up
+    t1786 = c_1_1_13_right_flip_up * cosine_1_1_13_right_flip_up
+    sine_1_1_13_right_flip_up = _runtime.select(t1785, -t1783, 0.0)
+    del t1783, t1785
+    t1787 = s_1_1_13_right_flip_up * sine_1_1_13_right_flip_up
+    c_1_1_14_right_flip_up = t1786 - t1787
+    del t1786, t1787
+    t1788 = c_1_1_13_right_flip_up * sine_1_1_13_right_flip_up
     del c_1_1_13_right_flip_up, sine_1_1_13_right_flip_up
-    t1788 = s_1_1_13_right_flip_up * cosine_1_1_13_right_flip_up
+    t1789 = s_1_1_13_right_flip_up * cosine_1_1_13_right_flip_up
     del cosine_1_1_13_right_flip_up, s_1_1_13_right_flip_up
-    s_1_1_14_right_flip_up = t1787 + t1788
-    del t1787, t1788
+    s_1_1_14_right_flip_up = t1788 + t1789
+    del t1788, t1789
     axisx_1_1_14_right_flip_up = T13 * c_1_1_14_right_flip_up + T23 * s_1_1_14_right_flip_up
-    t1789 = axisx_1_1_14_right_flip_up * axisx_1_1_14_right_flip_up
-    h_1_1_14_right_flip_up = np.sqrt(t5 + t1789)
-    del t1789
-    t1790 = h_1_1_14_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_14_right_flip_up = w_x * c_1_1_14_right_flip_up + w_y * s_1_1_14_right_flip_up
-    t1791 = h_1_1_14_right_flip_up == 0.0
-    t1792 = 1.0 / h_1_1_14_right_flip_up
-    t1793 = _runtime.select(t1791, 0.0, T33 * t1792)
-    x_1_1_14_right_flip_up = _runtime.select(t1790, qx_1_1_14_right_flip_up, qx_1_1_14_right_flip_up + d5 * t1793)
-    dqx_1_1_14_right_flip_up = w_y * c_1_1_14_right_flip_up - w_x * s_1_1_14_right_flip_up
-    t1794 = T13 * s_1_1_14_right_flip_up - T23 * c_1_1_14_right_flip_up
-    t1795 = h_1_1_14_right_flip_up * h_1_1_14_right_flip_up
-    del h_1_1_14_right_flip_up
-    spin_1_1_14_right_flip_up = _runtime.select(t1790, 0.0, T33 * t1794 / t1795)
-    del t1794, t1795
-    rate_1_1_14_right_flip_up = d5 * spin_1_1_14_right_flip_up
-    t1796 = _runtime.select(t1791, 1.0, -(axisx_1_1_14_right_flip_up * t1792))
-    del axisx_1_1_14_right_flip_up, t1791, t1792
-    t1797 = dqx_1_1_14_right_flip_up - rate_1_1_14_right_flip_up * t1796
-    dx_1_1_14_right_flip_up = _runtime.select(t1790, dqx_1_1_14_right_flip_up, t1797)
-    del t1797
-    t1798 = x_1_1_14_right_flip_up * dx_1_1_14_right_flip_up
-    del dx_1_1_14_right_flip_up
-    t1799 = _runtime.select(t1790, t23, t23 - d5 * t1796)
-    dy_1_1_14_right_flip_up = _runtime.select(t1790, 0.0, rate_1_1_14_right_flip_up * t1793)
-    slope_1_1_14_right_flip_up = t1798 - t1799 * dy_1_1_14_right_flip_up
-    del dy_1_1_14_right_flip_up, t1798
-    t1800 = slope_1_1_14_right_flip_up * slope_1_1_14_right_flip_up
-    straight_1_1_14_right_flip_up = dqx_1_1_14_right_flip_up * dqx_1_1_14_right_flip_up
-    t1801 = qx_1_1_14_right_flip_up * t1793 - t23 * t1796
-    del qx_1_1_14_right_flip_up, t1793
-    t1802 = 2.0 * dqx_1_1_14_right_flip_up * t1796 + spin_1_1_14_right_flip_up * t1801
-    del dqx_1_1_14_right_flip_up, spin_1_1_14_right_flip_up, t1796, t1801
-    t1803 = straight_1_1_14_right_flip_up - rate_1_1_14_right_flip_up * t1802
-    del rate_1_1_14_right_flip_up, t1802
-    bends_1_1_14_right_flip_up = _runtime.select(t1790, straight_1_1_14_right_flip_up, t1803)
-    del straight_1_1_14_right_flip_up, t1803
-    t1804 = x_1_1_14_right_flip_up * x_1_1_14_right_flip_up
-    del x_1_1_14_right_flip_up
-    square_1_1_14_right_flip_up = t1804 + t1799 * t1799
-    del t1799, t1804
-    t1805 = _runtime.select(t1790, t98, fold_1_1) - whole_1_1
-    t1806 = np.maximum(0.0, t1805)
-    del t1805
-    t1807 = whole_1_1 + _runtime.select(t1790, t3, full_1_1)
+    t1790 = axisx_1_1_14_right_flip_up * axisx_1_1_14_right_flip_up
+    h_1_1_14_right_flip_up = np.sqrt(t5 + t1790)
     del t1790
-    t1808 = np.minimum(t1807 * t1807, square_1_1_14_right_flip_up)
-    del t1807
-    miss_1_1_14_right_flip_up = square_1_1_14_right_flip_up - np.maximum(t1806 * t1806, t1808)
-    del square_1_1_14_right_flip_up, t1806, t1808
-    t1809 = bends_1_1_14_right_flip_up * miss_1_1_14_right_flip_up
-    inner_1_1_14_right_flip_up = t1800 - t1809
-    del t1800, t1809
-    t1810 = inner_1_1_14_right_flip_up < 0.0
-    t1811 = np.sqrt(np.maximum(0.0, inner_1_1_14_right_flip_up))
+    t1791 = h_1_1_14_right_flip_up <= t89
+    qx_1_1_14_right_flip_up = w_x * c_1_1_14_right_flip_up + w_y * s_1_1_14_right_flip_up
+    t1792 = h_1_1_14_right_flip_up == 0.0
+    t1793 = 1.0 / h_1_1_14_right_flip_up
+    t1794 = _runtime.select(t1792, 0.0, T33 * t1793)
+    x_1_1_14_right_flip_up = _runtime.select(t1791, qx_1_1_14_right_flip_up, qx_1_1_14_right_flip_up + d5 * t1794)
+    dqx_1_1_14_right_flip_up = w_y * c_1_1_14_right_flip_up - w_x * s_1_1_14_right_flip_up
+    t1795 = T13 * s_1_1_14_right_flip_up - T23 * c_1_1_14_right_flip_up
+    t1796 = h_1_1_14_right_flip_up * h_1_1_14_right_flip_up
+    del h_1_1_14_right_flip_up
+    spin_1_1_14_right_flip_up = _runtime.select(t1791, 0.0, T33 * t1795 / t1796)
+    del t1795, t1796
+    rate_1_1_14_right_flip_up = d5 * spin_1_1_14_right_flip_up
+    t1797 = _runtime.select(t1792, 1.0, -(axisx_1_1_14_right_flip_up * t1793))
+    del axisx_1_1_14_right_flip_up, t1792, t1793
+    t1798 = dqx_1_1_14_right_flip_up - rate_1_1_14_right_flip_up * t1797
+    dx_1_1_14_right_flip_up = _runtime.select(t1791, dqx_1_1_14_right_flip_up, t1798)
+    del t1798
+    t1799 = x_1_1_14_right_flip_up * dx_1_1_14_right_flip_up
+    del dx_1_1_14_right_flip_up
+    t1800 = _runtime.select(t1791, t24, t24 - d5 * t1797)
+    dy_1_1_14_right_flip_up = _runtime.select(t1791, 0.0, rate_1_1_14_right_flip_up * t1794)
+    slope_1_1_14_right_flip_up = t1799 - t1800 * dy_1_1_14_right_flip_up
+    del dy_1_1_14_right_flip_up, t1799
+    t1801 = slope_1_1_14_right_flip_up * slope_1_1_14_right_flip_up
+    straight_1_1_14_right_flip_up = dqx_1_1_14_right_flip_up * dqx_1_1_14_right_flip_up
+    t1802 = qx_1_1_14_right_flip_up * t1794 - t24 * t1797
+    del qx_1_1_14_right_flip_up, t1794
+    t1803 = 2.0 * dqx_1_1_14_right_flip_up * t1797 + spin_1_1_14_right_flip_up * t1802
+    del dqx_1_1_14_right_flip_up, spin_1_1_14_right_flip_up, t1797, t1802
+    t1804 = straight_1_1_14_right_flip_up - rate_1_1_14_right_flip_up * t1803
+    del rate_1_1_14_right_flip_up, t1803
+    bends_1_1_14_right_flip_up = _runtime.select(t1791, straight_1_1_14_right_flip_up, t1804)
+    del straight_1_1_14_right_flip_up, t1804
+    t1805 = x_1_1_14_right_flip_up * x_1_1_14_right_flip_up
+    del x_1_1_14_right_flip_up
+    square_1_1_14_right_flip_up = t1805 + t1800 * t1800
+    del t1800, t1805
+    t1806 = _runtime.select(t1791, t99, fold_1_1) - whole_1_1
+    t1807 = np.maximum(0.0, t1806)
+    del t1806
+    t1808 = whole_1_1 + _runtime.select(t1791, t3, full_1_1)
+    del t1791
+    t1809 = np.minimum(t1808 * t1808, square_1_1_14_right_flip_up)
+    del t1808
+    miss_1_1_14_right_flip_up = square_1_1_14_right_flip_up - np.maximum(t1807 * t1807, t1809)
+    del square_1_1_14_right_flip_up, t1807, t1809
+    t1810 = bends_1_1_14_right_flip_up * miss_1_1_14_right_flip_up
+    inner_1_1_14_right_flip_up = t1801 - t1810
+    del t1801, t1810
+    t1811 = inner_1_1_14_right_flip_up < 0.0
+    t1812 = np.sqrt(np.maximum(0.0, inner_1_1_14_right_flip_up))
     del inner_1_1_14_right_flip_up
-    t1812 = _runtime.sign(slope_1_1_14_right_flip_up) * t1811
-    del t1811
-    below_1_1_14_right_flip_up = _runtime.select(t1810, 2.0 * bends_1_1_14_right_flip_up, 2.0 * (slope_1_1_14_right_flip_up + t1812))
-    del bends_1_1_14_right_flip_up, t1812
-    above_1_1_14_right_flip_up = _runtime.select(t1810, slope_1_1_14_right_flip_up, miss_1_1_14_right_flip_up)
-    del miss_1_1_14_right_flip_up, slope_1_1_14_right_flip_up, t1810
-    t1813 = np.abs(below_1_1_14_right_flip_up) <= np.abs(above_1_1_14_right_flip_up)
-    t1814 = above_1_1_14_right_flip_up / below_1_1_14_right_flip_up
+    t1813 = _runtime.sign(slope_1_1_14_right_flip_up) * t1812
+    del t1812
+    below_1_1_14_right_flip_up = _runtime.select(t1811, 2.0 * bends_1_1_14_right_flip_up, 2.0 * (slope_1_1_14_right_flip_up + t1813))
+    del bends_1_1_14_right_flip_up, t1813
+    above_1_1_14_right_flip_up = _runtime.select(t1811, slope_1_1_14_right_flip_up, miss_1_1_14_right_flip_up)
+    del miss_1_1_14_right_flip_up, slope_1_1_14_right_flip_up, t1811
+    t1814 = np.abs(below_1_1_14_right_flip_up) <= np.abs(above_1_1_14_right_flip_up)
+    t1815 = above_1_1_14_right_flip_up / below_1_1_14_right_flip_up
     del above_1_1_14_right_flip_up, below_1_1_14_right_flip_up
-    t1815 = _runtime.select(t1813, 0.0, t1814)
-    del t1813, t1814
-    t1816 = t1815 * t1815
-    t1817 = 1.0 / (1.0 + t1816)
-    by_c_1_1_14_right_flip_up = (1.0 - t1816) * t1817
-    del t1816
-    t1818 = t1817 * (2.0 * t1815)
-    del t1815, t1817
-    t1819 = t1818 * t1818 / (1.0 + np.abs(by_c_1_1_14_right_flip_up))
-    versine_1_1_14_right_flip_up = _runtime.select(0.0 < by_c_1_1_14_right_flip_up, t1819, 1.0 - by_c_1_1_14_right_flip_up)
-    del t1819
-    cost_1_1_14_right_flip_up = d4 * versine_1_1_14_right_flip_up + root1 * np.abs(t1818)
+    t1816 = _runtime.select(t1814, 0.0, t1815)
+    del t1814, t1815
+    t1817 = t1816 * t1816
+    t1818 = 1.0 / (1.0 + t1817)
+    by_c_1_1_14_right_flip_up = (1.0 - t1817) * t1818
+    del t1817
+    t1819 = t1818 * (2.0 * t1816)
+    del t1816, t1818
+    t1820 = t1819 * t1819 / (1.0 + np.abs(by_c_1_1_14_right_flip_up))
+    versine_1_1_14_right_flip_up = _runtime.select(0.0 < by_c_1_1_14_right_flip_up, t1820, 1.0 - by_c_1_1_14_right_flip_up)
+    del t1820
+    cost_1_1_14_right_flip_up = d4 * versine_1_1_14_right_flip_up + root1 * np.abs(t1819)
     del versine_1_1_14_right_flip_up
-    t1820 = cost_1_1_14_right_flip_up <= whole_1_1
+    t1821 = cost_1_1_14_right_flip_up <= whole_1_1
     del cost_1_1_14_right_flip_up
-    cosine_1_1_14_right_flip_up = _runtime.select(t1820, by_c_1_1_14_right_flip_up, 1.0)
+    cosine_1_1_14_right_flip_up = _runtime.select(t1821, by_c_1_1_14_right_flip_up, 1.0)
     del by_c_1_1_14_right_flip_up
-    t1821 = c_1_1_14_right_flip_up * cosine_1_1_14_right_flip_up
-    sine_1_1_14_right_flip_up = _runtime.select(t1820, -t1818, 0.0)
-    del t1818, t1820
-    t1822 = s_1_1_14_right_flip_up * sine_1_1_14_right_flip_up
-    c_1_1_15_right_flip_up = t1821 - t1822
-    del t1821, t1822
-    t1823 = c_1_1_14_right_flip_up * sine_1_1_14_right_flip_up
+    t1822 = c_1_1_14_right_flip_up * cosine_1_1_14_right_flip_up
+    sine_1_1_14_right_flip_up = _runtime.select(t1821, -t1819, 0.0)
+    del t1819, t1821
+    t1823 = s_1_1_14_right_flip_up * sine_1_1_14_right_flip_up
+    c_1_1_15_right_flip_up = t1822 - t1823
+    del t1822, t1823
+    t1824 = c_1_1_14_right_flip_up * sine_1_1_14_right_flip_up
     del c_1_1_14_right_flip_up, sine_1_1_14_right_flip_up
-    t1824 = s_1_1_14_right_flip_up * cosine_1_1_14_right_flip_up
+    t1825 = s_1_1_14_right_flip_up * cosine_1_1_14_right_flip_up
     del cosine_1_1_14_right_flip_up, s_1_1_14_right_flip_up
-    s_1_1_15_right_flip_up = t1823 + t1824
-    del t1823, t1824
+    s_1_1_15_right_flip_up = t1824 + t1825
+    del t1824, t1825
     axisx_1_1_15_right_flip_up = T13 * c_1_1_15_right_flip_up + T23 * s_1_1_15_right_flip_up
-    t1825 = axisx_1_1_15_right_flip_up * axisx_1_1_15_right_flip_up
-    h_1_1_15_right_flip_up = np.sqrt(t5 + t1825)
-    del t1825
-    t1826 = h_1_1_15_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_15_right_flip_up = w_x * c_1_1_15_right_flip_up + w_y * s_1_1_15_right_flip_up
-    t1827 = h_1_1_15_right_flip_up == 0.0
-    t1828 = 1.0 / h_1_1_15_right_flip_up
-    t1829 = _runtime.select(t1827, 0.0, T33 * t1828)
-    x_1_1_15_right_flip_up = _runtime.select(t1826, qx_1_1_15_right_flip_up, qx_1_1_15_right_flip_up + d5 * t1829)
-    dqx_1_1_15_right_flip_up = w_y * c_1_1_15_right_flip_up - w_x * s_1_1_15_right_flip_up
-    t1830 = T13 * s_1_1_15_right_flip_up - T23 * c_1_1_15_right_flip_up
-    t1831 = h_1_1_15_right_flip_up * h_1_1_15_right_flip_up
-    del h_1_1_15_right_flip_up
-    spin_1_1_15_right_flip_up = _runtime.select(t1826, 0.0, T33 * t1830 / t1831)
-    del t1830, t1831
-    rate_1_1_15_right_flip_up = d5 * spin_1_1_15_right_flip_up
-    t1832 = _runtime.select(t1827, 1.0, -(axisx_1_1_15_right_flip_up * t1828))
-    del axisx_1_1_15_right_flip_up, t1827, t1828
-    t1833 = dqx_1_1_15_right_flip_up - rate_1_1_15_right_flip_up * t1832
-    dx_1_1_15_right_flip_up = _runtime.select(t1826, dqx_1_1_15_right_flip_up, t1833)
-    del t1833
-    t1834 = x_1_1_15_right_flip_up * dx_1_1_15_right_flip_up
-    del dx_1_1_15_right_flip_up
-    t1835 = _runtime.select(t1826, t23, t23 - d5 * t1832)
-    dy_1_1_15_right_flip_up = _runtime.select(t1826, 0.0, rate_1_1_15_right_flip_up * t1829)
-    slope_1_1_15_right_flip_up = t1834 - t1835 * dy_1_1_15_right_flip_up
-    del dy_1_1_15_right_flip_up, t1834
-    t1836 = slope_1_1_15_right_flip_up * slope_1_1_15_right_flip_up
-    straight_1_1_15_right_flip_up = dqx_1_1_15_right_flip_up * dqx_1_1_15_right_flip_up
-    t1837 = qx_1_1_15_right_flip_up * t1829 - t23 * t1832
-    del qx_1_1_15_right_flip_up, t1829
-    t1838 = 2.0 * dqx_1_1_15_right_flip_up * t1832 + spin_1_1_15_right_flip_up * t1837
-    del dqx_1_1_15_right_flip_up, spin_1_1_15_right_flip_up, t1832, t1837
-    t1839 = straight_1_1_15_right_flip_up - rate_1_1_15_right_flip_up * t1838
-    del rate_1_1_15_right_flip_up, t1838
-    bends_1_1_15_right_flip_up = _runtime.select(t1826, straight_1_1_15_right_flip_up, t1839)
-    del straight_1_1_15_right_flip_up, t1839
-    t1840 = x_1_1_15_right_flip_up * x_1_1_15_right_flip_up
-    del x_1_1_15_right_flip_up
-    square_1_1_15_right_flip_up = t1840 + t1835 * t1835
-    del t1835, t1840
-    t1841 = _runtime.select(t1826, t98, fold_1_1) - whole_1_1
-    t1842 = np.maximum(0.0, t1841)
-    del t1841
-    t1843 = whole_1_1 + _runtime.select(t1826, t3, full_1_1)
+    t1826 = axisx_1_1_15_right_flip_up * axisx_1_1_15_right_flip_up
+    h_1_1_15_right_flip_up = np.sqrt(t5 + t1826)
     del t1826
-    t1844 = np.minimum(t1843 * t1843, square_1_1_15_right_flip_up)
-    del t1843
-    miss_1_1_15_right_flip_up = square_1_1_15_right_flip_up - np.maximum(t1842 * t1842, t1844)
-    del square_1_1_15_right_flip_up, t1842, t1844
-    t1845 = bends_1_1_15_right_flip_up * miss_1_1_15_right_flip_up
-    inner_1_1_15_right_flip_up = t1836 - t1845
-    del t1836, t1845
-    t1846 = inner_1_1_15_right_flip_up < 0.0
-    t1847 = np.sqrt(np.maximum(0.0, inner_1_1_15_right_flip_up))
+    t1827 = h_1_1_15_right_flip_up <= t89
+    qx_1_1_15_right_flip_up = w_x * c_1_1_15_right_flip_up + w_y * s_1_1_15_right_flip_up
+    t1828 = h_1_1_15_right_flip_up == 0.0
+    t1829 = 1.0 / h_1_1_15_right_flip_up
+    t1830 = _runtime.select(t1828, 0.0, T33 * t1829)
+    x_1_1_15_right_flip_up = _runtime.select(t1827, qx_1_1_15_right_flip_up, qx_1_1_15_right_flip_up + d5 * t1830)
+    dqx_1_1_15_right_flip_up = w_y * c_1_1_15_right_flip_up - w_x * s_1_1_15_right_flip_up
+    t1831 = T13 * s_1_1_15_right_flip_up - T23 * c_1_1_15_right_flip_up
+    t1832 = h_1_1_15_right_flip_up * h_1_1_15_right_flip_up
+    del h_1_1_15_right_flip_up
+    spin_1_1_15_right_flip_up = _runtime.select(t1827, 0.0, T33 * t1831 / t1832)
+    del t1831, t1832
+    rate_1_1_15_right_flip_up = d5 * spin_1_1_15_right_flip_up
+    t1833 = _runtime.select(t1828, 1.0, -(axisx_1_1_15_right_flip_up * t1829))
+    del axisx_1_1_15_right_flip_up, t1828, t1829
+    t1834 = dqx_1_1_15_right_flip_up - rate_1_1_15_right_flip_up * t1833
+    dx_1_1_15_right_flip_up = _runtime.select(t1827, dqx_1_1_15_right_flip_up, t1834)
+    del t1834
+    t1835 = x_1_1_15_right_flip_up * dx_1_1_15_right_flip_up
+    del dx_1_1_15_right_flip_up
+    t1836 = _runtime.select(t1827, t24, t24 - d5 * t1833)
+    dy_1_1_15_right_flip_up = _runtime.select(t1827, 0.0, rate_1_1_15_right_flip_up * t1830)
+    slope_1_1_15_right_flip_up = t1835 - t1836 * dy_1_1_15_right_flip_up
+    del dy_1_1_15_right_flip_up, t1835
+    t1837 = slope_1_1_15_right_flip_up * slope_1_1_15_right_flip_up
+    straight_1_1_15_right_flip_up = dqx_1_1_15_right_flip_up * dqx_1_1_15_right_flip_up
+    t1838 = qx_1_1_15_right_flip_up * t1830 - t24 * t1833
+    del qx_1_1_15_right_flip_up, t1830
+    t1839 = 2.0 * dqx_1_1_15_right_flip_up * t1833 + spin_1_1_15_right_flip_up * t1838
+    del dqx_1_1_15_right_flip_up, spin_1_1_15_right_flip_up, t1833, t1838
+    t1840 = straight_1_1_15_right_flip_up - rate_1_1_15_right_flip_up * t1839
+    del rate_1_1_15_right_flip_up, t1839
+    bends_1_1_15_right_flip_up = _runtime.select(t1827, straight_1_1_15_right_flip_up, t1840)
+    del straight_1_1_15_right_flip_up, t1840
+    t1841 = x_1_1_15_right_flip_up * x_1_1_15_right_flip_up
+    del x_1_1_15_right_flip_up
+    square_1_1_15_right_flip_up = t1841 + t1836 * t1836
+    del t1836, t1841
+    t1842 = _runtime.select(t1827, t99, fold_1_1) - whole_1_1
+    t1843 = np.maximum(0.0, t1842)
+    del t1842
+    t1844 = whole_1_1 + _runtime.select(t1827, t3, full_1_1)
+    del t1827
+    t1845 = np.minimum(t1844 * t1844, square_1_1_15_right_flip_up)
+    del t1844
+    miss_1_1_15_right_flip_up = square_1_1_15_right_flip_up - np.maximum(t1843 * t1843, t1845)
+    del square_1_1_15_right_flip_up, t1843, t1845
+    t1846 = bends_1_1_15_right_flip_up * miss_1_1_15_right_flip_up
+    inner_1_1_15_right_flip_up = t1837 - t1846
+    del t1837, t1846
+    t1847 = inner_1_1_15_right_flip_up < 0.0
+    t1848 = np.sqrt(np.maximum(0.0, inner_1_1_15_right_flip_up))
     del inner_1_1_15_right_flip_up
-    t1848 = _runtime.sign(slope_1_1_15_right_flip_up) * t1847
-    del t1847
-    below_1_1_15_right_flip_up = _runtime.select(t1846, 2.0 * bends_1_1_15_right_flip_up, 2.0 * (slope_1_1_15_right_flip_up + t1848))
-    del bends_1_1_15_right_flip_up, t1848
-    above_1_1_15_right_flip_up = _runtime.select(t1846, slope_1_1_15_right_flip_up, miss_1_1_15_right_flip_up)
-    del miss_1_1_15_right_flip_up, slope_1_1_15_right_flip_up, t1846
-    t1849 = np.abs(below_1_1_15_right_flip_up) <= np.abs(above_1_1_15_right_flip_up)
-    t1850 = above_1_1_15_right_flip_up / below_1_1_15_right_flip_up
+    t1849 = _runtime.sign(slope_1_1_15_right_flip_up) * t1848
+    del t1848
+    below_1_1_15_right_flip_up = _runtime.select(t1847, 2.0 * bends_1_1_15_right_flip_up, 2.0 * (slope_1_1_15_right_flip_up + t1849))
+    del bends_1_1_15_right_flip_up, t1849
+    above_1_1_15_right_flip_up = _runtime.select(t1847, slope_1_1_15_right_flip_up, miss_1_1_15_right_flip_up)
+    del miss_1_1_15_right_flip_up, slope_1_1_15_right_flip_up, t1847
+    t1850 = np.abs(below_1_1_15_right_flip_up) <= np.abs(above_1_1_15_right_flip_up)
+    t1851 = above_1_1_15_right_flip_up / below_1_1_15_right_flip_up
     del above_1_1_15_right_flip_up, below_1_1_15_right_flip_up
-    t1851 = _runtime.select(t1849, 0.0, t1850)
-    del t1849, t1850
-    t1852 = t1851 * t1851
-    t1853 = 1.0 / (1.0 + t1852)
-    by_c_1_1_15_right_flip_up = (1.0 - t1852) * t1853
-    del t1852
-    t1854 = t1853 * (2.0 * t1851)
-    del t1851, t1853
-    t1855 = t1854 * t1854 / (1.0 + np.abs(by_c_1_1_15_right_flip_up))
-    versine_1_1_15_right_flip_up = _runtime.select(0.0 < by_c_1_1_15_right_flip_up, t1855, 1.0 - by_c_1_1_15_right_flip_up)
-    del t1855
-    cost_1_1_15_right_flip_up = d4 * versine_1_1_15_right_flip_up + root1 * np.abs(t1854)
+    t1852 = _runtime.select(t1850, 0.0, t1851)
+    del t1850, t1851
+    t1853 = t1852 * t1852
+    t1854 = 1.0 / (1.0 + t1853)
+    by_c_1_1_15_right_flip_up = (1.0 - t1853) * t1854
+    del t1853
+    t1855 = t1854 * (2.0 * t1852)
+    del t1852, t1854
+    t1856 = t1855 * t1855 / (1.0 + np.abs(by_c_1_1_15_right_flip_up))
+    versine_1_1_15_right_flip_up = _runtime.select(0.0 < by_c_1_1_15_right_flip_up, t1856, 1.0 - by_c_1_1_15_right_flip_up)
+    del t1856
+    cost_1_1_15_right_flip_up = d4 * versine_1_1_15_right_flip_up + root1 * np.abs(t1855)
     del versine_1_1_15_right_flip_up
-    t1856 = cost_1_1_15_right_flip_up <= whole_1_1
+    t1857 = cost_1_1_15_right_flip_up <= whole_1_1
     del cost_1_1_15_right_flip_up
-    cosine_1_1_15_right_flip_up = _runtime.select(t1856, by_c_1_1_15_right_flip_up, 1.0)
+    cosine_1_1_15_right_flip_up = _runtime.select(t1857, by_c_1_1_15_right_flip_up, 1.0)
     del by_c_1_1_15_right_flip_up
-    t1857 = c_1_1_15_right_flip_up * cosine_1_1_15_right_flip_up
-    sine_1_1_15_right_flip_up = _runtime.select(t1856, -t1854, 0.0)
-    del t1854, t1856
-    t1858 = s_1_1_15_right_flip_up * sine_1_1_15_right_flip_up
-    c_1_1_16_right_flip_up = t1857 - t1858
-    del t1857, t1858
-    t1859 = c_1_1_15_right_flip_up * sine_1_1_15_right_flip_up
+    t1858 = c_1_1_15_right_flip_up * cosine_1_1_15_right_flip_up
+    sine_1_1_15_right_flip_up = _runtime.select(t1857, -t1855, 0.0)
+    del t1855, t1857
+    t1859 = s_1_1_15_right_flip_up * sine_1_1_15_right_flip_up
+    c_1_1_16_right_flip_up = t1858 - t1859
+    del t1858, t1859
+    t1860 = c_1_1_15_right_flip_up * sine_1_1_15_right_flip_up
     del c_1_1_15_right_flip_up, sine_1_1_15_right_flip_up
-    t1860 = s_1_1_15_right_flip_up * cosine_1_1_15_right_flip_up
+    t1861 = s_1_1_15_right_flip_up * cosine_1_1_15_right_flip_up
     del cosine_1_1_15_right_flip_up, s_1_1_15_right_flip_up
-    s_1_1_16_right_flip_up = t1859 + t1860
-    del t1859, t1860
+    s_1_1_16_right_flip_up = t1860 + t1861
+    del t1860, t1861
     axisx_1_1_16_right_flip_up = T13 * c_1_1_16_right_flip_up + T23 * s_1_1_16_right_flip_up
-    t1861 = axisx_1_1_16_right_flip_up * axisx_1_1_16_right_flip_up
-    h_1_1_16_right_flip_up = np.sqrt(t5 + t1861)
-    del t1861
-    t1862 = h_1_1_16_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_16_right_flip_up = w_x * c_1_1_16_right_flip_up + w_y * s_1_1_16_right_flip_up
-    t1863 = h_1_1_16_right_flip_up == 0.0
-    t1864 = 1.0 / h_1_1_16_right_flip_up
-    t1865 = _runtime.select(t1863, 0.0, T33 * t1864)
-    x_1_1_16_right_flip_up = _runtime.select(t1862, qx_1_1_16_right_flip_up, qx_1_1_16_right_flip_up + d5 * t1865)
-    dqx_1_1_16_right_flip_up = w_y * c_1_1_16_right_flip_up - w_x * s_1_1_16_right_flip_up
-    t1866 = T13 * s_1_1_16_right_flip_up - T23 * c_1_1_16_right_flip_up
-    t1867 = h_1_1_16_right_flip_up * h_1_1_16_right_flip_up
-    del h_1_1_16_right_flip_up
-    spin_1_1_16_right_flip_up = _runtime.select(t1862, 0.0, T33 * t1866 / t1867)
-    del t1866, t1867
-    rate_1_1_16_right_flip_up = d5 * spin_1_1_16_right_flip_up
-    t1868 = _runtime.select(t1863, 1.0, -(axisx_1_1_16_right_flip_up * t1864))
-    del axisx_1_1_16_right_flip_up, t1863, t1864
-    t1869 = dqx_1_1_16_right_flip_up - rate_1_1_16_right_flip_up * t1868
-    dx_1_1_16_right_flip_up = _runtime.select(t1862, dqx_1_1_16_right_flip_up, t1869)
-    del t1869
-    t1870 = x_1_1_16_right_flip_up * dx_1_1_16_right_flip_up
-    del dx_1_1_16_right_flip_up
-    t1871 = _runtime.select(t1862, t23, t23 - d5 * t1868)
-    dy_1_1_16_right_flip_up = _runtime.select(t1862, 0.0, rate_1_1_16_right_flip_up * t1865)
-    slope_1_1_16_right_flip_up = t1870 - t1871 * dy_1_1_16_right_flip_up
-    del dy_1_1_16_right_flip_up, t1870
-    t1872 = slope_1_1_16_right_flip_up * slope_1_1_16_right_flip_up
-    straight_1_1_16_right_flip_up = dqx_1_1_16_right_flip_up * dqx_1_1_16_right_flip_up
-    t1873 = qx_1_1_16_right_flip_up * t1865 - t23 * t1868
-    del qx_1_1_16_right_flip_up, t1865
-    t1874 = 2.0 * dqx_1_1_16_right_flip_up * t1868 + spin_1_1_16_right_flip_up * t1873
-    del dqx_1_1_16_right_flip_up, spin_1_1_16_right_flip_up, t1868, t1873
-    t1875 = straight_1_1_16_right_flip_up - rate_1_1_16_right_flip_up * t1874
-    del rate_1_1_16_right_flip_up, t1874
-    bends_1_1_16_right_flip_up = _runtime.select(t1862, straight_1_1_16_right_flip_up, t1875)
-    del straight_1_1_16_right_flip_up, t1875
-    t1876 = x_1_1_16_right_flip_up * x_1_1_16_right_flip_up
-    del x_1_1_16_right_flip_up
-    square_1_1_16_right_flip_up = t1876 + t1871 * t1871
-    del t1871, t1876
-    t1877 = _runtime.select(t1862, t98, fold_1_1) - whole_1_1
-    t1878 = np.maximum(0.0, t1877)
-    del t1877
-    t1879 = whole_1_1 + _runtime.select(t1862, t3, full_1_1)
+    t1862 = axisx_1_1_16_right_flip_up * axisx_1_1_16_right_flip_up
+    h_1_1_16_right_flip_up = np.sqrt(t5 + t1862)
     del t1862
-    t1880 = np.minimum(t1879 * t1879, square_1_1_16_right_flip_up)
-    del t1879
-    miss_1_1_16_right_flip_up = square_1_1_16_right_flip_up - np.maximum(t1878 * t1878, t1880)
-    del square_1_1_16_right_flip_up, t1878, t1880
-    t1881 = bends_1_1_16_right_flip_up * miss_1_1_16_right_flip_up
-    inner_1_1_16_right_flip_up = t1872 - t1881
-    del t1872, t1881
-    t1882 = inner_1_1_16_right_flip_up < 0.0
-    t1883 = np.sqrt(np.maximum(0.0, inner_1_1_16_right_flip_up))
+    t1863 = h_1_1_16_right_flip_up <= t89
+    qx_1_1_16_right_flip_up = w_x * c_1_1_16_right_flip_up + w_y * s_1_1_16_right_flip_up
+    t1864 = h_1_1_16_right_flip_up == 0.0
+    t1865 = 1.0 / h_1_1_16_right_flip_up
+    t1866 = _runtime.select(t1864, 0.0, T33 * t1865)
+    x_1_1_16_right_flip_up = _runtime.select(t1863, qx_1_1_16_right_flip_up, qx_1_1_16_right_flip_up + d5 * t1866)
+    dqx_1_1_16_right_flip_up = w_y * c_1_1_16_right_flip_up - w_x * s_1_1_16_right_flip_up
+    t1867 = T13 * s_1_1_16_right_flip_up - T23 * c_1_1_16_right_flip_up
+    t1868 = h_1_1_16_right_flip_up * h_1_1_16_right_flip_up
+    del h_1_1_16_right_flip_up
+    spin_1_1_16_right_flip_up = _runtime.select(t1863, 0.0, T33 * t1867 / t1868)
+    del t1867, t1868
+    rate_1_1_16_right_flip_up = d5 * spin_1_1_16_right_flip_up
+    t1869 = _runtime.select(t1864, 1.0, -(axisx_1_1_16_right_flip_up * t1865))
+    del axisx_1_1_16_right_flip_up, t1864, t1865
+    t1870 = dqx_1_1_16_right_flip_up - rate_1_1_16_right_flip_up * t1869
+    dx_1_1_16_right_flip_up = _runtime.select(t1863, dqx_1_1_16_right_flip_up, t1870)
+    del t1870
+    t1871 = x_1_1_16_right_flip_up * dx_1_1_16_right_flip_up
+    del dx_1_1_16_right_flip_up
+    t1872 = _runtime.select(t1863, t24, t24 - d5 * t1869)
+    dy_1_1_16_right_flip_up = _runtime.select(t1863, 0.0, rate_1_1_16_right_flip_up * t1866)
+    slope_1_1_16_right_flip_up = t1871 - t1872 * dy_1_1_16_right_flip_up
+    del dy_1_1_16_right_flip_up, t1871
+    t1873 = slope_1_1_16_right_flip_up * slope_1_1_16_right_flip_up
+    straight_1_1_16_right_flip_up = dqx_1_1_16_right_flip_up * dqx_1_1_16_right_flip_up
+    t1874 = qx_1_1_16_right_flip_up * t1866 - t24 * t1869
+    del qx_1_1_16_right_flip_up, t1866
+    t1875 = 2.0 * dqx_1_1_16_right_flip_up * t1869 + spin_1_1_16_right_flip_up * t1874
+    del dqx_1_1_16_right_flip_up, spin_1_1_16_right_flip_up, t1869, t1874
+    t1876 = straight_1_1_16_right_flip_up - rate_1_1_16_right_flip_up * t1875
+    del rate_1_1_16_right_flip_up, t1875
+    bends_1_1_16_right_flip_up = _runtime.select(t1863, straight_1_1_16_right_flip_up, t1876)
+    del straight_1_1_16_right_flip_up, t1876
+    t1877 = x_1_1_16_right_flip_up * x_1_1_16_right_flip_up
+    del x_1_1_16_right_flip_up
+    square_1_1_16_right_flip_up = t1877 + t1872 * t1872
+    del t1872, t1877
+    t1878 = _runtime.select(t1863, t99, fold_1_1) - whole_1_1
+    t1879 = np.maximum(0.0, t1878)
+    del t1878
+    t1880 = whole_1_1 + _runtime.select(t1863, t3, full_1_1)
+    del t1863
+    t1881 = np.minimum(t1880 * t1880, square_1_1_16_right_flip_up)
+    del t1880
+    miss_1_1_16_right_flip_up = square_1_1_16_right_flip_up - np.maximum(t1879 * t1879, t1881)
+    del square_1_1_16_right_flip_up, t1879, t1881
+    t1882 = bends_1_1_16_right_flip_up * miss_1_1_16_right_flip_up
+    inner_1_1_16_right_flip_up = t1873 - t1882
+    del t1873, t1882
+    t1883 = inner_1_1_16_right_flip_up < 0.0
+    t1884 = np.sqrt(np.maximum(0.0, inner_1_1_16_right_flip_up))
     del inner_1_1_16_right_flip_up
-    t1884 = _runtime.sign(slope_1_1_16_right_flip_up) * t1883
-    del t1883
-    below_1_1_16_right_flip_up = _runtime.select(t1882, 2.0 * bends_1_1_16_right_flip_up, 2.0 * (slope_1_1_16_right_flip_up + t1884))
-    del bends_1_1_16_right_flip_up, t1884
-    above_1_1_16_right_flip_up = _runtime.select(t1882, slope_1_1_16_right_flip_up, miss_1_1_16_right_flip_up)
-    del miss_1_1_16_right_flip_up, slope_1_1_16_right_flip_up, t1882
-    t1885 = np.abs(below_1_1_16_right_flip_up) <= np.abs(above_1_1_16_right_flip_up)
-    t1886 = above_1_1_16_right_flip_up / below_1_1_16_right_flip_up
+    t1885 = _runtime.sign(slope_1_1_16_right_flip_up) * t1884
+    del t1884
+    below_1_1_16_right_flip_up = _runtime.select(t1883, 2.0 * bends_1_1_16_right_flip_up, 2.0 * (slope_1_1_16_right_flip_up + t1885))
+    del bends_1_1_16_right_flip_up, t1885
+    above_1_1_16_right_flip_up = _runtime.select(t1883, slope_1_1_16_right_flip_up, miss_1_1_16_right_flip_up)
+    del miss_1_1_16_right_flip_up, slope_1_1_16_right_flip_up, t1883
+    t1886 = np.abs(below_1_1_16_right_flip_up) <= np.abs(above_1_1_16_right_flip_up)
+    t1887 = above_1_1_16_right_flip_up / below_1_1_16_right_flip_up
     del above_1_1_16_right_flip_up, below_1_1_16_right_flip_up
-    t1887 = _runtime.select(t1885, 0.0, t1886)
-    del t1885, t1886
-    t1888 = t1887 * t1887
-    t1889 = 1.0 / (1.0 + t1888)
-    by_c_1_1_16_right_flip_up = (1.0 - t1888) * t1889
-    del t1888
-    t1890 = t1889 * (2.0 * t1887)
-    del t1887, t1889
-    t1891 = t1890 * t1890 / (1.0 + np.abs(by_c_1_1_16_right_flip_up))
-    versine_1_1_16_right_flip_up = _runtime.select(0.0 < by_c_1_1_16_right_flip_up, t1891, 1.0 - by_c_1_1_16_right_flip_up)
-    del t1891
-    cost_1_1_16_right_flip_up = d4 * versine_1_1_16_right_flip_up + root1 * np.abs(t1890)
+    t1888 = _runtime.select(t1886, 0.0, t1887)
+    del t1886, t1887
+    t1889 = t1888 * t1888
+    t1890 = 1.0 / (1.0 + t1889)
+    by_c_1_1_16_right_flip_up = (1.0 - t1889) * t1890
+    del t1889
+    t1891 = t1890 * (2.0 * t1888)
+    del t1888, t1890
+    t1892 = t1891 * t1891 / (1.0 + np.abs(by_c_1_1_16_right_flip_up))
+    versine_1_1_16_right_flip_up = _runtime.select(0.0 < by_c_1_1_16_right_flip_up, t1892, 1.0 - by_c_1_1_16_right_flip_up)
+    del t1892
+    cost_1_1_16_right_flip_up = d4 * versine_1_1_16_right_flip_up + root1 * np.abs(t1891)
     del versine_1_1_16_right_flip_up
-    t1892 = cost_1_1_16_right_flip_up <= whole_1_1
+    t1893 = cost_1_1_16_right_flip_up <= whole_1_1
     del cost_1_1_16_right_flip_up
-    cosine_1_1_16_right_flip_up = _runtime.select(t1892, by_c_1_1_16_right_flip_up, 1.0)
+    cosine_1_1_16_right_flip_up = _runtime.select(t1893, by_c_1_1_16_right_flip_up, 1.0)
     del by_c_1_1_16_right_flip_up
-    t1893 = c_1_1_16_right_flip_up * cosine_1_1_16_right_flip_up
-    sine_1_1_16_right_flip_up = _runtime.select(t1892, -t1890, 0.0)
-    del t1890, t1892
-    t1894 = s_1_1_16_right_flip_up * sine_1_1_16_right_flip_up
-    c_1_1_17_right_flip_up = t1893 - t1894
-    del t1893, t1894
-    t1895 = c_1_1_16_right_flip_up * sine_1_1_16_right_flip_up
+    t1894 = c_1_1_16_right_flip_up * cosine_1_1_16_right_flip_up
+    sine_1_1_16_right_flip_up = _runtime.select(t1893, -t1891, 0.0)
+    del t1891, t1893
+    t1895 = s_1_1_16_right_flip_up * sine_1_1_16_right_flip_up
+    c_1_1_17_right_flip_up = t1894 - t1895
+    del t1894, t1895
+    t1896 = c_1_1_16_right_flip_up * sine_1_1_16_right_flip_up
     del c_1_1_16_right_flip_up, sine_1_1_16_right_flip_up
-    t1896 = s_1_1_16_right_flip_up * cosine_1_1_16_right_flip_up
+    t1897 = s_1_1_16_right_flip_up * cosine_1_1_16_right_flip_up
     del cosine_1_1_16_right_flip_up, s_1_1_16_right_flip_up
-    s_1_1_17_right_flip_up = t1895 + t1896
-    del t1895, t1896
+    s_1_1_17_right_flip_up = t1896 + t1897
+    del t1896, t1897
     axisx_1_1_17_right_flip_up = T13 * c_1_1_17_right_flip_up + T23 * s_1_1_17_right_flip_up
-    t1897 = axisx_1_1_17_right_flip_up * axisx_1_1_17_right_flip_up
-    h_1_1_17_right_flip_up = np.sqrt(t5 + t1897)
-    del t1897
-    t1898 = h_1_1_17_right_flip_up <= 1.4210854715202004e-14
+    t1898 = axisx_1_1_17_right_flip_up * axisx_1_1_17_right_flip_up
+    h_1_1_17_right_flip_up = np.sqrt(t5 + t1898)
+    del t1898
+    t1899 = h_1_1_17_right_flip_up <= t89
     qx_1_1_17_right_flip_up = w_x * c_1_1_17_right_flip_up + w_y * s_1_1_17_right_flip_up
-    t1899 = h_1_1_17_right_flip_up == 0.0
-    t1900 = 1.0 / h_1_1_17_right_flip_up
+    t1900 = h_1_1_17_right_flip_up == 0.0
+    t1901 = 1.0 / h_1_1_17_right_flip_up
     del h_1_1_17_right_flip_up
-    t1901 = d5 * _runtime.select(t1899, 0.0, T33 * t1900)
-    x_1_1_17_right_flip_up = _runtime.select(t1898, qx_1_1_17_right_flip_up, qx_1_1_17_right_flip_up + t1901)
-    del qx_1_1_17_right_flip_up, t1901
-    t1902 = x_1_1_17_right_flip_up * x_1_1_17_right_flip_up
+    t1902 = d5 * _runtime.select(t1900, 0.0, T33 * t1901)
+    x_1_1_17_right_flip_up = _runtime.select(t1899, qx_1_1_17_right_flip_up, qx_1_1_17_right_flip_up + t1902)
+    del qx_1_1_17_right_flip_up, t1902
+    t1903 = x_1_1_17_right_flip_up * x_1_1_17_right_flip_up
     del x_1_1_17_right_flip_up
-    t1903 = _runtime.select(t1899, 1.0, -(axisx_1_1_17_right_flip_up * t1900))
-    del axisx_1_1_17_right_flip_up, t1899, t1900
-    t1904 = _runtime.select(t1898, t23, t23 - d5 * t1903)
-    del t1903
-    t1905 = np.sqrt(t1902 + t1904 * t1904)
-    del t1902, t1904
-    t1906 = np.maximum(0.0, t1905 - _runtime.select(t1898, t3, full_1_1))
-    t1907 = _runtime.select(t1898, t98, fold_1_1) - t1905
-    del t1898, t1905
-    x_1_1_right_flip_up = _runtime.select(t1291, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up + t1294)
-    del qx_1_1_right_noflip_up, t1294
-    t1908 = _runtime.select(t1292, 1.0, -t1298)
-    del t1292, t1298
-    dx_1_1_right_flip_up = _runtime.select(t1291, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t1297 * t1908)
+    t1904 = _runtime.select(t1900, 1.0, -(axisx_1_1_17_right_flip_up * t1901))
+    del axisx_1_1_17_right_flip_up, t1900, t1901
+    t1905 = _runtime.select(t1899, t24, t24 - d5 * t1904)
+    del t1904
+    t1906 = np.sqrt(t1903 + t1905 * t1905)
+    del t1903, t1905
+    t1907 = np.maximum(0.0, t1906 - _runtime.select(t1899, t3, full_1_1))
+    t1908 = _runtime.select(t1899, t99, fold_1_1) - t1906
+    del t1899, t1906
+    x_1_1_right_flip_up = _runtime.select(t1292, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up + t1295)
+    del qx_1_1_right_noflip_up, t1295
+    t1909 = _runtime.select(t1293, 1.0, -t1299)
+    del t1293, t1299
+    dx_1_1_right_flip_up = _runtime.select(t1292, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t1298 * t1909)
     del dqx_1_1_right_noflip_up
-    t1909 = _runtime.select(t1291, t23, t23 - d5 * t1908)
-    slope_1_1_right_flip_up = x_1_1_right_flip_up * dx_1_1_right_flip_up + t1302 * t1909
-    del dx_1_1_right_flip_up, t1302
-    t1910 = slope_1_1_right_flip_up * slope_1_1_right_flip_up
-    t1911 = t1304 * t1908 - t1296 * (t1305 - t23 * t1908)
-    del t1296, t1304, t1305, t1908
-    bends_1_1_right_flip_up = _runtime.select(t1291, straight_1_1_right_noflip_up, straight_1_1_right_noflip_up + t1297 * t1911)
-    del straight_1_1_right_noflip_up, t1291, t1297, t1911
-    square_1_1_right_flip_up = x_1_1_right_flip_up * x_1_1_right_flip_up + t1909 * t1909
-    del t1909, x_1_1_right_flip_up
-    t1912 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_flip_up)
+    t1910 = _runtime.select(t1292, t24, t24 - d5 * t1909)
+    slope_1_1_right_flip_up = x_1_1_right_flip_up * dx_1_1_right_flip_up + t1303 * t1910
+    del dx_1_1_right_flip_up, t1303
+    t1911 = slope_1_1_right_flip_up * slope_1_1_right_flip_up
+    t1912 = t1305 * t1909 - t1297 * (t1306 - t24 * t1909)
+    del t1297, t1305, t1306, t1909
+    bends_1_1_right_flip_up = _runtime.select(t1292, straight_1_1_right_noflip_up, straight_1_1_right_noflip_up + t1298 * t1912)
+    del straight_1_1_right_noflip_up, t1292, t1298, t1912
+    square_1_1_right_flip_up = x_1_1_right_flip_up * x_1_1_right_flip_up + t1910 * t1910
+    del t1910, x_1_1_right_flip_up
+    t1913 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_flip_up)
     del high_1_1_right_noflip_up
-    miss_1_1_right_flip_up = square_1_1_right_flip_up - np.maximum(low_1_1_right_noflip_up, t1912)
-    del low_1_1_right_noflip_up, square_1_1_right_flip_up, t1912
-    t1913 = bends_1_1_right_flip_up * miss_1_1_right_flip_up
-    inner_1_1_right_flip_up = t1910 - t1913
-    del t1910, t1913
-    t1914 = inner_1_1_right_flip_up < 0.0
-    t1915 = np.sqrt(np.maximum(0.0, inner_1_1_right_flip_up))
+    miss_1_1_right_flip_up = square_1_1_right_flip_up - np.maximum(low_1_1_right_noflip_up, t1913)
+    del low_1_1_right_noflip_up, square_1_1_right_flip_up, t1913
+    t1914 = bends_1_1_right_flip_up * miss_1_1_right_flip_up
+    inner_1_1_right_flip_up = t1911 - t1914
+    del t1911, t1914
+    t1915 = inner_1_1_right_flip_up < 0.0
+    t1916 = np.sqrt(np.maximum(0.0, inner_1_1_right_flip_up))
     del inner_1_1_right_flip_up
-    t1916 = _runtime.sign(slope_1_1_right_flip_up) * t1915
-    del t1915
-    below_1_1_right_flip_up = _runtime.select(t1914, 2.0 * bends_1_1_right_flip_up, 2.0 * (slope_1_1_right_flip_up + t1916))
-    del bends_1_1_right_flip_up, t1916
-    above_1_1_right_flip_up = _runtime.select(t1914, slope_1_1_right_flip_up, miss_1_1_right_flip_up)
-    del miss_1_1_right_flip_up, slope_1_1_right_flip_up, t1914
-    t1917 = np.abs(below_1_1_right_flip_up) <= np.abs(above_1_1_right_flip_up)
-    t1918 = above_1_1_right_flip_up / below_1_1_right_flip_up
+    t1917 = _runtime.sign(slope_1_1_right_flip_up) * t1916
+    del t1916
+    below_1_1_right_flip_up = _runtime.select(t1915, 2.0 * bends_1_1_right_flip_up, 2.0 * (slope_1_1_right_flip_up + t1917))
+    del bends_1_1_right_flip_up, t1917
+    above_1_1_right_flip_up = _runtime.select(t1915, slope_1_1_right_flip_up, miss_1_1_right_flip_up)
+    del miss_1_1_right_flip_up, slope_1_1_right_flip_up, t1915
+    t1918 = np.abs(below_1_1_right_flip_up) <= np.abs(above_1_1_right_flip_up)
+    t1919 = above_1_1_right_flip_up / below_1_1_right_flip_up
     del above_1_1_right_flip_up, below_1_1_right_flip_up
-    t1919 = _runtime.select(t1917, 0.0, t1918)
-    del t1917, t1918
-    t1920 = t1919 * t1919
-    t1921 = 1.0 / (1.0 + t1920)
-    by_c_1_1_right_flip_up = (1.0 - t1920) * t1921
-    del t1920
-    t1922 = t1921 * (2.0 * t1919)
-    del t1919, t1921
-    t1923 = t1922 * t1922 / (1.0 + np.abs(by_c_1_1_right_flip_up))
-    versine_1_1_right_flip_up = _runtime.select(0.0 < by_c_1_1_right_flip_up, t1923, 1.0 - by_c_1_1_right_flip_up)
-    del t1923
-    cost_1_1_right_flip_up = d4 * versine_1_1_right_flip_up + root1 * np.abs(t1922)
+    t1920 = _runtime.select(t1918, 0.0, t1919)
+    del t1918, t1919
+    t1921 = t1920 * t1920
+    t1922 = 1.0 / (1.0 + t1921)
+    by_c_1_1_right_flip_up = (1.0 - t1921) * t1922
+    del t1921
+    t1923 = t1922 * (2.0 * t1920)
+    del t1920, t1922
+    t1924 = t1923 * t1923 / (1.0 + np.abs(by_c_1_1_right_flip_up))
+    versine_1_1_right_flip_up = _runtime.select(0.0 < by_c_1_1_right_flip_up, t1924, 1.0 - by_c_1_1_right_flip_up)
+    del t1924
+    cost_1_1_right_flip_up = d4 * versine_1_1_right_flip_up + root1 * np.abs(t1923)
     del versine_1_1_right_flip_up
-    t1924 = cost_1_1_right_flip_up <= whole_1_1
+    t1925 = cost_1_1_right_flip_up <= whole_1_1
     del cost_1_1_right_flip_up
-    cosine_1_1_right_flip_up = _runtime.select(t1924, by_c_1_1_right_flip_up, 1.0)
+    cosine_1_1_right_flip_up = _runtime.select(t1925, by_c_1_1_right_flip_up, 1.0)
     del by_c_1_1_right_flip_up
-    t1925 = c_1_1_right_noflip_up * cosine_1_1_right_flip_up
-    sine_1_1_right_flip_up = _runtime.select(t1924, -t1922, 0.0)
-    del t1922, t1924
-    c_1_1_2_right_flip_up = t1925 + t980 * sine_1_1_right_flip_up
-    del t1925
-    t1926 = c_1_1_right_noflip_up * sine_1_1_right_flip_up
+    t1926 = c_1_1_right_noflip_up * cosine_1_1_right_flip_up
+    sine_1_1_right_flip_up = _runtime.select(t1925, -t1923, 0.0)
+    del t1923, t1925
+    c_1_1_2_right_flip_up = t1926 + t981 * sine_1_1_right_flip_up
+    del t1926
+    t1927 = c_1_1_right_noflip_up * sine_1_1_right_flip_up
     del sine_1_1_right_flip_up
-    s_1_1_2_right_flip_up = t1926 - t980 * cosine_1_1_right_flip_up
-    del cosine_1_1_right_flip_up, t1926
+    s_1_1_2_right_flip_up = t1927 - t981 * cosine_1_1_right_flip_up
+    del cosine_1_1_right_flip_up, t1927
     axisx_1_1_2_right_flip_up = T13 * c_1_1_2_right_flip_up + T23 * s_1_1_2_right_flip_up
-    t1927 = axisx_1_1_2_right_flip_up * axisx_1_1_2_right_flip_up
-    h_1_1_2_right_flip_up = np.sqrt(t5 + t1927)
-    del t1927
-    t1928 = h_1_1_2_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_2_right_flip_up = w_x * c_1_1_2_right_flip_up + w_y * s_1_1_2_right_flip_up
-    t1929 = h_1_1_2_right_flip_up == 0.0
-    t1930 = 1.0 / h_1_1_2_right_flip_up
-    t1931 = _runtime.select(t1929, 0.0, T33 * t1930)
-    x_1_1_2_right_flip_up = _runtime.select(t1928, qx_1_1_2_right_flip_up, qx_1_1_2_right_flip_up + d5 * t1931)
-    dqx_1_1_2_right_flip_up = w_y * c_1_1_2_right_flip_up - w_x * s_1_1_2_right_flip_up
-    t1932 = T13 * s_1_1_2_right_flip_up - T23 * c_1_1_2_right_flip_up
-    t1933 = h_1_1_2_right_flip_up * h_1_1_2_right_flip_up
-    del h_1_1_2_right_flip_up
-    spin_1_1_2_right_flip_up = _runtime.select(t1928, 0.0, T33 * t1932 / t1933)
-    del t1932, t1933
-    rate_1_1_2_right_flip_up = d5 * spin_1_1_2_right_flip_up
-    t1934 = _runtime.select(t1929, 1.0, -(axisx_1_1_2_right_flip_up * t1930))
-    del axisx_1_1_2_right_flip_up, t1929, t1930
-    t1935 = dqx_1_1_2_right_flip_up - rate_1_1_2_right_flip_up * t1934
-    dx_1_1_2_right_flip_up = _runtime.select(t1928, dqx_1_1_2_right_flip_up, t1935)
-    del t1935
-    t1936 = x_1_1_2_right_flip_up * dx_1_1_2_right_flip_up
-    del dx_1_1_2_right_flip_up
-    t1937 = _runtime.select(t1928, t23, t23 - d5 * t1934)
-    dy_1_1_2_right_flip_up = _runtime.select(t1928, 0.0, rate_1_1_2_right_flip_up * t1931)
-    slope_1_1_2_right_flip_up = t1936 - t1937 * dy_1_1_2_right_flip_up
-    del dy_1_1_2_right_flip_up, t1936
-    t1938 = slope_1_1_2_right_flip_up * slope_1_1_2_right_flip_up
-    straight_1_1_2_right_flip_up = dqx_1_1_2_right_flip_up * dqx_1_1_2_right_flip_up
-    t1939 = spin_1_1_2_right_flip_up * (qx_1_1_2_right_flip_up * t1931 - t23 * t1934)
-    del qx_1_1_2_right_flip_up, spin_1_1_2_right_flip_up, t1931
-    t1940 = 2.0 * dqx_1_1_2_right_flip_up * t1934 + t1939
-    del dqx_1_1_2_right_flip_up, t1934, t1939
-    t1941 = straight_1_1_2_right_flip_up - rate_1_1_2_right_flip_up * t1940
-    del rate_1_1_2_right_flip_up, t1940
-    bends_1_1_2_right_flip_up = _runtime.select(t1928, straight_1_1_2_right_flip_up, t1941)
-    del straight_1_1_2_right_flip_up, t1941
-    t1942 = x_1_1_2_right_flip_up * x_1_1_2_right_flip_up
-    del x_1_1_2_right_flip_up
-    square_1_1_2_right_flip_up = t1942 + t1937 * t1937
-    del t1937, t1942
-    t1943 = _runtime.select(t1928, t98, fold_1_1) - whole_1_1
-    t1944 = np.maximum(0.0, t1943)
-    del t1943
-    t1945 = whole_1_1 + _runtime.select(t1928, t3, full_1_1)
+    t1928 = axisx_1_1_2_right_flip_up * axisx_1_1_2_right_flip_up
+    h_1_1_2_right_flip_up = np.sqrt(t5 + t1928)
     del t1928
-    t1946 = np.minimum(t1945 * t1945, square_1_1_2_right_flip_up)
-    del t1945
-    miss_1_1_2_right_flip_up = square_1_1_2_right_flip_up - np.maximum(t1944 * t1944, t1946)
-    del square_1_1_2_right_flip_up, t1944, t1946
-    t1947 = bends_1_1_2_right_flip_up * miss_1_1_2_right_flip_up
-    inner_1_1_2_right_flip_up = t1938 - t1947
-    del t1938, t1947
-    t1948 = inner_1_1_2_right_flip_up < 0.0
-    t1949 = np.sqrt(np.maximum(0.0, inner_1_1_2_right_flip_up))
+    t1929 = h_1_1_2_right_flip_up <= t89
+    qx_1_1_2_right_flip_up = w_x * c_1_1_2_right_flip_up + w_y * s_1_1_2_right_flip_up
+    t1930 = h_1_1_2_right_flip_up == 0.0
+    t1931 = 1.0 / h_1_1_2_right_flip_up
+    t1932 = _runtime.select(t1930, 0.0, T33 * t1931)
+    x_1_1_2_right_flip_up = _runtime.select(t1929, qx_1_1_2_right_flip_up, qx_1_1_2_right_flip_up + d5 * t1932)
+    dqx_1_1_2_right_flip_up = w_y * c_1_1_2_right_flip_up - w_x * s_1_1_2_right_flip_up
+    t1933 = T13 * s_1_1_2_right_flip_up - T23 * c_1_1_2_right_flip_up
+    t1934 = h_1_1_2_right_flip_up * h_1_1_2_right_flip_up
+    del h_1_1_2_right_flip_up
+    spin_1_1_2_right_flip_up = _runtime.select(t1929, 0.0, T33 * t1933 / t1934)
+    del t1933, t1934
+    rate_1_1_2_right_flip_up = d5 * spin_1_1_2_right_flip_up
+    t1935 = _runtime.select(t1930, 1.0, -(axisx_1_1_2_right_flip_up * t1931))
+    del axisx_1_1_2_right_flip_up, t1930, t1931
+    t1936 = dqx_1_1_2_right_flip_up - rate_1_1_2_right_flip_up * t1935
+    dx_1_1_2_right_flip_up = _runtime.select(t1929, dqx_1_1_2_right_flip_up, t1936)
+    del t1936
+    t1937 = x_1_1_2_right_flip_up * dx_1_1_2_right_flip_up
+    del dx_1_1_2_right_flip_up
+    t1938 = _runtime.select(t1929, t24, t24 - d5 * t1935)
+    dy_1_1_2_right_flip_up = _runtime.select(t1929, 0.0, rate_1_1_2_right_flip_up * t1932)
+    slope_1_1_2_right_flip_up = t1937 - t1938 * dy_1_1_2_right_flip_up
+    del dy_1_1_2_right_flip_up, t1937
+    t1939 = slope_1_1_2_right_flip_up * slope_1_1_2_right_flip_up
+    straight_1_1_2_right_flip_up = dqx_1_1_2_right_flip_up * dqx_1_1_2_right_flip_up
+    t1940 = spin_1_1_2_right_flip_up * (qx_1_1_2_right_flip_up * t1932 - t24 * t1935)
+    del qx_1_1_2_right_flip_up, spin_1_1_2_right_flip_up, t1932
+    t1941 = 2.0 * dqx_1_1_2_right_flip_up * t1935 + t1940
+    del dqx_1_1_2_right_flip_up, t1935, t1940
+    t1942 = straight_1_1_2_right_flip_up - rate_1_1_2_right_flip_up * t1941
+    del rate_1_1_2_right_flip_up, t1941
+    bends_1_1_2_right_flip_up = _runtime.select(t1929, straight_1_1_2_right_flip_up, t1942)
+    del straight_1_1_2_right_flip_up, t1942
+    t1943 = x_1_1_2_right_flip_up * x_1_1_2_right_flip_up
+    del x_1_1_2_right_flip_up
+    square_1_1_2_right_flip_up = t1943 + t1938 * t1938
+    del t1938, t1943
+    t1944 = _runtime.select(t1929, t99, fold_1_1) - whole_1_1
+    t1945 = np.maximum(0.0, t1944)
+    del t1944
+    t1946 = whole_1_1 + _runtime.select(t1929, t3, full_1_1)
+    del t1929
+    t1947 = np.minimum(t1946 * t1946, square_1_1_2_right_flip_up)
+    del t1946
+    miss_1_1_2_right_flip_up = square_1_1_2_right_flip_up - np.maximum(t1945 * t1945, t1947)
+    del square_1_1_2_right_flip_up, t1945, t1947
+    t1948 = bends_1_1_2_right_flip_up * miss_1_1_2_right_flip_up
+    inner_1_1_2_right_flip_up = t1939 - t1948
+    del t1939, t1948
+    t1949 = inner_1_1_2_right_flip_up < 0.0
+    t1950 = np.sqrt(np.maximum(0.0, inner_1_1_2_right_flip_up))
     del inner_1_1_2_right_flip_up
-    t1950 = _runtime.sign(slope_1_1_2_right_flip_up) * t1949
-    del t1949
-    below_1_1_2_right_flip_up = _runtime.select(t1948, 2.0 * bends_1_1_2_right_flip_up, 2.0 * (slope_1_1_2_right_flip_up + t1950))
-    del bends_1_1_2_right_flip_up, t1950
-    above_1_1_2_right_flip_up = _runtime.select(t1948, slope_1_1_2_right_flip_up, miss_1_1_2_right_flip_up)
-    del miss_1_1_2_right_flip_up, slope_1_1_2_right_flip_up, t1948
-    t1951 = np.abs(below_1_1_2_right_flip_up) <= np.abs(above_1_1_2_right_flip_up)
-    t1952 = above_1_1_2_right_flip_up / below_1_1_2_right_flip_up
+    t1951 = _runtime.sign(slope_1_1_2_right_flip_up) * t1950
+    del t1950
+    below_1_1_2_right_flip_up = _runtime.select(t1949, 2.0 * bends_1_1_2_right_flip_up, 2.0 * (slope_1_1_2_right_flip_up + t1951))
+    del bends_1_1_2_right_flip_up, t1951
+    above_1_1_2_right_flip_up = _runtime.select(t1949, slope_1_1_2_right_flip_up, miss_1_1_2_right_flip_up)
+    del miss_1_1_2_right_flip_up, slope_1_1_2_right_flip_up, t1949
+    t1952 = np.abs(below_1_1_2_right_flip_up) <= np.abs(above_1_1_2_right_flip_up)
+    t1953 = above_1_1_2_right_flip_up / below_1_1_2_right_flip_up
     del above_1_1_2_right_flip_up, below_1_1_2_right_flip_up
-    t1953 = _runtime.select(t1951, 0.0, t1952)
-    del t1951, t1952
-    t1954 = t1953 * t1953
-    t1955 = 1.0 / (1.0 + t1954)
-    by_c_1_1_2_right_flip_up = (1.0 - t1954) * t1955
-    del t1954
-    t1956 = t1955 * (2.0 * t1953)
-    del t1953, t1955
-    t1957 = t1956 * t1956 / (1.0 + np.abs(by_c_1_1_2_right_flip_up))
-    versine_1_1_2_right_flip_up = _runtime.select(0.0 < by_c_1_1_2_right_flip_up, t1957, 1.0 - by_c_1_1_2_right_flip_up)
-    del t1957
-    cost_1_1_2_right_flip_up = d4 * versine_1_1_2_right_flip_up + root1 * np.abs(t1956)
+    t1954 = _runtime.select(t1952, 0.0, t1953)
+    del t1952, t1953
+    t1955 = t1954 * t1954
+    t1956 = 1.0 / (1.0 + t1955)
+    by_c_1_1_2_right_flip_up = (1.0 - t1955) * t1956
+    del t1955
+    t1957 = t1956 * (2.0 * t1954)
+    del t1954, t1956
+    t1958 = t1957 * t1957 / (1.0 + np.abs(by_c_1_1_2_right_flip_up))
+    versine_1_1_2_right_flip_up = _runtime.select(0.0 < by_c_1_1_2_right_flip_up, t1958, 1.0 - by_c_1_1_2_right_flip_up)
+    del t1958
+    cost_1_1_2_right_flip_up = d4 * versine_1_1_2_right_flip_up + root1 * np.abs(t1957)
     del versine_1_1_2_right_flip_up
-    t1958 = cost_1_1_2_right_flip_up <= whole_1_1
+    t1959 = cost_1_1_2_right_flip_up <= whole_1_1
     del cost_1_1_2_right_flip_up
-    cosine_1_1_2_right_flip_up = _runtime.select(t1958, by_c_1_1_2_right_flip_up, 1.0)
+    cosine_1_1_2_right_flip_up = _runtime.select(t1959, by_c_1_1_2_right_flip_up, 1.0)
     del by_c_1_1_2_right_flip_up
-    t1959 = c_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
-    sine_1_1_2_right_flip_up = _runtime.select(t1958, -t1956, 0.0)
-    del t1956, t1958
-    t1960 = s_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
-    c_1_1_3_right_flip_up = t1959 - t1960
-    del t1959, t1960
-    t1961 = c_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
+    t1960 = c_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
+    sine_1_1_2_right_flip_up = _runtime.select(t1959, -t1957, 0.0)
+    del t1957, t1959
+    t1961 = s_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
+    c_1_1_3_right_flip_up = t1960 - t1961
+    del t1960, t1961
+    t1962 = c_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
     del c_1_1_2_right_flip_up, sine_1_1_2_right_flip_up
-    t1962 = s_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
+    t1963 = s_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
     del cosine_1_1_2_right_flip_up, s_1_1_2_right_flip_up
-    s_1_1_3_right_flip_up = t1961 + t1962
-    del t1961, t1962
+    s_1_1_3_right_flip_up = t1962 + t1963
+    del t1962, t1963
     axisx_1_1_3_right_flip_up = T13 * c_1_1_3_right_flip_up + T23 * s_1_1_3_right_flip_up
-    t1963 = axisx_1_1_3_right_flip_up * axisx_1_1_3_right_flip_up
-    h_1_1_3_right_flip_up = np.sqrt(t5 + t1963)
-    del t1963
-    t1964 = h_1_1_3_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_3_right_flip_up = w_x * c_1_1_3_right_flip_up + w_y * s_1_1_3_right_flip_up
-    t1965 = h_1_1_3_right_flip_up == 0.0
-    t1966 = 1.0 / h_1_1_3_right_flip_up
-    t1967 = _runtime.select(t1965, 0.0, T33 * t1966)
-    x_1_1_3_right_flip_up = _runtime.select(t1964, qx_1_1_3_right_flip_up, qx_1_1_3_right_flip_up + d5 * t1967)
-    dqx_1_1_3_right_flip_up = w_y * c_1_1_3_right_flip_up - w_x * s_1_1_3_right_flip_up
-    t1968 = T13 * s_1_1_3_right_flip_up - T23 * c_1_1_3_right_flip_up
-    t1969 = h_1_1_3_right_flip_up * h_1_1_3_right_flip_up
-    del h_1_1_3_right_flip_up
-    spin_1_1_3_right_flip_up = _runtime.select(t1964, 0.0, T33 * t1968 / t1969)
-    del t1968, t1969
-    rate_1_1_3_right_flip_up = d5 * spin_1_1_3_right_flip_up
-    t1970 = _runtime.select(t1965, 1.0, -(axisx_1_1_3_right_flip_up * t1966))
-    del axisx_1_1_3_right_flip_up, t1965, t1966
-    t1971 = dqx_1_1_3_right_flip_up - rate_1_1_3_right_flip_up * t1970
-    dx_1_1_3_right_flip_up = _runtime.select(t1964, dqx_1_1_3_right_flip_up, t1971)
-    del t1971
-    t1972 = x_1_1_3_right_flip_up * dx_1_1_3_right_flip_up
-    del dx_1_1_3_right_flip_up
-    t1973 = _runtime.select(t1964, t23, t23 - d5 * t1970)
-    dy_1_1_3_right_flip_up = _runtime.select(t1964, 0.0, rate_1_1_3_right_flip_up * t1967)
-    slope_1_1_3_right_flip_up = t1972 - t1973 * dy_1_1_3_right_flip_up
-    del dy_1_1_3_right_flip_up, t1972
-    t1974 = slope_1_1_3_right_flip_up * slope_1_1_3_right_flip_up
-    straight_1_1_3_right_flip_up = dqx_1_1_3_right_flip_up * dqx_1_1_3_right_flip_up
-    t1975 = spin_1_1_3_right_flip_up * (qx_1_1_3_right_flip_up * t1967 - t23 * t1970)
-    del qx_1_1_3_right_flip_up, spin_1_1_3_right_flip_up, t1967
-    t1976 = 2.0 * dqx_1_1_3_right_flip_up * t1970 + t1975
-    del dqx_1_1_3_right_flip_up, t1970, t1975
-    t1977 = straight_1_1_3_right_flip_up - rate_1_1_3_right_flip_up * t1976
-    del rate_1_1_3_right_flip_up, t1976
-    bends_1_1_3_right_flip_up = _runtime.select(t1964, straight_1_1_3_right_flip_up, t1977)
-    del straight_1_1_3_right_flip_up, t1977
-    t1978 = x_1_1_3_right_flip_up * x_1_1_3_right_flip_up
-    del x_1_1_3_right_flip_up
-    square_1_1_3_right_flip_up = t1978 + t1973 * t1973
-    del t1973, t1978
-    t1979 = _runtime.select(t1964, t98, fold_1_1) - whole_1_1
-    t1980 = np.maximum(0.0, t1979)
-    del t1979
-    t1981 = whole_1_1 + _runtime.select(t1964, t3, full_1_1)
+    t1964 = axisx_1_1_3_right_flip_up * axisx_1_1_3_right_flip_up
+    h_1_1_3_right_flip_up = np.sqrt(t5 + t1964)
     del t1964
-    t1982 = np.minimum(t1981 * t1981, square_1_1_3_right_flip_up)
-    del t1981
-    miss_1_1_3_right_flip_up = square_1_1_3_right_flip_up - np.maximum(t1980 * t1980, t1982)
-    del square_1_1_3_right_flip_up, t1980, t1982
-    t1983 = bends_1_1_3_right_flip_up * miss_1_1_3_right_flip_up
-    inner_1_1_3_right_flip_up = t1974 - t1983
-    del t1974, t1983
-    t1984 = inner_1_1_3_right_flip_up < 0.0
-    t1985 = np.sqrt(np.maximum(0.0, inner_1_1_3_right_flip_up))
+    t1965 = h_1_1_3_right_flip_up <= t89
+    qx_1_1_3_right_flip_up = w_x * c_1_1_3_right_flip_up + w_y * s_1_1_3_right_flip_up
+    t1966 = h_1_1_3_right_flip_up == 0.0
+    t1967 = 1.0 / h_1_1_3_right_flip_up
+    t1968 = _runtime.select(t1966, 0.0, T33 * t1967)
+    x_1_1_3_right_flip_up = _runtime.select(t1965, qx_1_1_3_right_flip_up, qx_1_1_3_right_flip_up + d5 * t1968)
+    dqx_1_1_3_right_flip_up = w_y * c_1_1_3_right_flip_up - w_x * s_1_1_3_right_flip_up
+    t1969 = T13 * s_1_1_3_right_flip_up - T23 * c_1_1_3_right_flip_up
+    t1970 = h_1_1_3_right_flip_up * h_1_1_3_right_flip_up
+    del h_1_1_3_right_flip_up
+    spin_1_1_3_right_flip_up = _runtime.select(t1965, 0.0, T33 * t1969 / t1970)
+    del t1969, t1970
+    rate_1_1_3_right_flip_up = d5 * spin_1_1_3_right_flip_up
+    t1971 = _runtime.select(t1966, 1.0, -(axisx_1_1_3_right_flip_up * t1967))
+    del axisx_1_1_3_right_flip_up, t1966, t1967
+    t1972 = dqx_1_1_3_right_flip_up - rate_1_1_3_right_flip_up * t1971
+    dx_1_1_3_right_flip_up = _runtime.select(t1965, dqx_1_1_3_right_flip_up, t1972)
+    del t1972
+    t1973 = x_1_1_3_right_flip_up * dx_1_1_3_right_flip_up
+    del dx_1_1_3_right_flip_up
+    t1974 = _runtime.select(t1965, t24, t24 - d5 * t1971)
+    dy_1_1_3_right_flip_up = _runtime.select(t1965, 0.0, rate_1_1_3_right_flip_up * t1968)
+    slope_1_1_3_right_flip_up = t1973 - t1974 * dy_1_1_3_right_flip_up
+    del dy_1_1_3_right_flip_up, t1973
+    t1975 = slope_1_1_3_right_flip_up * slope_1_1_3_right_flip_up
+    straight_1_1_3_right_flip_up = dqx_1_1_3_right_flip_up * dqx_1_1_3_right_flip_up
+    t1976 = spin_1_1_3_right_flip_up * (qx_1_1_3_right_flip_up * t1968 - t24 * t1971)
+    del qx_1_1_3_right_flip_up, spin_1_1_3_right_flip_up, t1968
+    t1977 = 2.0 * dqx_1_1_3_right_flip_up * t1971 + t1976
+    del dqx_1_1_3_right_flip_up, t1971, t1976
+    t1978 = straight_1_1_3_right_flip_up - rate_1_1_3_right_flip_up * t1977
+    del rate_1_1_3_right_flip_up, t1977
+    bends_1_1_3_right_flip_up = _runtime.select(t1965, straight_1_1_3_right_flip_up, t1978)
+    del straight_1_1_3_right_flip_up, t1978
+    t1979 = x_1_1_3_right_flip_up * x_1_1_3_right_flip_up
+    del x_1_1_3_right_flip_up
+    square_1_1_3_right_flip_up = t1979 + t1974 * t1974
+    del t1974, t1979
+    t1980 = _runtime.select(t1965, t99, fold_1_1) - whole_1_1
+    t1981 = np.maximum(0.0, t1980)
+    del t1980
+    t1982 = whole_1_1 + _runtime.select(t1965, t3, full_1_1)
+    del t1965
+    t1983 = np.minimum(t1982 * t1982, square_1_1_3_right_flip_up)
+    del t1982
+    miss_1_1_3_right_flip_up = square_1_1_3_right_flip_up - np.maximum(t1981 * t1981, t1983)
+    del square_1_1_3_right_flip_up, t1981, t1983
+    t1984 = bends_1_1_3_right_flip_up * miss_1_1_3_right_flip_up
+    inner_1_1_3_right_flip_up = t1975 - t1984
+    del t1975, t1984
+    t1985 = inner_1_1_3_right_flip_up < 0.0
+    t1986 = np.sqrt(np.maximum(0.0, inner_1_1_3_right_flip_up))
     del inner_1_1_3_right_flip_up
-    t1986 = _runtime.sign(slope_1_1_3_right_flip_up) * t1985
-    del t1985
-    below_1_1_3_right_flip_up = _runtime.select(t1984, 2.0 * bends_1_1_3_right_flip_up, 2.0 * (slope_1_1_3_right_flip_up + t1986))
-    del bends_1_1_3_right_flip_up, t1986
-    above_1_1_3_right_flip_up = _runtime.select(t1984, slope_1_1_3_right_flip_up, miss_1_1_3_right_flip_up)
-    del miss_1_1_3_right_flip_up, slope_1_1_3_right_flip_up, t1984
-    t1987 = np.abs(below_1_1_3_right_flip_up) <= np.abs(above_1_1_3_right_flip_up)
-    t1988 = above_1_1_3_right_flip_up / below_1_1_3_right_flip_up
+    t1987 = _runtime.sign(slope_1_1_3_right_flip_up) * t1986
+    del t1986
+    below_1_1_3_right_flip_up = _runtime.select(t1985, 2.0 * bends_1_1_3_right_flip_up, 2.0 * (slope_1_1_3_right_flip_up + t1987))
+    del bends_1_1_3_right_flip_up, t1987
+    above_1_1_3_right_flip_up = _runtime.select(t1985, slope_1_1_3_right_flip_up, miss_1_1_3_right_flip_up)
+    del miss_1_1_3_right_flip_up, slope_1_1_3_right_flip_up, t1985
+    t1988 = np.abs(below_1_1_3_right_flip_up) <= np.abs(above_1_1_3_right_flip_up)
+    t1989 = above_1_1_3_right_flip_up / below_1_1_3_right_flip_up
     del above_1_1_3_right_flip_up, below_1_1_3_right_flip_up
-    t1989 = _runtime.select(t1987, 0.0, t1988)
-    del t1987, t1988
-    t1990 = t1989 * t1989
-    t1991 = 1.0 / (1.0 + t1990)
-    by_c_1_1_3_right_flip_up = (1.0 - t1990) * t1991
-    del t1990
-    t1992 = t1991 * (2.0 * t1989)
-    del t1989, t1991
-    t1993 = t1992 * t1992 / (1.0 + np.abs(by_c_1_1_3_right_flip_up))
-    versine_1_1_3_right_flip_up = _runtime.select(0.0 < by_c_1_1_3_right_flip_up, t1993, 1.0 - by_c_1_1_3_right_flip_up)
-    del t1993
-    cost_1_1_3_right_flip_up = d4 * versine_1_1_3_right_flip_up + root1 * np.abs(t1992)
+    t1990 = _runtime.select(t1988, 0.0, t1989)
+    del t1988, t1989
+    t1991 = t1990 * t1990
+    t1992 = 1.0 / (1.0 + t1991)
+    by_c_1_1_3_right_flip_up = (1.0 - t1991) * t1992
+    del t1991
+    t1993 = t1992 * (2.0 * t1990)
+    del t1990, t1992
+    t1994 = t1993 * t1993 / (1.0 + np.abs(by_c_1_1_3_right_flip_up))
+    versine_1_1_3_right_flip_up = _runtime.select(0.0 < by_c_1_1_3_right_flip_up, t1994, 1.0 - by_c_1_1_3_right_flip_up)
+    del t1994
+    cost_1_1_3_right_flip_up = d4 * versine_1_1_3_right_flip_up + root1 * np.abs(t1993)
     del versine_1_1_3_right_flip_up
-    t1994 = cost_1_1_3_right_flip_up <= whole_1_1
+    t1995 = cost_1_1_3_right_flip_up <= whole_1_1
     del cost_1_1_3_right_flip_up
-    cosine_1_1_3_right_flip_up = _runtime.select(t1994, by_c_1_1_3_right_flip_up, 1.0)
+    cosine_1_1_3_right_flip_up = _runtime.select(t1995, by_c_1_1_3_right_flip_up, 1.0)
     del by_c_1_1_3_right_flip_up
-    t1995 = c_1_1_3_right_flip_up * cosine_1_1_3_right_flip_up
-    sine_1_1_3_right_flip_up = _runtime.select(t1994, -t1992, 0.0)
-    del t1992, t1994
-    t1996 = s_1_1_3_right_flip_up * sine_1_1_3_right_flip_up
-    c_1_1_4_right_flip_up = t1995 - t1996
-    del t1995, t1996
-    t1997 = c_1_1_3_right_flip_up * sine_1_1_3_right_flip_up
+    t1996 = c_1_1_3_right_flip_up * cosine_1_1_3_right_flip_up
+    sine_1_1_3_right_flip_up = _runtime.select(t1995, -t1993, 0.0)
+    del t1993, t1995
+    t1997 = s_1_1_3_right_flip_up * sine_1_1_3_right_flip_up
+    c_1_1_4_right_flip_up = t1996 - t1997
+    del t1996, t1997
+    t1998 = c_1_1_3_right_flip_up * sine_1_1_3_right_flip_up
     del c_1_1_3_right_flip_up, sine_1_1_3_right_flip_up
-    t1998 = s_1_1_3_right_flip_up * cosine_1_1_3_right_flip_up
+    t1999 = s_1_1_3_right_flip_up * cosine_1_1_3_right_flip_up
     del cosine_1_1_3_right_flip_up, s_1_1_3_right_flip_up
-    s_1_1_4_right_flip_up = t1997 + t1998
-    del t1997, t1998
+    s_1_1_4_right_flip_up = t1998 + t1999
+    del t1998, t1999
     axisx_1_1_4_right_flip_up = T13 * c_1_1_4_right_flip_up + T23 * s_1_1_4_right_flip_up
-    t1999 = axisx_1_1_4_right_flip_up * axisx_1_1_4_right_flip_up
-    t2000 = T13 * s_1_1_4_right_flip_up - T23 * c_1_1_4_right_flip_up
-    most_1_1_4_right_flip_up = np.sqrt(t1999 + t2000 * t2000)
-    t2001 = most_1_1_4_right_flip_up <= 8.881784197001252e-16
+    t2000 = axisx_1_1_4_right_flip_up * axisx_1_1_4_right_flip_up
+    t2001 = T13 * s_1_1_4_right_flip_up - T23 * c_1_1_4_right_flip_up
+    most_1_1_4_right_flip_up = np.sqrt(t2000 + t2001 * t2001)
+    t2002 = most_1_1_4_right_flip_up <= _runtime.VANISHING
     qx_1_1_4_right_flip_up = w_x * c_1_1_4_right_flip_up + w_y * s_1_1_4_right_flip_up
-    t2002 = qx_1_1_4_right_flip_up * qx_1_1_4_right_flip_up
-    r_1_1_4_right_flip_up = np.sqrt(t24 + t2002)
-    del t2002
-    t2003 = r_1_1_4_right_flip_up <= t25
-    del t25
-    t2004 = d5 + r_1_1_4_right_flip_up
-    h_1_1_4_right_flip_up = np.sqrt(t5 + t1999)
-    del t1999
-    t2005 = h_1_1_4_right_flip_up == 0.0
-    t2006 = 1.0 / h_1_1_4_right_flip_up
-    t2007 = _runtime.select(t2005, 0.0, T33 * t2006)
-    t2008 = qx_1_1_4_right_flip_up + d5 * t2007
-    t2009 = _runtime.select(t2005, 1.0, -(axisx_1_1_4_right_flip_up * t2006))
-    del t2005, t2006
-    t2010 = t23 - d5 * t2009
-    t2011 = np.maximum(np.sqrt(t2008 * t2008 + t2010 * t2010), fold_1_1)
-    goal_1_1_4_right_flip_up = np.minimum(full_1_1, t2011)
-    del t2011
-    t2012 = (t2004 - goal_1_1_4_right_flip_up) * (t2004 + goal_1_1_4_right_flip_up)
-    k_v_1_1_4_right_flip_up = np.maximum(0.0, t2012)
+    t2003 = qx_1_1_4_right_flip_up * qx_1_1_4_right_flip_up
+    r_1_1_4_right_flip_up = np.sqrt(t25 + t2003)
+    del t2003
+    t2004 = r_1_1_4_right_flip_up <= t4
+    t2005 = d5 + r_1_1_4_right_flip_up
+    h_1_1_4_right_flip_up = np.sqrt(t5 + t2000)
+    del t2000
+    t2006 = h_1_1_4_right_flip_up == 0.0
+    t2007 = 1.0 / h_1_1_4_right_flip_up
+    t2008 = _runtime.select(t2006, 0.0, T33 * t2007)
+    t2009 = qx_1_1_4_right_flip_up + d5 * t2008
+    t2010 = _runtime.select(t2006, 1.0, -(axisx_1_1_4_right_flip_up * t2007))
+    del t2006, t2007
+    t2011 = t24 - d5 * t2010
+    t2012 = np.maximum(np.sqrt(t2009 * t2009 + t2011 * t2011), fold_1_1)
+    goal_1_1_4_right_flip_up = np.minimum(full_1_1, t2012)
     del t2012
-    t2013 = d5 - r_1_1_4_right_flip_up
-    t2014 = (goal_1_1_4_right_flip_up - t2013) * (goal_1_1_4_right_flip_up + t2013)
-    del goal_1_1_4_right_flip_up, t2013
-    d_v_1_1_4_right_flip_up = np.maximum(0.0, t2014)
-    del t2014
+    t2013 = (t2005 - goal_1_1_4_right_flip_up) * (t2005 + goal_1_1_4_right_flip_up)
+    k_v_1_1_4_right_flip_up = np.maximum(0.0, t2013)
+    del t2013
+    t2014 = d5 - r_1_1_4_right_flip_up
+    t2015 = (goal_1_1_4_right_flip_up - t2014) * (goal_1_1_4_right_flip_up + t2014)
+    del goal_1_1_4_right_flip_up, t2014
+    d_v_1_1_4_right_flip_up = np.maximum(0.0, t2015)
+    del t2015
     n_v_1_1_4_right_flip_up = k_v_1_1_4_right_flip_up + d_v_1_1_4_right_flip_up
-    t2015 = n_v_1_1_4_right_flip_up <= size * t2004 * 8.881784197001252e-16
-    del t2004
-    t2016 = k_v_1_1_4_right_flip_up - d_v_1_1_4_right_flip_up
-    t2017 = 1.0 / n_v_1_1_4_right_flip_up
+    t2016 = n_v_1_1_4_right_flip_up <= t4 * t2005
+    del t2005
+    t2017 = k_v_1_1_4_right_flip_up - d_v_1_1_4_right_flip_up
+    t2018 = 1.0 / n_v_1_1_4_right_flip_up
     del n_v_1_1_4_right_flip_up
-    uc_v_1_1_4_right_flip_up = _runtime.select(t2015, 1.0, t2016 * t2017)
-    del t2016
-    t2018 = qx_1_1_4_right_flip_up * uc_v_1_1_4_right_flip_up
-    t2019 = -(qx_1_1_4_right_flip_up * t2009 + t23 * t2007)
-    del t2007, t2009
-    t2020 = k_v_1_1_4_right_flip_up * d_v_1_1_4_right_flip_up
+    uc_v_1_1_4_right_flip_up = _runtime.select(t2016, 1.0, t2017 * t2018)
+    del t2017
+    t2019 = qx_1_1_4_right_flip_up * uc_v_1_1_4_right_flip_up
+    t2020 = -(qx_1_1_4_right_flip_up * t2010 + t24 * t2008)
+    del t2008, t2010
+    t2021 = k_v_1_1_4_right_flip_up * d_v_1_1_4_right_flip_up
     del d_v_1_1_4_right_flip_up, k_v_1_1_4_right_flip_up
-    t2021 = t2017 * (2.0 * _runtime.sign(t2019) * np.sqrt(t2020))
-    del t2017, t2019, t2020
-    us_v_1_1_4_right_flip_up = _runtime.select(t2015, 0.0, t2021)
-    del t2015, t2021
-    t2022 = t23 * us_v_1_1_4_right_flip_up
-    t2023 = 1.0 / r_1_1_4_right_flip_up
+    t2022 = t2018 * (2.0 * _runtime.sign(t2020) * np.sqrt(t2021))
+    del t2018, t2020, t2021
+    us_v_1_1_4_right_flip_up = _runtime.select(t2016, 0.0, t2022)
+    del t2016, t2022
+    t2023 = t24 * us_v_1_1_4_right_flip_up
+    t2024 = 1.0 / r_1_1_4_right_flip_up
     del r_1_1_4_right_flip_up
-    c_v_1_1_4_right_flip_up = _runtime.select(t2003, 1.0, (t2018 + t2022) * t2023)
-    t2024 = -(T33 * c_v_1_1_4_right_flip_up) < 0.0
-    t2025 = qx_1_1_4_right_flip_up * us_v_1_1_4_right_flip_up
+    c_v_1_1_4_right_flip_up = _runtime.select(t2004, 1.0, (t2019 + t2023) * t2024)
+    t2025 = -(T33 * c_v_1_1_4_right_flip_up) < 0.0
+    t2026 = qx_1_1_4_right_flip_up * us_v_1_1_4_right_flip_up
     del us_v_1_1_4_right_flip_up
-    t2026 = t23 * uc_v_1_1_4_right_flip_up
+    t2027 = t24 * uc_v_1_1_4_right_flip_up
     del uc_v_1_1_4_right_flip_up
-    wc_1_1_4_right_flip_up = _runtime.select(t2003, 0.0, t2023 * (t2025 + t2026))
-    s_v_1_1_4_right_flip_up = _runtime.select(t2003, 0.0, t2023 * (t2025 - t2026))
-    del t2025, t2026
-    to_c_1_1_4_right_flip_up = _runtime.select(t2024, wc_1_1_4_right_flip_up, -s_v_1_1_4_right_flip_up)
+    wc_1_1_4_right_flip_up = _runtime.select(t2004, 0.0, t2024 * (t2026 + t2027))
+    s_v_1_1_4_right_flip_up = _runtime.select(t2004, 0.0, t2024 * (t2026 - t2027))
+    del t2026, t2027
+    to_c_1_1_4_right_flip_up = _runtime.select(t2025, wc_1_1_4_right_flip_up, -s_v_1_1_4_right_flip_up)
     del s_v_1_1_4_right_flip_up, wc_1_1_4_right_flip_up
-    c_w_1_1_4_right_flip_up = _runtime.select(t2003, 1.0, t2023 * (t2018 - t2022))
-    del t2003, t2018, t2022, t2023
-    to_s_1_1_4_right_flip_up = _runtime.select(t2024, c_w_1_1_4_right_flip_up, c_v_1_1_4_right_flip_up)
-    del c_v_1_1_4_right_flip_up, c_w_1_1_4_right_flip_up, t2024
-    t2027 = T33 * to_c_1_1_4_right_flip_up * _runtime.sign(to_s_1_1_4_right_flip_up)
+    c_w_1_1_4_right_flip_up = _runtime.select(t2004, 1.0, t2024 * (t2019 - t2023))
+    del t2004, t2019, t2023, t2024
+    to_s_1_1_4_right_flip_up = _runtime.select(t2025, c_w_1_1_4_right_flip_up, c_v_1_1_4_right_flip_up)
+    del c_v_1_1_4_right_flip_up, c_w_1_1_4_right_flip_up, t2025
+    t2028 = T33 * to_c_1_1_4_right_flip_up * _runtime.sign(to_s_1_1_4_right_flip_up)
     del to_c_1_1_4_right_flip_up
-    across_1_1_4_right_flip_up = _runtime.select(t22, 0.0, t2027)
-    del t2027, t22
-    t2028 = np.abs(to_s_1_1_4_right_flip_up)
+    across_1_1_4_right_flip_up = _runtime.select(t23, 0.0, t2028)
+    del t2028, t23
+    t2029 = np.abs(to_s_1_1_4_right_flip_up)
     del to_s_1_1_4_right_flip_up
-    t2029 = most_1_1_4_right_flip_up * t2028 <= np.abs(across_1_1_4_right_flip_up)
-    t2030 = most_1_1_4_right_flip_up * _runtime.sign(across_1_1_4_right_flip_up)
-    t2031 = _runtime.select(t2029, t2030, across_1_1_4_right_flip_up / t2028)
-    del t2028, t2029, t2030
-    wanted_1_1_4_right_flip_up = _runtime.select(across_1_1_4_right_flip_up == 0.0, 0.0, t2031)
-    del across_1_1_4_right_flip_up, t2031
-    t2032 = axisx_1_1_4_right_flip_up * wanted_1_1_4_right_flip_up
-    t2033 = most_1_1_4_right_flip_up - wanted_1_1_4_right_flip_up
-    t2034 = most_1_1_4_right_flip_up + wanted_1_1_4_right_flip_up
-    rest_1_1_4_right_flip_up = np.sqrt(np.maximum(0.0, t2033 * t2034)) * _runtime.sign(-t2000)
-    del t2033, t2034
-    t2035 = most_1_1_4_right_flip_up * most_1_1_4_right_flip_up
+    t2030 = most_1_1_4_right_flip_up * t2029 <= np.abs(across_1_1_4_right_flip_up)
+    t2031 = most_1_1_4_right_flip_up * _runtime.sign(across_1_1_4_right_flip_up)
+    t2032 = _runtime.select(t2030, t2031, across_1_1_4_right_flip_up / t2029)
+    del t2029, t2030, t2031
+    wanted_1_1_4_right_flip_up = _runtime.select(across_1_1_4_right_flip_up == 0.0, 0.0, t2032)
+    del across_1_1_4_right_flip_up, t2032
+    t2033 = axisx_1_1_4_right_flip_up * wanted_1_1_4_right_flip_up
+    t2034 = most_1_1_4_right_flip_up - wanted_1_1_4_right_flip_up
+    t2035 = most_1_1_4_right_flip_up + wanted_1_1_4_right_flip_up
+    rest_1_1_4_right_flip_up = np.sqrt(np.maximum(0.0, t2034 * t2035)) * _runtime.sign(-t2001)
+    del t2034, t2035
+    t2036 = most_1_1_4_right_flip_up * most_1_1_4_right_flip_up
     del most_1_1_4_right_flip_up
-    t2036 = 1.0 / t2035
-    del t2035
-    t2037 = (t2032 - t2000 * rest_1_1_4_right_flip_up) * t2036
-    del t2032
-    by_c_1_1_4_right_flip_up = _runtime.select(t2001, 1.0, t2037)
-    del t2037
-    t2038 = axisx_1_1_4_right_flip_up * rest_1_1_4_right_flip_up
+    t2037 = 1.0 / t2036
+    del t2036
+    t2038 = (t2033 - t2001 * rest_1_1_4_right_flip_up) * t2037
+    del t2033
+    by_c_1_1_4_right_flip_up = _runtime.select(t2002, 1.0, t2038)
+    del t2038
+    t2039 = axisx_1_1_4_right_flip_up * rest_1_1_4_right_flip_up
     del axisx_1_1_4_right_flip_up, rest_1_1_4_right_flip_up
-    t2039 = t2036 * (t2038 + t2000 * wanted_1_1_4_right_flip_up)
-    del t2000, t2036, t2038, wanted_1_1_4_right_flip_up
-    t2040 = _runtime.select(t2001, 0.0, t2039)
-    del t2001, t2039
-    t2041 = t2040 * t2040 / (1.0 + np.abs(by_c_1_1_4_right_flip_up))
-    versine_1_1_4_right_flip_up = _runtime.select(0.0 < by_c_1_1_4_right_flip_up, t2041, 1.0 - by_c_1_1_4_right_flip_up)
-    del t2041
-    cost_1_1_4_right_flip_up = d4 * versine_1_1_4_right_flip_up + root1 * np.abs(t2040)
+    t2040 = t2037 * (t2039 + t2001 * wanted_1_1_4_right_flip_up)
+    del t2001, t2037, t2039, wanted_1_1_4_right_flip_up
+    t2041 = _runtime.select(t2002, 0.0, t2040)
+    del t2002, t2040
+    t2042 = t2041 * t2041 / (1.0 + np.abs(by_c_1_1_4_right_flip_up))
+    versine_1_1_4_right_flip_up = _runtime.select(0.0 < by_c_1_1_4_right_flip_up, t2042, 1.0 - by_c_1_1_4_right_flip_up)
+    del t2042
+    cost_1_1_4_right_flip_up = d4 * versine_1_1_4_right_flip_up + root1 * np.abs(t2041)
     del versine_1_1_4_right_flip_up
-    t2042 = cost_1_1_4_right_flip_up <= whole_1_1
+    t2043 = cost_1_1_4_right_flip_up <= whole_1_1
     del cost_1_1_4_right_flip_up
-    cosine_1_1_4_right_flip_up = _runtime.select(t2042, by_c_1_1_4_right_flip_up, 1.0)
+    cosine_1_1_4_right_flip_up = _runtime.select(t2043, by_c_1_1_4_right_flip_up, 1.0)
     del by_c_1_1_4_right_flip_up
-    t2043 = c_1_1_4_right_flip_up * cosine_1_1_4_right_flip_up
-    sine_1_1_4_right_flip_up = _runtime.select(t2042, -t2040, 0.0)
-    del t2040, t2042
-    t2044 = s_1_1_4_right_flip_up * sine_1_1_4_right_flip_up
-    c_1_1_6_right_flip_up = t2043 - t2044
-    del t2043, t2044
-    t2045 = c_1_1_4_right_flip_up * sine_1_1_4_right_flip_up
+    t2044 = c_1_1_4_right_flip_up * cosine_1_1_4_right_flip_up
+    sine_1_1_4_right_flip_up = _runtime.select(t2043, -t2041, 0.0)
+    del t2041, t2043
+    t2045 = s_1_1_4_right_flip_up * sine_1_1_4_right_flip_up
+    c_1_1_6_right_flip_up = t2044 - t2045
+    del t2044, t2045
+    t2046 = c_1_1_4_right_flip_up * sine_1_1_4_right_flip_up
     del sine_1_1_4_right_flip_up
-    t2046 = s_1_1_4_right_flip_up * cosine_1_1_4_right_flip_up
+    t2047 = s_1_1_4_right_flip_up * cosine_1_1_4_right_flip_up
     del cosine_1_1_4_right_flip_up
-    s_1_1_6_right_flip_up = t2045 + t2046
-    del t2045, t2046
+    s_1_1_6_right_flip_up = t2046 + t2047
+    del t2046, t2047
     axisx_1_1_6_right_flip_up = T13 * c_1_1_6_right_flip_up + T23 * s_1_1_6_right_flip_up
-    t2047 = axisx_1_1_6_right_flip_up * axisx_1_1_6_right_flip_up
-    h_1_1_6_right_flip_up = np.sqrt(t5 + t2047)
-    del t2047
-    t2048 = h_1_1_6_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_6_right_flip_up = w_x * c_1_1_6_right_flip_up + w_y * s_1_1_6_right_flip_up
-    t2049 = h_1_1_6_right_flip_up == 0.0
-    t2050 = 1.0 / h_1_1_6_right_flip_up
-    t2051 = _runtime.select(t2049, 0.0, T33 * t2050)
-    x_1_1_6_right_flip_up = _runtime.select(t2048, qx_1_1_6_right_flip_up, qx_1_1_6_right_flip_up + d5 * t2051)
-    dqx_1_1_6_right_flip_up = w_y * c_1_1_6_right_flip_up - w_x * s_1_1_6_right_flip_up
-    t2052 = T13 * s_1_1_6_right_flip_up - T23 * c_1_1_6_right_flip_up
-    t2053 = h_1_1_6_right_flip_up * h_1_1_6_right_flip_up
-    del h_1_1_6_right_flip_up
-    spin_1_1_6_right_flip_up = _runtime.select(t2048, 0.0, T33 * t2052 / t2053)
-    del t2052, t2053
-    rate_1_1_6_right_flip_up = d5 * spin_1_1_6_right_flip_up
-    t2054 = _runtime.select(t2049, 1.0, -(axisx_1_1_6_right_flip_up * t2050))
-    del axisx_1_1_6_right_flip_up, t2049, t2050
-    t2055 = dqx_1_1_6_right_flip_up - rate_1_1_6_right_flip_up * t2054
-    dx_1_1_6_right_flip_up = _runtime.select(t2048, dqx_1_1_6_right_flip_up, t2055)
-    del t2055
-    t2056 = x_1_1_6_right_flip_up * dx_1_1_6_right_flip_up
-    del dx_1_1_6_right_flip_up
-    t2057 = _runtime.select(t2048, t23, t23 - d5 * t2054)
-    dy_1_1_6_right_flip_up = _runtime.select(t2048, 0.0, rate_1_1_6_right_flip_up * t2051)
-    slope_1_1_6_right_flip_up = t2056 - t2057 * dy_1_1_6_right_flip_up
-    del dy_1_1_6_right_flip_up, t2056
-    t2058 = slope_1_1_6_right_flip_up * slope_1_1_6_right_flip_up
-    straight_1_1_6_right_flip_up = dqx_1_1_6_right_flip_up * dqx_1_1_6_right_flip_up
-    t2059 = spin_1_1_6_right_flip_up * (qx_1_1_6_right_flip_up * t2051 - t23 * t2054)
-    del qx_1_1_6_right_flip_up, spin_1_1_6_right_flip_up, t2051
-    t2060 = 2.0 * dqx_1_1_6_right_flip_up * t2054 + t2059
-    del dqx_1_1_6_right_flip_up, t2054, t2059
-    t2061 = straight_1_1_6_right_flip_up - rate_1_1_6_right_flip_up * t2060
-    del rate_1_1_6_right_flip_up, t2060
-    bends_1_1_6_right_flip_up = _runtime.select(t2048, straight_1_1_6_right_flip_up, t2061)
-    del straight_1_1_6_right_flip_up, t2061
-    t2062 = x_1_1_6_right_flip_up * x_1_1_6_right_flip_up
-    del x_1_1_6_right_flip_up
-    square_1_1_6_right_flip_up = t2062 + t2057 * t2057
-    del t2057, t2062
-    t2063 = _runtime.select(t2048, t98, fold_1_1) - whole_1_1
-    t2064 = np.maximum(0.0, t2063)
-    del t2063
-    t2065 = whole_1_1 + _runtime.select(t2048, t3, full_1_1)
+    t2048 = axisx_1_1_6_right_flip_up * axisx_1_1_6_right_flip_up
+    h_1_1_6_right_flip_up = np.sqrt(t5 + t2048)
     del t2048
-    t2066 = np.minimum(t2065 * t2065, square_1_1_6_right_flip_up)
-    del t2065
-    miss_1_1_6_right_flip_up = square_1_1_6_right_flip_up - np.maximum(t2064 * t2064, t2066)
-    del square_1_1_6_right_flip_up, t2064, t2066
-    t2067 = bends_1_1_6_right_flip_up * miss_1_1_6_right_flip_up
-    inner_1_1_6_right_flip_up = t2058 - t2067
-    del t2058, t2067
-    t2068 = inner_1_1_6_right_flip_up < 0.0
-    t2069 = np.sqrt(np.maximum(0.0, inner_1_1_6_right_flip_up))
+    t2049 = h_1_1_6_right_flip_up <= t89
+    qx_1_1_6_right_flip_up = w_x * c_1_1_6_right_flip_up + w_y * s_1_1_6_right_flip_up
+    t2050 = h_1_1_6_right_flip_up == 0.0
+    t2051 = 1.0 / h_1_1_6_right_flip_up
+    t2052 = _runtime.select(t2050, 0.0, T33 * t2051)
+    x_1_1_6_right_flip_up = _runtime.select(t2049, qx_1_1_6_right_flip_up, qx_1_1_6_right_flip_up + d5 * t2052)
+    dqx_1_1_6_right_flip_up = w_y * c_1_1_6_right_flip_up - w_x * s_1_1_6_right_flip_up
+    t2053 = T13 * s_1_1_6_right_flip_up - T23 * c_1_1_6_right_flip_up
+    t2054 = h_1_1_6_right_flip_up * h_1_1_6_right_flip_up
+    del h_1_1_6_right_flip_up
+    spin_1_1_6_right_flip_up = _runtime.select(t2049, 0.0, T33 * t2053 / t2054)
+    del t2053, t2054
+    rate_1_1_6_right_flip_up = d5 * spin_1_1_6_right_flip_up
+    t2055 = _runtime.select(t2050, 1.0, -(axisx_1_1_6_right_flip_up * t2051))
+    del axisx_1_1_6_right_flip_up, t2050, t2051
+    t2056 = dqx_1_1_6_right_flip_up - rate_1_1_6_right_flip_up * t2055
+    dx_1_1_6_right_flip_up = _runtime.select(t2049, dqx_1_1_6_right_flip_up, t2056)
+    del t2056
+    t2057 = x_1_1_6_right_flip_up * dx_1_1_6_right_flip_up
+    del dx_1_1_6_right_flip_up
+    t2058 = _runtime.select(t2049, t24, t24 - d5 * t2055)
+    dy_1_1_6_right_flip_up = _runtime.select(t2049, 0.0, rate_1_1_6_right_flip_up * t2052)
+    slope_1_1_6_right_flip_up = t2057 - t2058 * dy_1_1_6_right_flip_up
+    del dy_1_1_6_right_flip_up, t2057
+    t2059 = slope_1_1_6_right_flip_up * slope_1_1_6_right_flip_up
+    straight_1_1_6_right_flip_up = dqx_1_1_6_right_flip_up * dqx_1_1_6_right_flip_up
+    t2060 = spin_1_1_6_right_flip_up * (qx_1_1_6_right_flip_up * t2052 - t24 * t2055)
+    del qx_1_1_6_right_flip_up, spin_1_1_6_right_flip_up, t2052
+    t2061 = 2.0 * dqx_1_1_6_right_flip_up * t2055 + t2060
+    del dqx_1_1_6_right_flip_up, t2055, t2060
+    t2062 = straight_1_1_6_right_flip_up - rate_1_1_6_right_flip_up * t2061
+    del rate_1_1_6_right_flip_up, t2061
+    bends_1_1_6_right_flip_up = _runtime.select(t2049, straight_1_1_6_right_flip_up, t2062)
+    del straight_1_1_6_right_flip_up, t2062
+    t2063 = x_1_1_6_right_flip_up * x_1_1_6_right_flip_up
+    del x_1_1_6_right_flip_up
+    square_1_1_6_right_flip_up = t2063 + t2058 * t2058
+    del t2058, t2063
+    t2064 = _runtime.select(t2049, t99, fold_1_1) - whole_1_1
+    t2065 = np.maximum(0.0, t2064)
+    del t2064
+    t2066 = whole_1_1 + _runtime.select(t2049, t3, full_1_1)
+    del t2049
+    t2067 = np.minimum(t2066 * t2066, square_1_1_6_right_flip_up)
+    del t2066
+    miss_1_1_6_right_flip_up = square_1_1_6_right_flip_up - np.maximum(t2065 * t2065, t2067)
+    del square_1_1_6_right_flip_up, t2065, t2067
+    t2068 = bends_1_1_6_right_flip_up * miss_1_1_6_right_flip_up
+    inner_1_1_6_right_flip_up = t2059 - t2068
+    del t2059, t2068
+    t2069 = inner_1_1_6_right_flip_up < 0.0
+    t2070 = np.sqrt(np.maximum(0.0, inner_1_1_6_right_flip_up))
     del inner_1_1_6_right_flip_up
-    t2070 = _runtime.sign(slope_1_1_6_right_flip_up) * t2069
-    del t2069
-    below_1_1_6_right_flip_up = _runtime.select(t2068, 2.0 * bends_1_1_6_right_flip_up, 2.0 * (slope_1_1_6_right_flip_up + t2070))
-    del bends_1_1_6_right_flip_up, t2070
-    above_1_1_6_right_flip_up = _runtime.select(t2068, slope_1_1_6_right_flip_up, miss_1_1_6_right_flip_up)
-    del miss_1_1_6_right_flip_up, slope_1_1_6_right_flip_up, t2068
-    t2071 = np.abs(below_1_1_6_right_flip_up) <= np.abs(above_1_1_6_right_flip_up)
-    t2072 = above_1_1_6_right_flip_up / below_1_1_6_right_flip_up
+    t2071 = _runtime.sign(slope_1_1_6_right_flip_up) * t2070
+    del t2070
+    below_1_1_6_right_flip_up = _runtime.select(t2069, 2.0 * bends_1_1_6_right_flip_up, 2.0 * (slope_1_1_6_right_flip_up + t2071))
+    del bends_1_1_6_right_flip_up, t2071
+    above_1_1_6_right_flip_up = _runtime.select(t2069, slope_1_1_6_right_flip_up, miss_1_1_6_right_flip_up)
+    del miss_1_1_6_right_flip_up, slope_1_1_6_right_flip_up, t2069
+    t2072 = np.abs(below_1_1_6_right_flip_up) <= np.abs(above_1_1_6_right_flip_up)
+    t2073 = above_1_1_6_right_flip_up / below_1_1_6_right_flip_up
     del above_1_1_6_right_flip_up, below_1_1_6_right_flip_up
-    t2073 = _runtime.select(t2071, 0.0, t2072)
-    del t2071, t2072
-    t2074 = t2073 * t2073
-    t2075 = 1.0 / (1.0 + t2074)
-    by_c_1_1_6_right_flip_up = (1.0 - t2074) * t2075
-    del t2074
-    t2076 = t2075 * (2.0 * t2073)
-    del t2073, t2075
-    t2077 = t2076 * t2076 / (1.0 + np.abs(by_c_1_1_6_right_flip_up))
-    versine_1_1_6_right_flip_up = _runtime.select(0.0 < by_c_1_1_6_right_flip_up, t2077, 1.0 - by_c_1_1_6_right_flip_up)
-    del t2077
-    cost_1_1_6_right_flip_up = d4 * versine_1_1_6_right_flip_up + root1 * np.abs(t2076)
+    t2074 = _runtime.select(t2072, 0.0, t2073)
+    del t2072, t2073
+    t2075 = t2074 * t2074
+    t2076 = 1.0 / (1.0 + t2075)
+    by_c_1_1_6_right_flip_up = (1.0 - t2075) * t2076
+    del t2075
+    t2077 = t2076 * (2.0 * t2074)
+    del t2074, t2076
+    t2078 = t2077 * t2077 / (1.0 + np.abs(by_c_1_1_6_right_flip_up))
+    versine_1_1_6_right_flip_up = _runtime.select(0.0 < by_c_1_1_6_right_flip_up, t2078, 1.0 - by_c_1_1_6_right_flip_up)
+    del t2078
+    cost_1_1_6_right_flip_up = d4 * versine_1_1_6_right_flip_up + root1 * np.abs(t2077)
     del versine_1_1_6_right_flip_up
-    t2078 = cost_1_1_6_right_flip_up <= whole_1_1
+    t2079 = cost_1_1_6_right_flip_up <= whole_1_1
     del cost_1_1_6_right_flip_up
-    cosine_1_1_6_right_flip_up = _runtime.select(t2078, by_c_1_1_6_right_flip_up, 1.0)
+    cosine_1_1_6_right_flip_up = _runtime.select(t2079, by_c_1_1_6_right_flip_up, 1.0)
     del by_c_1_1_6_right_flip_up
-    t2079 = c_1_1_6_right_flip_up * cosine_1_1_6_right_flip_up
-    sine_1_1_6_right_flip_up = _runtime.select(t2078, -t2076, 0.0)
-    del t2076, t2078
-    t2080 = s_1_1_6_right_flip_up * sine_1_1_6_right_flip_up
-    c_1_1_7_right_flip_up = t2079 - t2080
-    del t2079, t2080
-    t2081 = c_1_1_6_right_flip_up * sine_1_1_6_right_flip_up
+    t2080 = c_1_1_6_right_flip_up * cosine_1_1_6_right_flip_up
+    sine_1_1_6_right_flip_up = _runtime.select(t2079, -t2077, 0.0)
+    del t2077, t2079
+    t2081 = s_1_1_6_right_flip_up * sine_1_1_6_right_flip_up
+    c_1_1_7_right_flip_up = t2080 - t2081
+    del t2080, t2081
+    t2082 = c_1_1_6_right_flip_up * sine_1_1_6_right_flip_up
     del c_1_1_6_right_flip_up, sine_1_1_6_right_flip_up
-    t2082 = s_1_1_6_right_flip_up * cosine_1_1_6_right_flip_up
+    t2083 = s_1_1_6_right_flip_up * cosine_1_1_6_right_flip_up
     del cosine_1_1_6_right_flip_up, s_1_1_6_right_flip_up
-    s_1_1_7_right_flip_up = t2081 + t2082
-    del t2081, t2082
+    s_1_1_7_right_flip_up = t2082 + t2083
+    del t2082, t2083
     axisx_1_1_7_right_flip_up = T13 * c_1_1_7_right_flip_up + T23 * s_1_1_7_right_flip_up
-    t2083 = axisx_1_1_7_right_flip_up * axisx_1_1_7_right_flip_up
-    h_1_1_7_right_flip_up = np.sqrt(t5 + t2083)
-    del t2083
-    t2084 = h_1_1_7_right_flip_up <= 1.4210854715202004e-14
-    qx_1_1_7_right_flip_up = w_x * c_1_1_7_right_flip_up + w_y * s_1_1_7_right_flip_up
-    t2085 = h_1_1_7_right_flip_up == 0.0
-    t2086 = 1.0 / h_1_1_7_right_flip_up
-    t2087 = _runtime.select(t2085, 0.0, T33 * t2086)
-    x_1_1_7_right_flip_up = _runtime.select(t2084, qx_1_1_7_right_flip_up, qx_1_1_7_right_flip_up + d5 * t2087)
-    dqx_1_1_7_right_flip_up = w_y * c_1_1_7_right_flip_up - w_x * s_1_1_7_right_flip_up
-    t2088 = T13 * s_1_1_7_right_flip_up - T23 * c_1_1_7_right_flip_up
-    t2089 = h_1_1_7_right_flip_up * h_1_1_7_right_flip_up
-    del h_1_1_7_right_flip_up
-    spin_1_1_7_right_flip_up = _runtime.select(t2084, 0.0, T33 * t2088 / t2089)
-    del t2088, t2089
-    rate_1_1_7_right_flip_up = d5 * spin_1_1_7_right_flip_up
-    t2090 = _runtime.select(t2085, 1.0, -(axisx_1_1_7_right_flip_up * t2086))
-    del axisx_1_1_7_right_flip_up, t2085, t2086
-    t2091 = dqx_1_1_7_right_flip_up - rate_1_1_7_right_flip_up * t2090
-    dx_1_1_7_right_flip_up = _runtime.select(t2084, dqx_1_1_7_right_flip_up, t2091)
-    del t2091
-    t2092 = x_1_1_7_right_flip_up * dx_1_1_7_right_flip_up
-    del dx_1_1_7_right_flip_up
-    t2093 = _runtime.select(t2084, t23, t23 - d5 * t2090)
-    dy_1_1_7_right_flip_up = _runtime.select(t2084, 0.0, rate_1_1_7_right_flip_up * t2087)
-    slope_1_1_7_right_flip_up = t2092 - t2093 * dy_1_1_7_right_flip_up
-    del dy_1_1_7_right_flip_up, t2092
-    t2094 = slope_1_1_7_right_flip_up * slope_1_1_7_right_flip_up
-    straight_1_1_7_right_flip_up = dqx_1_1_7_right_flip_up * dqx_1_1_7_right_flip_up
-    t2095 = spin_1_1_7_right_flip_up * (qx_1_1_7_right_flip_up * t2087 - t23 * t2090)
-    del qx_1_1_7_right_flip_up, spin_1_1_7_right_flip_up, t2087
-    t2096 = 2.0 * dqx_1_1_7_right_flip_up * t2090 + t2095
-    del dqx_1_1_7_right_flip_up, t2090, t2095
-    t2097 = straight_1_1_7_right_flip_up - rate_1_1_7_right_flip_up * t2096
-    del rate_1_1_7_right_flip_up, t2096
-    bends_1_1_7_right_flip_up = _runtime.select(t2084, straight_1_1_7_right_flip_up, t2097)
-    del straight_1_1_7_right_flip_up, t2097
-    t2098 = x_1_1_7_right_flip_up * x_1_1_7_right_flip_up
-    del x_1_1_7_right_flip_up
-    square_1_1_7_right_flip_up = t2098 + t2093 * t2093
-    del t2093, t2098
-    t2099 = _runtime.select(t2084, t98, fold_1_1) - whole_1_1
-    t2100 = np.maximum(0.0, t2099)
-    del t2099
-    t2101 = whole_1_1 + _runtime.select(t2084, t3, full_1_1)
+    t2084 = axisx_1_1_7_right_flip_up * axisx_1_1_7_right_flip_up
+    h_1_1_7_right_flip_up = np.sqrt(t5 + t2084)
     del t2084
-    t2102 = np.minimum(t2101 * t2101, square_1_1_7_right_flip_up)
-    del t2101
-    miss_1_1_7_right_flip_up = square_1_1_7_right_flip_up - np.maximum(t2100 * t2100, t2102)
-    del square_1_1_7_right_flip_up, t2100, t2102
-    t2103 = bends_1_1_7_right_flip_up * miss_1_1_7_right_flip_up
-    inner_1_1_7_right_flip_up = t2094 - t2103
-    del t2094, t2103
-    t2104 = inner_1_1_7_right_flip_up < 0.0
-    t2105 = np.sqrt(np.maximum(0.0, inner_1_1_7_right_flip_up))
+    t2085 = h_1_1_7_right_flip_up <= t89
+    qx_1_1_7_right_flip_up = w_x * c_1_1_7_right_flip_up + w_y * s_1_1_7_right_flip_up
+    t2086 = h_1_1_7_right_flip_up == 0.0
+    t2087 = 1.0 / h_1_1_7_right_flip_up
+    t2088 = _runtime.select(t2086, 0.0, T33 * t2087)
+    x_1_1_7_right_flip_up = _runtime.select(t2085, qx_1_1_7_right_flip_up, qx_1_1_7_right_flip_up + d5 * t2088)
+    dqx_1_1_7_right_flip_up = w_y * c_1_1_7_right_flip_up - w_x * s_1_1_7_right_flip_up
+    t2089 = T13 * s_1_1_7_right_flip_up - T23 * c_1_1_7_right_flip_up
+    t2090 = h_1_1_7_right_flip_up * h_1_1_7_right_flip_up
+    del h_1_1_7_right_flip_up
+    spin_1_1_7_right_flip_up = _runtime.select(t2085, 0.0, T33 * t2089 / t2090)
+    del t2089, t2090
+    rate_1_1_7_right_flip_up = d5 * spin_1_1_7_right_flip_up
+    t2091 = _runtime.select(t2086, 1.0, -(axisx_1_1_7_right_flip_up * t2087))
+    del axisx_1_1_7_right_flip_up, t2086, t2087
+    t2092 = dqx_1_1_7_right_flip_up - rate_1_1_7_right_flip_up * t2091
+    dx_1_1_7_right_flip_up = _runtime.select(t2085, dqx_1_1_7_right_flip_up, t2092)
+    del t2092
+    t2093 = x_1_1_7_right_flip_up * dx_1_1_7_right_flip_up
+    del dx_1_1_7_right_flip_up
+    t2094 = _runtime.select(t2085, t24, t24 - d5 * t2091)
+    dy_1_1_7_right_flip_up = _runtime.select(t2085, 0.0, rate_1_1_7_right_flip_up * t2088)
+    slope_1_1_7_right_flip_up = t2093 - t2094 * dy_1_1_7_right_flip_up
+    del dy_1_1_7_right_flip_up, t2093
+    t2095 = slope_1_1_7_right_flip_up * slope_1_1_7_right_flip_up
+    straight_1_1_7_right_flip_up = dqx_1_1_7_right_flip_up * dqx_1_1_7_right_flip_up
+    t2096 = spin_1_1_7_right_flip_up * (qx_1_1_7_right_flip_up * t2088 - t24 * t2091)
+    del qx_1_1_7_right_flip_up, spin_1_1_7_right_flip_up, t2088
+    t2097 = 2.0 * dqx_1_1_7_right_flip_up * t2091 + t2096
+    del dqx_1_1_7_right_flip_up, t2091, t2096
+    t2098 = straight_1_1_7_right_flip_up - rate_1_1_7_right_flip_up * t2097
+    del rate_1_1_7_right_flip_up, t2097
+    bends_1_1_7_right_flip_up = _runtime.select(t2085, straight_1_1_7_right_flip_up, t2098)
+    del straight_1_1_7_right_flip_up, t2098
+    t2099 = x_1_1_7_right_flip_up * x_1_1_7_right_flip_up
+    del x_1_1_7_right_flip_up
+    square_1_1_7_right_flip_up = t2099 + t2094 * t2094
+    del t2094, t2099
+    t2100 = _runtime.select(t2085, t99, fold_1_1) - whole_1_1
+    t2101 = np.maximum(0.0, t2100)
+    del t2100
+    t2102 = whole_1_1 + _runtime.select(t2085, t3, full_1_1)
+    del t2085
+    t2103 = np.minimum(t2102 * t2102, square_1_1_7_right_flip_up)
+    del t2102
+    miss_1_1_7_right_flip_up = square_1_1_7_right_flip_up - np.maximum(t2101 * t2101, t2103)
+    del square_1_1_7_right_flip_up, t2101, t2103
+    t2104 = bends_1_1_7_right_flip_up * miss_1_1_7_right_flip_up
+    inner_1_1_7_right_flip_up = t2095 - t2104
+    del t2095, t2104
+    t2105 = inner_1_1_7_right_flip_up < 0.0
+    t2106 = np.sqrt(np.maximum(0.0, inner_1_1_7_right_flip_up))
     del inner_1_1_7_right_flip_up
-    t2106 = _runtime.sign(slope_1_1_7_right_flip_up) * t2105
-    del t2105
-    below_1_1_7_right_flip_up = _runtime.select(t2104, 2.0 * bends_1_1_7_right_flip_up, 2.0 * (slope_1_1_7_right_flip_up + t2106))
-    del bends_1_1_7_right_flip_up, t2106
-    above_1_1_7_right_flip_up = _runtime.select(t2104, slope_1_1_7_right_flip_up, miss_1_1_7_right_flip_up)
-    del miss_1_1_7_right_flip_up, slope_1_1_7_right_flip_up, t2104
-    t2107 = np.abs(below_1_1_7_right_flip_up) <= np.abs(above_1_1_7_right_flip_up)
-    t2108 = above_1_1_7_right_flip_up / below_1_1_7_right_flip_up
+    t2107 = _runtime.sign(slope_1_1_7_right_flip_up) * t2106
+    del t2106
+    below_1_1_7_right_flip_up = _runtime.select(t2105, 2.0 * bends_1_1_7_right_flip_up, 2.0 * (slope_1_1_7_right_flip_up + t2107))
+    del bends_1_1_7_right_flip_up, t2107
+    above_1_1_7_right_flip_up = _runtime.select(t2105, slope_1_1_7_right_flip_up, miss_1_1_7_right_flip_up)
+    del miss_1_1_7_right_flip_up, slope_1_1_7_right_flip_up, t2105
+    t2108 = np.abs(below_1_1_7_right_flip_up) <= np.abs(above_1_1_7_right_flip_up)
+    t2109 = above_1_1_7_right_flip_up / below_1_1_7_right_flip_up
     del above_1_1_7_right_flip_up, below_1_1_7_right_flip_up
-    t2109 = _runtime.select(t2107, 0.0, t2108)
-    del t2107, t2108
-    t2110 = t2109 * t2109
-    t2111 = 1.0 / (1.0 + t2110)
-    by_c_1_1_7_right_flip_up = (1.0 - t2110) * t2111
-    del t2110
-    t2112 = t2111 * (2.0 * t2109)
-    del t2109, t2111
-    t2113 = t2112 * t2112 / (1.0 + np.abs(by_c_1_1_7_right_flip_up))
-    versine_1_1_7_right_flip_up = _runtime.select(0.0 < by_c_1_1_7_right_flip_up, t2113, 1.0 - by_c_1_1_7_right_flip_up)
-    del t2113
-    cost_1_1_7_right_flip_up = d4 * versine_1_1_7_right_flip_up + root1 * np.abs(t2112)
+    t2110 = _runtime.select(t2108, 0.0, t2109)
+    del t2108, t2109
+    t2111 = t2110 * t2110
+    t2112 = 1.0 / (1.0 + t2111)
+    by_c_1_1_7_right_flip_up = (1.0 - t2111) * t2112
+    del t2111
+    t2113 = t2112 * (2.0 * t2110)
+    del t2110, t2112
+    t2114 = t2113 * t2113 / (1.0 + np.abs(by_c_1_1_7_right_flip_up))
+    versine_1_1_7_right_flip_up = _runtime.select(0.0 < by_c_1_1_7_right_flip_up, t2114, 1.0 - by_c_1_1_7_right_flip_up)
+    del t2114
+    cost_1_1_7_right_flip_up = d4 * versine_1_1_7_right_flip_up + root1 * np.abs(t2113)
     del versine_1_1_7_right_flip_up
-    t2114 = cost_1_1_7_right_flip_up <= whole_1_1
+    t2115 = cost_1_1_7_right_flip_up <= whole_1_1
     del cost_1_1_7_right_flip_up, whole_1_1
-    cosine_1_1_7_right_flip_up = _runtime.select(t2114, by_c_1_1_7_right_flip_up, 1.0)
+    cosine_1_1_7_right_flip_up = _runtime.select(t2115, by_c_1_1_7_right_flip_up, 1.0)
     del by_c_1_1_7_right_flip_up
-    t2115 = c_1_1_7_right_flip_up * cosine_1_1_7_right_flip_up
-    sine_1_1_7_right_flip_up = _runtime.select(t2114, -t2112, 0.0)
-    del t2112, t2114
-    t2116 = s_1_1_7_right_flip_up * sine_1_1_7_right_flip_up
-    c_1_1_8_right_flip_up = t2115 - t2116
-    del t2115, t2116
-    t2117 = c_1_1_7_right_flip_up * sine_1_1_7_right_flip_up
+    t2116 = c_1_1_7_right_flip_up * cosine_1_1_7_right_flip_up
+    sine_1_1_7_right_flip_up = _runtime.select(t2115, -t2113, 0.0)
+    del t2113, t2115
+    t2117 = s_1_1_7_right_flip_up * sine_1_1_7_right_flip_up
+    c_1_1_8_right_flip_up = t2116 - t2117
+    del t2116, t2117
+    t2118 = c_1_1_7_right_flip_up * sine_1_1_7_right_flip_up
     del c_1_1_7_right_flip_up, sine_1_1_7_right_flip_up
-    t2118 = s_1_1_7_right_flip_up * cosine_1_1_7_right_flip_up
+    t2119 = s_1_1_7_right_flip_up * cosine_1_1_7_right_flip_up
     del cosine_1_1_7_right_flip_up, s_1_1_7_right_flip_up
-    s_1_1_8_right_flip_up = t2117 + t2118
-    del t2117, t2118
+    s_1_1_8_right_flip_up = t2118 + t2119
+    del t2118, t2119
     axisx_1_1_8_right_flip_up = T13 * c_1_1_8_right_flip_up + T23 * s_1_1_8_right_flip_up
-    t2119 = axisx_1_1_8_right_flip_up * axisx_1_1_8_right_flip_up
-    h_1_1_8_right_flip_up = np.sqrt(t5 + t2119)
-    del t2119
-    t2120 = h_1_1_8_right_flip_up <= 1.4210854715202004e-14
+    t2120 = axisx_1_1_8_right_flip_up * axisx_1_1_8_right_flip_up
+    h_1_1_8_right_flip_up = np.sqrt(t5 + t2120)
+    del t2120
+    t2121 = h_1_1_8_right_flip_up <= t89
     qx_1_1_8_right_flip_up = w_x * c_1_1_8_right_flip_up + w_y * s_1_1_8_right_flip_up
-    t2121 = h_1_1_8_right_flip_up == 0.0
-    t2122 = 1.0 / h_1_1_8_right_flip_up
+    t2122 = h_1_1_8_right_flip_up == 0.0
+    t2123 = 1.0 / h_1_1_8_right_flip_up
     del h_1_1_8_right_flip_up
-    t2123 = d5 * _runtime.select(t2121, 0.0, T33 * t2122)
-    x_1_1_8_right_flip_up = _runtime.select(t2120, qx_1_1_8_right_flip_up, qx_1_1_8_right_flip_up + t2123)
-    del qx_1_1_8_right_flip_up, t2123
-    t2124 = x_1_1_8_right_flip_up * x_1_1_8_right_flip_up
+    t2124 = d5 * _runtime.select(t2122, 0.0, T33 * t2123)
+    x_1_1_8_right_flip_up = _runtime.select(t2121, qx_1_1_8_right_flip_up, qx_1_1_8_right_flip_up + t2124)
+    del qx_1_1_8_right_flip_up, t2124
+    t2125 = x_1_1_8_right_flip_up * x_1_1_8_right_flip_up
     del x_1_1_8_right_flip_up
-    t2125 = _runtime.select(t2121, 1.0, -(axisx_1_1_8_right_flip_up * t2122))
-    del axisx_1_1_8_right_flip_up, t2121, t2122
-    t2126 = _runtime.select(t2120, t23, t23 - d5 * t2125)
-    del t2125
-    t2127 = np.sqrt(t2124 + t2126 * t2126)
-    del t2124, t2126
-    t2128 = np.maximum(0.0, t2127 - _runtime.select(t2120, t3, full_1_1))
-    t2129 = _runtime.select(t2120, t98, fold_1_1) - t2127
-    del t2120, t2127
-    t2130 = h_1_1_4_right_flip_up <= 1.4210854715202004e-14
+    t2126 = _runtime.select(t2122, 1.0, -(axisx_1_1_8_right_flip_up * t2123))
+    del axisx_1_1_8_right_flip_up, t2122, t2123
+    t2127 = _runtime.select(t2121, t24, t24 - d5 * t2126)
+    del t2126
+    t2128 = np.sqrt(t2125 + t2127 * t2127)
+    del t2125, t2127
+    t2129 = np.maximum(0.0, t2128 - _runtime.select(t2121, t3, full_1_1))
+    t2130 = _runtime.select(t2121, t99, fold_1_1) - t2128
+    del t2121, t2128
+    t2131 = h_1_1_4_right_flip_up <= t89
     del h_1_1_4_right_flip_up
-    x_1_1_4_right_flip_up = _runtime.select(t2130, qx_1_1_4_right_flip_up, t2008)
-    del qx_1_1_4_right_flip_up, t2008
-    t2131 = x_1_1_4_right_flip_up * x_1_1_4_right_flip_up
+    x_1_1_4_right_flip_up = _runtime.select(t2131, qx_1_1_4_right_flip_up, t2009)
+    del qx_1_1_4_right_flip_up, t2009
+    t2132 = x_1_1_4_right_flip_up * x_1_1_4_right_flip_up
     del x_1_1_4_right_flip_up
-    t2132 = _runtime.select(t2130, t23, t2010)
-    del t2010
-    t2133 = np.sqrt(t2131 + t2132 * t2132)
-    del t2131, t2132
-    t2134 = np.maximum(0.0, t2133 - _runtime.select(t2130, t3, full_1_1))
-    t2135 = _runtime.select(t2130, t98, fold_1_1) - t2133
-    del t2130, t2133
-    t2136 = np.maximum(t2128, t2129) < np.maximum(t2134, t2135)
-    del t2128, t2129, t2134, t2135
-    c_1_1_9_right_flip_up = _runtime.select(t2136, c_1_1_8_right_flip_up, c_1_1_4_right_flip_up)
+    t2133 = _runtime.select(t2131, t24, t2011)
+    del t2011
+    t2134 = np.sqrt(t2132 + t2133 * t2133)
+    del t2132, t2133
+    t2135 = np.maximum(0.0, t2134 - _runtime.select(t2131, t3, full_1_1))
+    t2136 = _runtime.select(t2131, t99, fold_1_1) - t2134
+    del t2131, t2134
+    t2137 = np.maximum(t2129, t2130) < np.maximum(t2135, t2136)
+    del t2129, t2130, t2135, t2136
+    c_1_1_9_right_flip_up = _runtime.select(t2137, c_1_1_8_right_flip_up, c_1_1_4_right_flip_up)
     del c_1_1_4_right_flip_up, c_1_1_8_right_flip_up
-    s_1_1_9_right_flip_up = _runtime.select(t2136, s_1_1_8_right_flip_up, s_1_1_4_right_flip_up)
-    del s_1_1_4_right_flip_up, s_1_1_8_right_flip_up, t2136
+    s_1_1_9_right_flip_up = _runtime.select(t2137, s_1_1_8_right_flip_up, s_1_1_4_right_flip_up)
+    del s_1_1_4_right_flip_up, s_1_1_8_right_flip_up, t2137
     axisx_1_1_9_right_flip_up = T13 * c_1_1_9_right_flip_up + T23 * s_1_1_9_right_flip_up
-    t2137 = axisx_1_1_9_right_flip_up * axisx_1_1_9_right_flip_up
-    h_1_1_9_right_flip_up = np.sqrt(t5 + t2137)
-    del t2137
-    t2138 = h_1_1_9_right_flip_up <= 1.4210854715202004e-14
+    t2138 = axisx_1_1_9_right_flip_up * axisx_1_1_9_right_flip_up
+    h_1_1_9_right_flip_up = np.sqrt(t5 + t2138)
+    del t2138
+    t2139 = h_1_1_9_right_flip_up <= t89
+    del t89
     qx_1_1_9_right_flip_up = w_x * c_1_1_9_right_flip_up + w_y * s_1_1_9_right_flip_up
-    t2139 = h_1_1_9_right_flip_up == 0.0
-    t2140 = 1.0 / h_1_1_9_right_flip_up
+    t2140 = h_1_1_9_right_flip_up == 0.0
+    t2141 = 1.0 / h_1_1_9_right_flip_up
     del h_1_1_9_right_flip_up
-    t2141 = d5 * _runtime.select(t2139, 0.0, T33 * t2140)
-    x_1_1_9_right_flip_up = _runtime.select(t2138, qx_1_1_9_right_flip_up, qx_1_1_9_right_flip_up + t2141)
-    del qx_1_1_9_right_flip_up, t2141
-    t2142 = x_1_1_9_right_flip_up * x_1_1_9_right_flip_up
+    t2142 = d5 * _runtime.select(t2140, 0.0, T33 * t2141)
+    x_1_1_9_right_flip_up = _runtime.select(t2139, qx_1_1_9_right_flip_up, qx_1_1_9_right_flip_up + t2142)
+    del qx_1_1_9_right_flip_up, t2142
+    t2143 = x_1_1_9_right_flip_up * x_1_1_9_right_flip_up
     del x_1_1_9_right_flip_up
-    t2143 = _runtime.select(t2139, 1.0, -(axisx_1_1_9_right_flip_up * t2140))
-    del axisx_1_1_9_right_flip_up, t2139, t2140
-    t2144 = _runtime.select(t2138, t23, t23 - d5 * t2143)
-    del t2143
-    t2145 = np.sqrt(t2142 + t2144 * t2144)
-    del t2142, t2144
-    t2146 = np.maximum(0.0, t2145 - _runtime.select(t2138, t3, full_1_1))
+    t2144 = _runtime.select(t2140, 1.0, -(axisx_1_1_9_right_flip_up * t2141))
+    del axisx_1_1_9_right_flip_up, t2140, t2141
+    t2145 = _runtime.select(t2139, t24, t24 - d5 * t2144)
+    del t2144
+    t2146 = np.sqrt(t2143 + t2145 * t2145)
+    del t2143, t2145
+    t2147 = np.maximum(0.0, t2146 - _runtime.select(t2139, t3, full_1_1))
     del t3
-    t2147 = _runtime.select(t2138, t98, fold_1_1) - t2145
-    del t2138, t2145, t98
-    t2148 = np.maximum(t1906, t1907) < np.maximum(t2146, t2147)
-    del t1906, t1907, t2146, t2147
-    s_1_1_18_right_flip_up = _runtime.select(t2148, s_1_1_17_right_flip_up, s_1_1_9_right_flip_up)
+    t2148 = _runtime.select(t2139, t99, fold_1_1) - t2146
+    del t2139, t2146, t99
+    t2149 = np.maximum(t1907, t1908) < np.maximum(t2147, t2148)
+    del t1907, t1908, t2147, t2148
+    s_1_1_18_right_flip_up = _runtime.select(t2149, s_1_1_17_right_flip_up, s_1_1_9_right_flip_up)
     del s_1_1_17_right_flip_up, s_1_1_9_right_flip_up
-    s1_right_flip_up = _runtime.select(tangent1, s_1_1_18_right_flip_up, -t980)
-    del s_1_1_18_right_flip_up, t980
-    c_1_1_18_right_flip_up = _runtime.select(t2148, c_1_1_17_right_flip_up, c_1_1_9_right_flip_up)
-    del c_1_1_17_right_flip_up, c_1_1_9_right_flip_up, t2148
+    s1_right_flip_up = _runtime.select(tangent1, s_1_1_18_right_flip_up, -t981)
+    del s_1_1_18_right_flip_up, t981
+    c_1_1_18_right_flip_up = _runtime.select(t2149, c_1_1_17_right_flip_up, c_1_1_9_right_flip_up)
+    del c_1_1_17_right_flip_up, c_1_1_9_right_flip_up, t2149
     c1_right_flip_up = _runtime.select(tangent1, c_1_1_18_right_flip_up, c_1_1_right_noflip_up)
     del c_1_1_18_right_flip_up, c_1_1_right_noflip_up, tangent1
-    t2149 = np.arctan2(s1_right_flip_up, c1_right_flip_up)
+    t2150 = np.arctan2(s1_right_flip_up, c1_right_flip_up)
     across_right_flip_up = w_x * c1_right_flip_up + w_y * s1_right_flip_up
     del w_x, w_y
     M_13_right_flip_up = T13 * c1_right_flip_up + T23 * s1_right_flip_up
     h_wrist_right_flip_up = np.sqrt(t5 + M_13_right_flip_up * M_13_right_flip_up)
     del t5
-    aligned_wrist_right_flip_up = h_wrist_right_flip_up <= t369
-    del t369
-    t2150 = t24 + across_right_flip_up * across_right_flip_up
-    del t24
-    r_hub_right_flip_up = np.sqrt(t2150)
-    del t2150
+    aligned_wrist_right_flip_up = h_wrist_right_flip_up <= t22
+    del t22
+    t2151 = t25 + across_right_flip_up * across_right_flip_up
+    del t25
+    r_hub_right_flip_up = np.sqrt(t2151)
+    del t2151
     hub_mid_right_flip_up = r_hub_right_flip_up <= t4
-    t2151 = d5 + r_hub_right_flip_up
-    t2152 = d5 - r_hub_right_flip_up
-    mid_reach_right_flip_up = np.minimum(full_1_1, t2151) * 0.5 + np.maximum(fold_1_1, np.abs(t2152)) * 0.5
-    t2153 = (t2151 - mid_reach_right_flip_up) * (t2151 + mid_reach_right_flip_up)
-    k_mid_right_flip_up = np.maximum(0.0, t2153)
-    del t2153
+    t2152 = d5 + r_hub_right_flip_up
+    t2153 = d5 - r_hub_right_flip_up
+    mid_reach_right_flip_up = np.minimum(full_1_1, t2152) * 0.5 + np.maximum(fold_1_1, np.abs(t2153)) * 0.5
     t2154 = (t2152 - mid_reach_right_flip_up) * (t2152 + mid_reach_right_flip_up)
-    del mid_reach_right_flip_up
-    d_mid_right_flip_up = np.maximum(0.0, -t2154)
+    k_mid_right_flip_up = np.maximum(0.0, t2154)
     del t2154
+    t2155 = (t2153 - mid_reach_right_flip_up) * (t2153 + mid_reach_right_flip_up)
+    del mid_reach_right_flip_up
+    d_mid_right_flip_up = np.maximum(0.0, -t2155)
+    del t2155
     n_mid_right_flip_up = k_mid_right_flip_up + d_mid_right_flip_up
-    t2155 = _runtime.VANISHING * (size * t2151)
+    t2156 = _runtime.VANISHING * (size * t2152)
     del size
-    any_mid_right_flip_up = n_mid_right_flip_up <= t2155
-    t2156 = 1.0 / n_mid_right_flip_up
+    any_mid_right_flip_up = n_mid_right_flip_up <= t2156
+    t2157 = 1.0 / n_mid_right_flip_up
     del n_mid_right_flip_up
-    t2157 = (k_mid_right_flip_up - d_mid_right_flip_up) * t2156
-    uc_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 1.0, t2157)
-    del t2157
-    t2158 = np.sqrt(k_mid_right_flip_up * d_mid_right_flip_up)
+    t2158 = (k_mid_right_flip_up - d_mid_right_flip_up) * t2157
+    uc_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 1.0, t2158)
+    del t2158
+    t2159 = np.sqrt(k_mid_right_flip_up * d_mid_right_flip_up)
     del d_mid_right_flip_up, k_mid_right_flip_up
-    us_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 0.0, t2156 * (2.0 * t2158))
-    del any_mid_right_flip_up, t2156, t2158
-    t2159 = across_right_flip_up * uc_mid_right_flip_up + t23 * us_mid_right_flip_up
-    t2160 = 1.0 / r_hub_right_flip_up
+    us_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 0.0, t2157 * (2.0 * t2159))
+    del any_mid_right_flip_up, t2157, t2159
+    t2160 = across_right_flip_up * uc_mid_right_flip_up + t24 * us_mid_right_flip_up
+    t2161 = 1.0 / r_hub_right_flip_up
     del r_hub_right_flip_up
-    c_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t2159 * t2160)
-    del t2159
+    c_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t2160 * t2161)
+    del t2160
     close_right_flip_up = root1 * h_wrist_right_flip_up - t375 <= t4
     del root1, t375
-    t2161 = 1.0 / h_wrist_right_flip_up
-    t2162 = _runtime.select(aligned_wrist_right_flip_up, 0.0, T33 * t2161)
-    t2163 = across_right_flip_up + d5 * t2162
-    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, 1.0, -(M_13_right_flip_up * t2161))
-    del t2161
-    t2164 = t23 - d5 * c_phi_right_flip_up
-    here_right_flip_up = np.sqrt(t2163 * t2163 + t2164 * t2164)
-    del t2163, t2164
+    t2162 = 1.0 / h_wrist_right_flip_up
+    t2163 = _runtime.select(aligned_wrist_right_flip_up, 0.0, T33 * t2162)
+    t2164 = across_right_flip_up + d5 * t2163
+    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, 1.0, -(M_13_right_flip_up * t2162))
+    del t2162
+    t2165 = t24 - d5 * c_phi_right_flip_up
+    here_right_flip_up = np.sqrt(t2164 * t2164 + t2165 * t2165)
+    del t2164, t2165
     in_reach_right_flip_up = np.minimum(full_1_1, np.maximum(here_right_flip_up, fold_1_1))
     del fold_1_1
-    t2165 = (t2151 - in_reach_right_flip_up) * (t2151 + in_reach_right_flip_up)
-    del t2151
-    k_near_right_flip_up = np.maximum(0.0, t2165)
-    del t2165
     t2166 = (t2152 - in_reach_right_flip_up) * (t2152 + in_reach_right_flip_up)
     del t2152
-    d_near_right_flip_up = np.maximum(0.0, -t2166)
+    k_near_right_flip_up = np.maximum(0.0, t2166)
     del t2166
+    t2167 = (t2153 - in_reach_right_flip_up) * (t2153 + in_reach_right_flip_up)
+    del t2153
+    d_near_right_flip_up = np.maximum(0.0, -t2167)
+    del t2167
     n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
-    any_near_right_flip_up = n_near_right_flip_up <= t2155
-    del t2155
-    t2167 = 1.0 / n_near_right_flip_up
+    any_near_right_flip_up = n_near_right_flip_up <= t2156
+    del t2156
+    t2168 = 1.0 / n_near_right_flip_up
     del n_near_right_flip_up
-    t2168 = (k_near_right_flip_up - d_near_right_flip_up) * t2167
-    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t2168)
-    del t2168
-    t2169 = across_right_flip_up * c_phi_right_flip_up + t23 * t2162
-    t2170 = np.abs(t2169)
-    side_right_flip_up = _runtime.select(t2170 <= t4, 1.0, -(t2169 / t2170))
-    del t2169, t2170
-    t2171 = np.sqrt(k_near_right_flip_up * d_near_right_flip_up)
+    t2169 = (k_near_right_flip_up - d_near_right_flip_up) * t2168
+    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t2169)
+    del t2169
+    t2170 = across_right_flip_up * c_phi_right_flip_up + t24 * t2163
+    t2171 = np.abs(t2170)
+    side_right_flip_up = _runtime.select(t2171 <= t4, 1.0, -(t2170 / t2171))
+    del t2170, t2171
+    t2172 = np.sqrt(k_near_right_flip_up * d_near_right_flip_up)
     del d_near_right_flip_up, k_near_right_flip_up
-    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t2167 * (2.0 * side_right_flip_up * t2171))
-    del any_near_right_flip_up, side_right_flip_up, t2167, t2171
-    t2172 = across_right_flip_up * uc_near_right_flip_up + t23 * us_near_right_flip_up
-    c_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t2160 * t2172)
-    del t2172
-    t2173 = t2162 + c_near_right_flip_up
-    t2174 = across_right_flip_up * us_near_right_flip_up - t23 * uc_near_right_flip_up
+    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t2168 * (2.0 * side_right_flip_up * t2172))
+    del any_near_right_flip_up, side_right_flip_up, t2168, t2172
+    t2173 = across_right_flip_up * uc_near_right_flip_up + t24 * us_near_right_flip_up
+    c_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t2161 * t2173)
+    del t2173
+    t2174 = t2163 + c_near_right_flip_up
+    t2175 = across_right_flip_up * us_near_right_flip_up - t24 * uc_near_right_flip_up
     del uc_near_right_flip_up, us_near_right_flip_up
-    s_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t2160 * t2174)
-    del t2174
-    t2175 = c_phi_right_flip_up + s_near_right_flip_up
-    t2176 = h_wrist_right_flip_up * np.sqrt(t2173 * t2173 + t2175 * t2175)
-    del h_wrist_right_flip_up, t2173, t2175
-    t2177 = np.abs(here_right_flip_up - in_reach_right_flip_up)
+    s_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t2161 * t2175)
+    del t2175
+    t2176 = c_phi_right_flip_up + s_near_right_flip_up
+    t2177 = h_wrist_right_flip_up * np.sqrt(t2174 * t2174 + t2176 * t2176)
+    del h_wrist_right_flip_up, t2174, t2176
+    t2178 = np.abs(here_right_flip_up - in_reach_right_flip_up)
     del here_right_flip_up, in_reach_right_flip_up
-    t2178 = (t2176 - 2.2737367544323206e-13 <= t386) & np.logical_not(t2177 <= t4)
-    del t2176, t2177, t386
-    s_kept_right_flip_up = _runtime.select(t2178, c_near_right_flip_up, -t2162)
+    t2179 = (t2177 - t385 <= t387) & np.logical_not(t2178 <= t4)
+    del t2177, t2178, t385, t387
+    s_kept_right_flip_up = _runtime.select(t2179, c_near_right_flip_up, -t2163)
     del c_near_right_flip_up
-    t2179 = _runtime.select(close_right_flip_up, s_kept_right_flip_up, -t2162)
-    del s_kept_right_flip_up, t2162
-    sphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, c_mid_right_flip_up, t2179)
-    del c_mid_right_flip_up, t2179
-    t2180 = across_right_flip_up - d5 * sphi_right_flip_up
-    t2181 = across_right_flip_up * us_mid_right_flip_up - t23 * uc_mid_right_flip_up
+    t2180 = _runtime.select(close_right_flip_up, s_kept_right_flip_up, -t2163)
+    del s_kept_right_flip_up, t2163
+    sphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, c_mid_right_flip_up, t2180)
+    del c_mid_right_flip_up, t2180
+    t2181 = across_right_flip_up - d5 * sphi_right_flip_up
+    t2182 = across_right_flip_up * us_mid_right_flip_up - t24 * uc_mid_right_flip_up
     del across_right_flip_up, uc_mid_right_flip_up, us_mid_right_flip_up
-    s_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t2160 * t2181)
-    del hub_mid_right_flip_up, t2160, t2181
-    c_kept_right_flip_up = _runtime.select(t2178, -s_near_right_flip_up, c_phi_right_flip_up)
-    del s_near_right_flip_up, t2178
-    t2182 = _runtime.select(close_right_flip_up, c_kept_right_flip_up, c_phi_right_flip_up)
+    s_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t2161 * t2182)
+    del hub_mid_right_flip_up, t2161, t2182
+    c_kept_right_flip_up = _runtime.select(t2179, -s_near_right_flip_up, c_phi_right_flip_up)
+    del s_near_right_flip_up, t2179
+    t2183 = _runtime.select(close_right_flip_up, c_kept_right_flip_up, c_phi_right_flip_up)
     del c_kept_right_flip_up, c_phi_right_flip_up, close_right_flip_up
-    cphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, -s_mid_right_flip_up, t2182)
-    del s_mid_right_flip_up, t2182
-    ey_right_flip_up = t23 - d5 * cphi_right_flip_up
-    del t23
-    t2183 = t2180 * t2180 + ey_right_flip_up * ey_right_flip_up
-    r_elbow_right_flip_up = np.sqrt(t2183)
-    del t2183
-    t2184 = full_1_1 - r_elbow_right_flip_up
-    t2185 = t35 + r_elbow_right_flip_up
-    t2186 = r_elbow_right_flip_up - t35
+    cphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, -s_mid_right_flip_up, t2183)
+    del s_mid_right_flip_up, t2183
+    ey_right_flip_up = t24 - d5 * cphi_right_flip_up
+    del t24
+    t2184 = t2181 * t2181 + ey_right_flip_up * ey_right_flip_up
+    r_elbow_right_flip_up = np.sqrt(t2184)
+    del t2184
+    t2185 = full_1_1 - r_elbow_right_flip_up
+    t2186 = t35 + r_elbow_right_flip_up
+    t2187 = r_elbow_right_flip_up - t35
     del t35
-    t2187 = t368 & (t367 <= t2184) & (t367 <= t2185) & (t367 <= t2186)
-    del t367, t368
-    unreachable_4 = np.logical_not(t2187)
-    del t2187
-    t2188 = _runtime.poison(invalid | unreachable_4)
-    t2189 = _runtime.wrap_cut(t2149) + t2188
-    del t2149
+    t2188 = t369 & (t368 <= t2185) & (t368 <= t2186) & (t368 <= t2187)
+    del t368, t369
+    unreachable_4 = np.logical_not(t2188)
+    del t2188
+    t2189 = _runtime.poison(invalid | unreachable_4)
+    t2190 = _runtime.wrap_cut(t2150) + t2189
+    del t2150
     folded_elbow_right_flip_up = r_elbow_right_flip_up <= t4
     del t4
-    t2190 = folded_elbow_right_flip_up | no_link_elbow
-    A_elbow_right_flip_up = np.maximum(t2184, 0.0)
-    del t2184
-    C_elbow_right_flip_up = np.maximum(t2186, 0.0)
-    del t2186
-    t2191 = A_elbow_right_flip_up * C_elbow_right_flip_up
+    t2191 = folded_elbow_right_flip_up | no_link_elbow
+    A_elbow_right_flip_up = np.maximum(t2185, 0.0)
+    del t2185
+    C_elbow_right_flip_up = np.maximum(t2187, 0.0)
+    del t2187
+    t2192 = A_elbow_right_flip_up * C_elbow_right_flip_up
     S_elbow_right_flip_up = full_1_1 + r_elbow_right_flip_up
     del full_1_1
-    B_elbow_right_flip_up = np.maximum(t2185, 0.0)
-    del t2185
-    t2192 = S_elbow_right_flip_up * B_elbow_right_flip_up
-    t2193 = 1.0 / (t2191 + t2192)
-    c_base_elbow_right_flip_up = _runtime.select(t2190, 1.0, -((t2191 - t2192) * t2193))
-    t2194 = 1.0 / r_elbow_right_flip_up
+    B_elbow_right_flip_up = np.maximum(t2186, 0.0)
+    del t2186
+    t2193 = S_elbow_right_flip_up * B_elbow_right_flip_up
+    t2194 = 1.0 / (t2192 + t2193)
+    c_base_elbow_right_flip_up = _runtime.select(t2191, 1.0, -((t2192 - t2193) * t2194))
+    t2195 = 1.0 / r_elbow_right_flip_up
     del r_elbow_right_flip_up
-    t2195 = _runtime.select(folded_elbow_right_flip_up, 0.0, ey_right_flip_up * t2194)
+    t2196 = _runtime.select(folded_elbow_right_flip_up, 0.0, ey_right_flip_up * t2195)
     del ey_right_flip_up
-    t2196 = c_base_elbow_right_flip_up * t2195
-    area_elbow_right_flip_up = 2.0 * np.sqrt(t2191 * t2192)
-    del t2191, t2192
-    s_base_elbow_right_flip_up = _runtime.select(t2190, 0.0, t2193 * area_elbow_right_flip_up)
-    del t2190, t2193
-    t2197 = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t2180 * t2194))
-    del t2180, t2194
-    t2198 = s_base_elbow_right_flip_up * t2197
-    s2_right_flip_up = t2196 - t2198
-    t2199 = c_base_elbow_right_flip_up * t2197
-    del c_base_elbow_right_flip_up, t2197
-    t2200 = t2195 * s_base_elbow_right_flip_up
-    del s_base_elbow_right_flip_up, t2195
-    c2_right_flip_up = t2199 + t2200
-    t2201 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
-    t2202 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    t2197 = c_base_elbow_right_flip_up * t2196
+    area_elbow_right_flip_up = 2.0 * np.sqrt(t2192 * t2193)
+    del t2192, t2193
+    s_base_elbow_right_flip_up = _runtime.select(t2191, 0.0, t2194 * area_elbow_right_flip_up)
+    del t2191, t2194
+    t2198 = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t2181 * t2195))
+    del t2181, t2195
+    t2199 = s_base_elbow_right_flip_up * t2198
+    s2_right_flip_up = t2197 - t2199
+    t2200 = c_base_elbow_right_flip_up * t2198
+    del c_base_elbow_right_flip_up, t2198
+    t2201 = t2196 * s_base_elbow_right_flip_up
+    del s_base_elbow_right_flip_up, t2196
+    c2_right_flip_up = t2200 + t2201
+    t2202 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
+    t2203 = A_elbow_right_flip_up * S_elbow_right_flip_up
     del A_elbow_right_flip_up, S_elbow_right_flip_up
-    t2203 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    t2204 = C_elbow_right_flip_up * B_elbow_right_flip_up
     del B_elbow_right_flip_up, C_elbow_right_flip_up
-    t2204 = 1.0 / (t2202 + t2203)
-    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t2204)
+    t2205 = 1.0 / (t2203 + t2204)
+    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t2205)
     del area_elbow_right_flip_up
-    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t2204 * (t2202 - t2203)))
-    del t2202, t2203, t2204
-    t2205 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
-    t2206 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
-    t2207 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
+    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t2205 * (t2203 - t2204)))
+    del t2203, t2204, t2205
+    t2206 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
+    t2207 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
+    t2208 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
     del c2_right_flip_up, s2_right_flip_up
-    t2208 = c3_right_flip_up * t2206 - s3_right_flip_up * t2207
-    t2209 = c3_right_flip_up * t2207 + s3_right_flip_up * t2206
-    del t2206, t2207
-    t2210 = _runtime.wrap_cut(np.arctan2(t2208, t2209)) + t2188
-    del t2208, t2209
-    t2211 = M_13_right_flip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
+    t2209 = c3_right_flip_up * t2207 - s3_right_flip_up * t2208
+    t2210 = c3_right_flip_up * t2208 + s3_right_flip_up * t2207
+    del t2207, t2208
+    t2211 = _runtime.wrap_cut(np.arctan2(t2209, t2210)) + t2189
+    del t2209, t2210
+    t2212 = M_13_right_flip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
     del M_13_right_flip_up
     M_33_right_flip_up = T13 * s1_right_flip_up - T23 * c1_right_flip_up
-    t2212 = _runtime.wrap_cut(-np.arctan2(t2211, M_33_right_flip_up))
-    del M_33_right_flip_up, t2211
-    t2213 = t2212 + t2188
-    del t2212
+    t2213 = _runtime.wrap_cut(-np.arctan2(t2212, M_33_right_flip_up))
+    del M_33_right_flip_up, t2212
+    t2214 = t2213 + t2189
+    del t2213
     M_11_right_flip_up = T11 * c1_right_flip_up + T21 * s1_right_flip_up
-    t2214 = sphi_right_flip_up * M_11_right_flip_up - T31 * cphi_right_flip_up
+    t2215 = sphi_right_flip_up * M_11_right_flip_up - T31 * cphi_right_flip_up
     del M_11_right_flip_up
     M_12_right_flip_up = T12 * c1_right_flip_up + T22 * s1_right_flip_up
     del c1_right_flip_up, s1_right_flip_up
-    t2215 = T32 * cphi_right_flip_up - sphi_right_flip_up * M_12_right_flip_up
+    t2216 = T32 * cphi_right_flip_up - sphi_right_flip_up * M_12_right_flip_up
     del M_12_right_flip_up
-    t2216 = _runtime.wrap_cut(-np.arctan2(t2214, t2215)) + t2188
-    del t2214, t2215
-    s2_right_flip_down = t2196 + t2198
-    del t2196, t2198
-    c2_right_flip_down = t2199 - t2200
-    del t2199, t2200
-    t2217 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
-    t2218 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
-    t2219 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
+    t2217 = _runtime.wrap_cut(-np.arctan2(t2215, t2216)) + t2189
+    del t2215, t2216
+    s2_right_flip_down = t2197 + t2199
+    del t2197, t2199
+    c2_right_flip_down = t2200 - t2201
+    del t2200, t2201
+    t2218 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
+    t2219 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
+    t2220 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
     del c2_right_flip_down, cphi_right_flip_up, s2_right_flip_down, sphi_right_flip_up
-    t2220 = c3_right_flip_up * t2218 + s3_right_flip_up * t2219
-    t2221 = c3_right_flip_up * t2219 - s3_right_flip_up * t2218
-    del c3_right_flip_up, s3_right_flip_up, t2218, t2219
-    t2222 = _runtime.wrap_cut(np.arctan2(t2220, t2221)) + t2188
-    del t2220, t2221
-    t2223 = free1 | aligned_wrist | no_link_elbow | folded_elbow
+    t2221 = c3_right_flip_up * t2219 + s3_right_flip_up * t2220
+    t2222 = c3_right_flip_up * t2220 - s3_right_flip_up * t2219
+    del c3_right_flip_up, s3_right_flip_up, t2219, t2220
+    t2223 = _runtime.wrap_cut(np.arctan2(t2221, t2222)) + t2189
+    del t2221, t2222
+    t2224 = free1 | aligned_wrist | no_link_elbow | folded_elbow
     del aligned_wrist, folded_elbow
-    t2224 = _runtime.status(invalid, unreachable, t2223)
-    del t2223, unreachable
-    t2225 = free1 | aligned_wrist_left_flip_up | no_link_elbow
+    t2225 = _runtime.status(invalid, unreachable, t2224)
+    del t2224, unreachable
+    t2226 = free1 | aligned_wrist_left_flip_up | no_link_elbow
     del aligned_wrist_left_flip_up
-    t2226 = _runtime.status(invalid, unreachable_2, t2225 | folded_elbow_left_flip_up)
-    del folded_elbow_left_flip_up, t2225, unreachable_2
-    t2227 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
+    t2227 = _runtime.status(invalid, unreachable_2, t2226 | folded_elbow_left_flip_up)
+    del folded_elbow_left_flip_up, t2226, unreachable_2
+    t2228 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
     del aligned_wrist_right_noflip_up
-    t2228 = _runtime.status(invalid, unreachable_3, t2227 | folded_elbow_right_noflip_up)
-    del folded_elbow_right_noflip_up, t2227, unreachable_3
-    t2229 = free1 | aligned_wrist_right_flip_up | no_link_elbow
+    t2229 = _runtime.status(invalid, unreachable_3, t2228 | folded_elbow_right_noflip_up)
+    del folded_elbow_right_noflip_up, t2228, unreachable_3
+    t2230 = free1 | aligned_wrist_right_flip_up | no_link_elbow
     del aligned_wrist_right_flip_up, free1, no_link_elbow
-    t2230 = _runtime.status(invalid, unreachable_4, t2229 | folded_elbow_right_flip_up)
-    del folded_elbow_right_flip_up, invalid, t2229, unreachable_4
+    t2231 = _runtime.status(invalid, unreachable_4, t2230 | folded_elbow_right_flip_up)
+    del folded_elbow_right_flip_up, invalid, t2230, unreachable_4
     return (
-        t397,
-        _runtime.wrap_cut(np.arctan2(s2, c2)) + t396,
-        _runtime.wrap_cut(t412) + t396,
-        _runtime.wrap_cut(t415) + t396,
-        t417,
-        t419,
-        t397,
-        _runtime.wrap_cut(t420) + t396,
-        _runtime.wrap_cut(-t412) + t396,
-        _runtime.wrap_cut(t423) + t396,
-        t417,
-        t419,
-        t946,
-        t958 + t945,
-        _runtime.wrap_cut(t962) + t945,
-        t967,
-        t970,
-        t973,
-        t946,
-        _runtime.wrap_cut(t974) + t945,
-        _runtime.wrap_cut(-t962) + t945,
-        t979,
-        t970,
-        t973,
-        t1601,
-        _runtime.wrap_cut(t1613) + t1600,
-        _runtime.wrap_cut(t1617) + t1600,
-        t1622,
-        t1625,
-        t1628,
-        t1601,
-        _runtime.wrap_cut(t1629) + t1600,
-        _runtime.wrap_cut(-t1617) + t1600,
-        t1634,
-        t1625,
-        t1628,
-        t2189,
-        _runtime.wrap_cut(t2201) + t2188,
-        _runtime.wrap_cut(t2205) + t2188,
-        t2210,
-        t2213,
-        t2216,
-        t2189,
-        _runtime.wrap_cut(t2217) + t2188,
-        _runtime.wrap_cut(-t2205) + t2188,
-        t2222,
-        t2213,
-        t2216,
-        t2224,
-        t2224,
-        t2226,
-        t2226,
-        t2228,
-        t2228,
-        t2230,
-        t2230,
+        t398,
+        _runtime.wrap_cut(np.arctan2(s2, c2)) + t397,
+        _runtime.wrap_cut(t413) + t397,
+        _runtime.wrap_cut(t416) + t397,
+        t418,
+        t420,
+        t398,
+        _runtime.wrap_cut(t421) + t397,
+        _runtime.wrap_cut(-t413) + t397,
+        _runtime.wrap_cut(t424) + t397,
+        t418,
+        t420,
+        t947,
+        t959 + t946,
+        _runtime.wrap_cut(t963) + t946,
+        t968,
+        t971,
+        t974,
+        t947,
+        _runtime.wrap_cut(t975) + t946,
+        _runtime.wrap_cut(-t963) + t946,
+        t980,
+        t971,
+        t974,
+        t1602,
+        _runtime.wrap_cut(t1614) + t1601,
+        _runtime.wrap_cut(t1618) + t1601,
+        t1623,
+        t1626,
+        t1629,
+        t1602,
+        _runtime.wrap_cut(t1630) + t1601,
+        _runtime.wrap_cut(-t1618) + t1601,
+        t1635,
+        t1626,
+        t1629,
+        t2190,
+        _runtime.wrap_cut(t2202) + t2189,
+        _runtime.wrap_cut(t2206) + t2189,
+        t2211,
+        t2214,
+        t2217,
+        t2190,
+        _runtime.wrap_cut(t2218) + t2189,
+        _runtime.wrap_cut(-t2206) + t2189,
+        t2223,
+        t2214,
+        t2217,
+        t2225,
+        t2225,
+        t2227,
+        t2227,
+        t2229,
+        t2229,
+        t2231,
+        t2231,
     )
 
 

@@ -4,6 +4,6 @@ An attack is a module with a ``NAME``, a function ``round`` that draws one round
 what it tried and what failed, and a function ``replay`` that tries one saved failure again.
 """
 
-from . import arguments, kernels, postures, tables, targets
+from . import arguments, kernels, postures, single, tables, targets
 
-ATTACKS = {attack.NAME: attack for attack in (postures, targets, arguments, kernels, tables)}
+ATTACKS = {a.NAME: a for a in (postures, targets, single, arguments, kernels, tables)}

@@ -74,17 +74,17 @@ def check(subject: Robot, lengths: Array, q: Array) -> list[tuple[str, int, str]
     statuses = {}
     for backend in BACKENDS:
         module = subject.module(backend)
-        reached, rows = _reached(subject, module, lengths, q)
+        image, rows = reached(subject, module, lengths, q)
         more = beside(module, q[rows], tuple(lengths[rows].T))
-        solutions = module.ik(reached, *more, tuple(lengths[rows].T))
-        again = _again(subject, module, lengths[rows], solutions.q, reached)
+        solutions = module.ik(image, *more, tuple(lengths[rows].T))
+        misses = again(subject, module, lengths[rows], solutions.q, image)
         statuses[backend] = np.asarray(solutions.status)
-        found = _judged(subject, lengths[rows], q[rows], solutions, again)
+        found = _judged(subject, lengths[rows], q[rows], solutions, misses)
         problems += [(k, int(rows[i]), f"{backend}: {message}") for k, i, message in found]
         if backend == "c":
             alone = [
                 module.ik(*x, tuple(p)).status
-                for *x, p in zip(reached, *more, lengths[rows], strict=True)
+                for *x, p in zip(image, *more, lengths[rows], strict=True)
             ]
             alone = np.array(alone).reshape(statuses["c"].shape)
             differ = np.flatnonzero((alone != statuses["c"]).any(axis=1))
@@ -93,7 +93,7 @@ def check(subject: Robot, lengths: Array, q: Array) -> list[tuple[str, int, str]
                 for i in differ
             ]
         else:
-            given, given_rows = (reached, *more), rows
+            given, given_rows = (image, *more), rows
     other = np.asarray(subject.module("c").ik(*given, tuple(lengths[given_rows].T)).status)
     differ = np.flatnonzero((statuses["numpy"] != other).any(axis=1))
     problems += [
@@ -103,7 +103,7 @@ def check(subject: Robot, lengths: Array, q: Array) -> list[tuple[str, int, str]
     return problems
 
 
-def _reached(
+def reached(
     subject: Robot, module: Any, lengths: Array, q: Array
 ) -> tuple[Array, NDArray[np.intp]]:
     """Targets that the forward map reaches, and the row of the posture of each."""
@@ -112,15 +112,15 @@ def _reached(
     if subject.modes:
         modes = image.p.shape[1]
         exists = (image.status == OK).ravel()
-        reached = image.p.reshape(len(q) * modes, *image.p.shape[2:])
+        targets = image.p.reshape(len(q) * modes, *image.p.shape[2:])
         rows = np.repeat(rows, modes)
     else:
-        reached = image
+        targets = image
         exists = np.isfinite(image.reshape(len(q), -1)).all(axis=1)
-    return reached[exists], rows[exists]
+    return targets[exists], rows[exists]
 
 
-def _again(subject: Robot, module: Any, lengths: Array, q: Array, reached: Array) -> Array:
+def again(subject: Robot, module: Any, lengths: Array, q: Array, reached: Array) -> Array:
     """How far the answer of each branch misses its target, in units of the lengths."""
     n, branches = q.shape[:2]
     params = tuple(np.repeat(lengths, branches, axis=0).T)

@@ -41,6 +41,7 @@ class Precision(NamedTuple):
     vanishing: float
     determined: float
     half_digits: float
+    rounding: float
     rotation: float
     turn: float
     turn_tail: float
@@ -57,6 +58,7 @@ FLOAT64 = Precision(
     vanishing=8.881784197001252e-16,
     determined=0.0009765625,
     half_digits=2.384185791015625e-07,
+    rounding=5.684341886080802e-14,
     rotation=1e-06,
     turn=6.283185307179586,
     turn_tail=2.4492935982947064e-16,
@@ -72,6 +74,7 @@ FLOAT32 = Precision(
     vanishing=4.76837158203125e-07,
     determined=0.015625,
     half_digits=0.000244140625,
+    rounding=7.62939453125e-06,
     rotation=0.0001,
     turn=6.2831854820251465,
     turn_tail=-1.7484555314695172e-07,
@@ -178,6 +181,7 @@ class Operations:
         self.vanishing = self.precision.vanishing
         self.determined = self.precision.determined
         self.half_digits = self.precision.half_digits
+        self.rounding = self.precision.rounding
         self.rotation = self.precision.rotation
         self.nan = math.nan
 

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 
 from closedform.lower import Lowered
 from closedform.lower.graph import Node, constant_of, reachable, strip_sign
+from closedform.model.tolerances import POWERS_OF_TWO
 
 
 def unused_where(schedule: Sequence[Node], roots: Sequence[Node]) -> dict[int, tuple[Node, ...]]:
@@ -124,6 +125,8 @@ def deciding_products(lowered: Lowered) -> Iterator[int]:
 
 def _is_exact_factor(node: Node) -> bool:
     """Whether a product with this factor is exact: it is a sign or a power of two."""
+    if node.op == "tolerance":
+        return node.payload in POWERS_OF_TWO
     value = constant_of(node)
     if value is None:
         return node.op == "sign"

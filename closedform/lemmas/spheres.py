@@ -197,8 +197,10 @@ def _equal_spheres(
     scale: sp.Expr,
     share: sp.Rational,
 ) -> tuple[sp.Expr, sp.Symbol, sp.Symbol]:
-    """X, Y and h for one radius; ``squares`` are mu, lambda and its inverse, and ``left`` is
-    2 lambda Y."""
+    """X, Y and h for one radius.
+
+    ``squares`` are mu, lambda and its inverse, and ``left`` is 2 lambda Y.
+    """
     (mu, lam, part), (point, line) = squares, flags
     left = p.let("left", left)
     p.match(choose(line, left, 0), scale**2, "the spheres whose centres are in line share a circle")

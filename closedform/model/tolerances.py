@@ -33,9 +33,9 @@ class Tolerances:
         do not determine the posture.  At that limit four units in the last place become
         ``vanishing / determined``, which is less than ``forward``.
     half_digits
-        A length from the root of a difference has half of the digits where the difference vanishes:
-        ``feasibility`` may be a quarter of the square of this, so what counts as on the boundary
-        changes such a length by no more than itself.
+        A length from the root of a difference has half of the digits where the difference vanishes.
+        It does not count as shorter than this fraction of the size: a quarter of the root of
+        ``feasibility``.
     rounding
         How far a corrected joint may move the target, in units of the size of the arm: more than a
         forward map and the inverse up to there lose, and below ``forward``.

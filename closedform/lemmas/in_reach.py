@@ -27,9 +27,13 @@ from closedform.model.tolerances import ROUNDING
 UNDISTINGUISHED = ROUNDING / 16
 """By how much rounding may move a point of the circle, in units of the terms it is a sum of."""
 FARTHEST = sp.Max(sp.Rational(1, 2**12), 2**11 * ROUNDING)
-"""The largest turn, far more than the third root of a rounding error."""
+"""The largest turn of a step, far more than the third root of a rounding error."""
 ALIGNED = ROUNDING / 4
 """The sine between two axes that count as parallel, more than the rounding of a direction."""
+NEARLY = sp.Rational(1, 2**19)
+"""The sine between two axes that may become parallel."""
+LARGEST = sp.Rational(1, 2**6)
+"""The largest turn that makes them parallel, or the offset free."""
 SHORT = ROUNDING
 """By how much links have to be too short before it matters, in units of the size of the arm."""
 
@@ -84,12 +88,12 @@ def within_links(
     found = start.secant(goal, away)
     aligned = start.aligned().aligned()
     there = sp.And(
-        aligned.beside <= ALIGNED,
+        aligned.beside <= NEARLY,
         aligned.wrong <= 1,
-        sp.Abs(start.to_aligned) <= FARTHEST,
+        sp.Abs(start.to_aligned) <= LARGEST,
     )
     far = start.far(goal)
-    free = sp.And(start.moved <= FARTHEST, far.wrong <= 1)
+    free = sp.And(start.moved <= LARGEST, far.wrong <= 1)
     s, c = (
         start.let(n, sp.Piecewise((f, free), (a, there), (b, found.wrong <= 1), (e, True)))
         for n, f, a, b, e in (

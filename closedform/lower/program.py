@@ -99,10 +99,10 @@ class Lowered:
         return frozenset(n.args[0].id for n in self.deciding() if n.op in ("sin", "cos"))
 
     def operations(self) -> dict[str, int]:
-        """The number of operators of each kind (a sincos counts once)."""
+        """The number of operators of each kind but of constants; a sincos counts once."""
         counts: Counter[str] = Counter()
         for node in self.schedule():
-            if node.op in COUNTED:
+            if node.op in COUNTED and {a.op for a in node.args} - {"const", "tolerance"}:
                 counts[node.op] += 1
         counts["sincos"], counts["principal"] = len(self.angles), len(self.turned)
         return {k: counts[k] for k in sorted(counts) if counts[k]}

@@ -11,7 +11,7 @@
 #   condition_number: 19 compare and select, 27 add, 16 divide, 64 multiply, 3 sincos, 7 sqrt
 #   passive_angles: 9 add, 6 atan2, 6 divide, 24 compare and select, 27 multiply, 3 sincos, 6 sqrt
 #   skeleton: 27 add, 18 divide, 18 compare and select, 60 multiply, 3 sincos, 6 sqrt
-#   ik: 117 compare and select, 23 add, 6 atan2, 6 divide, 44 multiply, 6 sqrt
+#   ik: 117 compare and select, 23 add, 6 atan2, 6 divide, 43 multiply, 6 sqrt
 """Agile wrist.
 
 Three equal legs join a hand to the base, and the axes of all nine joints meet in the centre O.

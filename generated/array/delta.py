@@ -2,15 +2,15 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 79 compare and select, 55 add, 10 divide, 87 multiply, 6 sincos, 2 sqrt
-#   skeleton: 142 compare and select, 112 add, 16 divide, 105 multiply, 6 sincos, 2 sqrt
-#   jacobian_parallel: 90 compare and select, 64 add, 10 divide, 87 multiply, 6 sincos, 2 sqrt
-#   jacobian_serial: 78 compare and select, 76 add, 10 divide, 111 multiply, 6 sincos, 2 sqrt
-#   jacobian: 88 compare and select, 94 add, 28 divide, 166 multiply, 6 sincos, 2 sqrt
-#   determinant: 72 compare and select, 76 add, 12 divide, 116 multiply, 6 sincos, 2 sqrt
-#   singularities: 77 compare and select, 76 add, 10 divide, 112 multiply, 6 sincos, 2 sqrt
-#   condition_number: 74 compare and select, 114 add, 12 divide, 163 multiply, 6 sincos, 4 sqrt
-#   constraint: 74 compare and select, 86 add, 10 divide, 149 multiply, 6 sincos, 2 sqrt
+#   fk: 79 compare and select, 55 add, 10 divide, 86 multiply, 6 sincos, 2 sqrt
+#   skeleton: 142 compare and select, 112 add, 16 divide, 104 multiply, 6 sincos, 2 sqrt
+#   jacobian_parallel: 90 compare and select, 64 add, 10 divide, 86 multiply, 6 sincos, 2 sqrt
+#   jacobian_serial: 78 compare and select, 76 add, 10 divide, 110 multiply, 6 sincos, 2 sqrt
+#   jacobian: 88 compare and select, 94 add, 28 divide, 165 multiply, 6 sincos, 2 sqrt
+#   determinant: 72 compare and select, 76 add, 12 divide, 115 multiply, 6 sincos, 2 sqrt
+#   singularities: 77 compare and select, 76 add, 10 divide, 111 multiply, 6 sincos, 2 sqrt
+#   condition_number: 74 compare and select, 114 add, 12 divide, 162 multiply, 6 sincos, 4 sqrt
+#   constraint: 74 compare and select, 86 add, 10 divide, 148 multiply, 6 sincos, 2 sqrt
 #   ik: 187 compare and select, 157 add, 6 atan2, 13 divide, 175 multiply, 3 sincos, 18 sqrt
 #   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.

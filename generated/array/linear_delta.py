@@ -2,15 +2,15 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 78 compare and select, 47 add, 12 divide, 73 multiply, 2 sqrt
-#   skeleton: 117 compare and select, 81 add, 18 divide, 75 multiply, 2 sqrt
-#   jacobian_parallel: 87 compare and select, 55 add, 12 divide, 73 multiply, 2 sqrt
-#   jacobian_serial: 73 compare and select, 41 add, 10 divide, 62 multiply, 2 sqrt
-#   jacobian: 87 compare and select, 73 add, 30 divide, 124 multiply, 2 sqrt
-#   determinant: 67 compare and select, 41 add, 12 divide, 67 multiply, 2 sqrt
-#   singularities: 72 compare and select, 41 add, 10 divide, 63 multiply, 2 sqrt
-#   condition_number: 73 compare and select, 105 add, 14 divide, 143 multiply, 4 sqrt
-#   constraint: 73 compare and select, 63 add, 18 divide, 97 multiply, 2 sqrt
+#   fk: 78 compare and select, 47 add, 12 divide, 72 multiply, 2 sqrt
+#   skeleton: 117 compare and select, 81 add, 18 divide, 74 multiply, 2 sqrt
+#   jacobian_parallel: 87 compare and select, 55 add, 12 divide, 72 multiply, 2 sqrt
+#   jacobian_serial: 73 compare and select, 41 add, 10 divide, 61 multiply, 2 sqrt
+#   jacobian: 87 compare and select, 73 add, 30 divide, 123 multiply, 2 sqrt
+#   determinant: 67 compare and select, 41 add, 12 divide, 66 multiply, 2 sqrt
+#   singularities: 72 compare and select, 41 add, 10 divide, 62 multiply, 2 sqrt
+#   condition_number: 73 compare and select, 105 add, 14 divide, 142 multiply, 4 sqrt
+#   constraint: 73 compare and select, 63 add, 18 divide, 96 multiply, 2 sqrt
 #   ik: 78 compare and select, 69 add, 5 divide, 47 multiply, 12 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.

@@ -2,15 +2,15 @@
 # derivations/orthoglide.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 74 compare and select, 39 add, 10 divide, 71 multiply, 2 sqrt
-#   skeleton: 91 compare and select, 52 add, 11 divide, 71 multiply, 2 sqrt
-#   jacobian_parallel: 79 compare and select, 44 add, 10 divide, 71 multiply, 2 sqrt
-#   jacobian_serial: 73 compare and select, 42 add, 10 divide, 71 multiply, 2 sqrt
-#   jacobian: 83 compare and select, 62 add, 28 divide, 114 multiply, 2 sqrt
-#   determinant: 67 compare and select, 42 add, 12 divide, 76 multiply, 2 sqrt
-#   singularities: 72 compare and select, 42 add, 10 divide, 72 multiply, 2 sqrt
-#   condition_number: 69 compare and select, 94 add, 12 divide, 129 multiply, 4 sqrt
-#   constraint: 69 compare and select, 46 add, 10 divide, 79 multiply, 2 sqrt
+#   fk: 74 compare and select, 39 add, 10 divide, 70 multiply, 2 sqrt
+#   skeleton: 91 compare and select, 52 add, 11 divide, 70 multiply, 2 sqrt
+#   jacobian_parallel: 79 compare and select, 44 add, 10 divide, 70 multiply, 2 sqrt
+#   jacobian_serial: 73 compare and select, 42 add, 10 divide, 70 multiply, 2 sqrt
+#   jacobian: 83 compare and select, 62 add, 28 divide, 113 multiply, 2 sqrt
+#   determinant: 67 compare and select, 42 add, 12 divide, 75 multiply, 2 sqrt
+#   singularities: 72 compare and select, 42 add, 10 divide, 71 multiply, 2 sqrt
+#   condition_number: 69 compare and select, 94 add, 12 divide, 128 multiply, 4 sqrt
+#   constraint: 69 compare and select, 46 add, 10 divide, 78 multiply, 2 sqrt
 #   ik: 74 compare and select, 51 add, 1 divide, 47 multiply, 12 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
 """Orthoglide.

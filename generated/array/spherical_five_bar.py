@@ -2,13 +2,13 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 111 compare and select, 76 add, 17 divide, 121 multiply, 7 sincos, 7 sqrt
-#   skeleton: 119 compare and select, 81 add, 17 divide, 127 multiply, 7 sincos, 7 sqrt
-#   jacobian_parallel: 122 compare and select, 85 add, 17 divide, 121 multiply, 7 sincos, 7 sqrt
-#   jacobian_serial: 108 compare and select, 85 add, 17 divide, 134 multiply, 7 sincos, 7 sqrt
-#   jacobian: 117 compare and select, 103 add, 29 divide, 171 multiply, 7 sincos, 7 sqrt
-#   singularities: 110 compare and select, 85 add, 17 divide, 135 multiply, 7 sincos, 7 sqrt
-#   condition_number: 117 compare and select, 129 add, 25 divide, 179 multiply, 7 sincos, 11 sqrt
+#   fk: 111 compare and select, 76 add, 17 divide, 120 multiply, 7 sincos, 7 sqrt
+#   skeleton: 119 compare and select, 81 add, 17 divide, 126 multiply, 7 sincos, 7 sqrt
+#   jacobian_parallel: 122 compare and select, 85 add, 17 divide, 120 multiply, 7 sincos, 7 sqrt
+#   jacobian_serial: 108 compare and select, 85 add, 17 divide, 133 multiply, 7 sincos, 7 sqrt
+#   jacobian: 117 compare and select, 103 add, 29 divide, 170 multiply, 7 sincos, 7 sqrt
+#   singularities: 110 compare and select, 85 add, 17 divide, 134 multiply, 7 sincos, 7 sqrt
+#   condition_number: 117 compare and select, 129 add, 25 divide, 178 multiply, 7 sincos, 11 sqrt
 #   ik: 149 compare and select, 107 add, 4 atan2, 14 divide, 133 multiply, 5 sincos, 14 sqrt
 #   workspace_contains: 53 compare and select, 26 add, 8 divide, 31 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.

@@ -11,7 +11,7 @@
 #   singularities: 2 sincos
 #   jacobian_space: 14 add, 43 multiply, 4 sincos
 #   jacobian_body: 14 add, 41 multiply, 4 sincos
-#   ik: 189 compare and select, 100 add, 16 atan2, 8 divide, 149 multiply, 15 sqrt
+#   ik: 189 compare and select, 100 add, 16 atan2, 8 divide, 148 multiply, 15 sqrt
 """Stanford arm.
 
 A vertical base axis (theta1), a horizontal shoulder (theta2), a boom that slides through it

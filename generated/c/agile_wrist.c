@@ -12,8 +12,8 @@
  *   condition_number: 10 compare and select, 27 add, 16 divide, 64 multiply, 3 sincos, 4 sqrt
  *   passive_angles: 9 add, 6 atan2, 6 divide, 15 compare and select, 27 multiply, 3 sincos, 3 sqrt
  *   skeleton: 27 add, 18 divide, 9 compare and select, 60 multiply, 3 sincos, 3 sqrt
- *   ik: 85 compare and select, 29 add, 6 atan2, 3 divide, 38 multiply, 3 sqrt
- *   ik where nothing vanishes: 40 compare and select, 22 add, 6 atan2, 3 divide, 28 multiply, 3
+ *   ik: 85 compare and select, 29 add, 6 atan2, 3 divide, 37 multiply, 3 sqrt
+ *   ik where nothing vanishes: 40 compare and select, 22 add, 6 atan2, 3 divide, 27 multiply, 3
  *     sqrt
  */
 #include "agile_wrist.h"

@@ -3,28 +3,32 @@
  * derivations/delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 51 compare and select, 59 add, 7 divide, 82 multiply, 6 sincos, 2 sqrt
- *   fk where nothing vanishes: 30 compare and select, 52 add, 6 divide, 60 multiply, 6 sincos, 1
+ *   fk: 51 compare and select, 59 add, 7 divide, 81 multiply, 6 sincos, 2 sqrt
+ *   fk where nothing vanishes: 52 add, 29 compare and select, 6 divide, 59 multiply, 6 sincos, 1
  *     sqrt
- *   skeleton: 50 compare and select, 180 add, 13 divide, 100 multiply, 6 sincos, 2 sqrt
- *   jacobian_parallel: 50 compare and select, 80 add, 7 divide, 82 multiply, 6 sincos, 2 sqrt
- *   jacobian_parallel where nothing vanishes: 29 compare and select, 73 add, 6 divide, 60
+ *   skeleton: 50 compare and select, 180 add, 13 divide, 99 multiply, 6 sincos, 2 sqrt
+ *   skeleton where nothing vanishes: 173 add, 28 compare and select, 12 divide, 77 multiply, 6
+ *     sincos, 1 sqrt
+ *   jacobian_parallel: 50 compare and select, 80 add, 7 divide, 81 multiply, 6 sincos, 2 sqrt
+ *   jacobian_parallel where nothing vanishes: 73 add, 28 compare and select, 6 divide, 59
  *     multiply, 6 sincos, 1 sqrt
- *   jacobian_serial: 50 compare and select, 80 add, 7 divide, 106 multiply, 6 sincos, 2 sqrt
- *   jacobian_serial where nothing vanishes: 29 compare and select, 73 add, 6 divide, 84 multiply,
+ *   jacobian_serial: 50 compare and select, 80 add, 7 divide, 105 multiply, 6 sincos, 2 sqrt
+ *   jacobian_serial where nothing vanishes: 73 add, 28 compare and select, 6 divide, 83 multiply,
  *     6 sincos, 1 sqrt
- *   jacobian: 50 compare and select, 110 add, 25 divide, 161 multiply, 6 sincos, 2 sqrt
- *   determinant: 50 compare and select, 76 add, 9 divide, 111 multiply, 6 sincos, 2 sqrt
- *   determinant where nothing vanishes: 29 compare and select, 69 add, 8 divide, 89 multiply, 6
+ *   jacobian: 50 compare and select, 110 add, 25 divide, 160 multiply, 6 sincos, 2 sqrt
+ *   jacobian where nothing vanishes: 103 add, 28 compare and select, 24 divide, 138 multiply, 6
  *     sincos, 1 sqrt
- *   singularities: 50 compare and select, 82 add, 7 divide, 107 multiply, 6 sincos, 2 sqrt
- *   singularities where nothing vanishes: 29 compare and select, 75 add, 6 divide, 85 multiply, 6
+ *   determinant: 50 compare and select, 76 add, 9 divide, 110 multiply, 6 sincos, 2 sqrt
+ *   determinant where nothing vanishes: 69 add, 28 compare and select, 8 divide, 88 multiply, 6
  *     sincos, 1 sqrt
- *   condition_number: 50 compare and select, 114 add, 9 divide, 158 multiply, 6 sincos, 4 sqrt
- *   condition_number where nothing vanishes: 29 compare and select, 107 add, 8 divide, 136
+ *   singularities: 50 compare and select, 82 add, 7 divide, 106 multiply, 6 sincos, 2 sqrt
+ *   singularities where nothing vanishes: 75 add, 28 compare and select, 6 divide, 84 multiply, 6
+ *     sincos, 1 sqrt
+ *   condition_number: 50 compare and select, 114 add, 9 divide, 157 multiply, 6 sincos, 4 sqrt
+ *   condition_number where nothing vanishes: 107 add, 28 compare and select, 8 divide, 135
  *     multiply, 6 sincos, 3 sqrt
- *   constraint: 50 compare and select, 86 add, 7 divide, 144 multiply, 6 sincos, 2 sqrt
- *   constraint where nothing vanishes: 29 compare and select, 79 add, 6 divide, 112 multiply, 6
+ *   constraint: 50 compare and select, 86 add, 7 divide, 143 multiply, 6 sincos, 2 sqrt
+ *   constraint where nothing vanishes: 79 add, 28 compare and select, 6 divide, 111 multiply, 6
  *     sincos, 1 sqrt
  *   ik: 139 compare and select, 130 add, 6 atan2, 13 divide, 151 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt

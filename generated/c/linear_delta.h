@@ -3,30 +3,30 @@
  * derivations/linear_delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 50 compare and select, 51 add, 9 divide, 68 multiply, 2 sqrt
- *   fk where nothing vanishes: 31 compare and select, 44 add, 8 divide, 45 multiply, 1 sqrt
- *   skeleton: 49 compare and select, 125 add, 15 divide, 70 multiply, 2 sqrt
- *   skeleton where nothing vanishes: 30 compare and select, 118 add, 14 divide, 47 multiply, 1
+ *   fk: 50 compare and select, 51 add, 9 divide, 67 multiply, 2 sqrt
+ *   fk where nothing vanishes: 30 compare and select, 44 add, 8 divide, 44 multiply, 1 sqrt
+ *   skeleton: 49 compare and select, 125 add, 15 divide, 69 multiply, 2 sqrt
+ *   skeleton where nothing vanishes: 29 compare and select, 118 add, 14 divide, 46 multiply, 1
  *     sqrt
- *   jacobian_parallel: 49 compare and select, 69 add, 9 divide, 68 multiply, 2 sqrt
- *   jacobian_parallel where nothing vanishes: 30 compare and select, 62 add, 8 divide, 45
+ *   jacobian_parallel: 49 compare and select, 69 add, 9 divide, 67 multiply, 2 sqrt
+ *   jacobian_parallel where nothing vanishes: 29 compare and select, 62 add, 8 divide, 44
  *     multiply, 1 sqrt
- *   jacobian_serial: 45 compare and select, 45 add, 7 divide, 57 multiply, 2 sqrt
- *   jacobian_serial where nothing vanishes: 30 compare and select, 38 add, 6 divide, 37 multiply,
+ *   jacobian_serial: 45 compare and select, 45 add, 7 divide, 56 multiply, 2 sqrt
+ *   jacobian_serial where nothing vanishes: 29 compare and select, 38 add, 6 divide, 36 multiply,
  *     1 sqrt
- *   jacobian: 49 compare and select, 89 add, 27 divide, 119 multiply, 2 sqrt
- *   jacobian where nothing vanishes: 30 compare and select, 82 add, 26 divide, 96 multiply, 1 sqrt
- *   determinant: 45 compare and select, 41 add, 9 divide, 62 multiply, 2 sqrt
- *   determinant where nothing vanishes: 30 compare and select, 34 add, 8 divide, 42 multiply, 1
+ *   jacobian: 49 compare and select, 89 add, 27 divide, 118 multiply, 2 sqrt
+ *   jacobian where nothing vanishes: 29 compare and select, 82 add, 26 divide, 95 multiply, 1 sqrt
+ *   determinant: 45 compare and select, 41 add, 9 divide, 61 multiply, 2 sqrt
+ *   determinant where nothing vanishes: 29 compare and select, 34 add, 8 divide, 41 multiply, 1
  *     sqrt
- *   singularities: 45 compare and select, 47 add, 7 divide, 58 multiply, 2 sqrt
- *   singularities where nothing vanishes: 30 compare and select, 40 add, 6 divide, 38 multiply, 1
+ *   singularities: 45 compare and select, 47 add, 7 divide, 57 multiply, 2 sqrt
+ *   singularities where nothing vanishes: 29 compare and select, 40 add, 6 divide, 37 multiply, 1
  *     sqrt
- *   condition_number: 49 compare and select, 105 add, 11 divide, 138 multiply, 4 sqrt
- *   condition_number where nothing vanishes: 30 compare and select, 98 add, 10 divide, 115
+ *   condition_number: 49 compare and select, 105 add, 11 divide, 137 multiply, 4 sqrt
+ *   condition_number where nothing vanishes: 29 compare and select, 98 add, 10 divide, 114
  *     multiply, 3 sqrt
- *   constraint: 49 compare and select, 63 add, 15 divide, 92 multiply, 2 sqrt
- *   constraint where nothing vanishes: 30 compare and select, 56 add, 14 divide, 69 multiply, 1
+ *   constraint: 49 compare and select, 63 add, 15 divide, 91 multiply, 2 sqrt
+ *   constraint where nothing vanishes: 29 compare and select, 56 add, 14 divide, 68 multiply, 1
  *     sqrt
  *   ik: 60 compare and select, 63 add, 5 divide, 44 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt

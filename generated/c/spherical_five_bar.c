@@ -3,26 +3,26 @@
  * derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops on a sphere, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 74 compare and select, 65 add, 12 divide, 106 multiply, 7 sincos, 4 sqrt
- *   fk where nothing vanishes: 47 compare and select, 58 add, 12 divide, 81 multiply, 7 sincos, 4
+ *   fk: 74 compare and select, 65 add, 12 divide, 105 multiply, 7 sincos, 4 sqrt
+ *   fk where nothing vanishes: 47 compare and select, 58 add, 12 divide, 80 multiply, 7 sincos, 4
  *     sqrt
- *   skeleton: 73 compare and select, 79 add, 11 divide, 113 multiply, 7 sincos, 4 sqrt
- *   skeleton where nothing vanishes: 46 compare and select, 72 add, 10 divide, 89 multiply, 7
+ *   skeleton: 73 compare and select, 79 add, 11 divide, 112 multiply, 7 sincos, 4 sqrt
+ *   skeleton where nothing vanishes: 46 compare and select, 72 add, 10 divide, 88 multiply, 7
  *     sincos, 4 sqrt
- *   jacobian_parallel: 73 compare and select, 86 add, 11 divide, 107 multiply, 7 sincos, 4 sqrt
- *   jacobian_parallel where nothing vanishes: 46 compare and select, 79 add, 10 divide, 83
+ *   jacobian_parallel: 73 compare and select, 86 add, 11 divide, 106 multiply, 7 sincos, 4 sqrt
+ *   jacobian_parallel where nothing vanishes: 46 compare and select, 79 add, 10 divide, 82
  *     multiply, 7 sincos, 4 sqrt
- *   jacobian_serial: 73 compare and select, 72 add, 11 divide, 120 multiply, 7 sincos, 4 sqrt
- *   jacobian_serial where nothing vanishes: 46 compare and select, 65 add, 10 divide, 96 multiply,
+ *   jacobian_serial: 73 compare and select, 72 add, 11 divide, 119 multiply, 7 sincos, 4 sqrt
+ *   jacobian_serial where nothing vanishes: 46 compare and select, 65 add, 10 divide, 95 multiply,
  *     7 sincos, 4 sqrt
- *   jacobian: 73 compare and select, 98 add, 23 divide, 157 multiply, 7 sincos, 4 sqrt
- *   jacobian where nothing vanishes: 46 compare and select, 91 add, 22 divide, 133 multiply, 7
+ *   jacobian: 73 compare and select, 98 add, 23 divide, 156 multiply, 7 sincos, 4 sqrt
+ *   jacobian where nothing vanishes: 46 compare and select, 91 add, 22 divide, 132 multiply, 7
  *     sincos, 4 sqrt
- *   singularities: 73 compare and select, 74 add, 11 divide, 121 multiply, 7 sincos, 4 sqrt
- *   singularities where nothing vanishes: 46 compare and select, 67 add, 10 divide, 97 multiply, 7
+ *   singularities: 73 compare and select, 74 add, 11 divide, 120 multiply, 7 sincos, 4 sqrt
+ *   singularities where nothing vanishes: 46 compare and select, 67 add, 10 divide, 96 multiply, 7
  *     sincos, 4 sqrt
- *   condition_number: 73 compare and select, 114 add, 19 divide, 165 multiply, 7 sincos, 8 sqrt
- *   condition_number where nothing vanishes: 46 compare and select, 107 add, 18 divide, 141
+ *   condition_number: 73 compare and select, 114 add, 19 divide, 164 multiply, 7 sincos, 8 sqrt
+ *   condition_number where nothing vanishes: 46 compare and select, 107 add, 18 divide, 140
  *     multiply, 7 sincos, 8 sqrt
  *   ik: 107 compare and select, 78 add, 4 atan2, 13 divide, 105 multiply, 5 sincos, 7 sqrt
  *   workspace_contains: 53 compare and select, 26 add, 8 divide, 31 multiply, 5 sincos, 5 sqrt
@@ -2130,7 +2130,7 @@ CF_INLINE void spherical_five_bar_jacobian_common_kernel(const int single, const
     const real_t A_03 = c1_z + A_13;
     const real_t A_22 = t5 - t35;
     const real_t Delta = product_2 * h;
-    const real_t t39 = B_11 * (A_02 * t38 + A_03 * A_22) / cf_divisor(single, (product_2 <= t14 * (t13 * u_u)) | (u_u <= t15) | (both <= CLOSEDFORM_VANISHING * t13), Delta);
+    const real_t t39 = cf_nonzero(single, Delta);
     const int t40 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
     const int t41 = t40 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
     const int t42 = t41 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
@@ -2142,62 +2142,57 @@ CF_INLINE void spherical_five_bar_jacobian_common_kernel(const int single, const
     const real_t t48 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * t47);
     const int failed = (!(t43 & t44)) | (!(t46 & (-t48 <= t30) & (-t48 <= t31)));
     const real_t t49 = cf_poison(single, failed);
-    const real_t t50 = s_gamma * c2_z;
-    const real_t t51 = t10 * X - (t5 * m_z - t7 * t11) * Y;
-    const real_t t52 = product_x * h;
-    const real_t t53 = t51 - t52;
-    const real_t A_21 = t10 - t53;
-    const real_t t54 = c_gamma * c2_z;
-    const real_t t55 = c2 * t6;
-    const real_t B_22 = t50 * A_21 - t54 * A_22 - t55 * t38;
-    const real_t t56 = B_22 * (A_13 * A_02 + t35 * A_03) / cf_divisor(single, (product_2 <= t14 * (t13 * u_u)) | (u_u <= t15) | (both <= CLOSEDFORM_VANISHING * t13), Delta);
-    const real_t A_01 = c1_x - t53;
-    const real_t t57 = B_11 * (t38 * A_01 + A_03 * A_21) / cf_divisor(single, (product_2 <= t14 * (t13 * u_u)) | (u_u <= t15) | (both <= CLOSEDFORM_VANISHING * t13), Delta);
-    const real_t t58 = B_22 * (A_13 * A_01 + A_03 * t53) / cf_divisor(single, (product_2 <= t14 * (t13 * u_u)) | (u_u <= t15) | (both <= CLOSEDFORM_VANISHING * t13), Delta);
-    const real_t t59 = B_11 * (A_22 * A_01 - A_02 * A_21) / cf_divisor(single, (product_2 <= t14 * (t13 * u_u)) | (u_u <= t15) | (both <= CLOSEDFORM_VANISHING * t13), Delta);
-    const real_t t60 = B_22 * (t35 * A_01 - A_02 * t53) / cf_divisor(single, (product_2 <= t14 * (t13 * u_u)) | (u_u <= t15) | (both <= CLOSEDFORM_VANISHING * t13), Delta);
-    const real_t t61 = t32 - t34;
+    const real_t t50 = B_11 * (A_02 * t38 + A_03 * A_22) / t39 + t49;
+    const real_t t51 = s_gamma * c2_z;
+    const real_t t52 = t10 * X - (t5 * m_z - t7 * t11) * Y;
+    const real_t t53 = product_x * h;
+    const real_t t54 = t52 - t53;
+    const real_t A_21 = t10 - t54;
+    const real_t t55 = c_gamma * c2_z;
+    const real_t t56 = c2 * t6;
+    const real_t B_22 = t51 * A_21 - t55 * A_22 - t56 * t38;
+    const real_t t57 = B_22 * (A_13 * A_02 + t35 * A_03) / t39 + t49;
+    const real_t A_01 = c1_x - t54;
+    const real_t t58 = -(B_11 * (t38 * A_01 + A_03 * A_21) / t39) + t49;
+    const real_t t59 = -(B_22 * (A_13 * A_01 + A_03 * t54) / t39) + t49;
+    const real_t t60 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / t39) + t49;
+    const real_t t61 = -(B_22 * (t35 * A_01 - A_02 * t54) / t39) + t49;
+    const real_t t62 = t32 - t34;
     const real_t A_13_below = t36 - t37;
-    const real_t B_11_below = c1_z * t61 + c1_y * A_13_below;
-    const real_t A_02_below = c1_y - t61;
-    const real_t t62 = t7 - A_13_below;
+    const real_t B_11_below = c1_z * t62 + c1_y * A_13_below;
+    const real_t A_02_below = c1_y - t62;
+    const real_t t63 = t7 - A_13_below;
     const real_t A_03_below = c1_z + A_13_below;
-    const real_t A_22_below = t5 - t61;
-    const real_t t63 = B_11_below * (A_02_below * t62 + A_03_below * A_22_below);
-    const real_t t64 = t63 / cf_divisor(single, (product_2 <= t14 * (t13 * u_u)) | (u_u <= t15) | (both <= CLOSEDFORM_VANISHING * t13), Delta);
-    const real_t t65 = t51 + t52;
+    const real_t A_22_below = t5 - t62;
+    const real_t t64 = B_11_below * (A_02_below * t63 + A_03_below * A_22_below);
+    const real_t t65 = t52 + t53;
     const real_t A_21_below = t10 - t65;
-    const real_t B_22_below = t50 * A_21_below - t54 * A_22_below - t55 * t62;
-    const real_t t66 = B_22_below * (A_13_below * A_02_below + t61 * A_03_below);
-    const real_t t67 = t66 / cf_divisor(single, (product_2 <= t14 * (t13 * u_u)) | (u_u <= t15) | (both <= CLOSEDFORM_VANISHING * t13), Delta);
+    const real_t B_22_below = t51 * A_21_below - t55 * A_22_below - t56 * t63;
+    const real_t t66 = B_22_below * (A_13_below * A_02_below + t62 * A_03_below);
     const real_t A_01_below = c1_x - t65;
-    const real_t t68 = B_11_below * (t62 * A_01_below + A_03_below * A_21_below);
-    const real_t t69 = t68 / cf_divisor(single, (product_2 <= t14 * (t13 * u_u)) | (u_u <= t15) | (both <= CLOSEDFORM_VANISHING * t13), Delta);
-    const real_t t70 = B_22_below * (A_13_below * A_01_below + A_03_below * t65);
-    const real_t t71 = t70 / cf_divisor(single, (product_2 <= t14 * (t13 * u_u)) | (u_u <= t15) | (both <= CLOSEDFORM_VANISHING * t13), Delta);
-    const real_t t72 = A_22_below * A_01_below - A_02_below * A_21_below;
-    const real_t t73 = B_11_below * t72 / cf_divisor(single, (product_2 <= t14 * (t13 * u_u)) | (u_u <= t15) | (both <= CLOSEDFORM_VANISHING * t13), Delta);
-    const real_t t74 = B_22_below * (t61 * A_01_below - A_02_below * t65);
-    const real_t t75 = t74 / cf_divisor(single, (product_2 <= t14 * (t13 * u_u)) | (u_u <= t15) | (both <= CLOSEDFORM_VANISHING * t13), Delta);
-    const real_t t76 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
-    const real_t v_v = t76 + cf_rounded(single, one, c1_z * c1_z);
-    const real_t t77 = u_u * v_v;
-    const real_t t78 = product_2 - t77 * CLOSEDFORM_C(0.000244140625);
-    const int t79 = (u_u <= t15) | (u_u + v_v <= t15) | (t78 <= CLOSEDFORM_VANISHING * t77);
-    const int t80 = t79 | (product_2 <= t14 * (t13 * u_u)) | (both <= CLOSEDFORM_VANISHING * t13);
-    J[0] = t39 + t49;
-    J[1] = t56 + t49;
-    J[2] = -t57 + t49;
-    J[3] = -t58 + t49;
-    J[4] = -t59 + t49;
-    J[5] = -t60 + t49;
-    J[6] = -t64 + t49;
-    J[7] = -t67 + t49;
-    J[8] = t69 + t49;
-    J[9] = t71 + t49;
-    J[10] = t73 + t49;
-    J[11] = t75 + t49;
-    rare[0] = (t80) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t67 = B_11_below * (t63 * A_01_below + A_03_below * A_21_below);
+    const real_t t68 = B_22_below * (A_13_below * A_01_below + A_03_below * t65);
+    const real_t t69 = A_22_below * A_01_below - A_02_below * A_21_below;
+    const real_t t70 = B_22_below * (t62 * A_01_below - A_02_below * t65);
+    const real_t t71 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t71 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t72 = u_u * v_v;
+    const real_t t73 = product_2 - t72 * CLOSEDFORM_C(0.000244140625);
+    const int t74 = (u_u <= t15) | (u_u + v_v <= t15) | (t73 <= CLOSEDFORM_VANISHING * t72);
+    const int t75 = t74 | (product_2 <= t14 * (t13 * u_u)) | (both <= CLOSEDFORM_VANISHING * t13);
+    J[0] = t50;
+    J[1] = t57;
+    J[2] = t58;
+    J[3] = t59;
+    J[4] = t60;
+    J[5] = t61;
+    J[6] = -(t64 / t39) + t49;
+    J[7] = -(t66 / t39) + t49;
+    J[8] = t67 / t39 + t49;
+    J[9] = t68 / t39 + t49;
+    J[10] = B_11_below * t69 / t39 + t49;
+    J[11] = t70 / t39 + t49;
+    rare[0] = (t75) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void spherical_five_bar_jacobian_common_batch(size_t n, const spherical_five_bar_params *params,
@@ -3082,7 +3077,7 @@ CF_INLINE void spherical_five_bar_condition_number_common_kernel(const int singl
     const real_t t47 = t41 * t2_x + t42 * t2_y + t43 * t45;
     const real_t t48 = cf_sqrt(t46 * t46 + CLOSEDFORM_C(4.0) * (t47 * t47));
     const real_t t49 = CLOSEDFORM_C(2.0) * (product_2 * h);
-    const real_t t50 = strut * (square1 + square2 + t48) / cf_divisor(single, (product_2 <= t13 * (t12 * u_u)) | (u_u <= t14) | (both <= CLOSEDFORM_VANISHING * t12), t49);
+    const real_t t50 = cf_quotient(single, strut * (square1 + square2 + t48), t49);
     const int t51 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
     const int t52 = t51 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
     const int t53 = t52 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
@@ -3124,16 +3119,15 @@ CF_INLINE void spherical_five_bar_condition_number_common_kernel(const int singl
     const real_t t73 = t65 * t2_x_below + t66 * t2_y_below + t67 * t71;
     const real_t t74 = cf_sqrt(t72 * t72 + CLOSEDFORM_C(4.0) * (t73 * t73));
     const real_t t75 = strut_below * (square1_below + square2_below + t74);
-    const real_t t76 = t75 / cf_divisor(single, (product_2 <= t13 * (t12 * u_u)) | (u_u <= t14) | (both <= CLOSEDFORM_VANISHING * t12), t49);
-    const real_t t77 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
-    const real_t v_v = t77 + cf_rounded(single, one, c1_z * c1_z);
-    const real_t t78 = u_u * v_v;
-    const real_t t79 = product_2 - t78 * CLOSEDFORM_C(0.000244140625);
-    const int t80 = (u_u <= t14) | (u_u + v_v <= t14) | (t79 <= CLOSEDFORM_VANISHING * t78);
-    const int t81 = t80 | (product_2 <= t13 * (t12 * u_u)) | (both <= CLOSEDFORM_VANISHING * t12);
+    const real_t t76 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t76 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t77 = u_u * v_v;
+    const real_t t78 = product_2 - t77 * CLOSEDFORM_C(0.000244140625);
+    const int t79 = (u_u <= t14) | (u_u + v_v <= t14) | (t78 <= CLOSEDFORM_VANISHING * t77);
+    const int t80 = t79 | (product_2 <= t13 * (t12 * u_u)) | (both <= CLOSEDFORM_VANISHING * t12);
     kappa[0] = t50 + t60;
-    kappa[1] = t76 + t60;
-    rare[0] = (t81) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    kappa[1] = cf_quotient(single, t75, t49) + t60;
+    rare[0] = (t80) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void spherical_five_bar_condition_number_common_batch(size_t n, const spherical_five_bar_params *params,

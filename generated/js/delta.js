@@ -2,28 +2,32 @@
 // derivations/delta.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 51 compare and select, 59 add, 7 divide, 82 multiply, 6 sincos, 2 sqrt
-//   fk where nothing vanishes: 30 compare and select, 52 add, 6 divide, 60 multiply, 6 sincos, 1
+//   fk: 51 compare and select, 59 add, 7 divide, 81 multiply, 6 sincos, 2 sqrt
+//   fk where nothing vanishes: 52 add, 29 compare and select, 6 divide, 59 multiply, 6 sincos, 1
 //     sqrt
-//   skeleton: 50 compare and select, 180 add, 13 divide, 100 multiply, 6 sincos, 2 sqrt
-//   jacobian_parallel: 50 compare and select, 80 add, 7 divide, 82 multiply, 6 sincos, 2 sqrt
-//   jacobian_parallel where nothing vanishes: 29 compare and select, 73 add, 6 divide, 60
+//   skeleton: 50 compare and select, 180 add, 13 divide, 99 multiply, 6 sincos, 2 sqrt
+//   skeleton where nothing vanishes: 173 add, 28 compare and select, 12 divide, 77 multiply, 6
+//     sincos, 1 sqrt
+//   jacobian_parallel: 50 compare and select, 80 add, 7 divide, 81 multiply, 6 sincos, 2 sqrt
+//   jacobian_parallel where nothing vanishes: 73 add, 28 compare and select, 6 divide, 59
 //     multiply, 6 sincos, 1 sqrt
-//   jacobian_serial: 50 compare and select, 80 add, 7 divide, 106 multiply, 6 sincos, 2 sqrt
-//   jacobian_serial where nothing vanishes: 29 compare and select, 73 add, 6 divide, 84 multiply,
+//   jacobian_serial: 50 compare and select, 80 add, 7 divide, 105 multiply, 6 sincos, 2 sqrt
+//   jacobian_serial where nothing vanishes: 73 add, 28 compare and select, 6 divide, 83 multiply,
 //     6 sincos, 1 sqrt
-//   jacobian: 50 compare and select, 110 add, 25 divide, 161 multiply, 6 sincos, 2 sqrt
-//   determinant: 50 compare and select, 76 add, 9 divide, 111 multiply, 6 sincos, 2 sqrt
-//   determinant where nothing vanishes: 29 compare and select, 69 add, 8 divide, 89 multiply, 6
+//   jacobian: 50 compare and select, 110 add, 25 divide, 160 multiply, 6 sincos, 2 sqrt
+//   jacobian where nothing vanishes: 103 add, 28 compare and select, 24 divide, 138 multiply, 6
 //     sincos, 1 sqrt
-//   singularities: 50 compare and select, 82 add, 7 divide, 107 multiply, 6 sincos, 2 sqrt
-//   singularities where nothing vanishes: 29 compare and select, 75 add, 6 divide, 85 multiply, 6
+//   determinant: 50 compare and select, 76 add, 9 divide, 110 multiply, 6 sincos, 2 sqrt
+//   determinant where nothing vanishes: 69 add, 28 compare and select, 8 divide, 88 multiply, 6
 //     sincos, 1 sqrt
-//   condition_number: 50 compare and select, 114 add, 9 divide, 158 multiply, 6 sincos, 4 sqrt
-//   condition_number where nothing vanishes: 29 compare and select, 107 add, 8 divide, 136
+//   singularities: 50 compare and select, 82 add, 7 divide, 106 multiply, 6 sincos, 2 sqrt
+//   singularities where nothing vanishes: 75 add, 28 compare and select, 6 divide, 84 multiply, 6
+//     sincos, 1 sqrt
+//   condition_number: 50 compare and select, 114 add, 9 divide, 157 multiply, 6 sincos, 4 sqrt
+//   condition_number where nothing vanishes: 107 add, 28 compare and select, 8 divide, 135
 //     multiply, 6 sincos, 3 sqrt
-//   constraint: 50 compare and select, 86 add, 7 divide, 144 multiply, 6 sincos, 2 sqrt
-//   constraint where nothing vanishes: 29 compare and select, 79 add, 6 divide, 112 multiply, 6
+//   constraint: 50 compare and select, 86 add, 7 divide, 143 multiply, 6 sincos, 2 sqrt
+//   constraint where nothing vanishes: 79 add, 28 compare and select, 6 divide, 111 multiply, 6
 //     sincos, 1 sqrt
 //   ik: 139 compare and select, 130 add, 6 atan2, 13 divide, 151 multiply, 3 sincos, 9 sqrt
 //   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
@@ -706,10 +710,297 @@ function _skeleton(v, o) {
     o[131] = t111;
 }
 
+/** @type {_runtime.Compute} */
+function _skeleton_common(v, o) {
+    const theta1 = v[0];
+    const theta2 = v[1];
+    const theta3 = v[2];
+    const f = v[3];
+    const e = v[4];
+    const L = v[5];
+    const l = v[6];
+    const alpha1 = v[7];
+    const alpha2 = v[8];
+    const alpha3 = v[9];
+    _runtime.sincos(alpha1);
+    const s_alpha1 = _runtime.found[0];
+    const c_alpha1 = _runtime.found[1];
+    _runtime.sincos(theta1);
+    const s1 = _runtime.found[0];
+    const c1 = _runtime.found[1];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    const c2 = _runtime.found[1];
+    _runtime.sincos(alpha2);
+    const s_alpha2 = _runtime.found[0];
+    const c_alpha2 = _runtime.found[1];
+    _runtime.sincos(theta3);
+    const s3 = _runtime.found[0];
+    const c3 = _runtime.found[1];
+    _runtime.sincos(alpha3);
+    const s_alpha3 = _runtime.found[0];
+    const c_alpha3 = _runtime.found[1];
+    const t1 = f * c_alpha1;
+    const t2 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
+        Number.isFinite(l) && Number.isFinite(alpha1) && Number.isFinite(alpha2) &&
+        Number.isFinite(alpha3);
+    const t3 = t2 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
+    const t4 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const size = f + e + L + l;
+    const t5 = size * size;
+    const t6 = 0.9375 * (l * size);
+    const t7 = L * s1;
+    const t8 = L * s2;
+    const u_z = t7 - t8;
+    const t9 = L * c1;
+    const t10 = f - e;
+    const t11 = t9 + t10;
+    const c1_x = c_alpha1 * t11;
+    const t12 = L * c2;
+    const t13 = t12 + t10;
+    const t14 = c1_x - c_alpha2 * t13;
+    const c1_y = s_alpha1 * t11;
+    const t15 = c1_y - s_alpha2 * t13;
+    const u_u = u_z * u_z + t14 * t14 + t15 * t15;
+    const t16 = L * s3;
+    const v_z = t7 - t16;
+    const t17 = L * c3;
+    const t18 = t17 + t10;
+    const t19 = c1_y - s_alpha3 * t18;
+    const t20 = v_z * t15 - u_z * t19;
+    const t21 = c1_x - c_alpha3 * t18;
+    const m_y = v_z * t14 - u_z * t21;
+    const m_z = t14 * t19 - t15 * t21;
+    const product_2 = t20 * t20 + m_y * m_y + m_z * m_z;
+    const part = 1.0 / product_2;
+    const t22 = v_z * (u_z - v_z) + t21 * (t14 - t21) + t19 * (t15 - t19);
+    const t23 = part * t22 * 0.5;
+    const t24 = l * l - u_u * (0.25 + product_2 * (t23 * t23));
+    const t25 = Math.abs(0.0) <= t5 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t6) <=
+        t24;
+    const t26 = !(t3 && t4) || !t25 ? NaN : 0;
+    const t27 = t1 + t26;
+    const t28 = f * s_alpha1;
+    const t29 = t28 + t26;
+    const t30 = 0.0 + t26;
+    const t31 = t1 + t9 * c_alpha1;
+    const t32 = t31 + t26;
+    const t33 = t28 + t9 * s_alpha1;
+    const t34 = t33 + t26;
+    const t35 = -t7 + t26;
+    const t36 = e * c_alpha1;
+    const t37 = t23 * (t15 * m_z + u_z * m_y) + t14 * 0.5;
+    const slack = Math.max(t24, 0.0);
+    const h = Math.sqrt(part * slack);
+    const t38 = t20 * h;
+    const t39 = c1_x - (t37 - t38);
+    const t40 = t36 + t39;
+    const t41 = e * s_alpha1;
+    const t42 = t23 * (t14 * m_z - u_z * t20) - t15 * 0.5;
+    const t43 = m_y * h;
+    const t44 = c1_y + (t42 - t43);
+    const t45 = t41 + t44;
+    const t46 = u_z * 0.5 - t23 * (t14 * m_y + t15 * t20);
+    const t47 = m_z * h;
+    const t48 = t46 - t47 - t7 + t26;
+    const t49 = t41 * 0.5;
+    const t50 = t31 - t49 + t26;
+    const t51 = t36 * 0.5;
+    const t52 = t51 + t33 + t26;
+    const t53 = t49 + t31 + t26;
+    const t54 = t33 - t51 + t26;
+    const t55 = f * c_alpha2;
+    const t56 = t55 + t26;
+    const t57 = f * s_alpha2;
+    const t58 = t57 + t26;
+    const t59 = t55 + t12 * c_alpha2;
+    const t60 = t59 + t26;
+    const t61 = t57 + t12 * s_alpha2;
+    const t62 = t61 + t26;
+    const t63 = -t8 + t26;
+    const t64 = e * c_alpha2;
+    const t65 = t64 + t39;
+    const t66 = e * s_alpha2;
+    const t67 = t66 + t44;
+    const t68 = t66 * 0.5;
+    const t69 = t59 - t68 + t26;
+    const t70 = t64 * 0.5;
+    const t71 = t70 + t61 + t26;
+    const t72 = t68 + t59 + t26;
+    const t73 = t61 - t70 + t26;
+    const t74 = f * c_alpha3;
+    const t75 = t74 + t26;
+    const t76 = f * s_alpha3;
+    const t77 = t76 + t26;
+    const t78 = t74 + t17 * c_alpha3;
+    const t79 = t78 + t26;
+    const t80 = t76 + t17 * s_alpha3;
+    const t81 = t80 + t26;
+    const t82 = -t16 + t26;
+    const t83 = e * c_alpha3;
+    const t84 = t83 + t39;
+    const t85 = e * s_alpha3;
+    const t86 = t85 + t44;
+    const t87 = t85 * 0.5;
+    const t88 = t78 - t87 + t26;
+    const t89 = t83 * 0.5;
+    const t90 = t89 + t80 + t26;
+    const t91 = t87 + t78 + t26;
+    const t92 = t80 - t89 + t26;
+    const t93 = c1_x - (t37 + t38);
+    const t94 = t36 + t93;
+    const t95 = c1_y + (t42 + t43);
+    const t96 = t41 + t95;
+    const t97 = t46 + t47 - t7 + t26;
+    const t98 = t64 + t93;
+    const t99 = t66 + t95;
+    const t100 = t83 + t93;
+    const t101 = t85 + t95;
+    const t102 = _runtime.VANISHING * _runtime.VANISHING;
+    const t103 = t5 * t102;
+    const v_v = v_z * v_z + t21 * t21 + t19 * t19;
+    const t104 = u_u * v_v;
+    const slim = product_2 - t104 * 0.000244140625 <= _runtime.VANISHING * t104;
+    const t105 = u_u <= t103 || u_u + v_v <= t103 || slim || product_2 <= t102 * (t5 * u_u);
+    o[0] = t27;
+    o[1] = t29;
+    o[2] = t30;
+    o[3] = t32;
+    o[4] = t34;
+    o[5] = t35;
+    o[6] = t40 + t26;
+    o[7] = t45 + t26;
+    o[8] = t48;
+    o[9] = t50;
+    o[10] = t52;
+    o[11] = t35;
+    o[12] = t53;
+    o[13] = t54;
+    o[14] = t35;
+    o[15] = t40 - t49 + t26;
+    o[16] = t51 + t45 + t26;
+    o[17] = t48;
+    o[18] = t49 + t40 + t26;
+    o[19] = t45 - t51 + t26;
+    o[20] = t48;
+    o[21] = t56;
+    o[22] = t58;
+    o[23] = t30;
+    o[24] = t60;
+    o[25] = t62;
+    o[26] = t63;
+    o[27] = t65 + t26;
+    o[28] = t67 + t26;
+    o[29] = t48;
+    o[30] = t69;
+    o[31] = t71;
+    o[32] = t63;
+    o[33] = t72;
+    o[34] = t73;
+    o[35] = t63;
+    o[36] = t65 - t68 + t26;
+    o[37] = t70 + t67 + t26;
+    o[38] = t48;
+    o[39] = t68 + t65 + t26;
+    o[40] = t67 - t70 + t26;
+    o[41] = t48;
+    o[42] = t75;
+    o[43] = t77;
+    o[44] = t30;
+    o[45] = t79;
+    o[46] = t81;
+    o[47] = t82;
+    o[48] = t84 + t26;
+    o[49] = t86 + t26;
+    o[50] = t48;
+    o[51] = t88;
+    o[52] = t90;
+    o[53] = t82;
+    o[54] = t91;
+    o[55] = t92;
+    o[56] = t82;
+    o[57] = t84 - t87 + t26;
+    o[58] = t89 + t86 + t26;
+    o[59] = t48;
+    o[60] = t87 + t84 + t26;
+    o[61] = t86 - t89 + t26;
+    o[62] = t48;
+    o[63] = t39 + t26;
+    o[64] = t44 + t26;
+    o[65] = t48;
+    o[66] = t27;
+    o[67] = t29;
+    o[68] = t30;
+    o[69] = t32;
+    o[70] = t34;
+    o[71] = t35;
+    o[72] = t94 + t26;
+    o[73] = t96 + t26;
+    o[74] = t97;
+    o[75] = t50;
+    o[76] = t52;
+    o[77] = t35;
+    o[78] = t53;
+    o[79] = t54;
+    o[80] = t35;
+    o[81] = t94 - t49 + t26;
+    o[82] = t51 + t96 + t26;
+    o[83] = t97;
+    o[84] = t49 + t94 + t26;
+    o[85] = t96 - t51 + t26;
+    o[86] = t97;
+    o[87] = t56;
+    o[88] = t58;
+    o[89] = t30;
+    o[90] = t60;
+    o[91] = t62;
+    o[92] = t63;
+    o[93] = t98 + t26;
+    o[94] = t99 + t26;
+    o[95] = t97;
+    o[96] = t69;
+    o[97] = t71;
+    o[98] = t63;
+    o[99] = t72;
+    o[100] = t73;
+    o[101] = t63;
+    o[102] = t98 - t68 + t26;
+    o[103] = t70 + t99 + t26;
+    o[104] = t97;
+    o[105] = t68 + t98 + t26;
+    o[106] = t99 - t70 + t26;
+    o[107] = t97;
+    o[108] = t75;
+    o[109] = t77;
+    o[110] = t30;
+    o[111] = t79;
+    o[112] = t81;
+    o[113] = t82;
+    o[114] = t100 + t26;
+    o[115] = t101 + t26;
+    o[116] = t97;
+    o[117] = t88;
+    o[118] = t90;
+    o[119] = t82;
+    o[120] = t91;
+    o[121] = t92;
+    o[122] = t82;
+    o[123] = t100 - t87 + t26;
+    o[124] = t89 + t101 + t26;
+    o[125] = t97;
+    o[126] = t87 + t100 + t26;
+    o[127] = t101 - t89 + t26;
+    o[128] = t97;
+    o[129] = t93 + t26;
+    o[130] = t95 + t26;
+    o[131] = t97;
+    o[132] = (t105 || slack <= _runtime.VANISHING * t6) ? 1 : 0;
+}
+
 const _SKELETON = _runtime.kernel({
     name: "delta.skeleton",
     compute: _skeleton,
-    common: null,
+    common: _skeleton_common,
     inputs: [
         { name: "q", shape: [3], branches: 0, kind: "real" },
     ],
@@ -1502,10 +1793,161 @@ function _jacobian(v, o) {
     o[17] = -(t74 * t81 / Delta) + t51;
 }
 
+/** @type {_runtime.Compute} */
+function _jacobian_common(v, o) {
+    const theta1 = v[0];
+    const theta2 = v[1];
+    const theta3 = v[2];
+    const f = v[3];
+    const e = v[4];
+    const L = v[5];
+    const l = v[6];
+    const alpha1 = v[7];
+    const alpha2 = v[8];
+    const alpha3 = v[9];
+    _runtime.sincos(alpha1);
+    const s_alpha1 = _runtime.found[0];
+    const c_alpha1 = _runtime.found[1];
+    _runtime.sincos(theta1);
+    const s1 = _runtime.found[0];
+    const c1 = _runtime.found[1];
+    _runtime.sincos(alpha2);
+    const s_alpha2 = _runtime.found[0];
+    const c_alpha2 = _runtime.found[1];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    const c2 = _runtime.found[1];
+    _runtime.sincos(theta3);
+    const s3 = _runtime.found[0];
+    const c3 = _runtime.found[1];
+    _runtime.sincos(alpha3);
+    const s_alpha3 = _runtime.found[0];
+    const c_alpha3 = _runtime.found[1];
+    const t1 = L * c1;
+    const t2 = f - e;
+    const t3 = t1 + t2;
+    const c1_y = s_alpha1 * t3;
+    const t4 = L * c2;
+    const t5 = t4 + t2;
+    const t6 = c1_y - s_alpha2 * t5;
+    const t7 = L * s1;
+    const t8 = L * s3;
+    const v_z = t7 - t8;
+    const t9 = L * s2;
+    const u_z = t7 - t9;
+    const t10 = L * c3;
+    const t11 = t10 + t2;
+    const t12 = c1_y - s_alpha3 * t11;
+    const t13 = v_z * t6 - u_z * t12;
+    const c1_x = c_alpha1 * t3;
+    const t14 = c1_x - c_alpha2 * t5;
+    const t15 = c1_x - c_alpha3 * t11;
+    const m_y = v_z * t14 - u_z * t15;
+    const m_z = t14 * t12 - t6 * t15;
+    const product_2 = t13 * t13 + m_y * m_y + m_z * m_z;
+    const part = 1.0 / product_2;
+    const t16 = v_z * (u_z - v_z) + t15 * (t14 - t15) + t12 * (t6 - t12);
+    const t17 = part * t16 * 0.5;
+    const t18 = t17 * (t14 * m_z - u_z * t13) - t6 * 0.5;
+    const u_u = u_z * u_z + t14 * t14 + t6 * t6;
+    const t19 = l * l - u_u * (0.25 + product_2 * (t17 * t17));
+    const slack = Math.max(t19, 0.0);
+    const h = Math.sqrt(part * slack);
+    const t20 = m_y * h;
+    const A_12 = t18 - t20;
+    const A_22 = t6 + A_12;
+    const t21 = u_z * 0.5 - t17 * (t14 * m_y + t6 * t13);
+    const t22 = m_z * h;
+    const t23 = t21 - t22;
+    const t24 = v_z - t23;
+    const t25 = u_z - t23;
+    const A_32 = t12 + A_12;
+    const t26 = c_alpha1 * t7;
+    const t27 = t17 * (t6 * m_z + u_z * m_y) + t14 * 0.5;
+    const t28 = t13 * h;
+    const t29 = t27 - t28;
+    const t30 = s_alpha1 * t7;
+    const t31 = t26 * t29 - t30 * A_12 - t1 * t23;
+    const Delta = product_2 * h;
+    const t32 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
+        Number.isFinite(l) && Number.isFinite(alpha1) && Number.isFinite(alpha2) &&
+        Number.isFinite(alpha3);
+    const t33 = t32 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
+    const t34 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const size = f + e + L + l;
+    const t35 = size * size;
+    const t36 = 0.9375 * (l * size);
+    const t37 = Math.abs(0.0) <= t35 * _runtime.FEASIBILITY && -(_runtime.FEASIBILITY * t36) <=
+        t19;
+    const t38 = !(t33 && t34) || !t37 ? NaN : 0;
+    const t39 = (A_22 * t24 - t25 * A_32) * t31 / Delta + t38;
+    const t40 = c_alpha2 * t9;
+    const A_21 = t14 - t29;
+    const t41 = s_alpha2 * t9;
+    const t42 = t40 * A_21 + t41 * A_22 - t4 * t25;
+    const t43 = (A_12 * t24 + t23 * A_32) * t42 / Delta + t38;
+    const t44 = c_alpha3 * t8;
+    const A_31 = t15 - t29;
+    const t45 = s_alpha3 * t8;
+    const t46 = t44 * A_31 + t45 * A_32 - t10 * t24;
+    const t47 = -((A_12 * t25 + A_22 * t23) * t46 / Delta) + t38;
+    const t48 = -(t31 * (t24 * A_21 - t25 * A_31) / Delta) + t38;
+    const t49 = -(t46 * (t25 * t29 - t23 * A_21) / Delta) + t38;
+    const t50 = -(t31 * (A_32 * A_21 - A_22 * A_31) / Delta) + t38;
+    const t51 = t42 * (A_32 * t29 + A_12 * A_31) / Delta + t38;
+    const t52 = -(t46 * (A_22 * t29 + A_12 * A_21) / Delta) + t38;
+    const A_12_above = t18 + t20;
+    const A_22_above = t6 + A_12_above;
+    const t53 = t21 + t22;
+    const t54 = v_z - t53;
+    const t55 = u_z - t53;
+    const A_32_above = t12 + A_12_above;
+    const t56 = t27 + t28;
+    const t57 = t26 * t56 - t30 * A_12_above - t1 * t53;
+    const t58 = (A_22_above * t54 - t55 * A_32_above) * t57 / Delta;
+    const A_21_above = t14 - t56;
+    const t59 = t40 * A_21_above + t41 * A_22_above - t4 * t55;
+    const t60 = (A_12_above * t54 + t53 * A_32_above) * t59 / Delta;
+    const A_31_above = t15 - t56;
+    const t61 = t44 * A_31_above + t45 * A_32_above - t10 * t54;
+    const t62 = (A_12_above * t55 + A_22_above * t53) * t61 / Delta;
+    const t63 = t57 * (t54 * A_21_above - t55 * A_31_above) / Delta;
+    const t64 = -(t59 * (t54 * t56 - t53 * A_31_above) / Delta);
+    const t65 = t61 * (t55 * t56 - t53 * A_21_above) / Delta + t38;
+    const t66 = A_32_above * A_21_above - A_22_above * A_31_above;
+    const t67 = t59 * (A_32_above * t56 + A_12_above * A_31_above);
+    const t68 = t61 * (A_22_above * t56 + A_12_above * A_21_above);
+    const t69 = _runtime.VANISHING * _runtime.VANISHING;
+    const t70 = t35 * t69;
+    const v_v = v_z * v_z + t15 * t15 + t12 * t12;
+    const t71 = u_u * v_v;
+    const slim = product_2 - t71 * 0.000244140625 <= _runtime.VANISHING * t71;
+    const t72 = u_u <= t70 || u_u + v_v <= t70 || slim || product_2 <= t69 * (t35 * u_u);
+    o[0] = t39;
+    o[1] = t43;
+    o[2] = t47;
+    o[3] = t48;
+    o[4] = t42 * (t24 * t29 - t23 * A_31) / Delta + t38;
+    o[5] = t49;
+    o[6] = t50;
+    o[7] = t51;
+    o[8] = t52;
+    o[9] = -t58 + t38;
+    o[10] = -t60 + t38;
+    o[11] = t62 + t38;
+    o[12] = t63 + t38;
+    o[13] = t64 + t38;
+    o[14] = t65;
+    o[15] = t57 * t66 / Delta + t38;
+    o[16] = -(t67 / Delta) + t38;
+    o[17] = t68 / Delta + t38;
+    o[18] = (t72 || slack <= _runtime.VANISHING * t36) ? 1 : 0;
+}
+
 const _JACOBIAN = _runtime.kernel({
     name: "delta.jacobian",
     compute: _jacobian,
-    common: null,
+    common: _jacobian_common,
     inputs: [
         { name: "q", shape: [3], branches: 0, kind: "real" },
     ],

@@ -14,7 +14,7 @@
 //   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
 //   ik: 725 compare and select, 539 add, 29 atan2, 173 divide, 744 multiply, 1 reduce to a turn, 3
 //     sincos, 54 sqrt
-//   ik where nothing vanishes: 252 compare and select, 174 add, 16 atan2, 43 divide, 168 multiply,
+//   ik where nothing vanishes: 250 compare and select, 174 add, 16 atan2, 43 divide, 168 multiply,
 //     1 reduce to a turn, 3 sincos, 25 sqrt
 //   wrist_length: 21 compare and select, 6 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
 //   minimum_link_length: 2 divide, 2 sincos, 1 add

@@ -2,28 +2,32 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 51 compare and select, 59 add, 7 divide, 82 multiply, 6 sincos, 2 sqrt
-#   fk where nothing vanishes: 30 compare and select, 52 add, 6 divide, 60 multiply, 6 sincos, 1
+#   fk: 51 compare and select, 59 add, 7 divide, 81 multiply, 6 sincos, 2 sqrt
+#   fk where nothing vanishes: 52 add, 29 compare and select, 6 divide, 59 multiply, 6 sincos, 1
 #     sqrt
-#   skeleton: 50 compare and select, 180 add, 13 divide, 100 multiply, 6 sincos, 2 sqrt
-#   jacobian_parallel: 50 compare and select, 80 add, 7 divide, 82 multiply, 6 sincos, 2 sqrt
-#   jacobian_parallel where nothing vanishes: 29 compare and select, 73 add, 6 divide, 60
+#   skeleton: 50 compare and select, 180 add, 13 divide, 99 multiply, 6 sincos, 2 sqrt
+#   skeleton where nothing vanishes: 173 add, 28 compare and select, 12 divide, 77 multiply, 6
+#     sincos, 1 sqrt
+#   jacobian_parallel: 50 compare and select, 80 add, 7 divide, 81 multiply, 6 sincos, 2 sqrt
+#   jacobian_parallel where nothing vanishes: 73 add, 28 compare and select, 6 divide, 59
 #     multiply, 6 sincos, 1 sqrt
-#   jacobian_serial: 50 compare and select, 80 add, 7 divide, 106 multiply, 6 sincos, 2 sqrt
-#   jacobian_serial where nothing vanishes: 29 compare and select, 73 add, 6 divide, 84 multiply,
+#   jacobian_serial: 50 compare and select, 80 add, 7 divide, 105 multiply, 6 sincos, 2 sqrt
+#   jacobian_serial where nothing vanishes: 73 add, 28 compare and select, 6 divide, 83 multiply,
 #     6 sincos, 1 sqrt
-#   jacobian: 50 compare and select, 110 add, 25 divide, 161 multiply, 6 sincos, 2 sqrt
-#   determinant: 50 compare and select, 76 add, 9 divide, 111 multiply, 6 sincos, 2 sqrt
-#   determinant where nothing vanishes: 29 compare and select, 69 add, 8 divide, 89 multiply, 6
+#   jacobian: 50 compare and select, 110 add, 25 divide, 160 multiply, 6 sincos, 2 sqrt
+#   jacobian where nothing vanishes: 103 add, 28 compare and select, 24 divide, 138 multiply, 6
 #     sincos, 1 sqrt
-#   singularities: 50 compare and select, 82 add, 7 divide, 107 multiply, 6 sincos, 2 sqrt
-#   singularities where nothing vanishes: 29 compare and select, 75 add, 6 divide, 85 multiply, 6
+#   determinant: 50 compare and select, 76 add, 9 divide, 110 multiply, 6 sincos, 2 sqrt
+#   determinant where nothing vanishes: 69 add, 28 compare and select, 8 divide, 88 multiply, 6
 #     sincos, 1 sqrt
-#   condition_number: 50 compare and select, 114 add, 9 divide, 158 multiply, 6 sincos, 4 sqrt
-#   condition_number where nothing vanishes: 29 compare and select, 107 add, 8 divide, 136
+#   singularities: 50 compare and select, 82 add, 7 divide, 106 multiply, 6 sincos, 2 sqrt
+#   singularities where nothing vanishes: 75 add, 28 compare and select, 6 divide, 84 multiply, 6
+#     sincos, 1 sqrt
+#   condition_number: 50 compare and select, 114 add, 9 divide, 157 multiply, 6 sincos, 4 sqrt
+#   condition_number where nothing vanishes: 107 add, 28 compare and select, 8 divide, 135
 #     multiply, 6 sincos, 3 sqrt
-#   constraint: 50 compare and select, 86 add, 7 divide, 144 multiply, 6 sincos, 2 sqrt
-#   constraint where nothing vanishes: 29 compare and select, 79 add, 6 divide, 112 multiply, 6
+#   constraint: 50 compare and select, 86 add, 7 divide, 143 multiply, 6 sincos, 2 sqrt
+#   constraint where nothing vanishes: 79 add, 28 compare and select, 6 divide, 111 multiply, 6
 #     sincos, 1 sqrt
 #   ik: 139 compare and select, 130 add, 6 atan2, 13 divide, 151 multiply, 3 sincos, 9 sqrt
 #   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
@@ -797,6 +801,322 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     )
 
 
+def _skeleton_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    # Where nothing vanishes; last, whether something does.
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
+    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
+    t1 = f * c_alpha1
+    t2 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t3 = t2 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t2
+    t4 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    size = f + e + L + l
+    t5 = size * size
+    t6 = 0.9375 * (l * size)
+    del size
+    t7 = L * s1
+    del s1
+    t8 = L * s2
+    del s2
+    u_z = t7 - t8
+    t9 = L * c1
+    del c1
+    t10 = f - e
+    t11 = t9 + t10
+    c1_x = c_alpha1 * t11
+    t12 = L * c2
+    del c2
+    t13 = t12 + t10
+    t14 = c1_x - c_alpha2 * t13
+    c1_y = s_alpha1 * t11
+    del t11
+    t15 = c1_y - s_alpha2 * t13
+    del t13
+    u_u = u_z * u_z + t14 * t14 + t15 * t15
+    t16 = L * s3
+    del s3
+    v_z = t7 - t16
+    t17 = L * c3
+    del c3
+    t18 = t17 + t10
+    del t10
+    t19 = c1_y - s_alpha3 * t18
+    t20 = v_z * t15 - u_z * t19
+    t21 = c1_x - c_alpha3 * t18
+    del t18
+    m_y = v_z * t14 - u_z * t21
+    m_z = t14 * t19 - t15 * t21
+    product_2 = t20 * t20 + m_y * m_y + m_z * m_z
+    part = 1.0 / product_2
+    t22 = v_z * (u_z - v_z) + t21 * (t14 - t21) + t19 * (t15 - t19)
+    t23 = part * t22 * 0.5
+    del t22
+    t24 = l * l - u_u * (0.25 + product_2 * (t23 * t23))
+    t25 = (np.abs(0.0) <= t5 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t6) <= t24)
+    failed = np.logical_not(t3 & t4) | np.logical_not(t25)
+    del t25, t3, t4
+    t26 = _runtime.poison(failed)
+    del failed
+    t27 = t1 + t26
+    t28 = f * s_alpha1
+    t29 = t28 + t26
+    t30 = 0.0 + t26
+    t31 = t1 + t9 * c_alpha1
+    del t1
+    t32 = t31 + t26
+    t33 = t28 + t9 * s_alpha1
+    del t28, t9
+    t34 = t33 + t26
+    t35 = -t7 + t26
+    t36 = e * c_alpha1
+    del c_alpha1
+    t37 = t23 * (t15 * m_z + u_z * m_y) + t14 * 0.5
+    slack = np.maximum(t24, 0.0)
+    del t24
+    h = np.sqrt(part * slack)
+    del part
+    t38 = t20 * h
+    t39 = c1_x - (t37 - t38)
+    t40 = t36 + t39
+    t41 = e * s_alpha1
+    del s_alpha1
+    t42 = t23 * (t14 * m_z - u_z * t20) - t15 * 0.5
+    t43 = m_y * h
+    t44 = c1_y + (t42 - t43)
+    t45 = t41 + t44
+    t46 = u_z * 0.5 - t23 * (t14 * m_y + t15 * t20)
+    del m_y, t14, t15, t20, t23, u_z
+    t47 = m_z * h
+    del h, m_z
+    t48 = t46 - t47 - t7 + t26
+    t49 = t41 * 0.5
+    t50 = t31 - t49 + t26
+    t51 = t36 * 0.5
+    t52 = t51 + t33 + t26
+    t53 = t49 + t31 + t26
+    del t31
+    t54 = t33 - t51 + t26
+    del t33
+    t55 = f * c_alpha2
+    t56 = t55 + t26
+    t57 = f * s_alpha2
+    t58 = t57 + t26
+    t59 = t55 + t12 * c_alpha2
+    del t55
+    t60 = t59 + t26
+    t61 = t57 + t12 * s_alpha2
+    del t12, t57
+    t62 = t61 + t26
+    t63 = -t8 + t26
+    del t8
+    t64 = e * c_alpha2
+    del c_alpha2
+    t65 = t64 + t39
+    t66 = e * s_alpha2
+    del s_alpha2
+    t67 = t66 + t44
+    t68 = t66 * 0.5
+    t69 = t59 - t68 + t26
+    t70 = t64 * 0.5
+    t71 = t70 + t61 + t26
+    t72 = t68 + t59 + t26
+    del t59
+    t73 = t61 - t70 + t26
+    del t61
+    t74 = f * c_alpha3
+    t75 = t74 + t26
+    t76 = f * s_alpha3
+    t77 = t76 + t26
+    t78 = t74 + t17 * c_alpha3
+    del t74
+    t79 = t78 + t26
+    t80 = t76 + t17 * s_alpha3
+    del t17, t76
+    t81 = t80 + t26
+    t82 = -t16 + t26
+    del t16
+    t83 = e * c_alpha3
+    del c_alpha3
+    t84 = t83 + t39
+    t85 = e * s_alpha3
+    del s_alpha3
+    t86 = t85 + t44
+    t87 = t85 * 0.5
+    t88 = t78 - t87 + t26
+    t89 = t83 * 0.5
+    t90 = t89 + t80 + t26
+    t91 = t87 + t78 + t26
+    del t78
+    t92 = t80 - t89 + t26
+    del t80
+    t93 = c1_x - (t37 + t38)
+    del c1_x, t37, t38
+    t94 = t36 + t93
+    del t36
+    t95 = c1_y + (t42 + t43)
+    del c1_y, t42, t43
+    t96 = t41 + t95
+    del t41
+    t97 = t46 + t47 - t7 + t26
+    del t46, t47, t7
+    t98 = t64 + t93
+    del t64
+    t99 = t66 + t95
+    del t66
+    t100 = t83 + t93
+    del t83
+    t101 = t85 + t95
+    del t85
+    t102 = _runtime.VANISHING * _runtime.VANISHING
+    t103 = t5 * t102
+    v_v = v_z * v_z + t21 * t21 + t19 * t19
+    del t19, t21, v_z
+    t104 = u_u * v_v
+    slim = product_2 - t104 * 0.000244140625 <= _runtime.VANISHING * t104
+    del t104
+    t105 = (u_u <= t103) | (u_u + v_v <= t103) | slim | (product_2 <= t102 * (t5 * u_u))
+    del product_2, slim, t102, t103, t5, u_u, v_v
+    return (
+        t27,
+        t29,
+        t30,
+        t32,
+        t34,
+        t35,
+        t40 + t26,
+        t45 + t26,
+        t48,
+        t50,
+        t52,
+        t35,
+        t53,
+        t54,
+        t35,
+        t40 - t49 + t26,
+        t51 + t45 + t26,
+        t48,
+        t49 + t40 + t26,
+        t45 - t51 + t26,
+        t48,
+        t56,
+        t58,
+        t30,
+        t60,
+        t62,
+        t63,
+        t65 + t26,
+        t67 + t26,
+        t48,
+        t69,
+        t71,
+        t63,
+        t72,
+        t73,
+        t63,
+        t65 - t68 + t26,
+        t70 + t67 + t26,
+        t48,
+        t68 + t65 + t26,
+        t67 - t70 + t26,
+        t48,
+        t75,
+        t77,
+        t30,
+        t79,
+        t81,
+        t82,
+        t84 + t26,
+        t86 + t26,
+        t48,
+        t88,
+        t90,
+        t82,
+        t91,
+        t92,
+        t82,
+        t84 - t87 + t26,
+        t89 + t86 + t26,
+        t48,
+        t87 + t84 + t26,
+        t86 - t89 + t26,
+        t48,
+        t39 + t26,
+        t44 + t26,
+        t48,
+        t27,
+        t29,
+        t30,
+        t32,
+        t34,
+        t35,
+        t94 + t26,
+        t96 + t26,
+        t97,
+        t50,
+        t52,
+        t35,
+        t53,
+        t54,
+        t35,
+        t94 - t49 + t26,
+        t51 + t96 + t26,
+        t97,
+        t49 + t94 + t26,
+        t96 - t51 + t26,
+        t97,
+        t56,
+        t58,
+        t30,
+        t60,
+        t62,
+        t63,
+        t98 + t26,
+        t99 + t26,
+        t97,
+        t69,
+        t71,
+        t63,
+        t72,
+        t73,
+        t63,
+        t98 - t68 + t26,
+        t70 + t99 + t26,
+        t97,
+        t68 + t98 + t26,
+        t99 - t70 + t26,
+        t97,
+        t75,
+        t77,
+        t30,
+        t79,
+        t81,
+        t82,
+        t100 + t26,
+        t101 + t26,
+        t97,
+        t88,
+        t90,
+        t82,
+        t91,
+        t92,
+        t82,
+        t100 - t87 + t26,
+        t89 + t101 + t26,
+        t97,
+        t87 + t100 + t26,
+        t101 - t89 + t26,
+        t97,
+        t93 + t26,
+        t95 + t26,
+        t97,
+        t105 | (slack <= _runtime.VANISHING * t6),
+    )
+
+
 _SKELETON = _runtime.Kernel(
     "delta.skeleton",
     _skeleton,
@@ -804,6 +1124,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Array("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    common=_skeleton_common,
     size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
@@ -1671,6 +1992,182 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     )
 
 
+def _jacobian_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    # Where nothing vanishes; last, whether something does.
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
+    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
+    t1 = L * c1
+    del c1
+    t2 = f - e
+    t3 = t1 + t2
+    c1_y = s_alpha1 * t3
+    t4 = L * c2
+    del c2
+    t5 = t4 + t2
+    t6 = c1_y - s_alpha2 * t5
+    t7 = L * s1
+    del s1
+    t8 = L * s3
+    del s3
+    v_z = t7 - t8
+    t9 = L * s2
+    del s2
+    u_z = t7 - t9
+    t10 = L * c3
+    del c3
+    t11 = t10 + t2
+    del t2
+    t12 = c1_y - s_alpha3 * t11
+    del c1_y
+    t13 = v_z * t6 - u_z * t12
+    c1_x = c_alpha1 * t3
+    del t3
+    t14 = c1_x - c_alpha2 * t5
+    del t5
+    t15 = c1_x - c_alpha3 * t11
+    del c1_x, t11
+    m_y = v_z * t14 - u_z * t15
+    m_z = t14 * t12 - t6 * t15
+    product_2 = t13 * t13 + m_y * m_y + m_z * m_z
+    part = 1.0 / product_2
+    t16 = v_z * (u_z - v_z) + t15 * (t14 - t15) + t12 * (t6 - t12)
+    t17 = part * t16 * 0.5
+    del t16
+    t18 = t17 * (t14 * m_z - u_z * t13) - t6 * 0.5
+    u_u = u_z * u_z + t14 * t14 + t6 * t6
+    t19 = l * l - u_u * (0.25 + product_2 * (t17 * t17))
+    slack = np.maximum(t19, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t20 = m_y * h
+    A_12 = t18 - t20
+    A_22 = t6 + A_12
+    t21 = u_z * 0.5 - t17 * (t14 * m_y + t6 * t13)
+    t22 = m_z * h
+    t23 = t21 - t22
+    t24 = v_z - t23
+    t25 = u_z - t23
+    A_32 = t12 + A_12
+    t26 = c_alpha1 * t7
+    del c_alpha1
+    t27 = t17 * (t6 * m_z + u_z * m_y) + t14 * 0.5
+    del m_y, m_z, t17
+    t28 = t13 * h
+    del t13
+    t29 = t27 - t28
+    t30 = s_alpha1 * t7
+    del s_alpha1, t7
+    t31 = t26 * t29 - t30 * A_12 - t1 * t23
+    Delta = product_2 * h
+    del h
+    t32 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t33 = t32 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t32
+    t34 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    size = f + e + L + l
+    t35 = size * size
+    t36 = 0.9375 * (l * size)
+    del size
+    t37 = (np.abs(0.0) <= t35 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t36) <= t19)
+    del t19
+    failed = np.logical_not(t33 & t34) | np.logical_not(t37)
+    del t33, t34, t37
+    t38 = _runtime.poison(failed)
+    del failed
+    t39 = (A_22 * t24 - t25 * A_32) * t31 / Delta + t38
+    t40 = c_alpha2 * t9
+    del c_alpha2
+    A_21 = t14 - t29
+    t41 = s_alpha2 * t9
+    del s_alpha2, t9
+    t42 = t40 * A_21 + t41 * A_22 - t4 * t25
+    t43 = (A_12 * t24 + t23 * A_32) * t42 / Delta + t38
+    t44 = c_alpha3 * t8
+    del c_alpha3
+    A_31 = t15 - t29
+    t45 = s_alpha3 * t8
+    del s_alpha3, t8
+    t46 = t44 * A_31 + t45 * A_32 - t10 * t24
+    t47 = -((A_12 * t25 + A_22 * t23) * t46 / Delta) + t38
+    t48 = -(t31 * (t24 * A_21 - t25 * A_31) / Delta) + t38
+    t49 = -(t46 * (t25 * t29 - t23 * A_21) / Delta) + t38
+    del t25
+    t50 = -(t31 * (A_32 * A_21 - A_22 * A_31) / Delta) + t38
+    del t31
+    t51 = t42 * (A_32 * t29 + A_12 * A_31) / Delta + t38
+    del A_32
+    t52 = -(t46 * (A_22 * t29 + A_12 * A_21) / Delta) + t38
+    del A_12, A_21, A_22, t46
+    A_12_above = t18 + t20
+    del t18, t20
+    A_22_above = t6 + A_12_above
+    del t6
+    t53 = t21 + t22
+    del t21, t22
+    t54 = v_z - t53
+    t55 = u_z - t53
+    del u_z
+    A_32_above = t12 + A_12_above
+    t56 = t27 + t28
+    del t27, t28
+    t57 = t26 * t56 - t30 * A_12_above - t1 * t53
+    del t1, t26, t30
+    t58 = (A_22_above * t54 - t55 * A_32_above) * t57 / Delta
+    A_21_above = t14 - t56
+    del t14
+    t59 = t40 * A_21_above + t41 * A_22_above - t4 * t55
+    del t4, t40, t41
+    t60 = (A_12_above * t54 + t53 * A_32_above) * t59 / Delta
+    A_31_above = t15 - t56
+    t61 = t44 * A_31_above + t45 * A_32_above - t10 * t54
+    del t10, t44, t45
+    t62 = (A_12_above * t55 + A_22_above * t53) * t61 / Delta
+    t63 = t57 * (t54 * A_21_above - t55 * A_31_above) / Delta
+    t64 = -(t59 * (t54 * t56 - t53 * A_31_above) / Delta)
+    del t54
+    t65 = t61 * (t55 * t56 - t53 * A_21_above) / Delta + t38
+    del t53, t55
+    t66 = A_32_above * A_21_above - A_22_above * A_31_above
+    t67 = t59 * (A_32_above * t56 + A_12_above * A_31_above)
+    del A_31_above, A_32_above, t59
+    t68 = t61 * (A_22_above * t56 + A_12_above * A_21_above)
+    del A_12_above, A_21_above, A_22_above, t56, t61
+    t69 = _runtime.VANISHING * _runtime.VANISHING
+    t70 = t35 * t69
+    v_v = v_z * v_z + t15 * t15 + t12 * t12
+    del t12, t15, v_z
+    t71 = u_u * v_v
+    slim = product_2 - t71 * 0.000244140625 <= _runtime.VANISHING * t71
+    del t71
+    t72 = (u_u <= t70) | (u_u + v_v <= t70) | slim | (product_2 <= t69 * (t35 * u_u))
+    del product_2, slim, t35, t69, t70, u_u, v_v
+    return (
+        t39,
+        t43,
+        t47,
+        t48,
+        t42 * (t24 * t29 - t23 * A_31) / Delta + t38,
+        t49,
+        t50,
+        t51,
+        t52,
+        -t58 + t38,
+        -t60 + t38,
+        t62 + t38,
+        t63 + t38,
+        t64 + t38,
+        t65,
+        t57 * t66 / Delta + t38,
+        -(t67 / Delta) + t38,
+        t68 / Delta + t38,
+        t72 | (slack <= _runtime.VANISHING * t36),
+    )
+
+
 _JACOBIAN = _runtime.Kernel(
     "delta.jacobian",
     _jacobian,
@@ -1678,6 +2175,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    common=_jacobian_common,
     size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 

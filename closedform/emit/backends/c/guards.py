@@ -36,7 +36,8 @@ def given_up_where(lowered: Lowered) -> Iterator[tuple[int, tuple[Node, ...]]]:
     """For quotients of a common case, the conditions that a factor of their divisor counts as zero.
 
     If one holds, the whole program is evaluated instead.  For each factor it is, among the
-    conditions that are already known, the one whose value is nearest to the factor.
+    conditions that are already known, the one whose value is nearest to the factor.  A divisor is
+    left out if it vanishes with a bound that no condition is about.
     """
     if lowered.results[-1].name != "rare":
         return
@@ -48,6 +49,8 @@ def given_up_where(lowered: Lowered) -> Iterator[tuple[int, tuple[Node, ...]]]:
             continue
         below = {n.id for n in reachable(node.args)}
         known = [c for c in conditions if needs[c.id] <= below]
+        if {n.id for n in _bounds(node.args[1])} - {c.args[0].id for c in known}:
+            continue
         nearest: dict[int, Node] = {}
         for factor in _factors(node.args[1]):
             near = {n.id for n in reachable([factor])}
@@ -66,6 +69,14 @@ def _factors(node: Node) -> Iterator[Node]:
         return
     for arg in node.args:
         yield from _factors(arg)
+
+
+def _bounds(node: Node) -> Iterator[Node]:
+    """The factors of a node, also in roots, that are zero where a target is out of reach."""
+    if node.op == "max" and any(constant_of(a) == 0 for a in node.args):
+        yield node
+    for arg in node.args[: {"mul": 2, "sqrt": 1, "div": 1}.get(node.op, 0)]:
+        yield from _bounds(arg)
 
 
 def final_values(lowered: Lowered) -> frozenset[int]:

@@ -25,6 +25,7 @@ from flint import arb, fmpq
 from sympy import Symbol
 
 from closedform.algebra.resolvent import Resolvent, enclosed
+from closedform.algebra.scope import Case, Scope
 from closedform.model.constant import Constant
 from closedform.model.expressions import free_symbols
 
@@ -71,7 +72,8 @@ class Evaluator:
     decide. A radicand that cannot be distinguished from zero is taken to be nonnegative.
 
     The expressions may contain the names in `named`, which stand for their values; the name of a
-    condition stands for its truth value.
+    condition stands for its truth value.  They are evaluated in each of the `cases`, one after the
+    other; a case gives integer values to more symbols.
     """
 
     def __init__(
@@ -82,30 +84,42 @@ class Evaluator:
         max_bits: int = 4000,
         *,
         named: Mapping[Symbol, Expr] | None = None,
+        cases: Sequence[Case] = ({},),
     ) -> None:
         self.symbols = tuple(symbols)
         self.exprs = tuple(sp.sympify(e, strict=True) for e in exprs)
         self.rel_bits, self.max_bits = rel_bits, max_bits
         named = {name: sp.sympify(value, strict=True) for name, value in (named or {}).items()}
-        missing = free_symbols((*self.exprs, *named.values())) - {*self.symbols, *named}
+        known = {*self.symbols, *named, *(s for case in cases for s in case)}
+        missing = free_symbols((*self.exprs, *named.values())) - known
         if missing:
             raise KeyError(f"no value for {', '.join(sorted(map(str, missing)))}")
-        self._program = _Program(self.symbols, self.exprs, named)
+        self._program = _Program(self.symbols, self.exprs, named, cases)
 
-    def __call__(self, values: Mapping[Symbol, Value] | Sequence[Value]) -> list[arb]:
-        """Enclosures at a point, given by symbol or in the order of `symbols`."""
+    def __call__(
+        self,
+        values: Mapping[Symbol, Value] | Sequence[Value],
+        wanted: Sequence[int] | None = None,
+    ) -> list[arb]:
+        """Enclosures at a point, given by symbol or in the order of `symbols`.
+
+        With ``wanted``, only these expressions have to be tight, and only they are returned.
+        """
         if isinstance(values, Mapping):
             values = [values[s] for s in self.symbols]
         if len(values) != len(self.symbols):
             raise ValueError(f"{len(self.symbols)} values expected, {len(values)} given")
         point = [_Point(v) for v in values]
-        bits = min(self.rel_bits + _SPARE_BITS, self.max_bits)
+        chosen = range(len(self._program.outputs)) if wanted is None else wanted
+        # the sine of a large angle needs the digits before its binary point as well
+        bits = self.rel_bits + _SPARE_BITS
+        bits = min(bits + max((p.digits for p in point), default=0), self.max_bits)
         while True:
             with flint.ctx.workprec(bits):
                 try:
                     registers = self._program.run(point)
-                    balls = [registers[i] for i in self._program.outputs]
-                    if self._are_tight(balls, registers):
+                    balls = [registers[self._program.outputs[k]] for k in chosen]
+                    if self._are_tight(balls, registers, chosen):
                         return balls
                     obstacle = "a value is not accurate enough"
                 except _Open as reason:
@@ -116,18 +130,18 @@ class Evaluator:
         at = ", ".join(f"{s} = {v}" for s, v in zip(self.symbols, values, strict=True))
         raise Undetermined(f"{obstacle} at {self.max_bits} bits; the point is {at}")
 
-    def _are_tight(self, balls: Sequence[arb], registers: Registers) -> bool:
+    def _are_tight(self, balls: Sequence[arb], registers: Registers, chosen: Sequence[int]) -> bool:
         wide = [
-            k
-            for k, ball in enumerate(balls)
+            (k, ball)
+            for k, ball in zip(chosen, balls, strict=True)
             if ball is not _UNDEFINED and ball.rel_accuracy_bits() < self.rel_bits
         ]
         if not wide:
             return True
-        if not all(balls[k].is_finite() for k in wide):
+        if not all(ball.is_finite() for _, ball in wide):
             return False
         scales, part = self._program.scales(registers), arb(2) ** -self.rel_bits
-        return all(balls[k].rad() <= scales[k] * part for k in wide)
+        return all(ball.rad() <= scales[k] * part for k, ball in wide)
 
 
 def to_float(ball: arb) -> float:
@@ -149,7 +163,16 @@ class _Point:
 
     def __init__(self, value: Value) -> None:
         self.turns: fmpq | None = None
+        self.digits = 0
+        """The number of binary digits before the point."""
         self._program: _Program | None = None
+        self._ball: arb | None = None
+        if isinstance(value, float) and math.isfinite(value):
+            self._ball = arb(value)
+            self.digits = max(0, math.frexp(value)[1])
+            if not value:
+                self.turns = fmpq(0)
+            return
         if isinstance(value, sp.Expr) and not value.is_Float and not value.is_Rational:
             self._program = _Program((), (value,), {})
             multiple = value / sp.pi
@@ -162,6 +185,8 @@ class _Point:
             self.turns = fmpq(0)
 
     def ball(self) -> arb:
+        if self._ball is not None:
+            return self._ball
         if self._program is None:
             return arb(self._value)
         return self._program.run([])[self._program.outputs[0]]
@@ -176,26 +201,42 @@ class _Program:
     """Straight-line code; a case of a `Piecewise` is a block that runs only if it is chosen."""
 
     def __init__(
-        self, symbols: Sequence[Symbol], exprs: Sequence[Expr], named: Mapping[Symbol, Expr]
+        self,
+        symbols: Sequence[Symbol],
+        exprs: Sequence[Expr],
+        named: Mapping[Symbol, Expr],
+        cases: Sequence[Case] = ({},),
     ) -> None:
+        self._scope = Scope(named, cases)
         self._symbols = {s: i for i, s in enumerate(symbols)}
         self._size = len(symbols)
         self._turns: list[fmpq | None] | None = None
         self._block: list[Step] = []
-        self._register: dict[Expr, int] = dict(self._symbols)
+        self._register: dict[Any, int] = dict(self._symbols)
         self._constants: list[Step] = []
         self._initial: dict[int, Registers] = {}
-        self._truths: dict[Symbol, Test] = {}
+        self._truths: dict[Any, Test] = {}
         self._scale_steps: list[Callable[[Registers, Registers], arb]] = []
-        self._scaled: dict[Expr, int] = {}
-        for name, value in named.items():
-            if isinstance(value, sp.logic.boolalg.Boolean) and not value.is_Symbol:
+        self._scaled: dict[Any, int] = {}
+        outputs, scales = list[int](), list[int]()
+        for case in cases:
+            self._scope.enter(case)
+            for sign, value in case.items():
+                self._register[self._scope.key(sign)] = self._compile(sp.Integer(value))
+            for name, value in named.items():
+                self._name(self._scope.key(name), value)
+            outputs += map(self._compile, exprs)
+            scales += map(self._scale, exprs)
+        self.outputs, self._scales = tuple(outputs), tuple(scales)
+
+    def _name(self, name: Any, value: Expr) -> None:
+        """Let a name stand for its value in this case, unless it has this value already."""
+        if isinstance(value, sp.logic.boolalg.Boolean) and not value.is_Symbol:
+            if name not in self._truths:
                 self._truths[name] = self._test(value)
-            else:
-                self._register[name] = self._compile(value)
-                self._scaled[name] = self._scale(value)
-        self.outputs = tuple(map(self._compile, exprs))
-        self._scales = tuple(map(self._scale, exprs))
+        elif name not in self._register:
+            self._register[name] = self._compile(value)
+            self._scaled[name] = self._scale(value)
 
     def run(self, point: Sequence[_Point]) -> Registers:
         """All registers at a point, at the current precision."""
@@ -218,11 +259,12 @@ class _Program:
         return [sizes[k] for k in self._scales]
 
     def _scale(self, e: Expr) -> int:
-        if e not in self._scaled:
+        key = self._scope.key(e)
+        if key not in self._scaled:
             step = self._scale_step(e)
             self._scale_steps.append(step)
-            self._scaled[e] = len(self._scale_steps) - 1
-        return self._scaled[e]
+            self._scaled[key] = len(self._scale_steps) - 1
+        return self._scaled[key]
 
     def _scale_step(self, e: Expr) -> Callable[[Registers, Registers], arb]:
         if e.is_Add or e.is_Mul:
@@ -231,15 +273,16 @@ class _Program:
         if e.is_Pow and e.exp.is_positive:
             base, power = self._scale(e.base), fmpq(int(e.exp.p), int(e.exp.q))
             return lambda registers, sizes: sizes[base] ** power
-        place, least = self._register[e], 0 if e.is_Atom or e.is_Pow else 1
+        place, least = self._register[self._scope.key(e)], 0 if e.is_Atom or e.is_Pow else 1
         return lambda registers, sizes: registers[place].abs_upper().max(arb(least))
 
     # Compilation
 
     def _compile(self, e: Expr) -> int:
-        known = self._register.get(e)
+        key = self._scope.key(e)
+        known = self._register.get(key)
         if known is None:
-            known = self._register[e] = self._emit(e)
+            known = self._register[key] = self._emit(e)
         return known
 
     def _step(self, function: Callable[..., arb], args: Iterable[int] | None) -> int:
@@ -324,8 +367,8 @@ class _Program:
             left, right = self._compile(condition.lhs), self._compile(condition.rhs)
             compare = _COMPARISONS[condition.rel_op]
             return lambda registers: compare(registers[left], registers[right])
-        if condition in self._truths:
-            return self._truths[condition]
+        if (name := self._scope.key(condition)) in self._truths:
+            return self._truths[name]
         if condition in (sp.true, sp.false):
             truth = bool(condition)
             return lambda registers: truth

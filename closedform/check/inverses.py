@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,11 +50,11 @@ def check_inverse(
     if not truth.has_images:
         if not truth.stated:
             return check_forward(derivation, function, backend)
-        for sample in joint_samples(derivation, function):
-            posed = rounded(sample, backend)
-            for part, exact in _in_range(derivation, function, posed, backend):
-                _Batch(finding, truth, backend, part, exact=exact).check(None)
+        drawn = [rounded(sample, backend) for sample in joint_samples(derivation, function)]
+        parts = [p for s in drawn for p in _in_range(derivation, function, s, backend)]
+        _check_batches(finding, truth, backend, [(part, exact, None) for part, exact in parts])
         return finding
+    batches: list[_Targets] = []
     answers = len(inverse.unknowns) * len(list(function.cases()))
     for sample in inverse_postures(derivation, inverse.unknowns):
         postures = rounded(thinned(sample, answers), backend)
@@ -63,10 +63,24 @@ def check_inverse(
             continue
         for values, known in ((images, known_postures), (perturbed(images), None)):
             posed = rounded(Sample(sample.name, values, sample.parameters), backend)
-            _Batch(finding, truth, backend, posed, exact=known is not None).check(known)
+            batches.append((posed, known is not None, known))
+    _check_batches(finding, truth, backend, batches)
     for sample in _singular_samples(derivation, inverse.unknowns):
         _check_round_trips(finding, truth, backend, rounded(sample, backend))
     return finding
+
+
+_Targets: TypeAlias = "tuple[Sample, bool, NDArray[Any] | None]"
+"""Targets, whether they can be reached, and the postures behind them."""
+
+
+def _check_batches(
+    finding: Finding, truth: Solutions, backend: Backend, batches: Sequence[_Targets]
+) -> None:
+    """Check each batch; what they need in balls is evaluated for all of them together."""
+    truth.prepare([sample for sample, _, _ in batches])
+    for sample, exact, known in batches:
+        _Batch(finding, truth, backend, sample, exact=exact).check(known)
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,9 @@ Arb is needed more often: the results are the same, but slower.
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property, lru_cache, partial, reduce
+from functools import cached_property, partial, reduce
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 
 from closedform.algebra.balls import Evaluator, Undetermined, to_float
 from closedform.algebra.resolvent import Resolvent, cubic, slope
+from closedform.algebra.scope import Case, Scope
 from closedform.model.constant import Constant
 
 Array = NDArray[Any]
@@ -31,42 +33,50 @@ LIBRARY = 16 * ROUNDING
 LEAST = np.sqrt(WIDE(np.finfo(WIDE).tiny))
 """Below this size, rounding errors are no longer relative."""
 OPEN = WIDE("inf")
+KEPT_BATCHES, TOGETHER = 4096, 1024
+"""How many results are kept, and how many points are evaluated together at most."""
 
 
 class RowEvaluator:
-    """Expressions at many points: fast, with bounds on the errors, and in Arb on request."""
+    """Expressions at many points: fast, with bounds on the errors, and in Arb on request.
+
+    They are evaluated in each of the ``cases``, one after the other, as those of an ``Evaluator``.
+    """
 
     def __init__(
         self,
         symbols: Iterable[sp.Symbol],
         exprs: Iterable[Any],
         named: Mapping[sp.Symbol, Any] | None = None,
+        cases: Sequence[Case] = ({},),
     ) -> None:
         self.symbols = tuple(symbols)
         self.exprs = tuple(sp.sympify(e, strict=True) for e in exprs)
-        self._named = dict(named or {})
-        self._program = _Program(self.symbols, self.exprs, self._named)
-        self._exact: dict[tuple[float, ...], list[Any] | str] = {}
+        self._named, self._cases = dict(named or {}), tuple(cases)
+        self._program = _Program(self.symbols, self.exprs, self._named, self._cases)
+        self._exact: dict[tuple[Any, ...], list[Any] | str] = {}
         """The Arb balls at each point so far, or the reason why there are none."""
 
     @cached_property
     def separately(self) -> list[RowEvaluator]:
         """An evaluator for each expression alone."""
-        return [RowEvaluator(self.symbols, [e], self._named) for e in self.exprs]
+        return [RowEvaluator(self.symbols, [e], self._named, self._cases) for e in self.exprs]
 
     @cached_property
     def _evaluator(self) -> Evaluator:
-        return Evaluator(self.symbols, self.exprs, named=self._named)
+        return Evaluator(self.symbols, self.exprs, named=self._named, cases=self._cases)
 
-    def exactly(self, row: Sequence[float]) -> list[Any]:
-        """The Arb balls at one point."""
+    def exactly(self, row: Iterable[float], wanted: Iterable[int] | None = None) -> list[Any]:
+        """The Arb balls at one point: of all expressions, or of those that are wanted."""
         point = tuple(map(float, row))
-        if point not in self._exact:
+        chosen = None if wanted is None else tuple(map(int, wanted))
+        key = point, chosen
+        if key not in self._exact:
             try:
-                self._exact[point] = self._evaluator(point)
+                self._exact[key] = self._evaluator(point, chosen)
             except Undetermined as error:
-                self._exact[point] = str(error)
-        found = self._exact[point]
+                self._exact[key] = str(error)
+        found = self._exact[key]
         if isinstance(found, str):
             raise Undetermined(found)
         return found
@@ -77,10 +87,23 @@ class RowEvaluator:
         Do not write to the arrays: the last result is kept for the next back end.
         """
         rows = np.asarray(rows)
-        return _cached_balls(self, rows.tobytes(), rows.shape, rows.dtype.str)
+        found: tuple[Array, Array] = _BALLS.find(self, rows, self._balls)
+        return found
+
+    def prepare(self, batches: Iterable[Array]) -> None:
+        """Evaluate the balls of many batches together, which takes hardly longer than for one."""
+        new = [rows for rows in map(np.asarray, batches) if not _BALLS.knows(self, rows)]
+        while new:
+            part, total = [new.pop(0)], 0
+            while new and (total := total + len(part[-1])) + len(new[0]) <= TOGETHER:
+                part.append(new.pop(0))
+            found = self._balls(np.concatenate(part))
+            ends = np.cumsum([len(rows) for rows in part])[:-1]
+            for rows, *balls in zip(part, *(np.split(x, ends) for x in found), strict=True):
+                _BALLS.put(self, rows, tuple(balls))
 
     def _balls(self, rows: Array) -> tuple[Array, Array]:
-        shape = (len(rows), len(self.exprs))
+        shape = (len(rows), len(self._program.results))
         middle, radius = np.empty(shape, WIDE), np.empty(shape, WIDE)
         with np.errstate(all="ignore"):
             for k, (x, r) in enumerate(self._program.run(rows)):
@@ -95,10 +118,10 @@ class RowEvaluator:
         They take a quarter of the time of the balls, and are kept like these.
         """
         rows = np.asarray(rows)
-        return _cached_values(self, rows.tobytes(), rows.shape, rows.dtype.str)
+        return np.asarray(_VALUES.find(self, rows, self._values))
 
     def _values(self, rows: Array) -> Array:
-        middle = np.empty((len(rows), len(self.exprs)), WIDE)
+        middle = np.empty((len(rows), len(self._program.results)), WIDE)
         with np.errstate(all="ignore"):
             for k, x in enumerate(self._program.middles(rows)):
                 middle[:, k] = x
@@ -124,19 +147,33 @@ class RowEvaluator:
         return middle
 
 
-@lru_cache(4096)
-def _cached_balls(
-    evaluator: RowEvaluator, rows: bytes, shape: tuple[int, ...], dtype: str
-) -> tuple[Array, Array]:
-    """The balls of an evaluator, kept because all back ends of a robot use the same points."""
-    return evaluator._balls(np.frombuffer(rows, dtype).reshape(shape))
+class _Kept:
+    """Results for batches of points, kept because all back ends of a robot use the same points."""
+
+    def __init__(self) -> None:
+        self._known: OrderedDict[tuple[Any, ...], Any] = OrderedDict()
+
+    def find(self, evaluator: RowEvaluator, rows: Array, make: Callable[[Array], Any]) -> Any:
+        if not self.knows(evaluator, rows):
+            self.put(evaluator, rows, make(rows))
+        key = _key(evaluator, rows)
+        self._known.move_to_end(key)
+        return self._known[key]
+
+    def knows(self, evaluator: RowEvaluator, rows: Array) -> bool:
+        return _key(evaluator, rows) in self._known
+
+    def put(self, evaluator: RowEvaluator, rows: Array, found: Any) -> None:
+        self._known[_key(evaluator, rows)] = found
+        while len(self._known) > KEPT_BATCHES:
+            self._known.popitem(last=False)
 
 
-@lru_cache(4096)
-def _cached_values(
-    evaluator: RowEvaluator, rows: bytes, shape: tuple[int, ...], dtype: str
-) -> Array:
-    return evaluator._values(np.frombuffer(rows, dtype).reshape(shape))
+def _key(evaluator: RowEvaluator, rows: Array) -> tuple[Any, ...]:
+    return evaluator, rows.tobytes(), rows.shape, rows.dtype.str
+
+
+_BALLS, _VALUES = _Kept(), _Kept()
 
 
 def crosses(*limits: float) -> Callable[[Array, Array], Array]:
@@ -169,36 +206,46 @@ class _Program:
     """One step for each distinct subexpression, over lists of the values so far."""
 
     def __init__(
-        self, symbols: Sequence[sp.Symbol], exprs: Sequence[Any], named: Mapping[sp.Symbol, Any]
+        self,
+        symbols: Sequence[sp.Symbol],
+        exprs: Sequence[Any],
+        named: Mapping[sp.Symbol, Any],
+        cases: Sequence[Case],
     ) -> None:
+        self._scope = Scope(named, cases)
         self._steps: list[tuple[_Step, tuple[int, ...]]] = []
         self._places: dict[Any, int] = {s: k for k, s in enumerate(symbols)}
         self._width = len(symbols)
-        for name, value in named.items():
-            self._places[name] = self._place(sp.sympify(value, strict=True))
-        self._results = [self._place(e) for e in exprs]
+        self.results: list[int] = []
+        for case in cases:
+            self._scope.enter(case)
+            for name, value in (*case.items(), *named.items()):
+                if (key := self._scope.key(name)) not in self._places:
+                    self._places[key] = self._place(sp.sympify(value, strict=True))
+            self.results += [self._place(e) for e in exprs]
 
     def run(self, rows: Array) -> list[Any]:
         columns = np.asarray(rows, WIDE).T
         known: list[Any] = [(x + WIDE(0), WIDE(0)) for x in columns]  # without a negative zero
         for step, operands in self._steps:
             known.append(step.ball(*[known[k] for k in operands]))
-        return [known[k] for k in self._results]
+        return [known[k] for k in self.results]
 
     def middles(self, rows: Array) -> list[Any]:
         """The midpoints that :meth:`run` finds, without their radii."""
         known: list[Any] = [x + WIDE(0) for x in np.asarray(rows, WIDE).T]
         for step, operands in self._steps:
             known.append(step.middle(*[known[k] for k in operands]))
-        return [known[k] for k in self._results]
+        return [known[k] for k in self.results]
 
     def _place(self, e: Any) -> int:
-        if e not in self._places:
+        key = self._scope.key(e)
+        if key not in self._places:
             step, operands = self._step(e)
             places = tuple(map(self._place, operands))
             self._steps.append((step, places))
-            self._places[e] = self._width + len(self._steps) - 1
-        return self._places[e]
+            self._places[key] = self._width + len(self._steps) - 1
+        return self._places[key]
 
     def _step(self, e: Any) -> tuple[_Step, Sequence[Any]]:
         if isinstance(e, Constant):
@@ -393,7 +440,10 @@ def _resolvent(*point: Any) -> Any:
         value = cubic(u, *point)
         low, high = np.where(value >= 0, u, low), np.where(value >= 0, high, u)
         after = u - value / slope(u, *point)
-        u = np.where((after >= low) & (after <= high), after, (low + high) / 2)
+        after = np.where((after >= low) & (after <= high), after, (low + high) / 2)
+        still, u = (after == u) | np.isnan(u), after
+        if still.all():
+            break
     return u
 
 

@@ -7,8 +7,8 @@ in Arb.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property, lru_cache
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -17,11 +17,12 @@ from flint import arb
 from numpy.typing import NDArray
 
 from closedform.algebra.balls import Undetermined, to_float
+from closedform.check.cases import Margins, flags_of, in_cases, margins_of
 from closedform.check.rows import WIDE, RowEvaluator, crosses
 from closedform.check.samples import Degrees, Magnitudes, Sample, with_parameters
 from closedform.lower import lowered
 from closedform.mechanics.lengths import numbers_of_tool
-from closedform.model.cached import KEPT, cached
+from closedform.model.cached import cached
 from closedform.model.derivation import Derivation
 from closedform.model.expressions import free_symbols, substitute
 from closedform.model.functions import Bound, Determined, Function, Let, Match, Require, Vanishes
@@ -52,6 +53,8 @@ class Values:
         symbols = symbols_of(derivation, function)
         self.exact = RowEvaluator(symbols, self.exprs)
         self._symbols, self._function = symbols, function
+        self.given = len(function.symbols)
+        """The number of inputs; what follows in a row is the parameters."""
         self.scales = Magnitudes(symbols, self.exprs)
         target = {str(s) for s in function.symbols} == set(derivation.task)
         self.beside_pose = len(function.inputs) > 1 or target
@@ -68,8 +71,16 @@ class Values:
         self.operations = sum(program.operations().values())
         self.scaled = function.has_status and program.degrees is not None
         """Whether lengths are divided by the largest one, so that their powers do not overflow."""
-        self._bounds = [_margins(function, symbols, s) for s in signs]
-        self._flags = [_margins(function, symbols, s, Vanishes) for s in signs]
+        bounds, flags = margins_of(function, Bound), margins_of(function, Vanishes)
+        self._bounds = [in_cases(function, symbols, bounds, [s]) for s in signs]
+        self._flags = [in_cases(function, symbols, flags, [s]) for s in signs]
+
+    def prepare(self, samples: Sequence[Sample]) -> None:
+        """Evaluate the values, bounds and flags at all of these points together."""
+        rows = [sample.rows for sample in samples]
+        for evaluator in (self.exact, *self._bounds, *self._flags):
+            if evaluator.exprs:
+                evaluator.prepare(rows)
 
     def amplified(self, rows: Array) -> Array:
         """How far roundings may move each value, in the relative error of one rounding.
@@ -84,13 +95,13 @@ class Values:
         """The outputs of each case in the names of the function, step by step."""
         function = self._function
         outputs = [e for a in function.outputs for e in a.entries]
-        return [_in_case(function, self._symbols, s, outputs) for _, s in function.cases()]
+        return [in_cases(function, self._symbols, outputs, [s]) for _, s in function.cases()]
 
     @cached_property
     def named(self) -> Callable[[Array, type], Array]:
         """The natural scales with all lengths, also those that cancel in the explicit form."""
         function = self._function
-        flags = dict.fromkeys(_flags_of(function), sp.false)
+        flags = dict.fromkeys(flags_of(function), sp.false)
         outputs = [substitute(e, flags) for a in function.outputs for e in a.entries]
         cases = [
             Magnitudes(self._symbols, outputs, names=_names(function, signs))
@@ -122,15 +133,11 @@ class Values:
         return _flagged(self._flags, rows, limit)
 
 
-def _flags_of(function: Function) -> list[sp.Symbol]:
-    return [s.symbol for s in function.body if isinstance(s, Vanishes)]
-
-
 def _names(
     function: Function, signs: Mapping[sp.Symbol, int]
 ) -> dict[sp.Symbol, sp.Expr | sp.Basic]:
     """The names of a function in one of its cases, each with its value; flags are false."""
-    flags = dict.fromkeys(_flags_of(function), sp.false)
+    flags = dict.fromkeys(flags_of(function), sp.false)
     made = [s for s in function.body if isinstance(s, Let | Bound)]
     return {
         **{sign: sp.Integer(value) for sign, value in signs.items()},
@@ -144,8 +151,9 @@ class Condition:
     def __init__(self, derivation: Derivation, function: Function):
         symbols = symbols_of(derivation, function)
         (entry,) = (e for a in function.outputs for e in a.entries)
-        self._bounds = _margins(function, symbols, {}, (Bound, Match))
-        self._flags = [_margins(function, symbols, {}, Vanishes)]
+        bounds, flags = margins_of(function, (Bound, Match)), margins_of(function, Vanishes)
+        self._bounds = in_cases(function, symbols, bounds, [{}])
+        self._flags = [in_cases(function, symbols, flags, [{}])]
         self._holds = RowEvaluator(symbols, [sp.Piecewise((1, entry), (0, True))])
 
     def __call__(self, rows: Array, slack: float) -> tuple[Array, Array]:
@@ -185,7 +193,8 @@ class Solutions:
             forward = derivation[inverse.images]
             modes = [mode for _, mode in forward.cases()]
             maps = [forward.values(mode) for mode in modes]
-            self._reaches = [_margins(forward, posture, mode) for mode in modes]
+            bounds = margins_of(forward, Bound)
+            self._reaches = [in_cases(forward, posture, bounds, [mode]) for mode in modes]
         self._maps = [RowEvaluator(posture, m) for m in maps]
         slides = {j.symbol for j in derivation.joints if j.kind == "prismatic"}
         self._sliding = np.array([u in slides for u in inverse.unknowns])
@@ -200,10 +209,9 @@ class Solutions:
         ]
         self._in_numbers = max([*_numbers_of_tool(derivation), _numbers_of_size(function)])
         given = (*function.symbols, *parameters)
-        self._bounds = [_margins(function, given, signs) for _, signs in function.cases()]
-        self._matches = [_margins(function, given, signs, Match) for _, signs in function.cases()]
-        outputs = [e for a in function.outputs for e in a.entries]
-        self._answers = [_in_case(function, given, signs, outputs) for _, signs in function.cases()]
+        self._margins = Margins(function, given)
+        self._outputs = [e for a in function.outputs for e in a.entries]
+        self._answers = in_cases(function, given, self._outputs)
         required = [e for s in function.body if isinstance(s, Require) for e in s.values]
         self._required = RowEvaluator(given, function.explicit(required, {})[0])
         factors = next((f for f in derivation.functions if f.name == "singularities"), None)
@@ -211,6 +219,10 @@ class Solutions:
         if factors and self.has_images:
             entries = [e for _, signs in factors.cases() for e in factors.values(signs)]
         self._factors = RowEvaluator(posture, entries)
+
+    def prepare(self, samples: Sequence[Sample]) -> None:
+        """Evaluate the bounds at all of these targets together."""
+        self._margins.prepare([sample.rows for sample in samples])
 
     def images(self, sample: Sample) -> tuple[Array, Array]:
         """The images of postures in each assembly mode that they have, and the postures.
@@ -324,10 +336,7 @@ class Solutions:
         must match does not count if it misses by no more than ``matched``.
         """
         rows = with_parameters(given, parameters)
-        least, missed = (
-            np.stack([_least(b, rows, *limits, -matched) for b in evaluators], axis=1)
-            for evaluators in (self._bounds, self._matches)
-        )
+        least, missed = self._margins.least(rows, *limits, -matched)
         return np.where(missed >= -matched, least, np.fmin(least, missed))
 
     def answers(self, given: Array, parameters: Sequence[float]) -> tuple[Array, Array]:
@@ -335,10 +344,9 @@ class Solutions:
 
         The branches are the second axis.  All flags are taken as false.
         """
-        rows = with_parameters(given, parameters)
-        balls = [answer.balls(rows) for answer in self._answers]
-        middle = np.stack([m for m, _ in balls], axis=1)
-        return middle, np.stack([r.max(axis=-1) for _, r in balls], axis=1)
+        middle, radius = self._answers.balls(with_parameters(given, parameters))
+        shape = (len(given), -1, len(self._outputs))
+        return middle.reshape(shape), radius.reshape(shape).max(axis=-1)
 
     def violation(self, given: NDArray[Any], parameters: Sequence[float]) -> float:
         """How far an input violates its requirement, such as that a matrix is a rotation."""
@@ -453,58 +461,6 @@ def _flagged(flags_of_cases: Sequence[RowEvaluator], rows: Array, limit: float) 
             alone = flag.settled(rows[unsettled], crosses(limit), defined=False)
             found[unsettled] |= alone[:, 0] < limit
     return found
-
-
-def _margins(
-    function: Function,
-    symbols: Sequence[sp.Symbol],
-    signs: Mapping[sp.Symbol, int],
-    kind: type | tuple[type, ...] = Bound,
-) -> RowEvaluator:
-    """The bounds of a branch (or the values of flags and matches) over their scales.
-
-    For a match this is minus its size, which is never positive.
-    """
-    margins = []
-    for statement in function.body:
-        if isinstance(statement, kind) and isinstance(statement, (Bound, Match, Vanishes)):
-            value = -sp.Abs(statement.value) if isinstance(statement, Match) else statement.value
-            margin = value / statement.scale
-            if isinstance(statement, Vanishes) and statement.squares:
-                margin = sp.sqrt(margin)
-            margins.append(margin)
-    return _in_case(function, symbols, signs, margins)
-
-
-def _in_case(
-    function: Function,
-    symbols: Sequence[sp.Symbol],
-    signs: Mapping[sp.Symbol, int],
-    exprs: Iterable[sp.Expr],
-) -> RowEvaluator:
-    """Expressions in the names of a function, for one of its cases.
-
-    All flags are taken as false, and values that are chosen only where one holds are left out.
-    """
-    flags = dict.fromkeys(_flags_of(function), sp.false)
-    named = _names(function, signs)
-    chosen = tuple(substitute(e, flags) for e in exprs)
-    used: set[sp.Basic] = set()
-    pending = {s for e in chosen for s in e.free_symbols}
-    while pending:
-        used |= pending
-        pending = {s for n in pending & named.keys() for s in named[n].free_symbols} - used
-    return _shared(tuple(symbols), chosen, tuple((n, named[n]) for n in named if n in used))
-
-
-@lru_cache(KEPT)
-def _shared(
-    symbols: tuple[sp.Symbol, ...],
-    exprs: tuple[sp.Expr, ...],
-    named: tuple[tuple[sp.Symbol, sp.Basic], ...],
-) -> RowEvaluator:
-    """One evaluator for all functions with the same expressions, which keeps the Arb results."""
-    return RowEvaluator(symbols, exprs, dict(named))
 
 
 def symbols_of(derivation: Derivation, function: Function) -> tuple[sp.Symbol, ...]:

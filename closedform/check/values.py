@@ -39,8 +39,10 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     """Compare values, in ulps of their natural scale."""
     finding = backend.finding(derivation.name, function.name)
     values = values_of(derivation, function)
-    for sample in joint_samples(derivation, function):
-        sample = rounded(thinned(sample, len(values.exprs)), backend)
+    drawn = joint_samples(derivation, function)
+    samples = [rounded(thinned(sample, len(values.exprs)), backend) for sample in drawn]
+    values.prepare(samples)
+    for sample in samples:
         if len(sample.values):
             outputs = called(backend, function, sample)
             _compare(finding, values, backend, sample, outputs[: len(function.outputs)])
@@ -66,8 +68,9 @@ def _compare(
     for row, k in np.argwhere((exists < 0) & ~np.isnan(computed)):
         finding.fail(f"a value out of bounds, entry {k} at {rows[row].tolist()}")
     defined = (exists > 0).any(axis=1)
+    balls = [x[defined] for x in values.exact.balls(rows)]
     rows, computed, exists = rows[defined], computed[defined], exists[defined]
-    errors = _Errors(values, backend, rows, computed, [abs(p) for p in sample.parameters])
+    errors = _Errors(values, backend, rows, computed, balls)
     bounds = errors.bounds()
     bounds[exists <= 0] = 0.0
     finding.compared += int((exists > 0).sum())
@@ -89,16 +92,17 @@ class _Errors:
         backend: Backend,
         rows: NDArray[np.float64],
         computed: NDArray[np.float64],
-        parameters: Sequence[float],
+        balls: Sequence[NDArray[Any]],
     ):
         self.values, self.backend, self.rows, self.computed = values, backend, rows, computed
-        self.lengths = [*parameters, *map(abs, values.lengths)]
+        self.middle, self.radius = balls
+        parameters = abs(rows[:1, values.given :])
+        self.lengths = [*map(float, parameters.flat), *map(abs, values.lengths)]
         self.scales = values.scales(rows, backend.dtype)
         powers = values.powers(rows)
         self.powers = np.where(values.beside_pose & (values.degrees > 1), powers, 0.0)
         # if lengths are divided by the largest one, what is smaller than this is lost
         self.least = np.finfo(backend.dtype).tiny * np.maximum(powers, 1.0)
-        self.middle, self.radius = values.exact.balls(rows)
         # an angle just above -pi may be rounded to -pi, which is returned as pi, and one that is
         # just below it before it is reduced may be rounded to one above it
         ahead, behind = computed > CUT, computed < -CUT

@@ -38,7 +38,7 @@ def factored(value: sp.Expr) -> sp.Expr:
 
 
 def _collect(value: sp.Expr, found: set[sp.Expr]) -> bool:
-    """Whether a value is a polynomial in symbols, sines and cosines, which are ``found``."""
+    """Whether it is a polynomial in symbols, sines, cosines and roots of numbers: ``found``."""
     if value.is_Rational:
         return True
     if value.is_Add or value.is_Mul:
@@ -47,7 +47,8 @@ def _collect(value: sp.Expr, found: set[sp.Expr]) -> bool:
         return _collect(value.base, found)
     if value in found:
         return True
-    if value.is_Symbol or (isinstance(value, sp.sin | sp.cos) and value.expand() == value):
+    root = value.is_Pow and value.base.is_Integer and value.exp == sp.Rational(1, 2)
+    if root or value.is_Symbol or (isinstance(value, sp.sin | sp.cos) and value.expand() == value):
         found.add(value)
         return True
     return False

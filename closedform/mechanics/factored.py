@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
+from closedform.algebra.factoring import factored
 from closedform.algebra.normal_form import determinant
 from closedform.algebra.operations import operations
 from closedform.mechanics.frames import merge_angles
@@ -12,7 +13,7 @@ from closedform.mechanics.frames import merge_angles
 def factored_determinant(J: sp.Matrix) -> sp.Expr:
     """A determinant as a polynomial in sines and cosines, reduced on their circles and factored."""
     reduced = determinant(J)
-    found = min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=operations)
+    found = min(map(factored, (reduced, merge_angles(reduced))), key=operations)
     return _in_decimals(found)
 
 

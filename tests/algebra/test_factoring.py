@@ -23,7 +23,9 @@ a, b, c, t = sp.symbols("a b c t", real=True)
         1 - sp.sin(a * (b + c)) ** 2,
         sp.S(7),
         -a,
-        # what is not a polynomial of symbols, sines and cosines
+        sp.sqrt(2) * a**2 / 3 - sp.sqrt(3) * a * b + sp.sqrt(6) * b**2,
+        sp.expand((sp.sqrt(2) * a - b) * (sp.sqrt(6) * sp.sin(t) / 4 + sp.Rational(1, 2))),
+        # what is not a polynomial of symbols, sines, cosines and roots of numbers
         a / c - b / c,
         sp.sqrt(2) * a - sp.sqrt(2) * b,
         sp.pi * a - sp.pi * b,

@@ -25,6 +25,7 @@ from closedform.mechanics.frames import (
     exponential,
     frame_along,
     homogeneous,
+    plane_angle,
     reduce_circle,
     rotation,
     simplest,
@@ -146,7 +147,7 @@ class Serial:
         home = self.pose[:3, :3].subs(dict.fromkeys(self.joints, 0))
         return sum(
             (w * joint for w, joint in zip(turns, self.joints, strict=True)),
-            sp.atan2(home[1, 0], home[0, 0]),
+            plane_angle(home[0, 0], home[1, 0]),
         )
 
     def export(

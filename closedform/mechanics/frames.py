@@ -11,6 +11,7 @@ from itertools import combinations
 
 import sympy as sp
 
+from closedform.algebra.factoring import factored
 from closedform.algebra.normal_form import normal
 from closedform.algebra.operations import operations
 from closedform.model.functions import Program, real
@@ -150,7 +151,18 @@ def simplest(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:
     if isinstance(value, sp.MatrixBase):
         return value.applyfunc(simplest)
     reduced = merge_angles(normal(value))
-    return min((value, reduced, sp.factor(reduced)), key=operations)
+    return min((value, reduced, factored(reduced)), key=operations)
+
+
+def plane_angle(x: sp.Expr, y: sp.Expr) -> sp.Expr:
+    """The angle of a unit vector of the plane: a sum of angles, if these turn the vector."""
+    angles = sorted(x.free_symbols | y.free_symbols, key=str)
+    turns = [normal(x * y.diff(angle) - y * x.diff(angle)) for angle in angles]
+    if not all(turn.is_Integer for turn in turns):
+        return sp.atan2(y, x)
+    home = dict.fromkeys(angles, sp.S.Zero)
+    found = sp.atan2(y.xreplace(home), x.xreplace(home))
+    return sum((t * angle for t, angle in zip(turns, angles, strict=True)), found)
 
 
 def frame_along(w: sp.Matrix) -> sp.Matrix:
@@ -196,7 +208,7 @@ def twist_matrix(twist: sp.Matrix) -> sp.Matrix:
 def determinant(J: sp.Matrix) -> sp.Expr:
     """The determinant of a Jacobian, factored, with the angles of parallel axes added."""
     reduced = normal(J.det(method="berkowitz"))
-    return min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=operations)
+    return min(map(factored, (reduced, merge_angles(reduced))), key=operations)
 
 
 def merge_angles(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:

@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 from sympy import cos, sin, sqrt
 
-from closedform.mechanics.frames import merge_angles
+from closedform.mechanics.frames import merge_angles, plane_angle
 
 a, b, c, x, y = sp.symbols("a b c x y", real=True)
 MERGED = {
@@ -50,3 +50,13 @@ def test_values_stay_the_same(seed: int) -> None:
     expr = sum(choose.choice((1, -1)) * sp.Mul(*choose.sample(factors, 4)) for _ in range(6))
     at = {a: 0.3, b: -1.1, x: 2.7}
     assert float(merge_angles(expr).subs(at)) == pytest.approx(float(expr.subs(at)), abs=1e-12)
+
+
+@pytest.mark.parametrize("angle", [a, -a, a - b, sp.pi / 4 - a, sp.pi, 2 * a])
+def test_an_angle_is_read_from_its_sine_and_cosine(angle: sp.Expr) -> None:
+    found = plane_angle(sp.expand_trig(cos(angle)), sp.expand_trig(sin(angle)))
+    assert sp.expand(found - angle) == 0
+
+
+def test_other_directions_keep_their_arctangent() -> None:
+    assert plane_angle(x, sqrt(1 - x**2)).has(sp.atan2)

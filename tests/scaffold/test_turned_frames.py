@@ -6,14 +6,18 @@ import numpy as np
 import pytest
 import sympy as sp
 from arms import misses
-from chains import printed
+from chains import printed, solved
 from places import ROOT
 from test_urdf import arm_of, forward
 
+from closedform.mechanics.arm import from_dh
+from closedform.model.derivation import Derivation, Paper
 from closedform.model.functions import real
 from closedform.pipeline import scripts
 from closedform.pipeline.trial import fault
+from closedform.proof.prove import prove
 from closedform.scaffold.chains.maker import heading
+from closedform.scaffold.chains.propose import propose
 from closedform.scaffold.chains.recognise import recognised
 from closedform.scaffold.inputs.urdf import read_urdf
 from closedform.scaffold.new import InverseSearch, new
@@ -129,3 +133,16 @@ def test_directions_between_those_of_short_roots_are_parts_of_a_turn(part: int) 
     """Without it a humanoid's shoulder, which is turned by 75 degrees, took two minutes."""
     angle = part * sp.pi / 12
     assert heading((sp.cos(angle), sp.sin(angle))) == angle
+
+
+@pytest.mark.parametrize(("base", "tool"), [(0, "0.3"), (sp.pi, "0.3"), (sp.pi, "-2")])
+def test_a_level_tool_may_be_turned_by_any_angle(base: sp.Expr, tool: str) -> None:
+    """A SCARA that stands or hangs: the yaw at home was an arctangent that no lemma reads."""
+    d = Derivation("scara", "Scara", Paper("toy", "Toys", ("A.",)), "A SCARA.")
+    turned = d.parameter("a", value=sp.Rational(tool), unit="rad", meaning="a", nonnegative=False)
+    t1, t2, t4 = map(d.joint, ("t1", "t2", "t4"))
+    d3 = d.joint("d3", "prismatic")
+    rows = [(0, base, 1, 0), (2, 0, 0, t1), (1, 0, 0, t2), (0, 0, d3, 0), (0, 0, 0, t4)]
+    serial = from_dh(d, [*rows, (0, 0, 0, turned)])
+    solved(d, serial, propose(serial).source)
+    assert prove(d).inverses[0].branches == 2

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from closedform.mechanics.frames import rotation
+from closedform.mechanics.frames import plane_angle, rotation
 from closedform.scaffold.chains.chainlinks import Single, Singles, parallel
 from closedform.scaffold.chains.ellipse import Ellipse, folds
 from closedform.scaffold.chains.maker import (
@@ -127,7 +127,7 @@ class SubproblemMaker(WristMaker):
             "Among four joints with the task x, y, z and yaw the last must turn.",
         )
         home = self.arm.pose[:3, :3].subs(dict.fromkeys(self.arm.joints, 0))
-        level = rotation("z", -sp.atan2(home[1, 0], home[0, 0])) * home
+        level = rotation("z", -plane_angle(home[0, 0], home[1, 0])) * home
         beside = (level * arm.tool[:3, :3].T * arm.tool[:3, 3]).applyfunc(sp.simplify)
         self.add("x, y, z, yaw = ik.x")
         x, y, z, yaw = map(sp.Symbol, ("x", "y", "z", "yaw"))

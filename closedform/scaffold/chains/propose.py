@@ -126,11 +126,16 @@ NO_THREE = NoChainError(
 
 
 def _has_three(whole: Singles) -> bool:
-    """Whether three neighbouring axes meet in a point or are parallel, or a joint slides."""
-    joints = whole.joints
-    return any(j.slides for j in joints) or any(
-        whole.met(k, 3) is not None or (parallel(joints[k]) and parallel(joints[k + 1]))
-        for k in range(len(joints) - 2)
+    """Whether three neighbouring axes meet in a point or are parallel; slides may change places."""
+    if any(joint.slides for joint in whole.joints):
+        return any(
+            view.met(3, 3) is not None
+            for order in whole.orders()
+            for view in (order, order.reversed())
+        )
+    return any(
+        whole.met(k, 3) is not None or (parallel(whole.joints[k]) and parallel(whole.joints[k + 1]))
+        for k in range(len(whole.joints) - 2)
     )
 
 

@@ -226,3 +226,24 @@ def test_no_posture_near_right_angles_is_lost(name: str, tmp_path: Path) -> None
     assert np.isin(status, (OK, SINGULAR)).any(axis=1).all()
     away, turned = misses(reached, T, status)
     assert away < 1e-12 * sum(float(a + d) for a, _, d in rows) and turned < 1e-12
+
+
+def test_oblique_axes_with_the_same_angle_as_others(tmp_path: Path) -> None:
+    """With equal twists the last axis can be parallel to the three: nearly all was lost there."""
+    al, be = sp.symbols("al be", real=True)
+    rows = [(A, pi / 3, D), (E, 0, 0), (F, 0, 0), (B, al, A), (C, be, 1), (0, 0, D)]
+    d, serial = arm(rows, al="0.8", be="1.1")
+    solved(d, serial, propose(serial).source)
+    assert prove(d).inverses[0].branches == 8
+    serial.export(d)
+    module = printed(d, tmp_path)
+    rng = np.random.default_rng(7)
+    for angles, at in (((1.0, 1.0), np.pi), ((0.9, np.pi - 0.9), 0), ((-1.2, 1.2), 0)):
+        q = rng.uniform(-np.pi, np.pi, (800, 6))
+        q[:, 4] = at + rng.choice([-1, 1], 800) * np.repeat([1e-3, 1e-4, 1e-5, 1e-6], 200)
+        T = module.pose(q, angles)
+        answers, status = module.ik(T, angles)
+        away, turned = misses(module.pose(answers, angles), T, status)
+        assert away < 1e-12 * 5 and turned < 1e-12
+        gaps = np.abs(np.exp(1j * answers) - np.exp(1j * q[:, None])).max(axis=-1)
+        assert np.nanmin(np.where(np.isin(status, (OK, SINGULAR)), gaps, 9), axis=1).max() < 1e-4

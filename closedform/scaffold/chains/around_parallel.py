@@ -18,7 +18,7 @@ from functools import cached_property
 
 import sympy as sp
 
-from closedform.mechanics.frames import rotation
+from closedform.mechanics.frames import plane_angle, rotation
 from closedform.scaffold.chains.chainlinks import Single, Singles, parallel
 from closedform.scaffold.chains.maker import Z, followed, heading, norm, point, times, turning
 from closedform.scaffold.chains.proposal import NoChainError
@@ -424,7 +424,7 @@ class AroundParallelMaker(SubproblemMaker):
         toward = beside.toward
         sense = next((k for k in (1, -1) if sp.simplify(toward[2] - k * w[2]) == 0), 0)
         if not sense:
-            return ""
+            return self._perhaps_parallel(beside, w)
         size = sp.simplify(1 - w[2] ** 2)
         a, b = (sense * sp.simplify(e) / size for e in turning(w, toward))
         off_axis, at = sp.Symbol("off_axis"), [sp.Symbol(f"pair_at[{i}]") for i in (0, 1)]
@@ -441,6 +441,44 @@ class AroundParallelMaker(SubproblemMaker):
             cosine = sp.Symbol("below_one") * (2 - sp.Symbol("below_one"))
         lines.append(f"    return {source((b * at[1] - a * at[0]) ** 2 - cosine)}")
         self.lines += lines
+        return ", missed_by"
+
+    def _perhaps_parallel(self, beside: Beside, w: sp.Matrix) -> str:
+        """The same if the axes are parallel for some values of the angles of the arm alone.
+
+        The cosine of joint a, counted from there, is known from that of the angle between the axes
+        and those of the angles that both have with the axis of joint a.  What both of them are
+        less than one, or more than minus one, is zero exactly where the angles are the same.
+        """
+        toward = beside.toward
+        across = [v[1] if v[0] == 0 else v[0] if v[1] == 0 else None for v in (toward, w)]
+        if None in across or not sp.simplify(toward[2] ** 2 - w[2] ** 2).free_symbols:
+            return ""
+        one, other = (plane_angle(v[2], side) for v, side in zip((toward, w), across, strict=True))
+        if one.has(sp.atan2) or other.has(sp.atan2):
+            return ""
+        size = sp.Mul(*across)
+        a, b = (sp.simplify(e / size) for e in turning(w, toward))
+        at = [sp.Symbol(f"pair_at[{i}]") for i in (0, 1)]
+        self.lines += [
+            f"{name} = ik.let('{name}', {source(value)})"
+            for name, value in (
+                ("less", 1 - sp.cos(one - other)),
+                ("more", 1 - sp.cos(one + other)),
+                ("less_behind", 1 + sp.cos(one + other)),
+                ("more_behind", 1 + sp.cos(one - other)),
+            )
+        ]
+        self.lines += [
+            "def missed_by(pair):",
+            "    pair_at = centre + along*pair.c + aside*pair.s",
+            f"    aimed = {beside.axis('pair')}",
+            "    below_one = (aimed[0]**2 + aimed[1]**2)/(1 + Abs(aimed[2]))",
+            "    ahead = (below_one - less)*(more - below_one)",
+            "    behind = (below_one - less_behind)*(more_behind - below_one)",
+            "    square = Piecewise((ahead, aimed[2] > 0), (behind, True))",
+            f"    return {source((b * at[1] - a * at[0]) ** 2)} - square/({source(size**2)})",
+        ]
         return ", missed_by"
 
 

@@ -42,7 +42,9 @@ LONGEST = 2000
 JOINTS = 16
 ROWS = 32
 DIGITS = re.compile(r"[-+0-9./eE]+")
-IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Max", "Rational", "atan", "atan2")
+IMPORTED = (
+    "Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Max", "Piecewise", "Rational", "atan", "atan2",
+)  # fmt: skip
 CHAIN = (
     "Carrying", "Reaching", "arm_angle", "rotation", "sign_of", "turned", "within_links",
     "within_tilt",
@@ -72,6 +74,7 @@ LINES = {
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
     "play", "radius_to_target", "radius_to_end", "lever", "past", "seen_across",
     "missed_by", "pair_at", "aimed", "off_axis", "below_one", "carried", "squares",
+    "less", "more", "less_behind", "more_behind", "behind",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

@@ -79,9 +79,15 @@ def singular_everywhere(
     *most, last = map(str, found)
     together = f"what {', '.join(most)} and {last} do to the tool is not independent"
     because = together if most else f"{last} does not move the tool"
+    held = (
+        f".  If it is built so, like an arm on a lift that its links can replace, hold one of "
+        f"these joints: in a DH table, a line such as '# {found[0]} = 0.1 m: held', with rad for a "
+        f"joint that turns, makes it a parameter; of a URDF file take the part after it, with "
+        f"--base"
+    )
     return SingularEverywhereError(
         f"{name}: the arm is singular everywhere: its Jacobian has rank {rank}, not "
         f"{len(joints)}, at every posture, because {because}.  Check the convention of the table "
         f"(standard, unless it is read with modified=True or --modified), and whether an axis is "
-        f"given twice or too many axes are parallel or meet in a point"
+        f"given twice or too many axes are parallel or meet in a point{held if most else ''}"
     )

@@ -85,6 +85,16 @@ def test_a_degree_is_named() -> None:
     assert e.value.degree == 16 and "ssik" in e.value.needed
 
 
+def test_an_arm_with_a_slide_is_told_of_the_axes_that_it_needs() -> None:
+    """The first reason was that of a structure it does not have: that two axes are parallel."""
+    rows = [
+        (0, -pi / 2, None, 0), (ROOM, pi / 2, 1), (2, 0, 0), (1, pi / 2, 0), (0, -pi / 2, ROOM),
+        (0, 0, 1),
+    ]  # fmt: skip
+    with pytest.raises(NoChainError, match="because no three neighbouring axes"):
+        propose(arm(rows, "d1 t2 t3 t4 t5 t6")[1])
+
+
 def test_seven_joints_without_a_chain_have_a_degree_too() -> None:
     """Those of a Baxter: with the joint given that is tried first, and with one that is chosen."""
     rows = [

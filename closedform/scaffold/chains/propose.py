@@ -254,6 +254,10 @@ def _fewer_than_six(arm: Serial, whole: Singles) -> Iterator[_Candidate]:
         maker = SubproblemMaker(arm)
         write = partial(maker.solved_in_plane, _met(whole, ((3, 2),)))
         yield _Candidate("three parallel joints", maker, write)
+        for view, seen in ((whole, ""), (whole.reversed(), ", from the tool")):
+            six = SixMaker(arm)
+            write = partial(six.parallel_first_of_five, view)
+            yield _Candidate(f"three parallel axes at the end{seen}", six, write)
 
 
 def _met(whole: Singles, pairs: Sequence[tuple[int, int]]) -> Singles:

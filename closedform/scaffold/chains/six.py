@@ -108,7 +108,7 @@ class SixMaker(AroundParallelMaker):
         q, pair = self._seen_in_plane(one, beside, links)
         self.add(f"left1 = ik.matrix('left1', {left.format(pair)})")
         M = self.without_tool(arm.tool[:3, :3], "left1")
-        self._reach(goal, q, pair)
+        self._reach(goal, q, f"{pair}.lever")
         self.orientation([lift, five, six], M)
         self.vector("q", f"{q} - turned({self.lifted}) * {source(w)}", "q2")
         u, v = two.shift, three.shift
@@ -151,7 +151,7 @@ class SixMaker(AroundParallelMaker):
             fourth = self._turn(four, sides, self._links(goal))
             self.add(f"R_before = {before.format(fourth)}")
             self.vector("to_end", offset.format("R_before"))
-            self._reach(goal, "p", fourth)
+            self._reach(goal, "p", f"{fourth}.lever")
             self.wrist_about(lift, five, six, M, followed("R_before", four.end))
         else:
             self.add(f"M = ik.matrix('M', {M})")
@@ -170,7 +170,7 @@ class SixMaker(AroundParallelMaker):
             self.vector("p", place.format(sixth), "p3")
             left = followed(f"M * turned({sixth}).T", five.end.T)
             self.add(f"left1 = ik.matrix('left1', {left})")
-            self._reach(goal, "p", sixth)
+            self._reach(goal, "p", f"{sixth}.lever")
             self.orientation([lift, four, five], "left1")
             self.vector("to_end", source(three.shift))
         self.vector("q", f"p - turned({self.lifted}) * to_end")
@@ -178,6 +178,36 @@ class SixMaker(AroundParallelMaker):
         self.two_links([one.turn, two.turn], [u[:2, 0], v[:2, 0]], "q[0]", "q[1]")
         meeting = (five, six) if at_end is not None else (four, five)
         names = [j.number for j in (one, two, three, *meeting)]
+        return "axes {}, {} and {} parallel, {} and {} meet".format(*names)
+
+    def parallel_first_of_five(self, arm: Singles) -> str:
+        """Axes 1, 2 and 3 of five are parallel, and axes 4 and 5 meet: the turns are a wrist."""
+        self._require_parallel(arm, 0)
+        three, four, five = arm.joints[2:]
+        self.require(
+            not parallel(three) and not parallel(four),
+            f"axes {four.number} and {three.number} or {five.number} are parallel",
+            "Besides three parallel axes, the others must have other directions.",
+        )
+        found = arm.met(3, 2)
+        if found is None:
+            raise NoChainError(
+                f"axes {four.number} and {five.number} do not meet",
+                "Beside three parallel axes of five, the other two have to meet.",
+            )
+        one, two, three, four, five = found.joints
+        lift = replace(three, turn=one.turn + two.turn + three.turn)
+        R = self.centre(found)
+        M = self.without_tool(found.tool[:3, :3], times(found.lead[:3, :3].T, R))
+        self.add(f"M = ik.matrix('M', {M})")
+        links, w = (one.shift, two.shift), three.shift
+        goal = TurnGoal([lift, four, five], links, "p", "M[:, 2]", constant=w)
+        self._reach(goal, "p", "ik.size")
+        self.orientation([lift, four, five], "M")
+        self.vector("q", f"p - turned({self.lifted}) * {source(w)}")
+        self.two_links([one.turn, two.turn], [u[:2, 0] for u in links], "q[0]", "q[1]")
+        self.add(f"ik.reached(Matrix([{source(sp.Symbol('q[2]') - one.shift[2] - two.shift[2])}]))")
+        names = [joint.number for joint in found.joints]
         return "axes {}, {} and {} parallel, {} and {} meet".format(*names)
 
     def meeting_middle(self, arm: Singles) -> str:
@@ -325,10 +355,10 @@ class SixMaker(AroundParallelMaker):
         self.add(f"links = LinksAndObliqueWrist({arguments}{more})")
         return "links"
 
-    def _reach(self, goal: TurnGoal, q: str, pair: str) -> None:
+    def _reach(self, goal: TurnGoal, q: str, lever: str) -> None:
         """Keep a wrist within reach of links where it is free or tangent.
 
-        ``q`` and ``pair`` are the names of the point and of the pair before.
+        ``q`` is the name of the point, and ``lever`` that of the turn before.
         """
         if not goal.is_normal:
             entries = point("to_end") if goal.constant is None else goal.constant
@@ -337,7 +367,7 @@ class SixMaker(AroundParallelMaker):
             return
         length, turned = goal.numbers
         lengths = ", ".join(goal.lengths)
-        arguments = f"offset={length}, ahead={turned}, lever={pair}.lever"
+        arguments = f"offset={length}, ahead={turned}, lever={lever}"
         self.add(f"reaching = Reaching(ik, ({q}[0], {q}[1]), ({lengths}), {arguments})")
         self.more = ", reaching=reaching"
 

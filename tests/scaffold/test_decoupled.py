@@ -130,6 +130,7 @@ def test_what_a_slide_is_set_to_is_written_like_the_slide() -> None:
     assert r"$\displaystyle d_{1} = " in text
 
 
+@pytest.mark.filterwarnings("error")
 def test_two_slides_do_not_reach_what_a_singular_wrist_leaves() -> None:
     rows = [GANTRY[0], GANTRY[2], (H, -pi / 2, 1), (1, pi / 2, H), (0, 0, 1)]
     with pytest.raises(NoChainError) as caught:

@@ -93,7 +93,8 @@ class Numeric:
         """The poses of the tool, and the twists (v; omega) of the joints in the base frame."""
         T = np.repeat(self.lead[None, :3], len(q), axis=0)
         twists = np.zeros((len(q), 6, q.shape[1]), complex)
-        cosines, sines = np.cos(q), self.senses * np.sin(q)
+        turns = np.where(self.slides, 0, q)  # a slide may be far away in complex numbers
+        cosines, sines = np.cos(turns), self.senses * np.sin(turns)
         for k, sense in enumerate(self.senses):
             x, y, w, p = (T[:, :, i].copy() for i in range(4))
             if self.slides[k]:

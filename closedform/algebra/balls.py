@@ -24,6 +24,7 @@ import sympy as sp
 from flint import arb, fmpq
 from sympy import Symbol
 
+from closedform.algebra.expressions import square_roots
 from closedform.algebra.resolvent import Resolvent, enclosed
 from closedform.algebra.scope import Case, Scope
 from closedform.model.constant import Constant
@@ -471,12 +472,10 @@ def _tan_turns(q: fmpq) -> arb:
 
 def _power(e: Expr) -> Callable[[arb], arb]:
     """The power with the constant exponent of `e`."""
-    if not (e.exp.is_Rational and e.exp.q in (1, 2)):
-        raise TypeError(f"cannot evaluate the power {e}")
-    n, root, inverted = abs(int(e.exp.p)), e.exp.q == 2, e.exp < 0
+    roots, n, inverted = square_roots(e), abs(int(e.exp.p)), e.exp < 0
 
     def power(x: arb) -> arb:
-        base = _sqrt(x) if root else x
+        base = reduce(lambda y, _: _sqrt(y), range(roots), x)
         return _whole_power(_inverse(base) if inverted else base, n)
 
     return power

@@ -109,6 +109,14 @@ def angle_divisors(problem: Sequence[Expr]) -> dict[Expr, int]:
     return divisors
 
 
+def square_roots(e: Expr) -> int:
+    """How many square roots of its base a power takes; SymPy writes roots of roots as one power."""
+    roots = int(e.exp.q).bit_length() - 1 if e.exp.is_Rational else 0
+    if not e.exp.is_Rational or e.exp.q != 2**roots:
+        raise TypeError(f"cannot evaluate the power {e}")
+    return roots
+
+
 def shortened(e: object, length: int = 200) -> str:
     text = str(e)
     return text if len(text) <= length else f"{text[:length]}... ({len(text)} characters)"

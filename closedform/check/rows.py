@@ -17,6 +17,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from closedform.algebra.balls import Evaluator, Undetermined, to_float
+from closedform.algebra.expressions import square_roots
 from closedform.algebra.resolvent import Resolvent, cubic, slope
 from closedform.algebra.scope import Case, Scope
 from closedform.model.constant import Constant
@@ -323,17 +324,16 @@ def _root(a: Ball) -> Ball:
 
 
 def _power(e: Any) -> _Step:
-    """The power with the constant exponent of `e`."""
-    if not (e.exp.is_Rational and e.exp.q in (1, 2)):
-        raise TypeError(f"cannot evaluate the power {e}")
-    times, root, inverted = abs(int(e.exp.p)), e.exp.q == 2, e.exp < 0
+    """The power with the constant exponent of `e`; roots of roots are one power in SymPy."""
+    roots = square_roots(e)
+    times, inverted = abs(int(e.exp.p)), e.exp < 0
 
     def middle(x: Any) -> Any:
-        base = np.sqrt(x) if root else x
+        base = reduce(lambda y, _: np.sqrt(y), range(roots), x)
         return reduce(np.multiply, [1 / base if inverted else base] * times)
 
     def ball(a: Ball) -> Ball:
-        base = _root(a) if root else a
+        base = reduce(lambda b, _: _root(b), range(roots), a)
         if inverted:
             base = _reciprocal(base)
         return reduce(_times, [base] * times)

@@ -13,6 +13,7 @@ from functools import cache, reduce
 
 import sympy as sp
 
+from closedform.algebra.expressions import square_roots
 from closedform.algebra.resolvent import Resolvent
 from closedform.lower.graph import Graph, Node
 from closedform.lower.resolvent import root_between
@@ -136,14 +137,16 @@ class Builder:
 
     def _power(self, expr: sp.Pow) -> Node:
         base, exponent = expr.args
-        if not (exponent.is_Rational and exponent.q in (1, 2)):
-            raise TypeError(f"no lowering for the power {expr}")
+        roots = square_roots(expr)
         if exponent.is_negative:
             return self.graph.div(self.graph.const(1), self(sp.Pow(base, -exponent)))
-        whole, half = divmod(exponent.p, exponent.q) if exponent.q == 2 else (exponent.p, 0)
-        factors = [self(base)] * whole
-        if half:
-            factors.append(self.graph.node("sqrt", self(base)))
+        whole, left = divmod(exponent.p, exponent.q)
+        root = self(base)
+        factors = [root] * whole
+        for k in reversed(range(roots)):
+            root = self.graph.node("sqrt", root)
+            if left >> k & 1:
+                factors.append(root)
         return self.graph.product(factors)
 
     def _principal_value(self, sine: sp.Expr, cosine: sp.Expr) -> Node | None:

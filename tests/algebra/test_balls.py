@@ -20,6 +20,7 @@ EXPRESSIONS = {
     "inverse square": 1 / (x * y) ** 2,
     "root": sp.sqrt(x**2 + y**2 - z),
     "inverse root": (x - y) ** sp.Rational(-3, 2),
+    "root of a root": sp.Abs(x - y) ** sp.Rational(-3, 4) + sp.sqrt(sp.sqrt(sp.Abs(z))),
     "circle": sp.cos(x + y) ** 2 + sp.sin(x + y) ** 2,
     "turns": sp.sin(x) * sp.cos(y - sp.pi / 3) + sp.tan(z),
     "reciprocals": sp.sec(x) + sp.csc(y) + sp.cot(z),

@@ -229,6 +229,18 @@ def _carry(m: Linkage, p: Program, step: Solved, points: dict[str, sp.Matrix]) -
     """Add the points of both bodies of a dyad, those that are used later under names."""
     before = set(points)
     m.carry(step, points)
+    _name_new(p, before, points)
+
+
+def _carry_last(m: Linkage, p: Program, step: Solved, points: dict[str, sp.Matrix]) -> None:
+    """Add the points of the body that is the hand, and of the rod that turns it."""
+    before = set(points)
+    m.carry_body(m.follower, m.pivot(m.follower), step.pin, points)
+    m.carry_body(step.dyad.bodies[1], step.near[1], step.pin, points)
+    _name_new(p, before, points)
+
+
+def _name_new(p: Program, before: set[str], points: dict[str, sp.Matrix]) -> None:
     for point in [x for x in points if x not in before]:
         points[point] = named(p, f"p{point}", points[point])
 
@@ -239,6 +251,7 @@ def _again(m: Linkage, found: Posture) -> Posture:
     if m.follower:
         step, points = m.solved[-1], found.points
         points[step.pin] = named(v, f"p{step.pin}", points[step.pin])
+        _carry_last(m, v, step, points)
         span = points[step.pin] - points[step.near[1]]
         found.spans.append((points[step.pin] - points[step.near[0]], span))
     else:

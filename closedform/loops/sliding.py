@@ -24,6 +24,7 @@ from closedform.mechanics.assur_slides import (
     SlidingOrder,
     Swing,
     groups_for,
+    holder,
     sliding_freedoms,
     sliding_order,
 )
@@ -178,14 +179,7 @@ class SlidingLinkage:
     def groups(self) -> list[Group]:
         """The groups that move the hand, in their order."""
         groups, last = self.order.groups, self.follower
-        if not last:
-            known = {p for body in (GROUND, *self.driven) for p in self.points[body]}
-            for group in groups:
-                holders = [b for b in group.bodies if self.hand_at in self.points[b]]
-                if holders and self.hand_at not in known:
-                    last = holders[0]
-                    break
-                known |= {p for b in group.bodies for p in self.points[b]}
+        last = last or holder(groups, self.points, [GROUND, *self.driven], self.hand_at)
         if not last:
             raise ShapeError(f"{self.d.name}: the hand is on no body that the joints move")
         return groups_for(groups, self.points, self.pairs, last)

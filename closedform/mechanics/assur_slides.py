@@ -249,6 +249,20 @@ def groups_for(
     return kept
 
 
+def holder(
+    groups: Sequence[Group], bodies: Mapping[str, Iterable[str]], known: Iterable[str], point: str
+) -> str:
+    """The body of the first group that holds a point, unless ``known`` bodies do; empty if none."""
+    there = {p for name in known for p in bodies[name]}
+    for group in groups:
+        if point in there:
+            break
+        if holders := [name for name in group.bodies if point in bodies[name]]:
+            return holders[0]
+        there |= {p for name in group.bodies for p in bodies[name]}
+    return ""
+
+
 def _needs(group: Group, slides: Sequence[tuple[str, str]]) -> tuple[set[str], set[str]]:
     """The points and the bodies that have to be known before a group."""
 
@@ -276,6 +290,7 @@ __all__ = [
     "SlidingOrder",
     "Swing",
     "groups_for",
+    "holder",
     "sliding_freedoms",
     "sliding_order",
 ]

@@ -121,9 +121,10 @@ def read_loop(path: Path) -> Loop:
 def _check_names(loop: Loop) -> None:
     """Refuse names that clash, because joints and parameters become variables of the script."""
     if loop.hand not in loop.joints:
+        written = {j.name for j in loop.joints.values() if _is_written(loop, j)}
         for name in TASK:
-            if name in loop.joints or name in loop.symbols | set(loop.parameters):
-                kind = "joint" if name in loop.joints else "parameter"
+            if name in written or name in loop.symbols | set(loop.parameters):
+                kind = "joint" if name in written else "parameter"
                 raise loop.error(
                     f"{name} is a coordinate of the hand; give the {kind} another name"
                 )
@@ -200,7 +201,6 @@ def _read_joints(loop: Loop, joints: Any) -> None:
     check_keys(joints, None, f"{loop.file}, [joints]")
     for name, given in joints.items():
         where = f"{loop.file}, [joints.{name}]"
-        check_variable(name, where, taken=name in USED)
         check_keys(given, ("between", "kind", "at", "axis", "second", "driven"), where)
         kind, between = given.get("kind", "revolute"), given.get("between")
         if kind not in KINDS:
@@ -223,7 +223,14 @@ def _read_joints(loop: Loop, joints: Any) -> None:
         if not isinstance(driven, bool):
             raise TableError(f"{where}: driven must be true or false")
         at = _named(given["at"], f"{where}: at") if "at" in given else _shared(loop, between, where)
-        loop.joints[name] = Joint(name, kind, (between[0], between[1]), at, axis, driven, second)
+        joint = Joint(name, kind, (between[0], between[1]), at, axis, driven, second)
+        check_variable(name, where, taken=name in USED and _is_written(loop, joint))
+        loop.joints[name] = joint
+
+
+def _is_written(loop: Loop, joint: Joint) -> bool:
+    """Whether a joint becomes a variable of the script."""
+    return joint.driven or joint.kind == "prismatic" or joint.name == loop.hand
 
 
 def _axis(loop: Loop, axis: Any, where: str, key: str) -> sp.Matrix | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
@@ -150,6 +150,8 @@ def _ordered(
             f"{step.body} is joined to {listed(step.points)}, which the driven joints and the "
             f"bodies before it place already, so they could not move"
         )
+    for dyad in found.dyads:
+        check_apart(loop, dyad.bodies, dyad.near, dyad.pin)
     if not found.left:
         return found
     degree = ", which leads to an equation of degree 6" if len(found.left) == 4 else ""
@@ -164,6 +166,15 @@ def _ordered(
         f"bodies with a common pin, each with one more point that is known); they are a group of "
         f"a higher class{degree}{instead}"
     )
+
+
+def check_apart(loop: Loop, bodies: Sequence[str], near: Sequence[str], pin: str) -> None:
+    """Refuse two bodies that are pinned together twice, which no length can change."""
+    if len(set(near)) == 1:
+        raise loop.error(
+            f"{listed(bodies)} are both pinned at {near[0]} and at {pin}, so together they are one "
+            f"bar, whose length cannot change; one of them has to be pinned elsewhere"
+        )
 
 
 def line_of(name: str, points: Mapping[str, sp.Matrix], turning: Mapping[str, Joint]) -> str:
@@ -189,4 +200,4 @@ def safe(name: str) -> str:
     return name.replace("-", "_")
 
 
-__all__ = ["FEW", "LinkageLines", "line_of", "linkage", "no_point", "safe"]
+__all__ = ["FEW", "LinkageLines", "check_apart", "line_of", "linkage", "no_point", "safe"]

@@ -8,6 +8,7 @@ import sympy as sp
 
 from closedform.mechanics.assur_slides import (
     Meet,
+    OnCircle,
     SlidingOrder,
     Swing,
     sliding_freedoms,
@@ -16,7 +17,14 @@ from closedform.mechanics.assur_slides import (
 from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import GROUND, Joint, Loop, with_pivots
 from closedform.scaffold.loops.cylinders import joined
-from closedform.scaffold.loops.linkages import FEW, LinkageLines, line_of, no_point, safe
+from closedform.scaffold.loops.linkages import (
+    FEW,
+    LinkageLines,
+    check_apart,
+    line_of,
+    no_point,
+    safe,
+)
 from closedform.scaffold.source import literal, source
 
 Points = dict[str, dict[str, sp.Matrix]]
@@ -39,6 +47,12 @@ class Found:
     cylinders: dict[str, Joint]
     points: Points = field(default_factory=dict)
     slides: list[Slide] = field(default_factory=list)
+    hand: str = ""
+    """The point that is the hand, under its name in ``points``."""
+
+    def half_of(self, body: str) -> str:
+        """The cylinder of which a body of the file is half."""
+        return next((b for b, slide in self.cylinders.items() if body in slide.between), "")
 
     @property
     def with_joint(self) -> dict[str, Joint]:
@@ -81,6 +95,17 @@ def sliding(loop: Loop, *, few: bool = False) -> LinkageLines | None:
     return LinkageLines(bodies, hand, _words(found, order), slides, passive)
 
 
+def _has_joints(found: Found) -> bool:
+    """Whether all joints turn or slide, and the driven ones and the hand are on the ground."""
+    follower = found.loop.joints.get(found.loop.hand)
+    joints = found.loop.joints.values()
+    return (
+        all(j.kind in ("revolute", "prismatic") for j in joints)
+        and all(GROUND in j.between for j in joints if j.driven)
+        and not (follower and (follower.driven or GROUND not in follower.between))
+    )
+
+
 def _is_one(found: Found, *, few: bool) -> bool:
     """Whether the file is of this kind, and of no kind that has fewer bodies unless ``few``."""
     loop = found.loop
@@ -94,13 +119,25 @@ def _is_one(found: Found, *, few: bool) -> bool:
         or inputs not in FEW
         or not slides
         or loop.parallelograms
-        or any(j.kind not in ("revolute", "prismatic") for j in joints)
-        or any(GROUND not in j.between for j in driven)
-        or (follower and (follower.driven or GROUND not in follower.between))
+        or not _has_joints(found)
     ):
         return False
     least = FEW[inputs] - len(found.cylinders)
     return few or moving > least or (moving == least and inputs == 1 and not follower)
+
+
+def placed(loop: Loop) -> Found | None:
+    """The bodies of a planar linkage, with or without slides, that the joints determine."""
+    joined_loop, cylinders = joined(with_pivots(loop))
+    found = Found(joined_loop, cylinders)
+    if loop.dimensions != 2 or loop.parallelograms or not _has_joints(found):
+        return None
+    _read_points(found)
+    _read_slides(found)
+    _separate(found)
+    _ordered(found)
+    found.hand = "" if loop.hand in loop.joints else _hand(found)
+    return found
 
 
 def _read_points(found: Found) -> None:
@@ -259,6 +296,10 @@ def _ordered(found: Found) -> SlidingOrder:
             f"the driven joints and the bodies before it hold {step.body} already, so they could "
             f"not move"
         )
+    for group in order.groups:
+        if isinstance(group, Meet) and all(isinstance(h, OnCircle) for h in group.holds):
+            near = [h.near for h in group.holds if isinstance(h, OnCircle)]
+            check_apart(loop, group.bodies, near, group.pin)
     if order.left:
         others = [
             j.name
@@ -323,4 +364,4 @@ def _words(found: Found, order: SlidingOrder) -> str:
     return f"Joint {listed(moved)}.  Then {', '.join(told)}."
 
 
-__all__ = ["sliding"]
+__all__ = ["placed", "sliding"]

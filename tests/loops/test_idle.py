@@ -1,0 +1,95 @@
+"""Bodies of a planar linkage that its hand does not depend on, and names that stay in the file."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from loop_files import derived, newton, read_script, script_of
+from places import TESTS
+
+from closedform.scaffold.inputs.tables import TableError
+from closedform.scaffold.loops.file import read_loop
+from closedform.scaffold.loops.script import loop_script
+
+FOLDER = TESTS / "held_out_loops"
+STEERING = """
+hand = "delta"
+[bodies]
+ground = {L = [-0.6, 0], R = [0.6, 0], O = [0, -0.1]}
+rack = {T1 = [-0.25, -0.1], T2 = [0.25, -0.1]}
+tie1 = {length = 0.32}
+tie2 = {length = 0.32}
+left = {L = [-0.6, 0], K1 = [-0.55, -0.15]}
+right = {R = [0.6, 0], K2 = [0.55, -0.15]}
+[joints]
+q = {between = ["ground", "rack"], at = "O", kind = "prismatic", axis = [1, 0], driven = true}
+d = {between = ["rack", "tie1"], at = "T1"}
+cos = {between = ["rack", "tie2"], at = "T2"}
+x = {between = ["tie1", "left"], at = "K1"}
+y = {between = ["tie2", "right"], at = "K2"}
+delta = {between = ["ground", "left"], at = "L"}
+other = {between = ["ground", "right"], at = "R"}
+"""
+
+
+def test_the_other_jaw_of_a_gripper_is_left_out(tmp_path: Path) -> None:
+    path = FOLDER / "gripper.toml"
+    loop = read_loop(path)
+    script = loop_script("gripper", loop, path.name)[0]
+    assert "arm2" not in script and "finger1" in script
+    assert loop.notes == [
+        "gripper.toml: rod2, arm2, side2 and finger2 do not move the hand and are left out"
+    ]
+
+
+def test_the_tip_of_the_finger_is_where_its_parallelogram_takes_it(tmp_path: Path) -> None:
+    text = (FOLDER / "gripper.toml").read_text("utf-8")
+    jaw = derived("jaw", script_of("jaw", text, tmp_path), tmp_path, crosscheck=True)
+    rng, count = np.random.default_rng(1), 0
+    for q in rng.uniform(-0.05, 0.05, (20, 1)):
+
+        def missed(u: np.ndarray, q: float = q[0]) -> np.ndarray:
+            arm = 0.02 + 0.02 * np.exp(1j * u[0])
+            return np.array([abs(arm - 0.01 - 1j * q) - 0.03])
+
+        for start in rng.uniform(-3, 3, (10, 1)):
+            u = newton(missed, start)
+            if u is None:
+                continue
+            tip = 0.02 + 0.05 * np.exp(1j * u[0]) + 0.06j  # the finger does not turn
+            apart = np.linalg.norm(jaw.fk(q).p - [tip.real, tip.imag], axis=-1)
+            assert np.nanmin(apart) < 1e-9
+            count += 1
+    assert count > 50
+
+
+def test_what_is_left_may_be_of_a_simpler_kind(tmp_path: Path) -> None:
+    """Of a steering gear, one knuckle.  Pins that the script does not name have any name."""
+    script = script_of("steering", STEERING, tmp_path)
+    assert "coupled(" in script and "right" not in script
+    assert len(read_script(script).actuated) == 1
+
+
+@pytest.mark.parametrize("name", ["d", "cos"])
+def test_a_joint_that_the_script_names_needs_a_name_of_its_own(name: str, tmp_path: Path) -> None:
+    free = STEERING.replace(f"\n{name} =", "\nother_pin =")
+    for joint in ("q", "delta"):
+        clash = free.replace(f"\n{joint} =", f"\n{name} =").replace(f'"{joint}"', f'"{name}"')
+        with pytest.raises(TableError, match=f"uses the name {name} itself"):
+            script_of("t", clash, tmp_path)
+
+
+def test_bars_that_are_pinned_together_twice_are_refused(tmp_path: Path) -> None:
+    """A cylinder between two points of one bar."""
+    text = (FOLDER / "landing_gear.toml").read_text("utf-8")
+    ends = (
+        text.replace('e = {between = ["piston", "upper"], at = "E"', '$at = "K"')
+        .replace('f = {between = ["ground", "tube"], at = "F"}', "")
+        .replace('at = "F", kind', 'at = "U", kind')
+        .replace(
+            "$",
+            'f = {between = ["ground", "tube"], at = "U"}\ne = {between = ["piston", "upper"], ',
+        )
+    )
+    with pytest.raises(TableError, match="both pinned at U and at K, so together they are one bar"):
+        script_of("t", ends, tmp_path)

@@ -113,6 +113,13 @@ class RowEvaluator:
         middle.flags.writeable = radius.flags.writeable = False
         return middle, radius
 
+    def open_around(self, rows: Array, share: float) -> Array:
+        """Where nothing bounds a value if each input may be off by a ``share`` of itself."""
+        with np.errstate(all="ignore"):
+            balls = self._program.run(np.asarray(rows), share)
+            known = [np.isfinite(x + r) + np.zeros(len(rows), bool) for x, r in balls]
+        return ~np.stack(known, axis=1)
+
     def values(self, rows: Array) -> Array:
         """The midpoints alone, to choose points with; do not decide anything by them.
 
@@ -225,9 +232,11 @@ class _Program:
                     self._places[key] = self._place(sp.sympify(value, strict=True))
             self.results += [self._place(e) for e in exprs]
 
-    def run(self, rows: Array) -> list[Any]:
+    def run(self, rows: Array, share: float = 0.0) -> list[Any]:
+        """The balls at rows of inputs, each of which may be off by a ``share`` of itself."""
         columns = np.asarray(rows, WIDE).T
-        known: list[Any] = [(x + WIDE(0), WIDE(0)) for x in columns]  # without a negative zero
+        # without a negative zero
+        known: list[Any] = [(x + WIDE(0), abs(x) * WIDE(share)) for x in columns]
         for step, operands in self._steps:
             known.append(step.ball(*[known[k] for k in operands]))
         return [known[k] for k in self.results]

@@ -148,9 +148,14 @@ class _Errors:
             finite = math.isfinite(self.computed[row, k])
             # of an infinite value no digit is known where its divisor may vanish
             known = natural if finite else abs(to_float(exact))
-            lost = self._overflows(row) or (not finite and self._underflows(row))
+            # and of a value below the normal numbers only those of its factors, which lose theirs
+            vanishes = abs(to_float(exact)) < np.finfo(self.backend.dtype).tiny
+            lost = self._overflows(row) or ((vanishes or not finite) and self._underflows(row))
+            here = self.rows[row : row + 1]
             if lost or self.backend.eps * grown >= known:
                 return None
+            if self.values.exact.open_around(here, self.backend.eps)[0, k]:
+                return None  # its divisor may vanish
             if self.values.beside_pose or self._near_pole(row):
                 error = _ulps(self.computed[row, k], exact, scale + grown, self.backend)
         return error

@@ -104,3 +104,13 @@ def test_a_number_beyond_all_doubles_is_infinite() -> None:
         huge = (arb(2) ** 1100 + 1) ** 2
     assert to_float(huge) == math.inf
     assert to_float(-huge) == -math.inf
+
+
+def test_a_divisor_that_inputs_off_by_a_rounding_may_annul_leaves_all_open() -> None:
+    """The ball of the value itself is small, because the inputs are exact."""
+    evaluator = RowEvaluator((x,), [(1 + sp.cos(x)) / sp.sin(x), 1 / (2 + sp.sin(x))])
+    row = np.array([[-math.pi]])
+    _, radius = evaluator.balls(row)
+    assert np.isfinite(radius).all()
+    assert evaluator.open_around(row, 2.0**-52).tolist() == [[True, False]]
+    assert not evaluator.open_around(row + 1e-3, 2.0**-52).any()

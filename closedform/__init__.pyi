@@ -74,6 +74,7 @@ from closedform.loops.drives import parallelogram_drive as parallelogram_drive
 from closedform.loops.dyads import linkage as linkage
 from closedform.loops.guided import guided as guided
 from closedform.loops.guides import Ball as Ball
+from closedform.loops.guides import Cross as Cross
 from closedform.loops.guides import Gimbal as Gimbal
 from closedform.loops.guides import Guide as Guide
 from closedform.loops.hinges import Hinged as Hinged

@@ -12,129 +12,25 @@ no ``fk`` is derived.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import sympy as sp
 
-from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, vector
-from closedform.loops.guides import LENGTH, TURNS, Ball, Gimbal, Guide, Placed
-from closedform.loops.hand import check_order, check_plain, rate_of, square
+from closedform.lemmas.legs import Leg, vector
+from closedform.loops.guided_hand import COUNTS, Guided, Holder
+from closedform.loops.guides import LENGTH, TURNS, Ball, Cross, Gimbal, Guide
+from closedform.loops.hand import rate_of, square
 from closedform.loops.hinged_pose import motions, state_pose
-from closedform.loops.hinges import Hinged, Hinges, InPlane
-from closedform.loops.leg_by_leg import MISSED, LegByLeg, named_in, signs_of_modes, size_of
+from closedform.loops.hinges import Hinged, Hinges
+from closedform.loops.leg_by_leg import MISSED, LegByLeg, named_in, signs_of_modes
 from closedform.loops.letters import bold, letters
 from closedform.loops.skeleton import Drawing, points_of
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Program, real
+from closedform.model.functions import real
 from closedform.model.step import Step
 
 TOGETHER = "The target and the joints have to belong together, as ik gives them."
-COUNTS = {2: "two", 3: "three", 4: "four"}
-Holder = Guide | Gimbal | Ball | Hinges
-"""What rules the motion of a hand."""
-
-
-@dataclass(frozen=True)
-class Guided:
-    """A hand, what holds it on the ground, and the driven legs."""
-
-    d: Derivation
-    guide: Holder
-    legs: tuple[Leg, ...]
-
-    def __post_init__(self) -> None:
-        name, n = self.d.name, self.guide.legs
-        if len(self.legs) != n or any(len(leg.base) != 3 for leg in self.legs):
-            raise ShapeError(
-                f"{name}: a hand on {self.guide.what} has {COUNTS[n]} driven legs in space"
-            )
-        if not all(isinstance(leg, Crank | Slide | Stretch) for leg in self.legs):
-            raise ShapeError(
-                f"{name}: a driven leg beside {self.guide.what} must be a crank, a slide or a "
-                f"leg that stretches"
-            )
-        if isinstance(self.guide, Guide | Gimbal | InPlane) and self.guide.joint.faulty:
-            raise ShapeError(
-                f"{name}: the axes of {self.guide.what} must be two unit vectors at right angles"
-            )
-        check_order(self.d, self.legs)
-        check_plain(self.d, self.legs)
-        if list(self.d.task) not in ([], list(self.guide.task)):
-            raise ShapeError(f"{name}: the task of this hand must be {', '.join(self.guide.task)}")
-        self.d.task = list(self.guide.task)
-
-    @property
-    def inputs(self) -> dict[str, Any]:
-        return self.guide.inputs
-
-    @cached_property
-    def places(self) -> list[sp.Matrix]:
-        return [vector(leg.on_hand or (0, 0, 0)) for leg in self.legs]
-
-    @property
-    def numbered(self) -> list[tuple[int, Leg]]:
-        return [*enumerate(self.legs, 1)]
-
-    @property
-    def far(self) -> list[str]:
-        """The names of the far ends of the legs in the drawing."""
-        return ["P" if e.is_zero_matrix else f"C{k}" for k, e in enumerate(self.places, 1)]
-
-    @property
-    def pivot(self) -> sp.Matrix:
-        return vector(self.guide.pivot)
-
-    @cached_property
-    def posture(self) -> Placed:
-        """The hand in the joints that hold it, without a program."""
-        return self.guide.posture(self.places)
-
-    @property
-    def joints(self) -> list[tuple[sp.Symbol, sp.Matrix]]:
-        """The joints that hold the hand, each with the axis or the direction of its motion."""
-        at = self.posture
-        if isinstance(self.guide, Ball | Hinges):
-            return []
-        slide = [(LENGTH, at.slide.ahead)] if at.slide else []
-        return [*zip(TURNS, at.turns, strict=True), *slide]
-
-    @cached_property
-    def size(self) -> sp.Expr:
-        """The sum of all lengths."""
-        return size_of(self.d, self.legs, self.guide.moved)
-
-    def placed(self, p: Program) -> Placed:
-        """Name the hand at a target in a program, outside of an inverse."""
-        return self.guide.place(
-            p, self.places, None if isinstance(self.guide, Hinges) else self.size
-        )
-
-    @cached_property
-    def exact(self) -> Placed:
-        """The hand at a target, without names; where a turn is free it is undefined."""
-        if isinstance(self.guide, Hinges):
-            return self.posture
-        p = Program()
-        return self.guide.place(p, self.places).explicit(p)
-
-    def closed(self, arms: Sequence[sp.Matrix]) -> tuple[sp.Expr, ...]:
-        """The equations of the loop, for far ends of the legs as seen from the pivot."""
-        return tuple(
-            square(self.pivot + arm - leg.end()) - sp.sympify(leg.rod, strict=True) ** 2
-            for leg, arm in zip(self.legs, arms, strict=True)
-        )
-
-    def rows(self, p: Program, placed: Placed, rods: Sequence[sp.Matrix]) -> list[sp.Matrix]:
-        """How the joints that hold the hand stretch the rods, from the vectors along the rods."""
-        found = []
-        for k, rod in enumerate(rods, 1):
-            row = enumerate(placed.row(k - 1, rod), 1)
-            found.append(sp.Matrix([[named_in(p, f"D_{k}{i}", e) for i, e in row]]))
-        return found
 
 
 def guided(d: Derivation, guide: Holder, legs: Sequence[Leg | Hinged]) -> None:
@@ -153,8 +49,8 @@ def guided(d: Derivation, guide: Holder, legs: Sequence[Leg | Hinged]) -> None:
         the derivation, with its parameters and joints; the legs are in the order of the joints.
         If it has no ``singularities``, they are named after the legs
     guide
-        what holds the hand: a :class:`Guide` with three legs, a :class:`Gimbal` with two, or a
-        :class:`Ball` with three
+        what holds the hand: a :class:`Guide` with three legs, a :class:`Gimbal` or a
+        :class:`Cross` with two, or a :class:`Ball` with three
     legs
         cranks, slides or legs that stretch; ``on_hand`` is seen from the point of the hand, where
         the hand is not turned
@@ -195,8 +91,9 @@ def _place(m: Guided, guide: Guide | Gimbal) -> Step:
     )
     if isinstance(guide, Gimbal):
         said = (
-            "The universal joint turns the hand by turn_1 about an axis that is fixed to the "
-            f"ground, and by turn_2 about the axis {second}, which the first turn moves."
+            f"{'The cross' if isinstance(guide, Cross) else 'The universal joint'} turns the hand "
+            "by turn_1 about an axis that is fixed to the ground, and by turn_2 about the axis "
+            f"{second}, which the first turn moves."
         )
         notes: tuple[str, ...] = ()
     else:
@@ -393,7 +290,11 @@ def _state_velocity(m: Guided, loop: Step) -> None:
         }
     )
     hinges = isinstance(m.guide, Hinges)
-    moment = r"(\mathbf f_i\times\mathbf r_i)"
+    moment = about = r"(\mathbf f_i\times\mathbf r_i)"
+    if isinstance(m.guide, Cross):
+        (shift,) = bold(d, "s")
+        about = rf"((\mathbf f_i - {shift})\times\mathbf r_i)"
+        d.explain({shift: "from the pivot to the point of the hand"})
     first, second, along, rate = bold(d, "avuw")
     entry = rf"{first}^T(\mathbf e_i\times\mathbf r_i) + {rate}^T\mathbf r_i"
     shown: dict[str, Any] = {
@@ -401,7 +302,7 @@ def _state_velocity(m: Guided, loop: Step) -> None:
         if hinges
         else rf"{moment}^T"
         if isinstance(m.guide, Ball)
-        else rf"\begin{{bmatrix}}{first}^T{moment} & {second}^T{moment}\end{{bmatrix}}",
+        else rf"\begin{{bmatrix}}{first}^T{moment} & {second}^T{about}\end{{bmatrix}}",
         "B_{ii}": r"\mathbf r_i^T\,\frac{\partial\mathbf b_i}{\partial q_i}",
     }
     equal: list[tuple[Any, Any]] = [(r.dot(w.cross(f)), w.dot(f.cross(r)))]
@@ -424,9 +325,10 @@ def _state_velocity(m: Guided, loop: Step) -> None:
         d.explain({first: "first axis"})
         proves += "  The derivative of each f_i with respect to a joint that holds the hand is "
         proves += "that of a point that this joint moves."
-    for arm in at.arms:
+    for arm, lever in zip(at.arms, at.levers or at.arms, strict=True):
         for joint, axis in m.joints:
-            equal.append((arm.diff(joint), axis if joint == LENGTH else axis.cross(arm)))
+            turned = axis.cross(arm if joint == TURNS[0] else lever)
+            equal.append((arm.diff(joint), axis if joint == LENGTH else turned))
     equal += [
         (e.diff(leg.joint), -2 * rate_of(leg, rod))
         for leg, rod, e in zip(m.legs, rods, closed, strict=True)
@@ -480,12 +382,12 @@ def _draw(m: Guided) -> None:
     p = m.d.program()
     placed = m.placed(p)
     exact, loop = m.exact, m.closed(m.exact.arms)
-    held = isinstance(m.guide, Gimbal | Ball)
+    held, pivoted = isinstance(m.guide, Gimbal | Ball), isinstance(m.guide, Guide | Cross)
 
     def points(shift: sp.Matrix, arms: Sequence[sp.Matrix]) -> dict[str, Sequence[Any]]:
         hand = m.pivot + shift
         found: dict[str, Sequence[Any]] = {"P": [*hand]}
-        if isinstance(m.guide, Guide):
+        if pivoted:
             found = {"O": [*m.pivot], **found}
         for (k, leg), arm, far in zip(m.numbered, arms, m.far, strict=True):
             found |= points_of(k, leg, far, m.pivot + arm)
@@ -496,6 +398,9 @@ def _draw(m: Guided) -> None:
     if isinstance(m.guide, Guide):
         drawn.joints[m.guide.slide] = ("O", "P")
         drawn.lengths["O", "P"] = sp.sqrt(square(exact.shift))
+    if isinstance(m.guide, Cross):
+        drawn.links["cross"] = ("O", "P")
+        drawn.lengths["O", "P"] = sp.sqrt(sp.factor(square(vector(m.guide.offset))))
     for (k, leg), place, far, equation in zip(m.numbered, m.places, m.far, loop, strict=True):
         drawn.add_leg(k, leg, far, equation)
         if far != "P":
@@ -511,7 +416,7 @@ def _draw(m: Guided) -> None:
         links=drawn.links,
         joints=drawn.joints,
         hand="P",
-        ground=(*(["P"] if held else ["O"] * isinstance(m.guide, Guide)), *bases),
+        ground=(*["O"] * pivoted, *["P"] * (held and not pivoted), *bases),
         lengths=drawn.lengths,
         pose=m.inputs,
         program=p,
@@ -541,6 +446,8 @@ def _inverse(m: Guided, loop: Step) -> None:
     spread = sp.Add(*(square(arm) for arm in placed.arms)) / len(m.legs)
     if placed.slide is None:  # the ends of the legs keep their distances from the pivot
         spread = sp.factor(sp.Add(*map(square, m.places)) / len(m.legs))
+    if isinstance(guide, Cross):
+        spread += sp.factor(square(vector(guide.offset)))
     lever = spread if guide.turning == 2 else spread ** sp.Rational(3, 2)
     least = g.let("least", solved.lengths(m.legs) * lever, nonnegative=True)
     meet = "the rods do not hold the hand"
@@ -561,7 +468,9 @@ def _inverse(m: Guided, loop: Step) -> None:
         "Near a parallel singularity rounded joints do not determine the hand.  The status is "
         f"SINGULAR if the determinant of {matrix} is less than 2^-10 of Lambda, the product of the "
         f"lengths of the rods and the {power} distance of their far ends from the "
-        f"{'point of the hand' if isinstance(guide, Hinges) else 'pivot'}."
+        f"{'point of the hand' if isinstance(guide, Hinges | Cross) else 'pivot'}"
+        + ", with the square of the length of the cross" * isinstance(guide, Cross)
+        + "."
         + (guide.too if isinstance(guide, Hinges) and loose else "")
         + f"  {MISSED}",
         {},

@@ -16,7 +16,7 @@ import sympy as sp
 from closedform.lemmas.legs import vector
 from closedform.lemmas.links import polar_lemma
 from closedform.loops.hand import square
-from closedform.loops.leg_by_leg import named_in
+from closedform.loops.leg_by_leg import named, named_in
 from closedform.mechanics.frames import require_rotation, rotation
 from closedform.model.functions import Program, choose, real
 from closedform.model.inverse import Degenerate, Link
@@ -76,7 +76,8 @@ class Placed:
     moves: tuple[sp.Matrix, ...] = ()
     """How the coordinates move the point of the hand; empty if all turn about the pivot."""
     levers: tuple[sp.Matrix, ...] = ()
-    """The ends of the legs from the point of the hand, beside moves."""
+    """The ends of the legs from the point of the hand, beside moves; without them, if all axes but
+    the first pass this point instead of the pivot."""
     fixed: tuple[sp.Expr, ...] = ()
     """What vanishes where nothing fixes the place or the twist of the hand, without a unit."""
 
@@ -100,9 +101,11 @@ class Placed:
             moment = self.levers[k].cross(rod)
             motions = zip(self.turns, self.moves, strict=True)
             return sp.Matrix([[axis.dot(moment) + move.dot(rod) for axis, move in motions]])
-        moment = self.arms[k].cross(rod)
+        moments = [e[k].cross(rod) for e in (self.arms, self.levers or self.arms)]
         along = [rod.dot(self.slide.ahead)] if self.slide else []
-        return sp.Matrix([[*(axis.dot(moment) for axis in self.turns), *along]])
+        first, *others = self.turns
+        turned = [first.dot(moments[0]), *(axis.dot(moments[1]) for axis in others)]
+        return sp.Matrix([[*turned, *along]])
 
 
 @dataclass(frozen=True)
@@ -139,20 +142,17 @@ class Turning:
         )
 
 
-def named(p: Program, letter: str, v: sp.Matrix) -> sp.Matrix:
-    """A vector in space, its components under names."""
-    return sp.Matrix([named_in(p, f"{letter}_{i}", e) for i, e in zip("xyz", v, strict=True)])
+def named_rows(p: Program, letter: str, v: sp.Matrix) -> sp.Matrix:
+    """A vector of a leg, its components under names with their numbers."""
+    return sp.Matrix([named_in(p, f"{letter}{i}", e) for i, e in enumerate(v, 1)])
 
 
 def arms_at(
     p: Program, R: sp.Matrix, shift: sp.Matrix, places: Sequence[sp.Matrix], letter: str = "f"
 ) -> tuple[sp.Matrix, ...]:
     """The ends of the legs, from the pivot."""
-    found = []
-    for k, place in enumerate(places, 1):
-        far = enumerate(shift + R * place, 1)
-        found.append(sp.Matrix([named_in(p, f"{letter}_{k}{i}", e) for i, e in far]))
-    return tuple(found)
+    ends = enumerate(places, 1)
+    return tuple(named_rows(p, f"{letter}_{k}", shift + R * place) for k, place in ends)
 
 
 def polar(
@@ -310,6 +310,50 @@ class Gimbal(Turning):
 
 
 @dataclass(frozen=True)
+class Cross(Gimbal):
+    """A cross that holds the hand on the ground; its axes are those of a gimbal, but need not meet.
+
+    The cross turns about ``first`` at ``pivot``, and carries the axis ``second`` of the hand.  The
+    point of the hand is on this axis, and ``offset`` leads to it from the pivot where nothing is
+    turned.
+    """
+
+    offset: Sequence[Any] = (0, 0, 0)
+
+    what: ClassVar[str] = "a cross"
+    holds: ClassVar[str] = (
+        "The cross turns about the first axis at its pivot.  Its second axis passes the point p of "
+        "the hand, which is at s from the pivot.  "
+    )
+    motion: ClassVar[str] = (
+        "The first axis passes the pivot, from which the far end of rod i is at f_i, and the "
+        "second one, v, passes the point of the hand, which is at s.  So row i of A is the moment "
+        "of the vector r_i along rod i about both axes"
+    )
+
+    def shift(self) -> sp.Matrix:
+        """From the pivot to the point of the hand."""
+        home = sp.Matrix.hstack(*self.axes)
+        return home * rotation("x", TURNS[0]) * home.T * vector(self.offset)
+
+    def place(self, p: Program, places: Sequence[sp.Matrix], size: sp.Expr | None = None) -> Placed:
+        """Name the hand at a target in a program."""
+        R, v, *_ = self.turned(p, {})
+        shift = named(p, "s", self.shift())
+        levers = arms_at(p, R, sp.zeros(3, 1), places, "e")
+        arms = tuple(named_rows(p, f"f_{k}", shift + e) for k, e in enumerate(levers, 1))
+        return Placed(R, (vector(self.first), v), shift, arms, levers=levers)
+
+    def posture(self, places: Sequence[sp.Matrix]) -> Placed:
+        """The hand in its angles, without a program."""
+        p = Program()
+        R, v, *_ = map(p.explicit, self.turned(p, {}))
+        shift, levers = self.shift(), tuple(R * e for e in places)
+        arms = tuple(shift + lever for lever in levers)
+        return Placed(R, (vector(self.first), v), shift, arms, levers=levers)
+
+
+@dataclass(frozen=True)
 class Ball:
     """A ball joint at ``pivot``, which holds the hand on the ground and lets it turn freely.
 
@@ -358,11 +402,11 @@ __all__ = [
     "LENGTH",
     "TURNS",
     "Ball",
+    "Cross",
     "Gimbal",
     "Guide",
     "Placed",
     "Turning",
     "arms_at",
-    "named",
     "polar",
 ]

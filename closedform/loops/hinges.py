@@ -17,9 +17,9 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.legs import Leg, Stretch, vector
-from closedform.loops.guides import TURNS, Placed, Turning, arms_at, named
+from closedform.loops.guides import TURNS, Placed, Turning, arms_at
 from closedform.loops.hand import square
-from closedform.loops.leg_by_leg import named_in
+from closedform.loops.leg_by_leg import named, named_in
 from closedform.mechanics.frames import rotation
 from closedform.model.functions import Program, choose, real
 from closedform.model.inverse import Link

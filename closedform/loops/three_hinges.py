@@ -15,9 +15,9 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.legs import Leg, Stretch, cross_in_plane, vector
-from closedform.loops.guides import Placed, named, polar
+from closedform.loops.guides import Placed, polar
 from closedform.loops.hinges import TILTED, Frame, Hinged, Hinges
-from closedform.loops.leg_by_leg import named_in
+from closedform.loops.leg_by_leg import named, named_in
 from closedform.loops.tripod_legs import named_cosines
 from closedform.mechanics.frames import rotation
 from closedform.model.functions import Program, choose, real

@@ -58,6 +58,7 @@ USED |= {
     "Ball",
     "Body",
     "Crank",
+    "Cross",
     "Gimbal",
     "Guide",
     "Half",

@@ -27,6 +27,8 @@ class GuideLine:
     """The kind of the mechanism."""
     words: str
     slide: str = ""
+    held: tuple[str, ...] = ()
+    """The joints that hold the hand by an axis."""
 
 
 def guide(found: Legs) -> GuideLine | None:
@@ -42,7 +44,58 @@ def guide(found: Legs) -> GuideLine | None:
             return _guide(found, joint, joint.other(hand[0]))
         if GROUND in joint.between and joint.kind in DRIVEN:
             return _pivot(found, joint)
+        for body in hand if joint.kind == "revolute" else []:
+            if first := _first_of_cross(found, joint, body):
+                return _cross(found, first, joint)
     return None
+
+
+def _first_of_cross(found: Legs, second: Joint, hand: str) -> Joint | None:
+    """The joint on the ground of the cross that ``second`` joins to the hand, if it is one."""
+    loop, cross = found.loop, second.other(hand)
+    if cross in loop.rods or cross == GROUND:
+        return None
+    others = [j for j in loop.of(cross) if j is not second]
+    (first,) = others if len(others) == 1 else (None,)
+    if first is None or first.kind != "revolute" or GROUND not in first.between or first.driven:
+        return None
+    return first
+
+
+def _cross(found: Legs, first: Joint, second: Joint) -> GuideLine:
+    """A body between the ground and the hand that turns about one axis and carries another."""
+    loop = found.loop
+    cross, both = first.other(GROUND), f"{first.name} and {second.name}"
+    if first.axis is None or second.axis is None:
+        raise loop.error(
+            f"{both} hold the hand on the ground by {cross}; give both their axis, where the hand "
+            f"is not turned"
+        )
+    if sp.simplify(first.axis.dot(second.axis)) != 0:
+        raise loop.error(
+            f"{both} hold the hand on the ground by {cross}; their axes have to be at right angles"
+        )
+    if second.at != loop.hand:
+        raise loop.error(f"{second.name} has to be at {loop.hand}, a point of its axis")
+    offset = sp.zeros(3, 1)
+    if first.at != second.at:
+        offset = found.point(cross, second) - found.point(cross, first)
+    found.used |= {first.name, second.name}
+    _check_driven(found, first, DRIVEN["universal"], both)
+    base, axes = (
+        found.at(found.point(GROUND, first)),
+        f"{found.at(first.axis)}, {found.at(second.axis)}",
+    )
+    if any(sp.simplify(e) != 0 for e in offset):
+        return GuideLine(
+            f"Cross({base}, {axes}, {found.at(offset)})",
+            "a hand on a cross",
+            f"{cross} holds the hand on the ground: its two axes do not meet.",
+            held=(second.name,),
+        )
+    words = f"{cross} holds the hand on the ground, as a universal joint."
+    kind = "a hand on a universal joint"
+    return GuideLine(f"Gimbal({base}, {axes})", kind, words, held=(second.name,))
 
 
 def _check_driven(found: Legs, held: Joint, needed: int, by: str) -> None:

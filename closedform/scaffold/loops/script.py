@@ -127,7 +127,7 @@ def _on_legs(found: Legs) -> _Way:
     held = bool(passive or struts or loop.parallelograms or loop.dimensions == 2)
     if found.turning and not held and (on_hinges := hinged(found, driven)):
         return _Way(on_hinges[0], [], guide=on_hinges[1])
-    _check_ends(found)
+    _check_ends(found, passive.held if passive else ())
     if found.half_held and not found.turning:
         hinge, other = found.half_held[0]
         raise loop.error(
@@ -173,15 +173,16 @@ def _held(loop: Loop) -> list[str]:
     return [rod for rod in loop.rods if rod in loop.parallelograms]
 
 
-def _check_ends(found: Legs, *, fixed: bool = False) -> None:
+def _check_ends(found: Legs, held: Sequence[str] = (), *, fixed: bool = False) -> None:
     """Refuse legs in space that hold a hand that may turn by the axis of a revolute joint.
 
-    Unless it is ``fixed`` that the hand turns, only where the file gives the axis.
+    Unless it is ``fixed`` that the hand turns, only where the file gives the axis.  The joints in
+    ``held`` are not those of legs.
     """
     loop, body = found.loop, found.turning
     if not body or loop.dimensions == 2:
         return
-    hinges = [j for j in loop.of(body) if j.kind == "revolute"]
+    hinges = [j for j in loop.of(body) if j.kind == "revolute" and j.name not in held]
     if held := [j.name for j in hinges if fixed or j.axis is not None]:
         if _meet(found, hinges):
             raise loop.error(

@@ -35,6 +35,7 @@ from closedform.lemmas.links import two_links as two_links
 from closedform.lemmas.oblique import LinksAndObliqueWrist as LinksAndObliqueWrist
 from closedform.lemmas.oblique import LinksPastTurn as LinksPastTurn
 from closedform.lemmas.parallelogram import Parallelogram as Parallelogram
+from closedform.lemmas.parallelogram import Prism as Prism
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
 from closedform.lemmas.past_parallel import LinksAround as LinksAround
 from closedform.lemmas.past_parallel import LinksPastParallel as LinksPastParallel

@@ -58,6 +58,29 @@ the only solution in a neighbourhood, by the implicit function theorem.""",
 singularity.  The other solutions, $\mathbf v\ne\mathbf u$, are crossed or twisted.""",
 )
 
+theorem(
+    "three parallel rods",
+    statement=r"""Two rods of length $l > 0$ form a parallelogram whose bars have the direction
+$\mathbf u$, and $\mathbf r$ leads from the middle of the first bar to the middle of the second.
+A third rod of length $l$ leads from the end of $\mathbf s$, seen from the middle of the first bar,
+to that of $R\,\mathbf s$, seen from the middle of the second, where $R$ is the rotation of the body
+with the second bar against the body with the first.  If $R = I$, it is parallel to the two others,
+and fits.  While the body with the second bar turns with the rate $\boldsymbol\omega$ and the first
+one does not, the lengths of the rods require $\boldsymbol\omega\cdot(\mathbf u\times\mathbf r) =
+\boldsymbol\omega\cdot(\mathbf s\times\mathbf r) = 0$.  So if such a leg and a parallelogram join a
+hand to bodies that do not turn, and the normals of the parallelogram and these two vectors are not
+in one plane, no continuous motion leads away from $R = I$.""",
+    proof=r"""The third rod is $\mathbf r + R\,\mathbf s - \mathbf s$, which is $\mathbf r$ if $R =
+I$.  Its squared length and that of $\mathbf r$ have derivatives that differ by $2\,\mathbf
+r\cdot(\boldsymbol\omega\times\mathbf s) = 2\,\boldsymbol\omega\cdot(\mathbf s\times\mathbf r)$
+there, and $|\mathbf r| = l$ at first order because of the two other rods.  The rest is the
+argument of the parallelogram in space.""",
+    exception=r"""If the three vectors are in one plane, the hand can begin to turn: a constraint
+singularity.  Of three rods alone this is so everywhere: both vectors are at right angles to
+$\mathbf r$, about which the hand turns.""",
+    rests_on=("parallelogram in space",),
+)
+
 
 @dataclass(frozen=True)
 class Parallelogram:
@@ -90,6 +113,32 @@ class Parallelogram:
     def couple(self, rod: sp.Matrix) -> sp.Matrix:
         """The direction about which it keeps the hand from turning, from the vector along it."""
         return self.direction.cross(rod)
+
+    def couples(self, rod: sp.Matrix) -> list[sp.Matrix]:
+        """All such directions."""
+        return [self.couple(rod)]
+
+
+@dataclass(frozen=True)
+class Prism(Parallelogram):
+    """Three equal rods between two equal triangles, as on a Gantry-Tau, instead of one rod.
+
+    Two of them are a parallelogram.  ``apex`` leads from the middle between them to the third one,
+    on either body.  It takes two freedoms of turning from a hand, and the width matters as little
+    as that of a parallelogram.
+    """
+
+    apex: Sequence[Any]
+
+    @property
+    def aside(self) -> sp.Matrix:
+        """From the middle between two rods to the third one."""
+        return sp.Matrix([sp.sympify(e, strict=True) for e in self.apex])
+
+    def couples(self, rod: sp.Matrix) -> list[sp.Matrix]:
+        """The directions about which it keeps the hand from turning; the second has unit size."""
+        size = sp.sqrt(sp.factor(self.aside.dot(self.aside)))
+        return [self.couple(rod), (self.aside / size).cross(rod)]
 
 
 def parallelogram(

@@ -62,5 +62,9 @@ class Universal:
         """The direction about which it keeps the hand from turning, from the vector along it."""
         return rod - self.direction.dot(rod) * self.direction
 
+    def couples(self, rod: sp.Matrix) -> list[sp.Matrix]:
+        """All such directions."""
+        return [self.couple(rod)]
+
 
 __all__ = ["Universal"]

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.legs import Crank, Leg, cross_in_plane, vector
-from closedform.lemmas.parallelogram import Parallelogram, parallelogram
+from closedform.lemmas.parallelogram import Parallelogram, Prism, parallelogram
 from closedform.lemmas.universal import Universal
 from closedform.loops.hand import Hand, square
 from closedform.loops.letters import letters
@@ -41,10 +42,17 @@ class Bars:
         at = middle if middle != "P" else f"C{self.near[1:]}"
         return f"{at}{self.names[0]}", f"{at}{self.names[1]}"
 
+    def third(self, middle: str) -> str:
+        """The name of the end of a third rod beside a point; empty if there is none."""
+        return f"{self.ends(middle)[0][:-1]}e" if isinstance(self.given, Prism) else ""
+
     def around(self, middle: str, at: sp.Matrix) -> dict[str, sp.Matrix]:
-        """The ends of the bar around a point, which is at a place."""
+        """The ends of the bar around a point, which is at a place, and that of a third rod."""
         reach = self.given.half * self.given.direction
-        return dict(zip(self.ends(middle), (at + reach, at - reach), strict=True))
+        found = dict(zip(self.ends(middle), (at + reach, at - reach), strict=True))
+        if isinstance(self.given, Prism):
+            found[self.third(middle)] = at + self.given.aside
+        return found
 
 
 def bars_of(k: int, leg: Leg, far: str) -> list[Bars]:
@@ -65,7 +73,8 @@ def check_held(m: Hand) -> None:
     name, n = m.d.name, len(m.hand)
     held = [leg for _, leg in m.held]
     check_directions(name, n, m.legs)
-    if len(held) == 3 and not any(e for leg in held for e in _across(held[0], leg)):
+    prism = any(isinstance(leg.rod, Prism) for leg in held)
+    if len(held) == 3 and not prism and not any(e for leg in held for e in _across(held[0], leg)):
         raise ShapeError(
             f"{name}: the bars or axes of all three legs have the same direction, about which the "
             f"hand can always turn"
@@ -73,7 +82,13 @@ def check_held(m: Hand) -> None:
     places = [m.place(leg) for leg in m.legs]
     if m.flat or all(place == places[0] for place in places):
         return
-    if len(held) < (1 if n == 2 else 3):
+    kept = sum(1 + isinstance(leg.rod, Prism) for leg in held)
+    if kept > 3:
+        raise ShapeError(
+            f"{name}: the rods keep the hand from turning in {kept} ways, of which {kept - 3} "
+            f"{'is' if kept == 4 else 'are'} redundant; a Prism takes two, and a Parallelogram one"
+        )
+    if kept < (1 if n == 2 else 3):
         rods = "one rod has" if n == 2 else "all three rods have"
         raise ShapeError(
             f"{name}: the legs end in different points of the hand, and nothing keeps it from "
@@ -88,6 +103,11 @@ def check_directions(name: str, n: int, legs: Sequence[Leg]) -> None:
         if len(bars.given.bar) != n or sp.simplify(square(bars.given.direction) - 1) != 0:
             raise ShapeError(
                 f"{name}: the bar of a parallelogram must be a unit vector with {n} entries"
+            )
+    for prism in (leg.rod for leg in legs if isinstance(leg.rod, Prism)):
+        if n != 3 or len(prism.apex) != n or not any(_aside(prism)):
+            raise ShapeError(
+                f"{name}: the apex of a prism must be a vector in space that is not along its bar"
             )
     for axis in (leg.rod.direction for leg in legs if isinstance(leg.rod, Universal)):
         if not len(axis) == n == 3 or sp.simplify(square(axis) - 1) != 0:
@@ -104,6 +124,11 @@ def _check_on_crank(name: str, n: int, leg: Leg) -> None:
     if not isinstance(leg, Crank) or isinstance(leg.length, Parallelogram):
         return
     turned = [leg.rod.direction.dot(vector(v)) for v in (leg.along, leg.across)]
+    if isinstance(leg.rod, Prism):
+        raise ShapeError(
+            f"{name}: the crank of {leg.joint} turns the triangle on it; the crank has to be a "
+            f"Parallelogram too, or one of three rods has to go"
+        )
     if n == 2 or any(sp.simplify(e) != 0 for e in turned):
         what = "axis" if isinstance(leg.rod, Universal) else "bar"
         along = "" if n == 2 else f"the {what} has to be along its axis, or "
@@ -116,6 +141,11 @@ def _check_on_crank(name: str, n: int, leg: Leg) -> None:
 def _across(one: Leg, other: Leg) -> sp.Matrix:
     """A vector that vanishes if the bars or axes of two legs are parallel."""
     return one.rod.direction.cross(other.rod.direction).applyfunc(sp.simplify)
+
+
+def _aside(prism: Prism) -> sp.Matrix:
+    """A vector that vanishes if the third rod is in the plane of the two others."""
+    return prism.direction.cross(prism.aside).applyfunc(sp.simplify)
 
 
 def _with(m: Hand, kind: type) -> list[tuple[int, Leg]]:
@@ -151,7 +181,10 @@ def constraint(m: Hand, rods: Sequence[sp.Matrix]) -> list[Exported]:
     if not _with(m, Universal):
         what, how = (
             "parallelograms",
-            f"The determinant of the normals of the parallelograms (a {crossed}).",
+            f"The determinant of the normals of the parallelograms (a {crossed})"
+            + ", of a third rod also with the unit vector from their middle to it"
+            * bool(_with(m, Prism))
+            + ".",
         )
     else:
         what = "legs"
@@ -170,7 +203,7 @@ def constraint(m: Hand, rods: Sequence[sp.Matrix]) -> list[Exported]:
 def _constraint(m: Hand, rods: Sequence[sp.Matrix]) -> list[sp.Expr]:
     spans = dict(zip((k for k, _ in m.numbered), rods, strict=True))
     if len(m.hand) == 3:
-        couples = [leg.rod.couple(spans[k]) for k, leg in m.held]
+        couples = [e for k, leg in m.held for e in leg.rod.couples(spans[k])]
         return [sp.Matrix.hstack(*couples).det()] if len(couples) == 3 else []
     found = []
     for k, leg in m.held:
@@ -183,6 +216,9 @@ def _constraint(m: Hand, rods: Sequence[sp.Matrix]) -> list[sp.Expr]:
 
 def _in_space(m: Hand, loop: Step) -> None:
     (normal,) = letters(m.d, "n")
+    if _with(m, Prism):
+        state_parallelograms(_with_prism(m, loop))
+        return
     all_three = (
         "  Each parallelogram takes one freedom of turning from the hand: the rate omega with "
         f"which it turns is at right angles to the normal {normal} of the parallelogram.  So the "
@@ -205,7 +241,7 @@ class Held:
     """What follows for the hand: a sentence."""
     one: str = "k"
     """How any of the legs is called."""
-    vanishing: Mapping[str, str] = field(default_factory=dict)
+    vanishing: Mapping[str, Any] = field(default_factory=dict)
     """What vanishes where the hand can turn, as an equation."""
 
 
@@ -221,6 +257,37 @@ def _held_by(m: Hand, loop: Step, kind: type, letter: str, all_three: str) -> He
         then=all_three * (len(held) == 3),
         one=INDEX if m.alike else "k",
         vanishing=_determinant(m, letter),
+    )
+
+
+def _with_prism(m: Hand, loop: Step) -> Held:
+    """The same of legs of which one has three rods, and another one two."""
+    normal, aside, along, couple = letters(m.d, "nsrm")
+    held = _with(m, Parallelogram)
+    prisms = [(k, leg.rod) for k, leg in held if isinstance(leg.rod, Prism)]
+    columns = []
+    for k, leg in held:
+        columns.append(rf"\mathbf {normal}_{k}")
+        columns += [rf"\mathbf {couple}_{k}"] * isinstance(leg.rod, Prism)
+    legs = " and ".join(str(k) for k, _ in prisms)
+    m.d.explain({rf"\mathbf {aside}_{k}": "from the middle to the third rod" for k, _ in prisms})
+    m.d.explain({rf"\mathbf {couple}_k": "what a third rod keeps the hand from turning about"})
+    m.d.explain({r"\Gamma": "vanishes where the hand can turn"})
+    return Held(
+        d=m.d,
+        legs=held,
+        loop=loop,
+        shown=[(k, leg.rod.direction) for k, leg in held],
+        then=f"  Leg {legs} has a third rod of this length, which is at {aside} from the middle on "
+        f"both bodies.  While the hand turns with the rate omega, this rod keeps its length if "
+        f"omega is at right angles to {couple} as well.  So the hand cannot turn, unless the "
+        f"normals {normal} and {couple} are in one plane (constraint singularity).",
+        vanishing={
+            **{rf"\mathbf {aside}_{k}": prism.aside for k, prism in prisms},
+            rf"\mathbf {couple}_k": rf"\mathbf {aside}_k\times\mathbf {along}_k",
+            rf"\boldsymbol\omega\cdot\mathbf {couple}_k": sp.S.Zero,
+            r"\Gamma": rf"\det\begin{{bmatrix}} {' & '.join(columns)} \end{{bmatrix}}",
+        },
     )
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch, Strut
-from closedform.lemmas.parallelogram import Parallelogram
+from closedform.lemmas.parallelogram import Parallelogram, Prism
 from closedform.lemmas.planes import Plane
 from closedform.lemmas.rails import Rail
 from closedform.loops.hand import Hand, in_space, square
@@ -73,6 +73,19 @@ class Drawing:
             half = pair.given.half
             self.links[f"bar_{first}"] = (first, middle, second)
             self.lengths |= {(first, middle): half, (middle, second): half}
+        if isinstance(pair.given, Prism):
+            self._add_third(k, pair, pair.given, equation)
+
+    def _add_third(self, k: int, pair: Bars, prism: Prism, equation: sp.Expr | None) -> None:
+        """The third rod beside the two of a parallelogram, and how it is held."""
+        ends = pair.third(pair.near), pair.third(pair.far)
+        self.links[f"rod{k}e"] = ends
+        self.lengths[ends] = sp.sympify(prism.length, strict=True)
+        if equation is not None:
+            self.closing[ends] = equation
+        for middle in (pair.near, pair.far):
+            self.links[f"bar_{pair.third(middle)}"] = (middle, pair.third(middle))
+            self.lengths[middle, pair.third(middle)] = sp.sqrt(sp.factor(square(prism.aside)))
 
     def add_plane(self, k: int, leg: Plane, far: str) -> None:
         """The slider and both bars, which have their lengths if the hand is in the plane."""

@@ -133,10 +133,18 @@ def y_star(v, q: np.ndarray, p: np.ndarray) -> list[float]:
     return list(np.linalg.norm(p + around(v.c) - ends, axis=1) - v.r)
 
 
+def gantry_tau(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    """Of each slider, one rod; the others are parallel to it."""
+    starts = np.array([[q[0], 0.6, 0.5], [q[1], 0.6, -0.45], [q[2], -0.6, 0]])
+    ends = p + np.array([[0, 0.05, 0.1], [0, 0.05, -0.05], [0, -0.05, -0.05]])
+    return list(np.linalg.norm(starts - ends, axis=1) - [v.l, v.l, v.m])
+
+
 MISSES: dict[str, tuple[Callable, int]] = {
     "coaxial_five_bar": (coaxial_five_bar, 4),
     "cylinder": (cylinder, 1),
     "diamond": (diamond, 4),
+    "gantry_tau": (gantry_tau, 8),
     "loader": (loader, 2),
     "minitaur": (minitaur, 4),
     "oblique_rails": (oblique_rails, 4),

@@ -40,6 +40,8 @@ class Loop:
     rods: dict[str, sp.Expr] = field(default_factory=dict)
     parallelograms: dict[str, sp.Matrix] = field(default_factory=dict)
     """The rods and cranks that are parallelograms, with a vector along their short sides."""
+    apexes: dict[str, sp.Matrix] = field(default_factory=dict)
+    """Of a parallelogram with a third rod, the vector from the middle to it."""
     joints: dict[str, Joint] = field(default_factory=dict)
     parameters: dict[str, dict[str, str]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)

@@ -66,6 +66,7 @@ USED |= {
     "Lever",
     "Parallelogram",
     "Plane",
+    "Prism",
     "Rail",
     "Sleeve",
     "Slide",

@@ -84,6 +84,9 @@ class Legs:
         if width == 0:
             raise self.loop.error(f"{body}: the short sides of a parallelogram need a length")
         way = _tuple(self.direction(side, width))
+        if body in self.loop.apexes:
+            apex = _tuple(self.loop.apexes[body])
+            return f"Prism({source(length)}, {way}, {source(width)}, {apex})"
         return f"Parallelogram({source(length)}, {way}, {source(width)})"
 
     def rod(self, rod: str, near: Joint) -> str:

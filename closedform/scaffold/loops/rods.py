@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import sympy as sp
@@ -9,6 +10,8 @@ import sympy as sp
 from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
 
 PINS = {"revolute", "spherical", "universal"}
+TAU = [1, 2, 3]
+"""How many rods three driven bodies have, of which those with two and three keep the hand."""
 
 
 def read_rods(loop: Loop) -> None:
@@ -50,31 +53,62 @@ def read_pairs(loop: Loop) -> None:
     They join a driven body to the same other one, are equally long, and are as far apart on both.
     The parallelogram leads from the middle between them to the middle.
     """
-    for body in _driven_bodies(loop):
-        rods = dict.fromkeys(j.other(body) for j in loop.of(body) if j.other(body) in loop.rods)
+    on = {
+        body: list(
+            dict.fromkeys(j.other(body) for j in loop.of(body) if j.other(body) in loop.rods)
+        )
+        for body in _driven_bodies(loop)
+    }
+    triple = sorted(map(len, on.values())) == TAU
+    for body, rods in on.items():
+        if len(rods) == 3 and triple:
+            _read_triple(loop, body, rods)
         if len(rods) == 2:
             _read_pair(loop, body, *rods)
 
 
-def _read_pair(loop: Loop, body: str, first: str, second: str) -> None:
+def _read_triple(loop: Loop, body: str, rods: Sequence[str]) -> None:
+    """Put a prism in the place of three parallel rods of a leg, as of a Gantry-Tau."""
+    first, second, third = rods
+    ends = [e for e in (_ends(loop, body, rod) for rod in rods) if e]
+    hands = {far.other(rod) for (_, far), rod in zip(ends, rods, strict=False)}
+    if len(ends) != 3 or len(hands) != 1 or sp.simplify(loop.rods[first] - loop.rods[third]) != 0:
+        return
+    apexes = []
+    for b, joints in zip((body, *hands), zip(*ends, strict=True), strict=True):
+        if any(j.at not in loop.bodies[b] for j in joints):
+            return
+        one, two, apex = (loop.bodies[b][j.at] for j in joints)
+        apexes.append((apex - (one + two) / 2).applyfunc(sp.simplify))
+    if _differ(*apexes) or not _read_pair(loop, body, first, second):
+        return
+    for joint in ends[2]:
+        del loop.joints[joint.name]
+    del loop.bodies[third], loop.rods[third]
+    loop.apexes[first] = apexes[0]
+    loop.said[-1] = f"The rods {first}, {second} and {third} are the long sides of a prism."
+
+
+def _read_pair(loop: Loop, body: str, first: str, second: str) -> bool:
+    """Whether two rods are a parallelogram, which takes their place."""
     ends = [_ends(loop, body, rod) for rod in (first, second)]
     if (
         None in ends
         or {first, second} & {*loop.parallelograms}
         or sp.simplify(loop.rods[first] - loop.rods[second]) != 0
     ):
-        return
+        return False
     (near, far), (beside, beyond) = (e for e in ends if e)
     hand = far.other(first)
     pairs = {body: (near, beside), hand: (far, beyond)}
     if hand != beyond.other(second) or any(
         j.at not in loop.bodies[b] for b, pair in pairs.items() for j in pair
     ):
-        return
+        return False
     places = {b: [loop.bodies[b][j.at] for j in pair] for b, pair in pairs.items()}
     aside, same = (b - a for a, b in places.values())
     if _differ(aside, same) or not _differ(*places[body]):
-        return
+        return False
     for b, (joint, other) in pairs.items():
         middle = f"{joint.at}_{other.at}"
         loop.bodies[b][middle] = (sum(places[b], sp.zeros(*aside.shape)) / 2).applyfunc(sp.simplify)
@@ -83,6 +117,7 @@ def _read_pair(loop: Loop, body: str, first: str, second: str) -> None:
     del loop.bodies[second], loop.rods[second]
     loop.parallelograms[first] = aside
     loop.said.append(f"The rods {first} and {second} are the long sides of a parallelogram.")
+    return True
 
 
 def _ends(loop: Loop, body: str, rod: str) -> tuple[Joint, Joint] | None:
@@ -107,7 +142,10 @@ def several_told(loop: Loop, body: str) -> str:
     return (
         ".  Two rods of a leg are taken as a parallelogram if they lead to the same body, are "
         "equally long, and are as far apart on it as on the driven body, in the coordinates of the "
-        "file" + "; a third one is redundant beside three parallelograms" * (len(rods) > 2)
+        "file"
+        + "; three of them keep a hand from turning if another body has two and the last one has "
+        "one, as on a Gantry-Tau, and a third one is redundant beside three parallelograms"
+        * (len(rods) > 2)
     )
 
 

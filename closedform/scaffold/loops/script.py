@@ -138,7 +138,7 @@ def _on_legs(found: Legs) -> _Way:
     if passive:
         return _Way(driven, [], guide=passive)
     legs = [*struts, *driven]
-    if found.turning and not (loop.dimensions == 2 and _held(loop)):
+    if found.turning and not _keeps(loop):
         upright = [] if struts or loop.parallelograms else uprights(found)
         if not upright:
             _check_turning(found, driven, struts)
@@ -166,6 +166,13 @@ def _on_legs(found: Legs) -> _Way:
             * (len(legs) == loop.dimensions + 1)
         )
     return _Way(legs, list(AXES[: loop.dimensions]))
+
+
+def _keeps(loop: Loop) -> bool:
+    """Whether parallelograms keep the hand from turning, though other rods do not."""
+    if loop.dimensions == 2:
+        return bool(_held(loop))
+    return bool(loop.apexes) and len(_held(loop)) + len(loop.apexes) == len(AXES)
 
 
 def _held(loop: Loop) -> list[str]:

@@ -93,3 +93,29 @@ def test_bars_that_are_pinned_together_twice_are_refused(tmp_path: Path) -> None
     )
     with pytest.raises(TableError, match="both pinned at U and at K, so together they are one bar"):
         script_of("t", ends, tmp_path)
+
+
+def test_the_shaft_of_a_delta_robot_is_left_out(tmp_path: Path) -> None:
+    path = FOLDER / "delta_with_shaft.toml"
+    loop = read_loop(path)
+    d = read_script(loop_script("delta_with_shaft", loop, path.name)[0])
+    assert [str(q) for q in d.actuated] == ["t1", "t2", "t3"]
+    assert loop.notes == [
+        "delta_with_shaft.toml: t4, u1, s, u2 and r leave the hand all freedoms and are left out; "
+        "what t4 moves beside it is not derived"
+    ]
+    stiff = path.read_text("utf-8").replace(
+        'u2 = {between = ["lower", "tool"], at = "Q", kind = "universal"}',
+        'u2 = {between = ["lower", "tool"], at = "Q", axis = [1, 0, 0]}',
+    )
+    with pytest.raises(TableError, match="t4 moves upper"):
+        script_of("t", stiff, tmp_path)
+
+
+def test_two_legs_in_space_may_be_meant_in_a_plane(tmp_path: Path) -> None:
+    text = (FOLDER / "delta_with_shaft.toml").read_text("utf-8")
+    for n in ("t3", "t4", "b3", "c3", "u1", "s", "u2", "r", "crank3", "rod3", "upper", "fork"):
+        text = "\n".join(row for row in text.splitlines() if not row.startswith(f"{n} ="))
+    text = "\n".join(row for row in text.splitlines() if not row.startswith(("lower", "tool")))
+    with pytest.raises(TableError, match="in a plane alone is written with two coordinates"):
+        script_of("t", text, tmp_path)

@@ -1,21 +1,77 @@
-"""Leaves out the bodies of a planar linkage that do not move its hand."""
+"""Leaves out what does not move the hand: bodies of a planar linkage, and shafts in space."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from closedform.mechanics.assur_slides import groups_for, holder, sliding_order
 from closedform.model.names import listed
 from closedform.scaffold.inputs.tables import TableError
-from closedform.scaffold.loops.bodies import GROUND, Loop
+from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
 from closedform.scaffold.loops.sliding import placed
+
+FREEDOMS = {"revolute": 1, "prismatic": 1, "universal": 2, "spherical": 3}
+ALL = 6
+"""The freedoms of a body in space."""
 
 
 def without_idle(loop: Loop) -> Loop:
-    """The loop without the bodies that the hand does not depend on, as the other jaw of a gripper.
+    """The loop without what the hand does not depend on.
 
-    A loop of another kind, or one that the joints do not determine, stays as it is.
+    This is the other jaw of a gripper, or the shaft that turns the tool of a Delta robot.  A loop
+    of another kind, or one that the joints do not determine, stays as it is.
     """
+    return _without_bodies(loop) if loop.dimensions == 2 else _without_shafts(loop)
+
+
+def _without_shafts(loop: Loop) -> Loop:
+    """The loop without the chains from the ground to the hand that leave it all freedoms."""
+    hand = next((b for b, at in loop.bodies.items() if loop.hand in at and b != GROUND), None)
+    idle = [j for b in ([hand] if hand else []) for j in _shaft_joints(loop, b)]
+    if not idle:
+        return loop
+    names = {j.name for j in idle}
+    joints = {n: j for n, j in loop.joints.items() if n not in names}
+    left = {b for j in joints.values() for b in j.between}
+    gone = [b for j in idle for b in j.between if b not in left]
+    driven = [j.name for j in idle if j.driven]
+    beside = f"; what {listed(driven)} moves beside it is not derived" * bool(driven)
+    loop.notes.append(
+        f"{loop.file}: {listed([j.name for j in idle])} leave the hand all freedoms and are left "
+        f"out{beside}"
+    )
+    return replace(
+        loop,
+        bodies={b: at for b, at in loop.bodies.items() if b not in gone},
+        rods={b: length for b, length in loop.rods.items() if b not in gone},
+        joints=joints,
+    )
+
+
+def _shaft_joints(loop: Loop, hand: str) -> Iterator[Joint]:
+    """The joints of the chains of four or more between the ground and the hand that hold nothing.
+
+    The point of the hand may be on the last body of such a chain too.
+    """
+    for first in loop.of(GROUND):
+        chain, body = [first], first.other(GROUND)
+        while body != hand and len(onward := [j for j in loop.of(body) if j not in chain]) == 1:
+            chain.append(onward[0])
+            body = onward[0].other(body)
+        if body == hand and len(chain) > 3 and _freedoms(chain) >= ALL:
+            yield from chain
+
+
+def _freedoms(chain: Sequence[Joint]) -> int:
+    """The passive freedoms of a chain; between two ball joints a body may turn by itself."""
+    passive = [j for j in chain if not j.driven]
+    balls = sum(j.kind == "spherical" for j in passive)
+    return sum(FREEDOMS[j.kind] for j in passive) - max(balls - 1, 0)
+
+
+def _without_bodies(loop: Loop) -> Loop:
+    """A planar loop without the bodies that the hand does not depend on."""
     try:
         found = placed(loop)
     except TableError:

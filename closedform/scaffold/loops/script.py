@@ -39,6 +39,10 @@ ON_AXES = (
     "If it is universal joints that keep it from turning, give both of each leg their axis.  With "
     "four legs and vertical axes it turns about z alone."
 )
+IN_PLANE = (
+    ".  A hand that moves in a plane alone is written with two coordinates: all points are as they "
+    "are seen across this plane, and a parallelogram that is at right angles to it is a rod"
+)
 FUNCTIONS = {"Rational", "Abs"}
 """What a leg calls of SymPy that begins with a capital letter."""
 
@@ -162,8 +166,8 @@ def _on_legs(found: Legs) -> _Way:
         raise loop.error(
             f"{len(driven)} joints are driven, but a hand that does not turn needs "
             f"{loop.dimensions - len(struts)}{on_sphere}{''.join(rods[:1])}"
-            + more
-            * (len(legs) == loop.dimensions + 1)
+            + more * (len(legs) == loop.dimensions + 1)
+            + IN_PLANE * (loop.dimensions == 3 and len(legs) == 2)
         )
     return _Way(legs, list(AXES[: loop.dimensions]))
 

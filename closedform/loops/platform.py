@@ -21,6 +21,7 @@ import sympy as sp
 from closedform.lemmas.legs import Leg, Slide
 from closedform.lemmas.planes import Plane
 from closedform.lemmas.rails import Rail
+from closedform.loops.guides import Ball
 from closedform.loops.hand import in_space, rate_of, square
 from closedform.loops.leg_by_leg import (
     MISSED,
@@ -33,6 +34,7 @@ from closedform.loops.letters import letters
 from closedform.loops.meeting import Meet
 from closedform.loops.modes import NO_MODE
 from closedform.loops.on_rails import on_rails
+from closedform.loops.pairs import degree_of_pairs
 from closedform.loops.platform_legs import (
     UPRIGHT,
     Half,
@@ -53,6 +55,7 @@ from closedform.model.functions import Program, real
 from closedform.model.names import listed
 from closedform.model.step import Step
 
+AXES = "xyz"
 DEGREE_IN_SPACE = 40
 """Of six points of a body that are at given distances from six points of the ground."""
 TASK_IN_PLANE = 3
@@ -158,13 +161,26 @@ def _close(m: Platform) -> Step:
 
 def _forward(m: Platform, loop: Step) -> str:
     """The degree of the forward problem, for which no formula is derived."""
-    if m.tilts:
+    if m.pairs:
+        degree = f"{degree_of_pairs(m.pairs)}"
+        found = (
+            "Two legs leave the point in which they meet a circle, and three points on such "
+            "circles have to keep their distances.  The degree was counted by elimination, at "
+            "places and lengths drawn at random."
+        )
+    elif m.tilts:
         degree, general = (
             f"{DEGREE_IN_SPACE}",
             f"For points in general position it is {DEGREE_IN_SPACE}",
         )
         found = f"{general}, and it is never more."
-        if len(m.groups) < len(m.legs) or len(m.groups_on_ground) < len(m.legs):
+        if len(m.meeting) == len(AXES):
+            degree = f"at most {2 * Ball.degree}"
+            found = (
+                f"The point has two places, and for each of them the equation that remains has at "
+                f"most the degree {Ball.degree}."
+            )
+        elif len(m.groups) < len(m.legs) or len(m.groups_on_ground) < len(m.legs):
             degree = f"at most {DEGREE_IN_SPACE}"
             found = f"{general}; here legs end in the same point, and it may be less."
     else:

@@ -6,6 +6,7 @@ import random
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import permutations
 from typing import Any
 
 import sympy as sp
@@ -175,6 +176,19 @@ class Platform:
     def groups_on_ground(self) -> list[list[int]]:
         """The same for legs that start in the same point of the ground, by their near ends."""
         return _together([leg.end() for leg in self.legs])
+
+    @property
+    def pairs(self) -> list[tuple[int, int]]:
+        """Of six legs that end in three points of the hand by two, where each of them starts.
+
+        So do six legs that start in three points of the ground, seen from the hand.  Empty if the
+        legs meet otherwise.
+        """
+        for near, far in permutations((self.groups_on_ground, self.groups)):
+            if self.tilts and [len(group) for group in far] == [2, 2, 2]:
+                start = {k: i for i, group in enumerate(near) for k in group}
+                return [(start[a], start[b]) for a, b in far]
+        return []
 
     @property
     def meeting(self) -> list[Leg]:

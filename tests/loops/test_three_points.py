@@ -281,11 +281,13 @@ def test_a_point_that_is_free_is_singular(
     assert all(np.abs(missed((near, length, on_hand), x)).max() < 1e-12 for x in fk.p[there])
 
 
-@pytest.mark.parametrize(("ends", "degree"), [("PPPDEF", 40), ("PPDDEE", 40), ("PPDDEF", 40)])
-def test_other_points_have_no_formula(ends: str, degree: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("ends", "degree"), [("PPPDEF", "at most 16"), ("PPDDEE", "16"), ("PPDDEF", "at most 40")]
+)
+def test_other_points_have_no_formula(ends: str, degree: str, tmp_path: Path) -> None:
     d = read_script(script_of("other", on_legs(ends), tmp_path))
     assert not d.has_forward_map
-    assert any(f"of degree at most {degree}" in step.title for step in d.steps)
+    assert any(step.title.endswith(f"of degree {degree}") for step in d.steps)
 
 
 def test_the_article_has_all_equations_of_the_rotation() -> None:

@@ -50,15 +50,15 @@ class LegByLeg:
 
     def lengths(self, legs: Sequence[Leg]) -> sp.Expr:
         """The product of the lengths of the rods, as they are in the answer."""
+        return sp.Mul(*self.each_length(legs))
+
+    def each_length(self, legs: Sequence[Leg]) -> list[sp.Expr]:
+        """The lengths of the rods, as they are in the answer."""
         stretched = {s.link.unknowns[0]: s.value for s in self.found}
-        return sp.Mul(
-            *(
-                stretched[leg.joint]
-                if isinstance(leg, Stretch)
-                else sp.sympify(leg.rod, strict=True)
-                for leg in legs
-            )
-        )
+        return [
+            stretched[leg.joint] if isinstance(leg, Stretch) else sp.sympify(leg.rod, strict=True)
+            for leg in legs
+        ]
 
     @property
     def missed(self) -> sp.Expr:

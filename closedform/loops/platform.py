@@ -60,6 +60,12 @@ DEGREE_IN_SPACE = 40
 """Of six points of a body that are at given distances from six points of the ground."""
 TASK_IN_PLANE = 3
 """The number of coordinates of a hand that turns in a plane."""
+AMPLIFIED = (
+    "2^-10 of Sigma.  Sigma is a quarter of the determinant, times the sum over all rods of what a "
+    "missed length does to the hand: by how much it turns it, times Lambda, the sum of all "
+    "lengths, and by how much it moves the point in which three legs end.  So rods that miss by "
+    "2^-12 of Lambda could turn the hand by a radian"
+)
 TOGETHER = "The pose and the joints have to belong together, as ik gives them."
 
 
@@ -114,7 +120,7 @@ def platform(d: Derivation, legs: Sequence[Leg | Half], *, bars: int = 2) -> Non
         _velocity(m, loop)
         solved.export_rates(at)
         _draw(m, at)
-        _inverse(m, loop)
+        _inverse(m, loop, points=solved if isinstance(solved, ThreePoints) else None)
         return
     degree = _forward(m, loop)
     _velocity(m, loop)
@@ -409,8 +415,11 @@ def _draw(m: Platform, at: Posture | None = None) -> None:
     )
 
 
-def _inverse(m: Platform, loop: Step, degree: str = "") -> None:
-    """The inverse; the ``degree`` is that of the forward problem, if ``fk`` is not derived."""
+def _inverse(m: Platform, loop: Step, degree: str = "", points: ThreePoints | None = None) -> None:
+    """The inverse; the ``degree`` is that of the forward problem, if ``fk`` is not derived.
+
+    ``points`` are those in which six legs end, if it is.
+    """
     d, g = m.d, m.d.program()
     if m.tilts:
         require_pose(g, m.pose)
@@ -420,12 +429,17 @@ def _inverse(m: Platform, loop: Step, degree: str = "") -> None:
     arms = _named_arms(m, g)
     for (k, leg), arm, offset in zip(m.numbered, arms, m.offsets, strict=True):
         solved.solve(k, leg, m.position + arm + offset - leg.base)
-    spans = [s.rod - arm for s, arm in zip(solved.found, arms, strict=True)]
-    rows = _named_rows(m, g, arms, spans)
-    volume = g.let("Delta", determinant(g, rows))
-    least, scale_name, said = _scale(m, g, solved, turns=not degree)
+    if points:
+        sizes = solved.each_length(m.legs), solved.size
+        volume, least = points.amplified(g, arms, [s.rod for s in solved.found], sizes)
+        least, scale_name, said = least / 4, r"\Sigma", AMPLIFIED
+    else:
+        spans = [s.rod - arm for s, arm in zip(solved.found, arms, strict=True)]
+        rows = _named_rows(m, g, arms, spans)
+        volume = determinant(g, rows)
+        least, scale_name, said = _scale(m, g, solved, turns=not degree)
     g.determined(
-        sp.Abs(volume),
+        sp.Abs(g.let("Delta", volume)),
         least,
         m.meet,
         name=r"|\det A|",
@@ -477,12 +491,6 @@ def _scale(m: Platform, g: Program, solved: LegByLeg, *, turns: bool) -> tuple[s
         "lambda, the root mean square distance of the ends of the rods on the hand from their "
         "centre"
     )
-    if turns:  # twice, because three points are computed one after the other
-        return (
-            2 * rods * lever**2 * solved.size,
-            rf"2 \Lambda \lambda^2 {product}",
-            f"2^-9 {of} the square of {spread}, and {total}",
-        )
     if m.tilts:  # six legs lose more digits in their determinant than in the pose
         scale = rods * lever**3 / 2**10
         return scale, rf"2^{{-10}} \lambda^3 {product}", f"2^-20 {of} the third power of {spread}"

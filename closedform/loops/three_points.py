@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import sympy as sp
 
@@ -31,6 +31,8 @@ from closedform.model.inverse import Link
 from closedform.model.names import listed
 from closedform.model.step import Step
 
+Sizes: TypeAlias = tuple[Sequence[sp.Expr], sp.Expr]
+"""The lengths of the rods, and the sum of all lengths."""
 SIZES = [3, 2, 1]
 """How many legs end in each of the points."""
 NAMES = "CDE"
@@ -347,6 +349,43 @@ class ThreePoints:
             uses=[m.d.loop] if m.d.loop else [],
         )
 
+    def amplified(
+        self, g: Program, arms: Sequence[sp.Matrix], rods: Sequence[sp.Matrix], sizes: Sizes
+    ) -> tuple[sp.Expr, sp.Expr]:
+        """The determinant of A, and that times what missed lengths of the rods do to the hand.
+
+        This is the sum, over all rods, of the turn of the hand and of the velocity of C that one
+        of them causes; the turn counts as a motion by the size of the mechanism.
+        """
+        *first, i, j, last = (k - 1 for k in self.order)
+        ends = [leg.end() for leg in self.m.legs] if self.on_ground else arms
+        u, v = (named(g, x, ends[k] - ends[first[0]]) for x, k in (("u", i), ("v", last)))
+        one, two = (named(g, f"M_{k + 1}", u.cross(rods[k])) for k in (i, j))
+        three = named(g, f"M_{last + 1}", v.cross(rods[last]))
+        across = {
+            k: named(g, f"V_{k + 1}", rods[first[n - 2]].cross(rods[first[n - 1]]))
+            for n, k in enumerate(first)
+        }
+        at_c = g.let("Delta_C", rods[first[0]].dot(across[first[0]]))
+        at_d = g.let("Delta_D", one.dot(rods[j]))
+        at_e = g.let("Delta_E", three.dot(u))
+        both = g.let("Delta_DE", at_d * at_e)
+        turns = {
+            i: named(g, f"W_{i + 1}", two.cross(three)),
+            j: named(g, f"W_{j + 1}", three.cross(one)),
+            last: named(g, f"W_{last + 1}", at_d * u),
+        }
+        turned = {k: _length_of(turn) * sp.Abs(at_c) for k, turn in turns.items()}
+        moved = {}
+        for k, V in across.items():
+            by = sum((rods[e].dot(V) * turn for e, turn in turns.items()), sp.zeros(3, 1))
+            turned[k] = _length_of(named(g, f"omega_{k + 1}", by))
+            moved[k] = _length_of(V) * sp.Abs(both)
+        lengths, size = sizes
+        total = size * sp.Add(*(lengths[k] * e for k, e in sorted(turned.items())))
+        total += sp.Add(*(lengths[k] * e for k, e in sorted(moved.items())))
+        return at_c * both, total
+
     def export_rates(self, at: Posture) -> None:
         """Export what depends on the joints and the assembly mode."""
         self._state_rates()
@@ -412,6 +451,10 @@ class ThreePoints:
             omega = named(v, f"omega_{k + 1}", turned)
             found.append((moved + to_c.cross(omega)).col_join(omega))
         return sp.Matrix.hstack(*found)
+
+
+def _length_of(v: sp.Matrix) -> sp.Expr:
+    return sp.sqrt(square(v))
 
 
 def _length(vector: sp.Matrix) -> sp.Expr:

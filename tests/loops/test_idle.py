@@ -119,3 +119,28 @@ def test_two_legs_in_space_may_be_meant_in_a_plane(tmp_path: Path) -> None:
     text = "\n".join(row for row in text.splitlines() if not row.startswith(("lower", "tool")))
     with pytest.raises(TableError, match="in a plane alone is written with two coordinates"):
         script_of("t", text, tmp_path)
+
+
+def test_a_hand_that_turns_is_left_whole(tmp_path: Path) -> None:
+    """Its point is where two legs meet, but its body turns with the third one."""
+    legs = "".join(
+        f"""
+        t{k} = {{}}
+        r{k} = {{}}"""
+        for k in (1, 2, 3)
+    )
+    joints = "".join(
+        f"""
+        a{k} = {{between = ["ground", "t{k}"], at = "A{k}"}}
+        q{k} = {{between = ["t{k}", "r{k}"], at = "A{k}", kind = "prismatic", driven = true}}
+        c{k} = {{between = ["r{k}", "top"], at = "{end}"}}"""
+        for k, end in ((1, "P"), (2, "P"), (3, "C"))
+    )
+    text = f"""
+        hand = "P"
+        [bodies]
+        ground = {{A1 = [0, 0], A2 = [1, 0], A3 = [0, 1]}}
+        top = {{P = [0, 0], C = [0.3, 0]}}{legs}
+        [joints]{joints}
+    """
+    assert "platform(" in script_of("t", text, tmp_path)

@@ -173,7 +173,7 @@ def test_the_modes_are_all_postures(case: tuple) -> None:
     assert len(robot.ASSEMBLY_MODES) == 8
     rng, hits, several = np.random.default_rng(2), 0, 0
     every = joints(robot, 400, 1)
-    for q in every[:: len(every) // 5][:5]:
+    for q in every[:: len(every) // 8][:8]:
         fk = robot.fk(q)
         there = fk.p[fk.status == OK]
         several += len(there)
@@ -298,3 +298,17 @@ def test_the_article_has_all_equations_of_the_rotation() -> None:
     assert r"b R_{22} &= v_{y}" in text
     assert r"b R_{13} - h R_{33} &= u_{z}" in text
     assert r"$R$ is $R^T$" in text
+
+
+@pytest.mark.parametrize(("c", "share"), [(0.5, 0.04), (0.1, 0.12), (0.02, 0.4)])
+def test_a_small_hand_is_singular_only_where_digits_are_lost(
+    c: float, share: float, robot: ModuleType
+) -> None:
+    """Of random poses, 8, 29 and 72 % were SINGULAR; 0.3, 1.5 and 6 % miss by more than 1e-12."""
+    T, parameters = poses(4_000, 8), robot.Parameters(c=c)
+    q, status = robot.ik(T, parameters)
+    fk = robot.fk(q[:, 0], parameters)
+    off = np.where(fk.status != UNREACHABLE, np.abs(fk.p - T[:, None]).max((2, 3)), np.inf)
+    assert off.min(axis=1)[status[:, 0] == OK].max() < 1e-12
+    assert (status == SINGULAR).mean() < share
+    assert (status == SINGULAR).mean() < 10 * (off.min(axis=1) > 1e-12).mean()

@@ -130,7 +130,9 @@ def placed(loop: Loop) -> Found | None:
     """The bodies of a planar linkage, with or without slides, that the joints determine."""
     joined_loop, cylinders = joined(with_pivots(loop))
     found = Found(joined_loop, cylinders)
-    if loop.dimensions != 2 or loop.parallelograms or not _has_joints(found):
+    inputs = len(found.driven) + len(cylinders)
+    fits = loop.dimensions == 2 and inputs in FEW and not loop.parallelograms
+    if not fits or not _has_joints(found):
         return None
     _read_points(found)
     _read_slides(found)

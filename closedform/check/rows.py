@@ -7,6 +7,7 @@ Arb is needed more often: the results are the same, but slower.
 
 from __future__ import annotations
 
+import math
 from collections import OrderedDict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property, partial, reduce
@@ -81,6 +82,13 @@ class RowEvaluator:
         if isinstance(found, str):
             raise Undetermined(found)
         return found
+
+    def alone(self, row: Sequence[float]) -> float:
+        """The first value at one point, by Arb; NaN where it cannot decide."""
+        try:
+            return to_float(self.exactly(row)[0])
+        except Undetermined:
+            return math.nan
 
     def balls(self, rows: Array) -> tuple[Array, Array]:
         """Midpoints and radii, one row for each point; a radius that is not finite leaves all open.

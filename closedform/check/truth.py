@@ -454,12 +454,13 @@ def _flagged(flags_of_cases: Sequence[RowEvaluator], rows: Array, limit: float) 
     """
     found = np.zeros(len(rows), bool)
     for flags in flags_of_cases:
-        values = flags.settled(rows, crosses(limit), defined=False)
-        found |= (values < limit).any(axis=1)
-        unsettled = np.flatnonzero(np.isnan(values).any(axis=1))
-        for flag in flags.separately if len(unsettled) else ():
-            alone = flag.settled(rows[unsettled], crosses(limit), defined=False)
-            found[unsettled] |= alone[:, 0] < limit
+        middle, radius = flags.balls(rows)
+        with np.errstate(invalid="ignore"):
+            found |= (middle + radius < limit).any(axis=1)
+        undecided = crosses(limit)(middle, radius)
+        for k in np.flatnonzero(undecided.any(axis=0)):
+            for row in np.flatnonzero(undecided[:, k] & ~found):
+                found[row] = flags.separately[k].alone(rows[row]) < limit
     return found
 
 

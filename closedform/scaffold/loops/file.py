@@ -87,8 +87,9 @@ OTHER_NAMES = {
     **dict.fromkeys(("cardan", "hooke"), "a joint of Cardan or Hooke is universal"),
     **dict.fromkeys(("hinge", "pin", "rotary", "turn"), "a hinge or a pin is revolute"),
     **dict.fromkeys(("slide", "slider", "linear", "sliding"), "a slide is prismatic"),
-    "cylindrical": "a leg with a cylindrical joint, which turns and slides along one axis, is not "
-    "supported",
+    "cylindrical": "a cylindrical joint, which turns and slides along one axis, is supported on "
+    "the ground, with its slide driven; elsewhere it is a slide and a revolute joint, with a body "
+    "between them",
 }
 """What is meant by other names of joints."""
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
@@ -205,6 +206,9 @@ def _read_joints(loop: Loop, joints: Any) -> None:
         where = f"{loop.file}, [joints.{name}]"
         check_keys(given, ("between", "kind", "at", "axis", "second", "driven"), where)
         kind, between = given.get("kind", "revolute"), given.get("between")
+        if kind == "cylindrical" and given.get("driven") is True and GROUND in (between or ()):
+            given = _on_slider(loop, name, given, where)
+            kind, between = given["kind"], given["between"]
         if kind not in KINDS:
             meant = OTHER_NAMES.get(kind.lower(), "") if isinstance(kind, str) else ""
             raise TableError(
@@ -228,6 +232,20 @@ def _read_joints(loop: Loop, joints: Any) -> None:
         joint = Joint(name, kind, (between[0], between[1]), at, axis, driven, second)
         check_variable(name, where, taken=name in USED and _is_written(loop, joint))
         loop.joints[name] = joint
+
+
+def _on_slider(loop: Loop, name: str, given: Mapping[str, Any], where: str) -> Mapping[str, Any]:
+    """The slide of a cylindrical joint on the ground, beside a new body and its turning joint."""
+    if "axis" not in given or "at" not in given:
+        raise TableError(f"{where}: a cylindrical joint needs its axis, and at which point it is")
+    at, slider = given["at"], f"{name}_slider"
+    (body,) = (b for b in given["between"] if b != GROUND)
+    if slider in loop.bodies or at not in loop.bodies[GROUND]:
+        raise TableError(f"{where}: {GROUND} has no point {at}, or {slider} is a body already")
+    loop.bodies[slider] = {at: loop.bodies[GROUND][at]}
+    axis = _axis(loop, given["axis"], where, "axis")
+    loop.joints[f"{name}_turn"] = Joint(f"{name}_turn", "revolute", (slider, body), at, axis, False)
+    return {**given, "kind": "prismatic", "between": [GROUND, slider]}
 
 
 def _is_written(loop: Loop, joint: Joint) -> bool:

@@ -137,12 +137,11 @@ def _ordered(
     cylinders: Mapping[str, Joint],
 ) -> Order:
     """The dyads of the linkage, if there are no other groups."""
-    free = freedoms(points)
+    free, drives = freedoms(points), [j.name for j in (*turning.values(), *cylinders.values())]
     if free != len(turning):
         raise loop.error(
-            f"{listed([j.name for j in (*turning.values(), *cylinders.values())])} drive this "
-            f"linkage, but by the count of its bodies and pins it has {free + len(cylinders)} "
-            f"degrees of freedom"
+            f"{listed(drives)} drive{'s' * (len(drives) == 1)} this linkage, but by the count of "
+            f"its bodies and pins it has {free + len(cylinders)} degrees of freedom"
         )
     found = order(points, [GROUND, *turning])
     for step in found.held:
@@ -155,17 +154,28 @@ def _ordered(
     if not found.left:
         return found
     degree = ", which leads to an equation of degree 6" if len(found.left) == 4 else ""
+    without = {name: at for name, at in points.items() if name not in cylinders}
     others = [
         j.name
         for j in loop.of(GROUND)
-        if len(turning) == 1 and not cylinders and not order(points, [GROUND, j.other(GROUND)]).left
+        if len(turning) + len(cylinders) == 1
+        and j.other(GROUND) in without
+        and not order(without, [GROUND, j.other(GROUND)]).left
     ]
-    instead = f"; it can be solved if {' or '.join(others)} is driven" if others else ""
+    instead = other_drive(others, [j.name for j in cylinders.values()])
     raise loop.error(
         f"this is a planar linkage, but no two of the bodies {listed(found.left)} are a dyad (two "
         f"bodies with a common pin, each with one more point that is known); they are a group of "
         f"a higher class{degree}{instead}"
     )
+
+
+def other_drive(others: Sequence[str], cylinders: Sequence[str]) -> str:
+    """What else may be driven, of which the length of a cylinder follows."""
+    if not others:
+        return ""
+    beside = f" instead of {listed(cylinders)}, whose length follows from the posture"
+    return f"; it can be solved if {' or '.join(others)} is driven{beside * bool(cylinders)}"
 
 
 def check_apart(loop: Loop, bodies: Sequence[str], near: Sequence[str], pin: str) -> None:
@@ -200,4 +210,13 @@ def safe(name: str) -> str:
     return name.replace("-", "_")
 
 
-__all__ = ["FEW", "LinkageLines", "check_apart", "line_of", "linkage", "no_point", "safe"]
+__all__ = [
+    "FEW",
+    "LinkageLines",
+    "check_apart",
+    "line_of",
+    "linkage",
+    "no_point",
+    "other_drive",
+    "safe",
+]

@@ -243,6 +243,12 @@ def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLe
         )
     hinged = f"  {HINGED}" if loop.dimensions == 3 and len(legs) == 3 else ""
     on_axes = f"  {ON_AXES}" if loop.dimensions == 3 else ""
+    if loop.dimensions == 3 and len(legs) == TURNING[3] - 1 and not struts:
+        raise loop.error(
+            f"{body} may turn, and there are {len(legs)} driven joints; they leave it one freedom, "
+            f"such as a turn about its tool, which is not supported.  A hand that turns in space "
+            f"needs {TURNING[3]}"
+        )
     needed, where = TURNING[loop.dimensions], "a plane" if loop.dimensions == 2 else "space"
     if struts or len(legs) != needed:
         instead = "a strut carries it" if struts else f"there are {len(legs)}"

@@ -23,6 +23,7 @@ from closedform.scaffold.loops.linkages import (
     check_apart,
     line_of,
     no_point,
+    other_drive,
     safe,
 )
 from closedform.scaffold.source import literal, source
@@ -303,15 +304,16 @@ def _ordered(found: Found) -> SlidingOrder:
             near = [h.near for h in group.holds if isinstance(h, OnCircle)]
             check_apart(loop, group.bodies, near, group.pin)
     if order.left:
+        without = {name: at for name, at in found.points.items() if name not in found.cylinders}
         others = [
             j.name
             for j in loop.of(GROUND)
             if len(driven) == 1
-            and not found.cylinders
             and not j.driven
-            and not sliding_order(found.points, found.pairs, [GROUND, j.other(GROUND)]).left
+            and j.other(GROUND) in without
+            and not sliding_order(without, found.pairs, [GROUND, j.other(GROUND)]).left
         ]
-        instead = f"; it can be solved if {' or '.join(others)} is driven" if others else ""
+        instead = other_drive(others, [j.name for j in found.cylinders.values()])
         raise loop.error(f"this is a planar linkage with slides, but {order.undone}{instead}")
     return order
 

@@ -65,7 +65,8 @@ def _upright(found: Legs, joint: Joint, hinged: Joint) -> LoopLeg:
     if any(off):
         raise loop.error(
             f"the plane of the leg of {joint.name}, which is normal to the axis of {hinged.name}, "
-            f"has to contain the z axis; put the origin where the planes of the three legs meet"
+            f"has to contain the z axis; put the origin where the planes of the three legs meet.  "
+            "Planes that meet in one point alone, as in a 3-RPS cube mechanism, are not supported"
         )
     if leg.place[2] != 0:
         raise loop.error(

@@ -65,7 +65,6 @@ def circle_intersection(
     scale: sp.Expr,
     share: sp.Rational = SHARE,
     free: tuple[sp.Symbol, ...] = (),
-    suffix: str = "",
 ) -> tuple[Lemma, Chord]:
     """The points at two distances, the ``radii``, from two points.
 
@@ -92,40 +91,36 @@ def circle_intersection(
         what the point may miss a circle by, as a share of the scale
     free
         the joints that are free if the point is
-    suffix
-        what the names end in
     """
     (x, y), (first, second) = unknowns, radii
-    distance = program.let(
-        f"apart{suffix}", sp.sqrt(centres[0] ** 2 + centres[1] ** 2), nonnegative=True
-    )
+    distance = program.let("apart", sp.sqrt(centres[0] ** 2 + centres[1] ** 2), nonnegative=True)
     S = first + second + distance
     # if there is a gap between the circles, the point misses each of them by half of it
     tolerated = 2 * share * scale
-    A = program.bound(f"slack{suffix}", first + second - distance, tolerated, "the bars meet")
-    touching = program.vanishes(f"touching{suffix}", A, scale, "the bars are in line")
-    flag = program.vanishes(f"coincide{suffix}", distance, scale, "the centres coincide", free)
+    A = program.bound("slack", first + second - distance, tolerated, "the bars meet")
+    touching = program.vanishes("touching", A, scale, "the bars are in line")
+    flag = program.vanishes("coincide", distance, scale, "the centres coincide", free)
     n: tuple[sp.Expr, sp.Expr] = (
         choose(flag, 1, centres[0] / distance),
         choose(flag, 0, centres[1] / distance),
     )
     if first == second:
-        d = program.let(f"distance{suffix}", choose(flag, 0, distance), nonnegative=True)
+        d = program.let("distance", choose(flag, 0, distance), nonnegative=True)
         along, height = d / 2, sp.sqrt(S) * sp.sqrt(A) / 2
     else:
         d = distance
         along, rise, (B, C) = lens(
-            program, radii, d, slack=A, tolerated=tolerated, meaning="the bars meet", suffix=suffix
+            program, radii, d, slack=A, tolerated=tolerated, meaning="the bars meet"
         )
         along = choose(flag, first, along)
         height = choose(flag, 0, rise)
-    n = (program.let(f"n_1{suffix}", n[0]), program.let(f"n_2{suffix}", n[1]))
-    height = program.let(f"height{suffix}", choose(touching, 0, height), nonnegative=True)
+    n = (program.let("n_1", n[0]), program.let("n_2", n[1]))
+    height = program.let("height", choose(touching, 0, height), nonnegative=True)
     plainly = {}
     if first != second:
         foot = choose(flag, first, (distance**2 + first**2 - second**2) / (2 * distance))
         plainly = {x: foot * n[0] - sigma * height * n[1], y: foot * n[1] + sigma * height * n[0]}
-        if not suffix:
+        if not program.suffix:
             rise = sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) / (2 * distance)
             plainly[height] = choose(sp.Or(touching, flag), 0, rise)
     return Lemma(
@@ -148,7 +143,7 @@ def circle_intersection(
                 ("d", r"\mathcal A", "h", r"\mathcal B", r"\mathcal C"),
                 strict=False,
             )
-            if isinstance(name, sp.Symbol) and not suffix
+            if isinstance(name, sp.Symbol) and not program.suffix
         },
     ), Chord(n, d, along, height, flag)
 
@@ -163,7 +158,6 @@ def two_circles(
     scale: sp.Expr,
     share: sp.Rational = SHARE,
     free: Sequence[sp.Symbol] = (),
-    suffix: str = "",
 ) -> Meeting:
     """The points at two distances from two points, as :func:`circle_intersection` gives them.
 
@@ -185,13 +179,11 @@ def two_circles(
         what the point may miss a circle by, as a share of the scale
     free
         the joints that are free if the point is
-    suffix
-        what the names end in
     """
     p, (r1, r2), (origin, other) = program, radii, centres
     span = sp.Matrix(
         [
-            e if e.is_Symbol or e == 0 else p.let(f"u_{i}{suffix}", e)
+            e if e.is_Symbol or e == 0 else p.let(f"u_{i}", e)
             for i, e in zip("xy", other - origin, strict=True)
         ]
     )
@@ -206,7 +198,6 @@ def two_circles(
         scale=scale,
         share=share,
         free=tuple(free),
-        suffix=suffix,
     )
     placed = {u: x - o for u, x, o in zip(first, unknowns, origin, strict=True)}
     shifted = replace(

@@ -292,7 +292,6 @@ def lens(
     slack: sp.Symbol,
     tolerated: sp.Expr,
     meaning: str,
-    suffix: str = "",
 ) -> tuple[sp.Expr, sp.Expr, tuple[sp.Symbol, sp.Symbol]]:
     """Where circles or spheres meet: how far along the line of the centres, and beside it.
 
@@ -312,16 +311,14 @@ def lens(
         how far the other two slacks may be below zero
     meaning
         what the bounds say, in words
-    suffix
-        what the names end in
     """
     (first, second), A = radii, slack
-    B = program.bound(f"outer{suffix}", distance + first - second, tolerated, meaning)
-    C = program.bound(f"inner{suffix}", distance - first + second, tolerated, meaning)
+    B = program.bound("outer", distance + first - second, tolerated, meaning)
+    C = program.bound("inner", distance - first + second, tolerated, meaning)
     # B + C is twice the distance and B - C twice the difference of the radii, also of circles
     # that miss each other by a rounding error.  Then one slack was a little negative and is now
     # zero, and the point misses both circles by half of it, however close the centres are.
-    share = program.let(f"share{suffix}", 1 / (B + C), nonnegative=True)
+    share = program.let("share", 1 / (B + C), nonnegative=True)
     along = (distance + (B - C) * (A + distance) * share) / 2
     S = first + second + distance
     return along, sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) * share, (B, C)

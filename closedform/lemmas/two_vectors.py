@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
+from closedform.lemmas.named import named
 from closedform.lemmas.registry import theorem
 from closedform.model.functions import Program
 from closedform.model.inverse import Link
@@ -45,11 +46,11 @@ def two_vectors(
     """
     p, (d, e), (u, v) = program, given, turned
     start = len(p.body)
-    m = _named(p, "m", d.cross(e))
+    m = named(p, "m", d.cross(e))
     over = p.let("over_m", 1 / m.dot(m), nonnegative=True)
-    rows = [_named(p, name, x.cross(y) * over) for name, x, y in (("g", e, m), ("h", m, d))]
-    rows.append(_named(p, "k", m * over))
-    w = _named(p, "w", u.cross(v))
+    rows = [named(p, name, x.cross(y) * over) for name, x, y in (("g", e, m), ("h", m, d))]
+    rows.append(named(p, "k", m * over))
+    w = named(p, "w", u.cross(v))
     made = u * rows[0].T + v * rows[1].T + w * rows[2].T
     value = sp.Matrix(3, 3, lambda i, j: p.let(f"{name}_{i + 1}{j + 1}", made[i, j]))
     equations = (rotation * d - u, rotation * e - v, rotation * d.cross(e) - u.cross(v))
@@ -65,13 +66,6 @@ def two_vectors(
     )
     body, means = tuple(p.body[start:]), dict(zip(value, rotation, strict=True))
     return Link(tuple(rotation), lemma.equations, lemma=lemma, body=body, means=means), value
-
-
-def _named(p: Program, name: str, vector: sp.Matrix) -> sp.Matrix:
-    """A vector, with its coordinates under names unless they are numbers."""
-    return sp.Matrix(
-        [e if e.is_number else p.let(f"{name}_{i}", e) for i, e in zip("xyz", vector, strict=True)]
-    )
 
 
 __all__ = ["two_vectors"]

@@ -205,7 +205,7 @@ def _meet(m: Linkage, at: Posture, dyad: tuple[int, Solved, sp.Symbol], size: sp
     if not scale.is_Symbol:
         scale = f.let(f"scale_{k}", scale)
     met = two_circles(
-        f,
+        replace(f, suffix=f"_{k}"),
         (first, first + span),
         radii,
         tuple(step.unknowns),
@@ -213,7 +213,6 @@ def _meet(m: Linkage, at: Posture, dyad: tuple[int, Solved, sp.Symbol], size: sp
         scale=scale,
         share=_share(m),
         free=tuple(m.hand),
-        suffix=f"_{k}",
     )
     at.spans.append((sp.Matrix(met.first), sp.Matrix(met.first) - span))
     at.volumes.append(met.side * met.size)

@@ -149,7 +149,7 @@ class _Reverse:
         ]
         centres = [named(p, f"b{i}_{k}", self.at[n]) for i, n in enumerate(step.near, 1)]
         met = two_circles(
-            p,
+            replace(p, suffix=f"_{k}"),
             centres,
             radii,
             tuple(unknowns),
@@ -157,7 +157,6 @@ class _Reverse:
             scale=self.size,
             share=sp.S.Half,
             free=m.d.actuated,
-            suffix=f"_{k}",
         )
         start = len(p.body)
         place = named(p, f"p{step.pin}", sp.Matrix([met.lemma[x] for x in unknowns]))

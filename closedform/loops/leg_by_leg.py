@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import sympy as sp
 
 from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, sign_of_leg
+from closedform.lemmas.named import named, named_in
 from closedform.lemmas.planes import Flat
 from closedform.loops.reached import bounds_of_any, export_reach, signs_of
 from closedform.mechanics.lengths import lengths_in_numbers
@@ -227,13 +228,15 @@ def _number(length: sp.Expr) -> sp.Expr:
     return lengths_in_numbers(length.replace(sp.Abs, lambda inside: inside))
 
 
-def named_in(p: Program, name: str, value: sp.Expr) -> sp.Symbol:
-    return value if value.is_Symbol or value.is_number else p.let(name, value)
+def named_rod(p: Program, k: int, leg: Leg, size: sp.Expr | None = None) -> sp.Expr:
+    """The length of the rod of leg ``k``; lemmas equate radii, so that numbers have names.
 
-
-def named(p: Program, name: str, place: sp.Matrix) -> sp.Matrix:
-    """A vector, with its coordinates under names."""
-    return sp.Matrix([named_in(p, f"{name}_{i}", e) for i, e in zip("xyz", place, strict=False)])
+    With a ``size``, a leg that stretches is bounded to a positive length.
+    """
+    rod = sp.sympify(leg.rod, strict=True)
+    if size is not None and isinstance(leg, Stretch):
+        return p.bound(f"r_{k}", rod, size, "a leg has a positive length")
+    return rod if rod.is_Symbol else p.let(f"r_{k}", rod, nonnegative=bool(rod.is_nonnegative))
 
 
 __all__ = [
@@ -243,6 +246,7 @@ __all__ = [
     "LegByLeg",
     "named",
     "named_in",
+    "named_rod",
     "record_lemma",
     "signs_of_modes",
     "size_of",

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from closedform.lemmas.circles import two_circles
-from closedform.lemmas.legs import Leg, Slide, Stretch, cross_in_plane
+from closedform.lemmas.legs import Slide, Stretch, cross_in_plane
 from closedform.lemmas.lines import coordinate
 from closedform.lemmas.missed import MOVED, SHARE
 from closedform.lemmas.sine_cosine import linear_pair
@@ -19,6 +19,7 @@ from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import (
     SIGN,
     named,
+    named_rod,
     record_lemma,
     size_of,
 )
@@ -100,7 +101,7 @@ def _forward(meet: Meet, loop: Step) -> Posture:
     size = f.let("size", size_of(d, m.whole, slid) + sp.Add(*stretched))
     share = MOVED if slid or stretched else SHARE
     near = {k: named(f, f"b_{k}", leg.end()) for k, leg in m.numbered}
-    radii = {k: _radius(f, k, leg) for k, leg in m.numbered}
+    radii = {k: named_rod(f, k, leg) for k, leg in m.numbered}
     length = f.let("arm", sp.sqrt(sp.factor(sp.expand(square(arm)))), nonnegative=True)
     links: list[Link] = []
 
@@ -110,7 +111,7 @@ def _forward(meet: Meet, loop: Step) -> Posture:
         """Where two circles meet, under a name, and the product of the vectors to there."""
         first = x != D
         found = two_circles(
-            f,
+            replace(f, suffix="_C" if first else "_D"),
             centres,
             rods,
             tuple(x),
@@ -118,7 +119,6 @@ def _forward(meet: Meet, loop: Step) -> Posture:
             scale=size,
             share=share,
             free=tuple(m.pose) if first else (yaw,),
-            suffix="_C" if first else "_D",
         )
         start = len(f.body)
         place = named(f, "C" if first else "D", sp.Matrix([found.lemma[e] for e in x]))
@@ -189,12 +189,6 @@ def _forward(meet: Meet, loop: Step) -> Posture:
         volumes=(first, second),
         sign=meet.sign,
     )
-
-
-def _radius(p: Program, k: int, leg: Leg) -> sp.Expr:
-    """The length of a rod; the lemma equates radii, so that numbers have names."""
-    rod = sp.sympify(leg.rod, strict=True)
-    return rod if rod.is_Symbol else p.let(f"r_{k}", rod)
 
 
 def _turned(pair: Pair) -> sp.Matrix:

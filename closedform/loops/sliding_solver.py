@@ -171,7 +171,7 @@ class Solver:
         if len(circles) == 2:
             sigma = self._sign(f"{k}")
             met = two_circles(
-                p,
+                replace(p, suffix=f"_{k}"),
                 centres,
                 radii,
                 tuple(unknowns),
@@ -179,7 +179,6 @@ class Solver:
                 scale=self.size,
                 share=self.share,
                 free=self.free,
-                suffix=f"_{k}",
             )
             link = met.link
         elif circles:

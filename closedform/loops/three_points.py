@@ -22,7 +22,7 @@ from closedform.lemmas.missed import MOVED, SHARE
 from closedform.lemmas.spheres import three_spheres
 from closedform.lemmas.two_vectors import two_vectors
 from closedform.loops.hand import square
-from closedform.loops.leg_by_leg import SIGN, named, record_lemma, size_of
+from closedform.loops.leg_by_leg import SIGN, named, named_rod, record_lemma, size_of
 from closedform.loops.modes import export
 from closedform.loops.platform_legs import Platform, Posture, certify_forward, matrices
 from closedform.mechanics.frames import rotation
@@ -118,7 +118,7 @@ class ThreePoints:
         share = MOVED if slid or stretched else SHARE
         letter = "e" if self.on_ground else "b"
         near = {k: named(f, f"{letter}_{k}", e) for k, e in self.centres.items()}
-        radii = {k: self._radius(f, k, size) for k in self.order}
+        radii = {k: named_rod(f, k, self.m.legs[k - 1], size) for k in self.order}
         spans = [named(f, name, e) for name, e in zip("de", self.spans, strict=True)]
         sides = self._sides(f)
         normal = spans[0].cross(spans[1])
@@ -226,14 +226,6 @@ class ThreePoints:
             *((letter, f"{point} - {centres[0]}") for letter, point in letters),
             *((f"r_{k}", length) for k, length in enumerate(lengths, 1)),
         )
-
-    def _radius(self, p: Program, k: int, size: sp.Expr) -> sp.Expr:
-        """The length of a rod; the lemma equates radii, so that numbers have names."""
-        leg = self.m.legs[k - 1]
-        rod = sp.sympify(leg.rod, strict=True)
-        if isinstance(leg, Stretch):
-            return p.bound(f"r_{k}", rod, size, "a leg has a positive length")
-        return rod if rod.is_Symbol else p.let(f"r_{k}", rod, nonnegative=True)
 
     def _sides(self, p: Program) -> list[sp.Symbol]:
         """The distances of C from D, of C from E and of D from E on the hand."""

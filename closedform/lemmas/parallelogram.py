@@ -78,7 +78,6 @@ argument of the parallelogram in space.""",
     exception=r"""If the three vectors are in one plane, the hand can begin to turn: a constraint
 singularity.  Of three rods alone this is so everywhere: both vectors are at right angles to
 $\mathbf r$, about which the hand turns.""",
-    rests_on=("parallelogram in space",),
 )
 
 

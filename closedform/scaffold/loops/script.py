@@ -25,6 +25,7 @@ from closedform.scaffold.loops.on_rod import on_rod
 from closedform.scaffold.loops.rods import read_pairs, read_rods
 from closedform.scaffold.loops.sliding import sliding
 from closedform.scaffold.loops.slotted import slotted
+from closedform.scaffold.loops.spherical import with_arcs
 from closedform.scaffold.loops.uprights import HINGED, uprights
 from closedform.scaffold.source import file_name, literal
 
@@ -63,7 +64,7 @@ KINDS = {
 
 def loop_script(name: str, loop: Loop, origin: str) -> tuple[str, str]:
     """The derivation of a loop, as Python, and the kind of the mechanism in words."""
-    loop = without_idle(on_line(loop))
+    loop = with_arcs(without_idle(on_line(loop)))
     origin, way, table = file_name(origin), _way(loop), Table()
     for joint in (leg.joint for leg in way.legs) if way.legs else loop.joints.values():
         if joint.driven:

@@ -1,0 +1,50 @@
+"""Single loops of four axes through one point, such as a joint of Cardan."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from loop_files import derived, script_of
+from places import TESTS
+
+from closedform.scaffold.inputs.tables import TableError
+
+CARDAN = (TESTS / "held_out_loops" / "cardan.toml").read_text("utf-8")
+
+
+def test_a_joint_of_cardan_turns_as_is_known(tmp_path: Path) -> None:
+    joint = derived("cardan", script_of("cardan", CARDAN, tmp_path), tmp_path, crosscheck=True)
+    theta = np.random.default_rng(1).uniform(-np.pi, np.pi, (1000, 1))
+    psi, status = joint.fk(theta)
+    assert not status.any()
+    assert np.allclose(
+        np.sin(psi) * np.cos(theta)[:, None], np.cos(psi) * np.sin(theta)[:, None] * np.sqrt(0.75)
+    )
+    answers = joint.ik(psi[:, 0]).q
+    assert np.abs(np.exp(1j * answers) - np.exp(1j * theta)[:, None]).min(axis=1).max() < 1e-9
+
+
+def test_other_axes_through_one_point(tmp_path: Path) -> None:
+    """The arcs of a spherical four-bar linkage are the angles between its axes."""
+    other = CARDAN.replace("axis = [0, 0, 1]", "axis = [0.6, 0, 0.8]")
+    loop = derived("arcs", script_of("arcs", other, tmp_path), tmp_path)
+    axes = np.array([1, 0, 0]), np.array([np.sqrt(0.75), 0.5, 0])
+    first, second = np.array([0.6, 0, 0.8]), np.array([-0.5, np.sqrt(0.75), 0])
+    count = 0
+    for theta in np.linspace(-3, 3, 50):
+        psi, status = loop.fk([theta])
+        for angle in psi[status == 0, 0]:
+            ends = [
+                np.cos(t) * v + np.sin(t) * np.cross(a, v) + (1 - np.cos(t)) * a * (a @ v)
+                for a, v, t in zip(axes, (first, second), (theta, angle), strict=True)
+            ]
+            assert np.isclose(ends[0] @ ends[1], first @ second, atol=1e-12)
+            count += 1
+    assert count > 20
+
+
+def test_axes_that_do_not_meet_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(TableError, match="shaft1, which must be joined to one rod"):
+        script_of(
+            "t", CARDAN.replace("cross = {O = [0, 0, 0]}", "cross = {O = [0, 0, 1]}"), tmp_path
+        )

@@ -117,3 +117,49 @@ def test_a_cylindrical_joint_is_a_slide_and_a_turn(tmp_path: Path) -> None:
     mechanism = derived("crr", script, tmp_path)
     p, status = mechanism.fk([0.1, 0.2, 0.3])  # the axes are those of x, y and z
     assert not status.any() and np.allclose(p, [0.1, 0.2, 0.3])
+
+
+def test_a_delta_robot_on_cylinders_is_two_files(tmp_path: Path) -> None:
+    """Cylinders push its arms; each of them and its arm are a loop in a plane."""
+    text = """
+hand = "P"
+copies = 3
+[bodies]
+ground = {A1 = [0.2, 0, 0], F1 = [0.2, 0, 0.3]}
+arm1 = {A1 = [0.2, 0, 0], B1 = [0.5, 0, 0], L1 = [0.3, 0, 0]}
+tube1 = {}
+piston1 = {}
+rod1 = {length = 0.6, parallelogram = [0, 0.1, 0]}
+hand = {P = [0, 0, 0], C1 = [0.05, 0, 0]}
+[joints]
+a1 = {between = ["ground", "arm1"], at = "A1", axis = [0, 1, 0]}
+f1 = {between = ["ground", "tube1"], at = "F1", axis = [0, 1, 0]}
+q1 = {between = ["tube1", "piston1"], at = "F1", kind = "prismatic", driven = true}
+l1 = {between = ["piston1", "arm1"], at = "L1", axis = [0, 1, 0]}
+b1 = {between = ["arm1", "rod1"], at = "B1"}
+c1 = {between = ["rod1", "hand"], at = "C1"}
+"""
+    with pytest.raises(TableError, match=r'Drive a1 here, and write .* with hand = "a1"'):
+        script_of("t", text, tmp_path)
+
+
+def test_a_spherical_mechanism_of_axes_alone_is_told_how_to_write_arcs(tmp_path: Path) -> None:
+    text = """
+hand = "P"
+[bodies]
+ground = {O = [0, 0, 0]}
+arm1 = {}
+arm2 = {}
+link1 = {}
+link2 = {O = [0, 0, 0], P = [0, 0, 1]}
+[joints]
+t1 = {between = ["ground", "arm1"], at = "O", axis = [1, 0, 0], driven = true}
+t2 = {between = ["ground", "arm2"], at = "O", axis = [0, 1, 0], driven = true}
+a = {between = ["arm1", "link1"], at = "O", axis = [0, 1, 0]}
+b = {between = ["arm2", "link2"], at = "O", axis = [1, 0, 0]}
+c = {between = ["link1", "link2"], at = "O", axis = [0, 0, 1]}
+"""
+    with pytest.raises(
+        TableError, match=r"All axes meet in O, .* and hold the hand by a rod from O"
+    ):
+        script_of("t", text, tmp_path)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from closedform.model.names import listed
-from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
+from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 from closedform.scaffold.loops.halves import halves
 from closedform.scaffold.loops.rods import several_told
 from closedform.scaffold.source import source
@@ -232,13 +232,30 @@ class Legs:
             raise loop.error(
                 f"{joint.name} moves {body}, which must be joined to one rod, a body with a "
                 f"length or two points, or to one body by a passive slide; it is joined to "
-                f"{carried}" + self.ball_on_hand(onward) + several_told(loop, body)
+                f"{carried}"
+                + self.ball_on_hand(onward)
+                + self.arcs_told()
+                + several_told(loop, body)
             )
         if joint.kind == "prismatic":
             return self.slider(joint, *rods[0])
         if joint.kind == "revolute":
             return self.crank(joint, *rods[0])
         raise loop.error(f"{joint.name} is driven, so it must be revolute or prismatic")
+
+    def arcs_told(self) -> str:
+        """What is said of a mechanism all of whose axes meet."""
+        joints = [*self.loop.joints.values()]
+        places = {j.at for j in joints}
+        turning = all(j.kind == "revolute" and j.axis is not None for j in joints)
+        if len(places) != 1 or not turning or self.loop.dimensions == 2:
+            return ""
+        (at,) = places
+        return (
+            f".  All axes meet in {at}, so this is a spherical mechanism.  Write each arc as a rod "
+            f"with ball joints at the ends, whose length is their distance, and hold the hand by a "
+            f"rod from {at}, or by a spherical joint there if it turns"
+        )
 
     def ball_on_hand(self, onward: Sequence[Joint]) -> str:
         """What is said of a ball that slides on the hand, as in a 3-PSP mechanism."""
@@ -482,9 +499,15 @@ class Legs:
             for j in loop.of(body)
             if GROUND in j.between and j.kind == "revolute" and not j.driven and body != GROUND
         ]
-        if not held or loop.dimensions == 3:
+        if not held:
             return ""
         (joint, body), *_ = held
+        if loop.dimensions == len(AXES):
+            return (
+                f".  {joint} holds {body} on the ground.  Drive {joint} here, and write the loop "
+                f'that moves {body} as a file of its own, with hand = "{joint}"; if it is in a '
+                f"plane, with two coordinates"
+            )
         return (
             f".  {joint} holds {body} on the ground.  Of an arm whose joints are driven through "
             f'loops, write each loop as a file of its own, this one with hand = "{joint}", and the '

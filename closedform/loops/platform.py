@@ -61,10 +61,10 @@ DEGREE_IN_SPACE = 40
 TASK_IN_PLANE = 3
 """The number of coordinates of a hand that turns in a plane."""
 AMPLIFIED = (
-    "2^-10 of Sigma.  Sigma is a quarter of the determinant, times the sum over all rods of what a "
+    "2^-10 of Sigma.  Sigma is a third of the determinant, times the sum over all rods of what a "
     "missed length does to the hand: by how much it turns it, times Lambda, the sum of all "
     "lengths, and by how much it moves the point in which three legs end.  So rods that miss by "
-    "2^-12 of Lambda could turn the hand by a radian"
+    "a 3000th of Lambda could turn the hand by a radian"
 )
 TOGETHER = "The pose and the joints have to belong together, as ik gives them."
 
@@ -432,7 +432,7 @@ def _inverse(m: Platform, loop: Step, degree: str = "", points: ThreePoints | No
     if points:
         sizes = solved.each_length(m.legs), solved.size
         volume, least = points.amplified(g, arms, [s.rod for s in solved.found], sizes)
-        least, scale_name, said = least / 4, r"\Sigma", AMPLIFIED
+        least, scale_name, said = least / 3, r"\Sigma", AMPLIFIED
     else:
         spans = [s.rod - arm for s, arm in zip(solved.found, arms, strict=True)]
         rows = _named_rows(m, g, arms, spans)

@@ -14,6 +14,7 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.model.constant import Constant
 from closedform.model.expressions import substitute
 from closedform.model.functions import Array, Bound, Function, Let, Statement, Vanishes, real
 from closedform.model.lemma import Lemma
@@ -321,9 +322,9 @@ def followed(value: sp.Expr, names: Mapping[sp.Basic, sp.Basic]) -> sp.Expr:
 
 
 def is_rounding(flag: Vanishes) -> bool:
-    """Whether the flag compares with a tiny multiple, which no exact quantity does."""
+    """Whether the flag compares with a tolerance or a tiny multiple, as no exact quantity does."""
     tiny = any(q.q >= 2**8 for q in flag.value.atoms(sp.Rational))
-    return tiny and not flag.free
+    return (tiny or flag.value.has(Constant)) and not flag.free
 
 
 def _exact(

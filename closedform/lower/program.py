@@ -114,8 +114,9 @@ class Lowered:
 
     @property
     def length(self) -> int:
-        """The total number of operators."""
-        return sum(self.operations().values())
+        """The total number of operators, with those of constants."""
+        counted = sum(node.op in COUNTED for node in self.schedule())
+        return counted + len(self.angles) + len(self.turned)
 
 
 def lower(function: Function, derivation: Derivation) -> Lowered:

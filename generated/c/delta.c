@@ -7,8 +7,6 @@
  *   fk where nothing vanishes: 52 add, 29 compare and select, 6 divide, 59 multiply, 6 sincos, 1
  *     sqrt
  *   skeleton: 50 compare and select, 180 add, 13 divide, 99 multiply, 6 sincos, 2 sqrt
- *   skeleton where nothing vanishes: 173 add, 28 compare and select, 12 divide, 77 multiply, 6
- *     sincos, 1 sqrt
  *   jacobian_parallel: 50 compare and select, 80 add, 7 divide, 81 multiply, 6 sincos, 2 sqrt
  *   jacobian_parallel where nothing vanishes: 73 add, 28 compare and select, 6 divide, 59
  *     multiply, 6 sincos, 1 sqrt
@@ -16,8 +14,6 @@
  *   jacobian_serial where nothing vanishes: 73 add, 28 compare and select, 6 divide, 83 multiply,
  *     6 sincos, 1 sqrt
  *   jacobian: 50 compare and select, 110 add, 25 divide, 160 multiply, 6 sincos, 2 sqrt
- *   jacobian where nothing vanishes: 103 add, 28 compare and select, 24 divide, 138 multiply, 6
- *     sincos, 1 sqrt
  *   determinant: 50 compare and select, 76 add, 9 divide, 110 multiply, 6 sincos, 2 sqrt
  *   determinant where nothing vanishes: 69 add, 28 compare and select, 8 divide, 88 multiply, 6
  *     sincos, 1 sqrt
@@ -216,52 +212,52 @@ CF_INLINE void delta_fk_common_kernel(const int single, const real_t one,
     const real_t t11 = cf_rounded(single, one, t8 * t8) + cf_rounded(single, one, m_y * m_y);
     const real_t m_z = cf_rounded(single, one, t9 * t7) - cf_rounded(single, one, t5 * t10);
     const real_t product_2 = t11 + cf_rounded(single, one, m_z * m_z);
-    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t12 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t9 * t9);
+    const real_t u_u = t12 + cf_rounded(single, one, t5 * t5);
     const real_t size = f + e + L + l;
     const real_t t13 = size * size;
-    const real_t t14 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t9 * t9);
-    const real_t u_u = t14 + cf_rounded(single, one, t5 * t5);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, product_2 <= t12 * (t13 * u_u), product_2);
-    const real_t t15 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t10 * (t9 - t10));
-    const real_t t16 = t15 + cf_rounded(single, one, t7 * (t5 - t7));
-    const real_t t17 = part * t16 * CLOSEDFORM_C(0.5);
-    const real_t t18 = cf_rounded(single, one, product_2 * (t17 * t17));
-    const real_t t19 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t18));
-    const real_t t20 = cf_rounded(single, one, l * l) - t19;
-    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
+    const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t15 = t13 * t14;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t15) | (product_2 <= t14 * (t13 * u_u)), product_2);
+    const real_t t16 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t10 * (t9 - t10));
+    const real_t t17 = t16 + cf_rounded(single, one, t7 * (t5 - t7));
+    const real_t t18 = part * t17 * CLOSEDFORM_C(0.5);
+    const real_t t19 = cf_rounded(single, one, product_2 * (t18 * t18));
+    const real_t t20 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t19));
+    const real_t t21 = cf_rounded(single, one, l * l) - t20;
+    const real_t slack = cf_max(t21, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t21 = t8 * h;
-    const real_t t22 = t9 * CLOSEDFORM_C(0.5) - (c1_x - (t5 * m_z + u_z * m_y) * t17);
-    const int t23 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t24 = t23 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t25 = t24 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t26 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int invalid = !(t25 & t26);
-    const int t27 = cf_abs(CLOSEDFORM_C(0.0)) <= t13 * CLOSEDFORM_FEASIBILITY;
-    const real_t t28 = l * size * CLOSEDFORM_C(0.75);
-    const int t29 = t27 & (-(CLOSEDFORM_FEASIBILITY * t28) <= t20);
-    const int unreachable = !t29;
-    const real_t t30 = cf_poison(single, invalid | unreachable);
-    const real_t t31 = t5 * CLOSEDFORM_C(0.5) - (c1_y + t17 * (t9 * m_z - u_z * t8));
-    const real_t t32 = m_y * h;
-    const real_t t33 = u_z * CLOSEDFORM_C(0.5) - (t1 + t17 * (t9 * m_y + t5 * t8));
-    const real_t t34 = m_z * h;
-    const real_t t35 = cf_status(single, invalid, unreachable, 0);
-    const real_t t36 = t13 * t12;
+    const real_t t22 = t8 * h;
+    const real_t t23 = t9 * CLOSEDFORM_C(0.5) - (c1_x - (t5 * m_z + u_z * m_y) * t18);
+    const int t24 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t25 = t24 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t26 = t25 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t27 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int invalid = !(t26 & t27);
+    const int t28 = cf_abs(CLOSEDFORM_C(0.0)) <= t13 * CLOSEDFORM_FEASIBILITY;
+    const real_t t29 = l * size * CLOSEDFORM_C(0.75);
+    const int t30 = t28 & (-(CLOSEDFORM_FEASIBILITY * t29) <= t21);
+    const int unreachable = !t30;
+    const real_t t31 = cf_poison(single, invalid | unreachable);
+    const real_t t32 = t5 * CLOSEDFORM_C(0.5) - (c1_y + t18 * (t9 * m_z - u_z * t8));
+    const real_t t33 = m_y * h;
+    const real_t t34 = u_z * CLOSEDFORM_C(0.5) - (t1 + t18 * (t9 * m_y + t5 * t8));
+    const real_t t35 = m_z * h;
+    const real_t t36 = cf_status(single, invalid, unreachable, 0);
     const real_t t37 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t10 * t10);
     const real_t v_v = t37 + cf_rounded(single, one, t7 * t7);
     const real_t t38 = u_u * v_v;
     const real_t t39 = product_2 - t38 * CLOSEDFORM_C(0.000244140625);
-    const int t40 = (u_u <= t36) | (u_u + v_v <= t36) | (t39 <= CLOSEDFORM_VANISHING * t38);
-    const int t41 = t40 | (product_2 <= t12 * (t13 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t28);
-    p[0] = t21 - t22 + t30;
-    p[1] = -(t31 + t32) + t30;
-    p[2] = t33 - t34 + t30;
-    p[3] = -(t22 + t21) + t30;
-    p[4] = t32 - t31 + t30;
-    p[5] = t33 + t34 + t30;
-    status[0] = t35;
-    status[1] = t35;
+    const int t40 = (u_u <= t15) | (u_u + v_v <= t15) | (t39 <= CLOSEDFORM_VANISHING * t38);
+    const int t41 = t40 | (product_2 <= t14 * (t13 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t29);
+    p[0] = t22 - t23 + t31;
+    p[1] = -(t32 + t33) + t31;
+    p[2] = t34 - t35 + t31;
+    p[3] = -(t23 + t22) + t31;
+    p[4] = t33 - t32 + t31;
+    p[5] = t34 + t35 + t31;
+    status[0] = t36;
+    status[1] = t36;
     rare[0] = (t41) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
@@ -412,8 +408,7 @@ void delta_fk_batch(size_t n, const delta_params *params,
     }
 }
 
-/* Every case. */
-CF_INLINE void delta_skeleton_whole_kernel(const int single, const delta_params *params,
+CF_INLINE void delta_skeleton_kernel(const int single, const delta_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t points[132])
 {
@@ -722,7 +717,7 @@ CF_INLINE void delta_skeleton_whole_kernel(const int single, const delta_params 
 }
 
 /* The same for one posture; operations that repeat are the lanes of vectors. */
-CF_INLINE void delta_skeleton_whole_lanes(const delta_params *params, const real_t q[3],
+CF_INLINE void delta_skeleton_lanes(const delta_params *params, const real_t q[3],
     const real_t *sines, const real_t *cosines,
     real_t points[132])
 {
@@ -1027,627 +1022,81 @@ CF_INLINE void delta_skeleton_whole_lanes(const delta_params *params, const real
 }
 
 CLOSEDFORM_DISPATCHED
-CF_OUT_OF_LINE void delta_skeleton_whole(const delta_params *params, const real_t q[3],
+void delta_skeleton(const delta_params *params, const real_t q[3],
     real_t points[132])
 {
+    static const signed char points_degrees[132] = { 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, params->alpha3, q[2], q[2], q[2] };
     cf_sincos_lanes(8, lanes, sines, cosines);
-    delta_skeleton_whole_lanes(params, q, sines, cosines, points);
-}
-
-/* Where nothing vanishes; rare is whether something does. */
-CF_INLINE void delta_skeleton_common_kernel(const int single, const real_t one,
-    const delta_params *params, const real_t q[3],
-    const real_t *sines, const real_t *cosines,
-    real_t points[132], real_t rare[1])
-{
-    const real_t f = params->f;
-    const real_t e = params->e;
-    const real_t L = params->L;
-    const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
-    const real_t theta1 = q[0];
-    const real_t theta2 = q[1];
-    const real_t theta3 = q[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s1 = sines[1];
-    const real_t c1 = cosines[1];
-    const real_t s2 = sines[2];
-    const real_t c2 = cosines[2];
-    const real_t s_alpha2 = sines[3];
-    const real_t c_alpha2 = cosines[3];
-    const real_t s3 = sines[4];
-    const real_t c3 = cosines[4];
-    const real_t s_alpha3 = sines[5];
-    const real_t c_alpha3 = cosines[5];
-    const real_t t1 = f * c_alpha1;
-    const int t2 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t5 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t size = f + e + L + l;
-    const real_t t6 = size * size;
-    const int t7 = cf_abs(CLOSEDFORM_C(0.0)) <= t6 * CLOSEDFORM_FEASIBILITY;
-    const real_t t8 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t t9 = cf_rounded(single, one, L * s1);
-    const real_t t10 = cf_rounded(single, one, L * s2);
-    const real_t u_z = t9 - t10;
-    const real_t t11 = cf_rounded(single, one, L * c1);
-    const real_t t12 = f - e;
-    const real_t t13 = t11 + t12;
-    const real_t c1_x = cf_rounded(single, one, c_alpha1 * t13);
-    const real_t t14 = cf_rounded(single, one, L * c2);
-    const real_t t15 = t14 + t12;
-    const real_t t16 = c1_x - cf_rounded(single, one, c_alpha2 * t15);
-    const real_t t17 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t16 * t16);
-    const real_t c1_y = cf_rounded(single, one, s_alpha1 * t13);
-    const real_t t18 = c1_y - cf_rounded(single, one, s_alpha2 * t15);
-    const real_t u_u = t17 + cf_rounded(single, one, t18 * t18);
-    const real_t t19 = cf_rounded(single, one, L * s3);
-    const real_t v_z = t9 - t19;
-    const real_t t20 = cf_rounded(single, one, L * c3);
-    const real_t t21 = t20 + t12;
-    const real_t t22 = c1_y - cf_rounded(single, one, s_alpha3 * t21);
-    const real_t t23 = cf_rounded(single, one, v_z * t18) - cf_rounded(single, one, u_z * t22);
-    const real_t t24 = c1_x - cf_rounded(single, one, c_alpha3 * t21);
-    const real_t m_y = cf_rounded(single, one, v_z * t16) - cf_rounded(single, one, u_z * t24);
-    const real_t t25 = cf_rounded(single, one, t23 * t23) + cf_rounded(single, one, m_y * m_y);
-    const real_t m_z = cf_rounded(single, one, t16 * t22) - cf_rounded(single, one, t18 * t24);
-    const real_t product_2 = t25 + cf_rounded(single, one, m_z * m_z);
-    const real_t t26 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, product_2 <= t26 * (t6 * u_u), product_2);
-    const real_t t27 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t24 * (t16 - t24));
-    const real_t t28 = t27 + cf_rounded(single, one, t22 * (t18 - t22));
-    const real_t t29 = part * t28 * CLOSEDFORM_C(0.5);
-    const real_t t30 = cf_rounded(single, one, product_2 * (t29 * t29));
-    const real_t t31 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t30));
-    const real_t t32 = cf_rounded(single, one, l * l) - t31;
-    const int unreachable = !(t7 & (-(CLOSEDFORM_FEASIBILITY * t8) <= t32));
-    const real_t t33 = cf_poison(single, (!(t4 & t5)) | unreachable);
-    const real_t t34 = t1 + t33;
-    const real_t t35 = f * s_alpha1;
-    const real_t t36 = t35 + t33;
-    const real_t t37 = CLOSEDFORM_C(0.0) + t33;
-    const real_t t38 = t1 + t11 * c_alpha1;
-    const real_t t39 = t38 + t33;
-    const real_t t40 = t35 + t11 * s_alpha1;
-    const real_t t41 = t40 + t33;
-    const real_t t42 = -t9 + t33;
-    const real_t t43 = e * c_alpha1;
-    const real_t t44 = t29 * (t18 * m_z + u_z * m_y) + t16 * CLOSEDFORM_C(0.5);
-    const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
-    const real_t h = cf_sqrt(part * slack);
-    const real_t t45 = t23 * h;
-    const real_t t46 = c1_x - (t44 - t45);
-    const real_t t47 = t43 + t46;
-    const real_t t48 = e * s_alpha1;
-    const real_t t49 = t29 * (t16 * m_z - u_z * t23) - t18 * CLOSEDFORM_C(0.5);
-    const real_t t50 = m_y * h;
-    const real_t t51 = c1_y + (t49 - t50);
-    const real_t t52 = t48 + t51;
-    const real_t t53 = u_z * CLOSEDFORM_C(0.5) - t29 * (t16 * m_y + t18 * t23);
-    const real_t t54 = m_z * h;
-    const real_t t55 = t53 - t54 - t9 + t33;
-    const real_t t56 = t48 * CLOSEDFORM_C(0.5);
-    const real_t t57 = t38 - t56 + t33;
-    const real_t t58 = t43 * CLOSEDFORM_C(0.5);
-    const real_t t59 = t58 + t40 + t33;
-    const real_t t60 = t56 + t38 + t33;
-    const real_t t61 = t40 - t58 + t33;
-    const real_t t62 = f * c_alpha2;
-    const real_t t63 = t62 + t33;
-    const real_t t64 = f * s_alpha2;
-    const real_t t65 = t64 + t33;
-    const real_t t66 = t62 + t14 * c_alpha2;
-    const real_t t67 = t66 + t33;
-    const real_t t68 = t64 + t14 * s_alpha2;
-    const real_t t69 = t68 + t33;
-    const real_t t70 = -t10 + t33;
-    const real_t t71 = e * c_alpha2;
-    const real_t t72 = t71 + t46;
-    const real_t t73 = e * s_alpha2;
-    const real_t t74 = t73 + t51;
-    const real_t t75 = t73 * CLOSEDFORM_C(0.5);
-    const real_t t76 = t66 - t75 + t33;
-    const real_t t77 = t71 * CLOSEDFORM_C(0.5);
-    const real_t t78 = t77 + t68 + t33;
-    const real_t t79 = t75 + t66 + t33;
-    const real_t t80 = t68 - t77 + t33;
-    const real_t t81 = f * c_alpha3;
-    const real_t t82 = t81 + t33;
-    const real_t t83 = f * s_alpha3;
-    const real_t t84 = t83 + t33;
-    const real_t t85 = t81 + t20 * c_alpha3;
-    const real_t t86 = t85 + t33;
-    const real_t t87 = t83 + t20 * s_alpha3;
-    const real_t t88 = t87 + t33;
-    const real_t t89 = -t19 + t33;
-    const real_t t90 = e * c_alpha3;
-    const real_t t91 = t90 + t46;
-    const real_t t92 = e * s_alpha3;
-    const real_t t93 = t92 + t51;
-    const real_t t94 = t92 * CLOSEDFORM_C(0.5);
-    const real_t t95 = t85 - t94 + t33;
-    const real_t t96 = t90 * CLOSEDFORM_C(0.5);
-    const real_t t97 = t96 + t87 + t33;
-    const real_t t98 = t94 + t85 + t33;
-    const real_t t99 = t87 - t96 + t33;
-    const real_t t100 = c1_x - (t44 + t45);
-    const real_t t101 = t43 + t100;
-    const real_t t102 = c1_y + (t49 + t50);
-    const real_t t103 = t48 + t102;
-    const real_t t104 = t53 + t54 - t9 + t33;
-    const real_t t105 = t71 + t100;
-    const real_t t106 = t73 + t102;
-    const real_t t107 = t90 + t100;
-    const real_t t108 = t92 + t102;
-    const real_t t109 = t6 * t26;
-    const real_t t110 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t24 * t24);
-    const real_t v_v = t110 + cf_rounded(single, one, t22 * t22);
-    const real_t t111 = u_u * v_v;
-    const real_t t112 = product_2 - t111 * CLOSEDFORM_C(0.000244140625);
-    const int t113 = (u_u <= t109) | (u_u + v_v <= t109) | (t112 <= CLOSEDFORM_VANISHING * t111);
-    const int t114 = t113 | (product_2 <= t26 * (t6 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t8);
-    points[0] = t34;
-    points[1] = t36;
-    points[2] = t37;
-    points[3] = t39;
-    points[4] = t41;
-    points[5] = t42;
-    points[6] = t47 + t33;
-    points[7] = t52 + t33;
-    points[8] = t55;
-    points[9] = t57;
-    points[10] = t59;
-    points[11] = t42;
-    points[12] = t60;
-    points[13] = t61;
-    points[14] = t42;
-    points[15] = t47 - t56 + t33;
-    points[16] = t58 + t52 + t33;
-    points[17] = t55;
-    points[18] = t56 + t47 + t33;
-    points[19] = t52 - t58 + t33;
-    points[20] = t55;
-    points[21] = t63;
-    points[22] = t65;
-    points[23] = t37;
-    points[24] = t67;
-    points[25] = t69;
-    points[26] = t70;
-    points[27] = t72 + t33;
-    points[28] = t74 + t33;
-    points[29] = t55;
-    points[30] = t76;
-    points[31] = t78;
-    points[32] = t70;
-    points[33] = t79;
-    points[34] = t80;
-    points[35] = t70;
-    points[36] = t72 - t75 + t33;
-    points[37] = t77 + t74 + t33;
-    points[38] = t55;
-    points[39] = t75 + t72 + t33;
-    points[40] = t74 - t77 + t33;
-    points[41] = t55;
-    points[42] = t82;
-    points[43] = t84;
-    points[44] = t37;
-    points[45] = t86;
-    points[46] = t88;
-    points[47] = t89;
-    points[48] = t91 + t33;
-    points[49] = t93 + t33;
-    points[50] = t55;
-    points[51] = t95;
-    points[52] = t97;
-    points[53] = t89;
-    points[54] = t98;
-    points[55] = t99;
-    points[56] = t89;
-    points[57] = t91 - t94 + t33;
-    points[58] = t96 + t93 + t33;
-    points[59] = t55;
-    points[60] = t94 + t91 + t33;
-    points[61] = t93 - t96 + t33;
-    points[62] = t55;
-    points[63] = t46 + t33;
-    points[64] = t51 + t33;
-    points[65] = t55;
-    points[66] = t34;
-    points[67] = t36;
-    points[68] = t37;
-    points[69] = t39;
-    points[70] = t41;
-    points[71] = t42;
-    points[72] = t101 + t33;
-    points[73] = t103 + t33;
-    points[74] = t104;
-    points[75] = t57;
-    points[76] = t59;
-    points[77] = t42;
-    points[78] = t60;
-    points[79] = t61;
-    points[80] = t42;
-    points[81] = t101 - t56 + t33;
-    points[82] = t58 + t103 + t33;
-    points[83] = t104;
-    points[84] = t56 + t101 + t33;
-    points[85] = t103 - t58 + t33;
-    points[86] = t104;
-    points[87] = t63;
-    points[88] = t65;
-    points[89] = t37;
-    points[90] = t67;
-    points[91] = t69;
-    points[92] = t70;
-    points[93] = t105 + t33;
-    points[94] = t106 + t33;
-    points[95] = t104;
-    points[96] = t76;
-    points[97] = t78;
-    points[98] = t70;
-    points[99] = t79;
-    points[100] = t80;
-    points[101] = t70;
-    points[102] = t105 - t75 + t33;
-    points[103] = t77 + t106 + t33;
-    points[104] = t104;
-    points[105] = t75 + t105 + t33;
-    points[106] = t106 - t77 + t33;
-    points[107] = t104;
-    points[108] = t82;
-    points[109] = t84;
-    points[110] = t37;
-    points[111] = t86;
-    points[112] = t88;
-    points[113] = t89;
-    points[114] = t107 + t33;
-    points[115] = t108 + t33;
-    points[116] = t104;
-    points[117] = t95;
-    points[118] = t97;
-    points[119] = t89;
-    points[120] = t98;
-    points[121] = t99;
-    points[122] = t89;
-    points[123] = t107 - t94 + t33;
-    points[124] = t96 + t108 + t33;
-    points[125] = t104;
-    points[126] = t94 + t107 + t33;
-    points[127] = t108 - t96 + t33;
-    points[128] = t104;
-    points[129] = t100 + t33;
-    points[130] = t102 + t33;
-    points[131] = t104;
-    rare[0] = (t114) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
-}
-
-/* The same for one posture; operations that repeat are the lanes of vectors. */
-CF_INLINE void delta_skeleton_common_lanes(const real_t one, const delta_params *params,
-    const real_t q[3], const real_t *sines,
-    const real_t *cosines, real_t points[132],
-    real_t rare[1])
-{
-    const real_t f = params->f;
-    const real_t e = params->e;
-    const real_t L = params->L;
-    const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
-    const real_t theta1 = q[0];
-    const real_t theta2 = q[1];
-    const real_t theta3 = q[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s1 = sines[1];
-    const real_t c1 = cosines[1];
-    const real_t s2 = sines[2];
-    const real_t c2 = cosines[2];
-    const real_t s_alpha2 = sines[3];
-    const real_t c_alpha2 = cosines[3];
-    const real_t s3 = sines[4];
-    const real_t c3 = cosines[4];
-    const real_t s_alpha3 = sines[5];
-    const real_t c_alpha3 = cosines[5];
-    const int t1 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t4 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t size = f + e + L + l;
-    const real_t t5 = size * size;
-    const int t6 = cf_abs(CLOSEDFORM_C(0.0)) <= t5 * CLOSEDFORM_FEASIBILITY;
-    const real_t t7 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t t8 = f - e;
-    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t10 = t5 * t9;
-    real_t t11_lanes[4], t12_lanes[4], c1_x_lanes[4], c1_y_lanes[4], t13_lanes[4], t14_lanes[4], t15_lanes[4], c1_z_lanes[4], t16_lanes[4], t17_lanes[4], t18_lanes[4], t19_lanes[4], t20_lanes[4], t21_lanes[4], t22_lanes[4], t23_lanes[4];
-    const real_t t24_of[4] = { c_alpha1, c_alpha2, c_alpha3, c_alpha3 };
-    real_t t24[4];
-    cf_side_by_side(4, t24_of, t24);
-    const real_t t25_of[4] = { s1, s2, s3, s3 };
-    real_t t25[4];
-    cf_side_by_side(4, t25_of, t25);
-    const real_t t26_of[4] = { c1, c2, c3, c3 };
-    real_t t26[4];
-    cf_side_by_side(4, t26_of, t26);
-    const real_t t27_of[4] = { s_alpha1, s_alpha2, s_alpha3, s_alpha3 };
-    real_t t27[4];
-    cf_side_by_side(4, t27_of, t27);
-    for (size_t k = 0; k < 4; ++k) {
-        const real_t t28 = f * t24[k];
-        t11_lanes[k] = t28;
-        const real_t t29 = L * t25[k] * one;
-        t12_lanes[k] = t29;
-        const real_t t30 = L * t26[k] * one;
-        const real_t t31 = t30 + t8;
-        c1_x_lanes[k] = t24[k] * t31 * one;
-        c1_y_lanes[k] = t27[k] * t31 * one;
-        const real_t t32 = f * t27[k];
-        t13_lanes[k] = t32;
-        const real_t t33 = t28 + t30 * t24[k];
-        t14_lanes[k] = t33;
-        const real_t t34 = t32 + t30 * t27[k];
-        t15_lanes[k] = t34;
-        c1_z_lanes[k] = -t29;
-        const real_t t35 = e * t24[k];
-        t16_lanes[k] = t35;
-        const real_t t36 = e * t27[k];
-        t17_lanes[k] = t36;
-        const real_t t37 = t36 * CLOSEDFORM_C(0.5);
-        t18_lanes[k] = t37;
-        t19_lanes[k] = t33 - t37;
-        const real_t t38 = t35 * CLOSEDFORM_C(0.5);
-        t20_lanes[k] = t38;
-        t21_lanes[k] = t38 + t34;
-        t22_lanes[k] = t37 + t33;
-        t23_lanes[k] = t34 - t38;
+    delta_skeleton_lanes(params, q, sines, cosines, points);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(132, points_degrees, exponent, points, points);
     }
-    const real_t u_z = t12_lanes[0] - t12_lanes[1];
-    const real_t t39 = c1_x_lanes[0] - c1_x_lanes[1];
-    const real_t t40 = cf_rounded(1, one, u_z * u_z) + cf_rounded(1, one, t39 * t39);
-    const real_t t41 = c1_y_lanes[0] - c1_y_lanes[1];
-    const real_t u_u = t40 + cf_rounded(1, one, t41 * t41);
-    const real_t v_z = t12_lanes[0] - t12_lanes[2];
-    const real_t t42 = c1_y_lanes[0] - c1_y_lanes[2];
-    const real_t t43 = cf_rounded(1, one, v_z * t41) - cf_rounded(1, one, u_z * t42);
-    const real_t t44 = c1_x_lanes[0] - c1_x_lanes[2];
-    const real_t m_y = cf_rounded(1, one, v_z * t39) - cf_rounded(1, one, u_z * t44);
-    const real_t t45 = cf_rounded(1, one, t43 * t43) + cf_rounded(1, one, m_y * m_y);
-    const real_t m_z = cf_rounded(1, one, t39 * t42) - cf_rounded(1, one, t41 * t44);
-    const real_t product_2 = t45 + cf_rounded(1, one, m_z * m_z);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(1, product_2);
-    const real_t t46 = cf_rounded(1, one, v_z * (u_z - v_z)) + cf_rounded(1, one, t44 * (t39 - t44));
-    const real_t t47 = part * (t46 + cf_rounded(1, one, t42 * (t41 - t42)));
-    const real_t t48 = t47 * CLOSEDFORM_C(0.5);
-    const real_t t49 = CLOSEDFORM_C(0.25) + cf_rounded(1, one, product_2 * (t48 * t48));
-    const real_t t50 = cf_rounded(1, one, l * l) - cf_rounded(1, one, u_u * t49);
-    const int unreachable = !(t6 & (-(CLOSEDFORM_FEASIBILITY * t7) <= t50));
-    const real_t t51 = cf_poison(0, (!(t3 & t4)) | unreachable);
-    const real_t t52 = CLOSEDFORM_C(0.0) + t51;
-    const real_t t53 = t48 * (t41 * m_z + u_z * m_y) + t39 * CLOSEDFORM_C(0.5);
-    const real_t slack = cf_max(t50, CLOSEDFORM_C(0.0));
-    const real_t h = cf_sqrt(part * slack);
-    const real_t t54 = t43 * h;
-    const real_t t55 = c1_x_lanes[0] - (t53 - t54);
-    const real_t t56 = t48 * (t39 * m_z - u_z * t43) - t41 * CLOSEDFORM_C(0.5);
-    const real_t t57 = m_y * h;
-    const real_t t58 = c1_y_lanes[0] + (t56 - t57);
-    const real_t t59 = u_z * CLOSEDFORM_C(0.5) - t48 * (t39 * m_y + t41 * t43);
-    const real_t t60 = m_z * h;
-    const real_t t61 = t59 - t60 - t12_lanes[0] + t51;
-    const real_t t62 = c1_x_lanes[0] - (t53 + t54);
-    const real_t t63 = c1_y_lanes[0] + (t56 + t57);
-    const real_t t64 = t59 + t60 - t12_lanes[0] + t51;
-    const real_t t65 = cf_rounded(1, one, v_z * v_z) + cf_rounded(1, one, t44 * t44);
-    const real_t v_v = t65 + cf_rounded(1, one, t42 * t42);
-    const real_t t66 = u_u * v_v;
-    const real_t t67 = product_2 - t66 * CLOSEDFORM_C(0.000244140625);
-    const int t68 = (u_u <= t10) | (u_u + v_v <= t10) | (t67 <= CLOSEDFORM_VANISHING * t66);
-    const int t69 = t68 | (product_2 <= t9 * (t5 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t7);
-    real_t t70_lanes[4], t71_lanes[4], t72_lanes[4], t73_lanes[4], t74_lanes[4], t75_lanes[4], t76_lanes[4], t77_lanes[4], t78_lanes[4], t79_lanes[4], t80_lanes[4], t81_lanes[4], t82_lanes[4], t83_lanes[4], t84_lanes[4], t85_lanes[4], t86_lanes[4], t87_lanes[4], t88_lanes[4], t89_lanes[4], t90_lanes[4];
-    for (size_t k = 0; k < 4; ++k) {
-        t70_lanes[k] = t11_lanes[k] + t51;
-        t71_lanes[k] = t13_lanes[k] + t51;
-        t72_lanes[k] = t14_lanes[k] + t51;
-        t73_lanes[k] = t15_lanes[k] + t51;
-        t74_lanes[k] = c1_z_lanes[k] + t51;
-        const real_t t91 = t16_lanes[k] + t55;
-        t75_lanes[k] = t91 + t51;
-        const real_t t92 = t17_lanes[k] + t58;
-        t76_lanes[k] = t92 + t51;
-        t77_lanes[k] = t19_lanes[k] + t51;
-        t78_lanes[k] = t21_lanes[k] + t51;
-        t79_lanes[k] = t22_lanes[k] + t51;
-        t80_lanes[k] = t23_lanes[k] + t51;
-        t81_lanes[k] = t91 - t18_lanes[k] + t51;
-        t82_lanes[k] = t20_lanes[k] + t92 + t51;
-        t83_lanes[k] = t18_lanes[k] + t91 + t51;
-        t84_lanes[k] = t92 - t20_lanes[k] + t51;
-        const real_t t93 = t16_lanes[k] + t62;
-        t85_lanes[k] = t93 + t51;
-        const real_t t94 = t17_lanes[k] + t63;
-        t86_lanes[k] = t94 + t51;
-        t87_lanes[k] = t93 - t18_lanes[k] + t51;
-        t88_lanes[k] = t20_lanes[k] + t94 + t51;
-        t89_lanes[k] = t18_lanes[k] + t93 + t51;
-        t90_lanes[k] = t94 - t20_lanes[k] + t51;
-    }
-    points[0] = t70_lanes[0];
-    points[1] = t71_lanes[0];
-    points[2] = t52;
-    points[3] = t72_lanes[0];
-    points[4] = t73_lanes[0];
-    points[5] = t74_lanes[0];
-    points[6] = t75_lanes[0];
-    points[7] = t76_lanes[0];
-    points[8] = t61;
-    points[9] = t77_lanes[0];
-    points[10] = t78_lanes[0];
-    points[11] = t74_lanes[0];
-    points[12] = t79_lanes[0];
-    points[13] = t80_lanes[0];
-    points[14] = t74_lanes[0];
-    points[15] = t81_lanes[0];
-    points[16] = t82_lanes[0];
-    points[17] = t61;
-    points[18] = t83_lanes[0];
-    points[19] = t84_lanes[0];
-    points[20] = t61;
-    points[21] = t70_lanes[1];
-    points[22] = t71_lanes[1];
-    points[23] = t52;
-    points[24] = t72_lanes[1];
-    points[25] = t73_lanes[1];
-    points[26] = t74_lanes[1];
-    points[27] = t75_lanes[1];
-    points[28] = t76_lanes[1];
-    points[29] = t61;
-    points[30] = t77_lanes[1];
-    points[31] = t78_lanes[1];
-    points[32] = t74_lanes[1];
-    points[33] = t79_lanes[1];
-    points[34] = t80_lanes[1];
-    points[35] = t74_lanes[1];
-    points[36] = t81_lanes[1];
-    points[37] = t82_lanes[1];
-    points[38] = t61;
-    points[39] = t83_lanes[1];
-    points[40] = t84_lanes[1];
-    points[41] = t61;
-    points[42] = t70_lanes[2];
-    points[43] = t71_lanes[2];
-    points[44] = t52;
-    points[45] = t72_lanes[2];
-    points[46] = t73_lanes[2];
-    points[47] = t74_lanes[2];
-    points[48] = t75_lanes[2];
-    points[49] = t76_lanes[2];
-    points[50] = t61;
-    points[51] = t77_lanes[2];
-    points[52] = t78_lanes[2];
-    points[53] = t74_lanes[2];
-    points[54] = t79_lanes[2];
-    points[55] = t80_lanes[2];
-    points[56] = t74_lanes[2];
-    points[57] = t81_lanes[2];
-    points[58] = t82_lanes[2];
-    points[59] = t61;
-    points[60] = t83_lanes[2];
-    points[61] = t84_lanes[2];
-    points[62] = t61;
-    points[63] = t55 + t51;
-    points[64] = t58 + t51;
-    points[65] = t61;
-    points[66] = t70_lanes[0];
-    points[67] = t71_lanes[0];
-    points[68] = t52;
-    points[69] = t72_lanes[0];
-    points[70] = t73_lanes[0];
-    points[71] = t74_lanes[0];
-    points[72] = t85_lanes[0];
-    points[73] = t86_lanes[0];
-    points[74] = t64;
-    points[75] = t77_lanes[0];
-    points[76] = t78_lanes[0];
-    points[77] = t74_lanes[0];
-    points[78] = t79_lanes[0];
-    points[79] = t80_lanes[0];
-    points[80] = t74_lanes[0];
-    points[81] = t87_lanes[0];
-    points[82] = t88_lanes[0];
-    points[83] = t64;
-    points[84] = t89_lanes[0];
-    points[85] = t90_lanes[0];
-    points[86] = t64;
-    points[87] = t70_lanes[1];
-    points[88] = t71_lanes[1];
-    points[89] = t52;
-    points[90] = t72_lanes[1];
-    points[91] = t73_lanes[1];
-    points[92] = t74_lanes[1];
-    points[93] = t85_lanes[1];
-    points[94] = t86_lanes[1];
-    points[95] = t64;
-    points[96] = t77_lanes[1];
-    points[97] = t78_lanes[1];
-    points[98] = t74_lanes[1];
-    points[99] = t79_lanes[1];
-    points[100] = t80_lanes[1];
-    points[101] = t74_lanes[1];
-    points[102] = t87_lanes[1];
-    points[103] = t88_lanes[1];
-    points[104] = t64;
-    points[105] = t89_lanes[1];
-    points[106] = t90_lanes[1];
-    points[107] = t64;
-    points[108] = t70_lanes[2];
-    points[109] = t71_lanes[2];
-    points[110] = t52;
-    points[111] = t72_lanes[2];
-    points[112] = t73_lanes[2];
-    points[113] = t74_lanes[2];
-    points[114] = t85_lanes[2];
-    points[115] = t86_lanes[2];
-    points[116] = t64;
-    points[117] = t77_lanes[2];
-    points[118] = t78_lanes[2];
-    points[119] = t74_lanes[2];
-    points[120] = t79_lanes[2];
-    points[121] = t80_lanes[2];
-    points[122] = t74_lanes[2];
-    points[123] = t87_lanes[2];
-    points[124] = t88_lanes[2];
-    points[125] = t64;
-    points[126] = t89_lanes[2];
-    points[127] = t90_lanes[2];
-    points[128] = t64;
-    points[129] = t62 + t51;
-    points[130] = t63 + t51;
-    points[131] = t64;
-    rare[0] = (t69) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
-CF_INLINE void delta_skeleton_common_batch(size_t n, const delta_params *params,
+CF_RARE void delta_skeleton_other_sizes(size_t n, const delta_params *params,
     const real_t *q, size_t q_stride,
-    real_t *points, size_t points_stride,
-    uint8_t *rare, size_t rare_stride)
+    real_t *points, size_t points_stride)
 {
-    (void)rare_stride;
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t points_i[132];
+        delta_skeleton(params, q_i, points_i);
+        for (size_t k = 0; k < 132; ++k) points[k * points_stride + i] = points_i[k];
+
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void delta_skeleton_batch(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
     const delta_params local = *params;
-    const real_t one = cf_one();
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
+        delta_skeleton_other_sizes(n, params, q, q_stride, points, points_stride);
+        return;
+    }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
         real_t angle_0[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
             angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
+        cf_sincos_block(length, q + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + q_stride + start, sines[2], cosines[2]);
         real_t angle_3[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
             angle_3[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
+        real_t angle_4[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
-        real_t rare_real[1][CLOSEDFORM_BLOCK];
+            angle_4[i] = params->alpha3;
+        cf_sincos_block(length, angle_4, sines[4], cosines[4]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[5], cosines[5]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
             const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
             real_t points_i[132];
-            real_t rare_i[1];
-            delta_skeleton_common_kernel(0, one, &local, q_i, sines_i, cosines_i, points_i, rare_i);
+            delta_skeleton_kernel(0, &local, q_i, sines_i, cosines_i, points_i);
             points[start + i] = points_i[0];
             points[points_stride + start + i] = points_i[1];
             points[2 * points_stride + start + i] = points_i[2];
@@ -1780,88 +1229,6 @@ CF_INLINE void delta_skeleton_common_batch(size_t n, const delta_params *params,
             points[129 * points_stride + start + i] = points_i[129];
             points[130 * points_stride + start + i] = points_i[130];
             points[131 * points_stride + start + i] = points_i[131];
-            rare_real[0][i] = rare_i[0];
-        }
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i)
-            rare[start + i] = (uint8_t)rare_real[0][i];
-    }
-}
-
-CF_INLINE void delta_skeleton_common(const delta_params *params, const real_t q[3],
-    real_t points[132], uint8_t rare[1])
-{
-    const real_t one = cf_one();
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
-    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
-    real_t rare_real[1];
-    delta_skeleton_common_lanes(one, params, q, sines, cosines, points, rare_real);
-    for (size_t i = 0; i < 1; ++i)
-        rare[i] = (uint8_t)rare_real[i];
-}
-
-CLOSEDFORM_DISPATCHED
-void delta_skeleton(const delta_params *params, const real_t q[3],
-    real_t points[132])
-{
-    static const signed char points_degrees[132] = { 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
-    delta_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
-        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
-        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
-        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
-        params = &params_scaled;
-    }
-    uint8_t rare[1];
-    delta_skeleton_common(params, q, points, rare);
-    if (CF_UNLIKELY(rare[0])) delta_skeleton_whole(params, q, points);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(132, points_degrees, exponent, points, points);
-    }
-}
-
-CF_RARE void delta_skeleton_other_sizes(size_t n, const delta_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *points, size_t points_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real_t q_i[3];
-        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-        real_t points_i[132];
-        delta_skeleton(params, q_i, points_i);
-        for (size_t k = 0; k < 132; ++k) points[k * points_stride + i] = points_i[k];
-
-    }
-}
-
-CLOSEDFORM_DISPATCHED
-void delta_skeleton_batch(size_t n, const delta_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *points, size_t points_stride)
-{
-    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
-        delta_skeleton_other_sizes(n, params, q, q_stride, points, points_stride);
-        return;
-    }
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        uint8_t rare[CLOSEDFORM_BLOCK];
-        delta_skeleton_common_batch(length, params, q + start, q_stride, points + start, points_stride, rare, CLOSEDFORM_BLOCK);
-        for (size_t i = start; i < start + length; ++i) {
-            if (!CF_UNLIKELY(rare[i - start])) continue;
-            real_t q_i[3];
-            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-            real_t points_i[132];
-            delta_skeleton_whole(params, q_i, points_i);
-            for (size_t k = 0; k < 132; ++k) points[k * points_stride + i] = points_i[k];
-
         }
     }
 }
@@ -2048,65 +1415,65 @@ CF_INLINE void delta_jacobian_parallel_common_kernel(const int single, const rea
     const real_t t10 = cf_rounded(single, one, v_z * t4) - cf_rounded(single, one, u_z * t7);
     const real_t t11 = cf_rounded(single, one, t10 * t10) + cf_rounded(single, one, m_y * m_y);
     const real_t product_2 = t11 + cf_rounded(single, one, m_z * m_z);
-    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t12 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t5 * t5);
+    const real_t u_u = t12 + cf_rounded(single, one, t4 * t4);
     const real_t size = f + e + L + l;
     const real_t t13 = size * size;
-    const real_t t14 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t5 * t5);
-    const real_t u_u = t14 + cf_rounded(single, one, t4 * t4);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, product_2 <= t12 * (t13 * u_u), product_2);
-    const real_t t15 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t8 * (t5 - t8));
-    const real_t t16 = t15 + cf_rounded(single, one, t7 * (t4 - t7));
-    const real_t t17 = part * t16 * CLOSEDFORM_C(0.5);
-    const real_t t18 = (t4 * m_z + u_z * m_y) * t17 + t5 * CLOSEDFORM_C(0.5);
-    const real_t t19 = cf_rounded(single, one, product_2 * (t17 * t17));
-    const real_t t20 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t19));
-    const real_t t21 = cf_rounded(single, one, l * l) - t20;
-    const real_t slack = cf_max(t21, CLOSEDFORM_C(0.0));
+    const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t15 = t13 * t14;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t15) | (product_2 <= t14 * (t13 * u_u)), product_2);
+    const real_t t16 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t8 * (t5 - t8));
+    const real_t t17 = t16 + cf_rounded(single, one, t7 * (t4 - t7));
+    const real_t t18 = part * t17 * CLOSEDFORM_C(0.5);
+    const real_t t19 = (t4 * m_z + u_z * m_y) * t18 + t5 * CLOSEDFORM_C(0.5);
+    const real_t t20 = cf_rounded(single, one, product_2 * (t18 * t18));
+    const real_t t21 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t20));
+    const real_t t22 = cf_rounded(single, one, l * l) - t21;
+    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t22 = t10 * h;
-    const real_t t23 = t18 - t22;
-    const int t24 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t25 = t24 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t26 = t25 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t27 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int t28 = cf_abs(CLOSEDFORM_C(0.0)) <= t13 * CLOSEDFORM_FEASIBILITY;
-    const real_t t29 = CLOSEDFORM_C(0.9375) * (l * size);
-    const int t30 = t28 & (-(CLOSEDFORM_FEASIBILITY * t29) <= t21);
-    const real_t t31 = cf_poison(single, (!(t26 & t27)) | (!t30));
-    const real_t t32 = t17 * (t5 * m_z - u_z * t10) - t4 * CLOSEDFORM_C(0.5);
-    const real_t t33 = m_y * h;
-    const real_t A_12 = t32 - t33;
-    const real_t t34 = u_z * CLOSEDFORM_C(0.5) - t17 * (t5 * m_y + t4 * t10);
-    const real_t t35 = m_z * h;
-    const real_t A_13 = t34 - t35;
-    const real_t t36 = t18 + t22;
-    const real_t A_12_above = t32 + t33;
-    const real_t A_13_above = t34 + t35;
-    const real_t t37 = t13 * t12;
+    const real_t t23 = t10 * h;
+    const real_t t24 = t19 - t23;
+    const int t25 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t26 = t25 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t27 = t26 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t28 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int t29 = cf_abs(CLOSEDFORM_C(0.0)) <= t13 * CLOSEDFORM_FEASIBILITY;
+    const real_t t30 = CLOSEDFORM_C(0.9375) * (l * size);
+    const int t31 = t29 & (-(CLOSEDFORM_FEASIBILITY * t30) <= t22);
+    const real_t t32 = cf_poison(single, (!(t27 & t28)) | (!t31));
+    const real_t t33 = t18 * (t5 * m_z - u_z * t10) - t4 * CLOSEDFORM_C(0.5);
+    const real_t t34 = m_y * h;
+    const real_t A_12 = t33 - t34;
+    const real_t t35 = u_z * CLOSEDFORM_C(0.5) - t18 * (t5 * m_y + t4 * t10);
+    const real_t t36 = m_z * h;
+    const real_t A_13 = t35 - t36;
+    const real_t t37 = t19 + t23;
+    const real_t A_12_above = t33 + t34;
+    const real_t A_13_above = t35 + t36;
     const real_t t38 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t8 * t8);
     const real_t v_v = t38 + cf_rounded(single, one, t7 * t7);
     const real_t t39 = u_u * v_v;
     const real_t t40 = product_2 - t39 * CLOSEDFORM_C(0.000244140625);
-    const int t41 = (u_u <= t37) | (u_u + v_v <= t37) | (t40 <= CLOSEDFORM_VANISHING * t39);
-    const int t42 = t41 | (product_2 <= t12 * (t13 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t29);
-    A[0] = -t23 + t31;
-    A[1] = A_12 + t31;
-    A[2] = A_13 + t31;
-    A[3] = t5 - t23 + t31;
-    A[4] = t4 + A_12 + t31;
-    A[5] = A_13 - u_z + t31;
-    A[6] = t8 - t23 + t31;
-    A[7] = t7 + A_12 + t31;
-    A[8] = A_13 - v_z + t31;
-    A[9] = -t36 + t31;
-    A[10] = A_12_above + t31;
-    A[11] = A_13_above + t31;
-    A[12] = t5 - t36 + t31;
-    A[13] = t4 + A_12_above + t31;
-    A[14] = A_13_above - u_z + t31;
-    A[15] = t8 - t36 + t31;
-    A[16] = t7 + A_12_above + t31;
-    A[17] = A_13_above - v_z + t31;
+    const int t41 = (u_u <= t15) | (u_u + v_v <= t15) | (t40 <= CLOSEDFORM_VANISHING * t39);
+    const int t42 = t41 | (product_2 <= t14 * (t13 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t30);
+    A[0] = -t24 + t32;
+    A[1] = A_12 + t32;
+    A[2] = A_13 + t32;
+    A[3] = t5 - t24 + t32;
+    A[4] = t4 + A_12 + t32;
+    A[5] = A_13 - u_z + t32;
+    A[6] = t8 - t24 + t32;
+    A[7] = t7 + A_12 + t32;
+    A[8] = A_13 - v_z + t32;
+    A[9] = -t37 + t32;
+    A[10] = A_12_above + t32;
+    A[11] = A_13_above + t32;
+    A[12] = t5 - t37 + t32;
+    A[13] = t4 + A_12_above + t32;
+    A[14] = A_13_above - u_z + t32;
+    A[15] = t8 - t37 + t32;
+    A[16] = t7 + A_12_above + t32;
+    A[17] = A_13_above - v_z + t32;
     rare[0] = (t42) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
@@ -2441,62 +1808,62 @@ CF_INLINE void delta_jacobian_serial_common_kernel(const int single, const real_
     const real_t t16 = cf_rounded(single, one, v_z * t8) - cf_rounded(single, one, u_z * t12);
     const real_t t17 = cf_rounded(single, one, t16 * t16) + cf_rounded(single, one, m_y * m_y);
     const real_t product_2 = t17 + cf_rounded(single, one, m_z * m_z);
-    const real_t t18 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t18 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t9 * t9);
+    const real_t u_u = t18 + cf_rounded(single, one, t8 * t8);
     const real_t size = f + e + L + l;
     const real_t t19 = size * size;
-    const real_t t20 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t9 * t9);
-    const real_t u_u = t20 + cf_rounded(single, one, t8 * t8);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, product_2 <= t18 * (t19 * u_u), product_2);
-    const real_t t21 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t13 * (t9 - t13));
-    const real_t t22 = t21 + cf_rounded(single, one, t12 * (t8 - t12));
-    const real_t t23 = part * t22 * CLOSEDFORM_C(0.5);
-    const real_t t24 = (t8 * m_z + u_z * m_y) * t23 + t9 * CLOSEDFORM_C(0.5);
-    const real_t t25 = cf_rounded(single, one, product_2 * (t23 * t23));
-    const real_t t26 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t25));
-    const real_t t27 = cf_rounded(single, one, l * l) - t26;
-    const real_t slack = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t20 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t21 = t19 * t20;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t21) | (product_2 <= t20 * (t19 * u_u)), product_2);
+    const real_t t22 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t13 * (t9 - t13));
+    const real_t t23 = t22 + cf_rounded(single, one, t12 * (t8 - t12));
+    const real_t t24 = part * t23 * CLOSEDFORM_C(0.5);
+    const real_t t25 = (t8 * m_z + u_z * m_y) * t24 + t9 * CLOSEDFORM_C(0.5);
+    const real_t t26 = cf_rounded(single, one, product_2 * (t24 * t24));
+    const real_t t27 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t26));
+    const real_t t28 = cf_rounded(single, one, l * l) - t27;
+    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t28 = t16 * h;
-    const real_t t29 = t24 - t28;
-    const real_t t30 = s_alpha1 * t1;
-    const real_t t31 = t23 * (t9 * m_z - u_z * t16) - t8 * CLOSEDFORM_C(0.5);
-    const real_t t32 = m_y * h;
-    const real_t A_12 = t31 - t32;
-    const real_t t33 = u_z * CLOSEDFORM_C(0.5) - t23 * (t9 * m_y + t8 * t16);
-    const real_t t34 = m_z * h;
-    const real_t t35 = t33 - t34;
-    const int t36 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t37 = t36 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t39 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int t40 = cf_abs(CLOSEDFORM_C(0.0)) <= t19 * CLOSEDFORM_FEASIBILITY;
-    const real_t t41 = CLOSEDFORM_C(0.9375) * (l * size);
-    const int t42 = t40 & (-(CLOSEDFORM_FEASIBILITY * t41) <= t27);
-    const real_t t43 = cf_poison(single, (!(t38 & t39)) | (!t42));
-    const real_t t44 = c_alpha2 * t14;
-    const real_t t45 = s_alpha2 * t14;
-    const real_t B_22 = t6 * (u_z - t35) - (t44 * (t9 - t29) + t45 * (t8 + A_12));
-    const real_t t46 = c_alpha3 * t15;
-    const real_t t47 = s_alpha3 * t15;
-    const real_t B_33 = t10 * (v_z - t35) - (t46 * (t13 - t29) + t47 * (t12 + A_12));
-    const real_t t48 = t24 + t28;
-    const real_t A_12_above = t31 + t32;
-    const real_t t49 = t33 + t34;
-    const real_t B_22_above = t6 * (u_z - t49) - (t44 * (t9 - t48) + t45 * (t8 + A_12_above));
-    const real_t B_33_above = t10 * (v_z - t49) - (t46 * (t13 - t48) + t47 * (t12 + A_12_above));
-    const real_t t50 = t19 * t18;
+    const real_t t29 = t16 * h;
+    const real_t t30 = t25 - t29;
+    const real_t t31 = s_alpha1 * t1;
+    const real_t t32 = t24 * (t9 * m_z - u_z * t16) - t8 * CLOSEDFORM_C(0.5);
+    const real_t t33 = m_y * h;
+    const real_t A_12 = t32 - t33;
+    const real_t t34 = u_z * CLOSEDFORM_C(0.5) - t24 * (t9 * m_y + t8 * t16);
+    const real_t t35 = m_z * h;
+    const real_t t36 = t34 - t35;
+    const int t37 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t39 = t38 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t40 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int t41 = cf_abs(CLOSEDFORM_C(0.0)) <= t19 * CLOSEDFORM_FEASIBILITY;
+    const real_t t42 = CLOSEDFORM_C(0.9375) * (l * size);
+    const int t43 = t41 & (-(CLOSEDFORM_FEASIBILITY * t42) <= t28);
+    const real_t t44 = cf_poison(single, (!(t39 & t40)) | (!t43));
+    const real_t t45 = c_alpha2 * t14;
+    const real_t t46 = s_alpha2 * t14;
+    const real_t B_22 = t6 * (u_z - t36) - (t45 * (t9 - t30) + t46 * (t8 + A_12));
+    const real_t t47 = c_alpha3 * t15;
+    const real_t t48 = s_alpha3 * t15;
+    const real_t B_33 = t10 * (v_z - t36) - (t47 * (t13 - t30) + t48 * (t12 + A_12));
+    const real_t t49 = t25 + t29;
+    const real_t A_12_above = t32 + t33;
+    const real_t t50 = t34 + t35;
+    const real_t B_22_above = t6 * (u_z - t50) - (t45 * (t9 - t49) + t46 * (t8 + A_12_above));
+    const real_t B_33_above = t10 * (v_z - t50) - (t47 * (t13 - t49) + t48 * (t12 + A_12_above));
     const real_t t51 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t13 * t13);
     const real_t v_v = t51 + cf_rounded(single, one, t12 * t12);
     const real_t t52 = u_u * v_v;
     const real_t t53 = product_2 - t52 * CLOSEDFORM_C(0.000244140625);
-    const int t54 = (u_u <= t50) | (u_u + v_v <= t50) | (t53 <= CLOSEDFORM_VANISHING * t52);
-    const int t55 = t54 | (product_2 <= t18 * (t19 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t41);
-    B[0] = t2 * t29 - t30 * A_12 - t3 * t35 + t43;
-    B[1] = B_22 + t43;
-    B[2] = B_33 + t43;
-    B[3] = t2 * t48 - t30 * A_12_above - t3 * t49 + t43;
-    B[4] = B_22_above + t43;
-    B[5] = B_33_above + t43;
+    const int t54 = (u_u <= t21) | (u_u + v_v <= t21) | (t53 <= CLOSEDFORM_VANISHING * t52);
+    const int t55 = t54 | (product_2 <= t20 * (t19 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t42);
+    B[0] = t2 * t30 - t31 * A_12 - t3 * t36 + t44;
+    B[1] = B_22 + t44;
+    B[2] = B_33 + t44;
+    B[3] = t2 * t49 - t31 * A_12_above - t3 * t50 + t44;
+    B[4] = B_22_above + t44;
+    B[5] = B_33_above + t44;
     rare[0] = (t55) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
@@ -2627,8 +1994,7 @@ void delta_jacobian_serial_batch(size_t n, const delta_params *params,
     }
 }
 
-/* Every case. */
-CF_INLINE void delta_jacobian_whole_kernel(const int single, const delta_params *params,
+CF_INLINE void delta_jacobian_kernel(const int single, const delta_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t J[18])
 {
@@ -2800,249 +2166,6 @@ CF_INLINE void delta_jacobian_whole_kernel(const int single, const delta_params 
 }
 
 CLOSEDFORM_DISPATCHED
-CF_OUT_OF_LINE void delta_jacobian_whole(const delta_params *params, const real_t q[3],
-    real_t J[18])
-{
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, params->alpha3, q[2], q[2], q[2] };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    delta_jacobian_whole_kernel(1, params, q, sines, cosines, J);
-}
-
-/* Where nothing vanishes; rare is whether something does. */
-CF_INLINE void delta_jacobian_common_kernel(const int single, const real_t one,
-    const delta_params *params, const real_t q[3],
-    const real_t *sines, const real_t *cosines,
-    real_t J[18], real_t rare[1])
-{
-    const real_t f = params->f;
-    const real_t e = params->e;
-    const real_t L = params->L;
-    const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
-    const real_t theta1 = q[0];
-    const real_t theta2 = q[1];
-    const real_t theta3 = q[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s1 = sines[1];
-    const real_t c1 = cosines[1];
-    const real_t s_alpha2 = sines[2];
-    const real_t c_alpha2 = cosines[2];
-    const real_t s2 = sines[3];
-    const real_t c2 = cosines[3];
-    const real_t s3 = sines[4];
-    const real_t c3 = cosines[4];
-    const real_t s_alpha3 = sines[5];
-    const real_t c_alpha3 = cosines[5];
-    const real_t t1 = cf_rounded(single, one, L * c1);
-    const real_t t2 = f - e;
-    const real_t t3 = t1 + t2;
-    const real_t c1_y = cf_rounded(single, one, s_alpha1 * t3);
-    const real_t t4 = cf_rounded(single, one, L * c2);
-    const real_t t5 = t4 + t2;
-    const real_t t6 = c1_y - cf_rounded(single, one, s_alpha2 * t5);
-    const real_t t7 = cf_rounded(single, one, L * s1);
-    const real_t t8 = cf_rounded(single, one, L * s3);
-    const real_t v_z = t7 - t8;
-    const real_t t9 = cf_rounded(single, one, L * s2);
-    const real_t u_z = t7 - t9;
-    const real_t t10 = cf_rounded(single, one, L * c3);
-    const real_t t11 = t10 + t2;
-    const real_t t12 = c1_y - cf_rounded(single, one, s_alpha3 * t11);
-    const real_t t13 = cf_rounded(single, one, v_z * t6) - cf_rounded(single, one, u_z * t12);
-    const real_t c1_x = cf_rounded(single, one, c_alpha1 * t3);
-    const real_t t14 = c1_x - cf_rounded(single, one, c_alpha2 * t5);
-    const real_t t15 = c1_x - cf_rounded(single, one, c_alpha3 * t11);
-    const real_t m_y = cf_rounded(single, one, v_z * t14) - cf_rounded(single, one, u_z * t15);
-    const real_t t16 = cf_rounded(single, one, t13 * t13) + cf_rounded(single, one, m_y * m_y);
-    const real_t m_z = cf_rounded(single, one, t14 * t12) - cf_rounded(single, one, t6 * t15);
-    const real_t product_2 = t16 + cf_rounded(single, one, m_z * m_z);
-    const real_t t17 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t size = f + e + L + l;
-    const real_t t18 = size * size;
-    const real_t t19 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t14 * t14);
-    const real_t u_u = t19 + cf_rounded(single, one, t6 * t6);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, product_2 <= t17 * (t18 * u_u), product_2);
-    const real_t t20 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t15 * (t14 - t15));
-    const real_t t21 = t20 + cf_rounded(single, one, t12 * (t6 - t12));
-    const real_t t22 = part * t21 * CLOSEDFORM_C(0.5);
-    const real_t t23 = t22 * (t14 * m_z - u_z * t13) - t6 * CLOSEDFORM_C(0.5);
-    const real_t t24 = cf_rounded(single, one, product_2 * (t22 * t22));
-    const real_t t25 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t24));
-    const real_t t26 = cf_rounded(single, one, l * l) - t25;
-    const real_t slack = cf_max(t26, CLOSEDFORM_C(0.0));
-    const real_t h = cf_sqrt(part * slack);
-    const real_t t27 = m_y * h;
-    const real_t A_12 = t23 - t27;
-    const real_t A_22 = t6 + A_12;
-    const real_t t28 = u_z * CLOSEDFORM_C(0.5) - t22 * (t14 * m_y + t6 * t13);
-    const real_t t29 = m_z * h;
-    const real_t t30 = t28 - t29;
-    const real_t t31 = v_z - t30;
-    const real_t t32 = u_z - t30;
-    const real_t A_32 = t12 + A_12;
-    const real_t t33 = c_alpha1 * t7;
-    const real_t t34 = t22 * (t6 * m_z + u_z * m_y) + t14 * CLOSEDFORM_C(0.5);
-    const real_t t35 = t13 * h;
-    const real_t t36 = t34 - t35;
-    const real_t t37 = s_alpha1 * t7;
-    const real_t t38 = t33 * t36 - t37 * A_12 - t1 * t30;
-    const real_t Delta = product_2 * h;
-    const real_t t39 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t t40 = (A_22 * t31 - t32 * A_32) * t38 / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const int t41 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t42 = t41 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t43 = t42 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t44 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int t45 = cf_abs(CLOSEDFORM_C(0.0)) <= t18 * CLOSEDFORM_FEASIBILITY;
-    const int t46 = t45 & (-(CLOSEDFORM_FEASIBILITY * t39) <= t26);
-    const real_t t47 = cf_poison(single, (!(t43 & t44)) | (!t46));
-    const real_t t48 = c_alpha2 * t9;
-    const real_t A_21 = t14 - t36;
-    const real_t t49 = s_alpha2 * t9;
-    const real_t t50 = t48 * A_21 + t49 * A_22 - t4 * t32;
-    const real_t t51 = (A_12 * t31 + t30 * A_32) * t50 / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t t52 = c_alpha3 * t8;
-    const real_t A_31 = t15 - t36;
-    const real_t t53 = s_alpha3 * t8;
-    const real_t t54 = t52 * A_31 + t53 * A_32 - t10 * t31;
-    const real_t t55 = (A_12 * t32 + A_22 * t30) * t54 / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t t56 = t38 * (t31 * A_21 - t32 * A_31) / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t t57 = t50 * (t31 * t36 - t30 * A_31) / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t t58 = t54 * (t32 * t36 - t30 * A_21) / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t t59 = t38 * (A_32 * A_21 - A_22 * A_31) / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t t60 = t50 * (A_32 * t36 + A_12 * A_31) / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t t61 = t54 * (A_22 * t36 + A_12 * A_21) / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t A_12_above = t23 + t27;
-    const real_t A_22_above = t6 + A_12_above;
-    const real_t t62 = t28 + t29;
-    const real_t t63 = v_z - t62;
-    const real_t t64 = u_z - t62;
-    const real_t A_32_above = t12 + A_12_above;
-    const real_t t65 = t34 + t35;
-    const real_t t66 = t33 * t65 - t37 * A_12_above - t1 * t62;
-    const real_t t67 = (A_22_above * t63 - t64 * A_32_above) * t66 / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t A_21_above = t14 - t65;
-    const real_t t68 = t48 * A_21_above + t49 * A_22_above - t4 * t64;
-    const real_t t69 = (A_12_above * t63 + t62 * A_32_above) * t68 / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t A_31_above = t15 - t65;
-    const real_t t70 = t52 * A_31_above + t53 * A_32_above - t10 * t63;
-    const real_t t71 = (A_12_above * t64 + A_22_above * t62) * t70 / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t t72 = t66 * (t63 * A_21_above - t64 * A_31_above) / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t t73 = t68 * (t63 * t65 - t62 * A_31_above) / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t t74 = t70 * (t64 * t65 - t62 * A_21_above) / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t t75 = A_32_above * A_21_above - A_22_above * A_31_above;
-    const real_t t76 = t66 * t75 / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t t77 = t68 * (A_32_above * t65 + A_12_above * A_31_above);
-    const real_t t78 = t77 / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t t79 = t70 * (A_22_above * t65 + A_12_above * A_21_above);
-    const real_t t80 = t79 / cf_divisor(single, (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39), Delta);
-    const real_t t81 = t18 * t17;
-    const real_t t82 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t15 * t15);
-    const real_t v_v = t82 + cf_rounded(single, one, t12 * t12);
-    const real_t t83 = u_u * v_v;
-    const real_t t84 = product_2 - t83 * CLOSEDFORM_C(0.000244140625);
-    const int t85 = (u_u <= t81) | (u_u + v_v <= t81) | (t84 <= CLOSEDFORM_VANISHING * t83);
-    const int t86 = t85 | (product_2 <= t17 * (t18 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39);
-    J[0] = t40 + t47;
-    J[1] = t51 + t47;
-    J[2] = -t55 + t47;
-    J[3] = -t56 + t47;
-    J[4] = t57 + t47;
-    J[5] = -t58 + t47;
-    J[6] = -t59 + t47;
-    J[7] = t60 + t47;
-    J[8] = -t61 + t47;
-    J[9] = -t67 + t47;
-    J[10] = -t69 + t47;
-    J[11] = t71 + t47;
-    J[12] = t72 + t47;
-    J[13] = -t73 + t47;
-    J[14] = t74 + t47;
-    J[15] = t76 + t47;
-    J[16] = -t78 + t47;
-    J[17] = t80 + t47;
-    rare[0] = (t86) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
-}
-
-CF_INLINE void delta_jacobian_common_batch(size_t n, const delta_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *J, size_t J_stride,
-    uint8_t *rare, size_t rare_stride)
-{
-    (void)rare_stride;
-    const delta_params local = *params;
-    const real_t one = cf_one();
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
-        real_t rare_real[1][CLOSEDFORM_BLOCK];
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
-            real_t J_i[18];
-            real_t rare_i[1];
-            delta_jacobian_common_kernel(0, one, &local, q_i, sines_i, cosines_i, J_i, rare_i);
-            J[start + i] = J_i[0];
-            J[J_stride + start + i] = J_i[1];
-            J[2 * J_stride + start + i] = J_i[2];
-            J[3 * J_stride + start + i] = J_i[3];
-            J[4 * J_stride + start + i] = J_i[4];
-            J[5 * J_stride + start + i] = J_i[5];
-            J[6 * J_stride + start + i] = J_i[6];
-            J[7 * J_stride + start + i] = J_i[7];
-            J[8 * J_stride + start + i] = J_i[8];
-            J[9 * J_stride + start + i] = J_i[9];
-            J[10 * J_stride + start + i] = J_i[10];
-            J[11 * J_stride + start + i] = J_i[11];
-            J[12 * J_stride + start + i] = J_i[12];
-            J[13 * J_stride + start + i] = J_i[13];
-            J[14 * J_stride + start + i] = J_i[14];
-            J[15 * J_stride + start + i] = J_i[15];
-            J[16 * J_stride + start + i] = J_i[16];
-            J[17 * J_stride + start + i] = J_i[17];
-            rare_real[0][i] = rare_i[0];
-        }
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i)
-            rare[start + i] = (uint8_t)rare_real[0][i];
-    }
-}
-
-CF_INLINE void delta_jacobian_common(const delta_params *params, const real_t q[3],
-    real_t J[18], uint8_t rare[1])
-{
-    const real_t one = cf_one();
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], params->alpha2, q[1], q[2], params->alpha3, params->alpha3, params->alpha3 };
-    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
-    real_t rare_real[1];
-    delta_jacobian_common_kernel(1, one, params, q, sines, cosines, J, rare_real);
-    for (size_t i = 0; i < 1; ++i)
-        rare[i] = (uint8_t)rare_real[i];
-}
-
-CLOSEDFORM_DISPATCHED
 void delta_jacobian(const delta_params *params, const real_t q[3],
     real_t J[18])
 {
@@ -3059,9 +2182,10 @@ void delta_jacobian(const delta_params *params, const real_t q[3],
         params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
         params = &params_scaled;
     }
-    uint8_t rare[1];
-    delta_jacobian_common(params, q, J, rare);
-    if (CF_UNLIKELY(rare[0])) delta_jacobian_whole(params, q, J);
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, params->alpha3, q[2], q[2], q[2] };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    delta_jacobian_kernel(1, params, q, sines, cosines, J);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(18, J_degrees, exponent, J, J);
     }
@@ -3086,6 +2210,7 @@ void delta_jacobian_batch(size_t n, const delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *J, size_t J_stride)
 {
+    const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
     if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         delta_jacobian_other_sizes(n, params, q, q_stride, J, J_stride);
@@ -3093,16 +2218,47 @@ void delta_jacobian_batch(size_t n, const delta_params *params,
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        uint8_t rare[CLOSEDFORM_BLOCK];
-        delta_jacobian_common_batch(length, params, q + start, q_stride, J + start, J_stride, rare, CLOSEDFORM_BLOCK);
-        for (size_t i = start; i < start + length; ++i) {
-            if (!CF_UNLIKELY(rare[i - start])) continue;
-            real_t q_i[3];
-            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = params->alpha1;
+        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
+        cf_sincos_block(length, q + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + q_stride + start, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = params->alpha2;
+        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
+        real_t angle_4[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_4[i] = params->alpha3;
+        cf_sincos_block(length, angle_4, sines[4], cosines[4]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[5], cosines[5]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
             real_t J_i[18];
-            delta_jacobian_whole(params, q_i, J_i);
-            for (size_t k = 0; k < 18; ++k) J[k * J_stride + i] = J_i[k];
-
+            delta_jacobian_kernel(0, &local, q_i, sines_i, cosines_i, J_i);
+            J[start + i] = J_i[0];
+            J[J_stride + start + i] = J_i[1];
+            J[2 * J_stride + start + i] = J_i[2];
+            J[3 * J_stride + start + i] = J_i[3];
+            J[4 * J_stride + start + i] = J_i[4];
+            J[5 * J_stride + start + i] = J_i[5];
+            J[6 * J_stride + start + i] = J_i[6];
+            J[7 * J_stride + start + i] = J_i[7];
+            J[8 * J_stride + start + i] = J_i[8];
+            J[9 * J_stride + start + i] = J_i[9];
+            J[10 * J_stride + start + i] = J_i[10];
+            J[11 * J_stride + start + i] = J_i[11];
+            J[12 * J_stride + start + i] = J_i[12];
+            J[13 * J_stride + start + i] = J_i[13];
+            J[14 * J_stride + start + i] = J_i[14];
+            J[15 * J_stride + start + i] = J_i[15];
+            J[16 * J_stride + start + i] = J_i[16];
+            J[17 * J_stride + start + i] = J_i[17];
         }
     }
 }
@@ -3298,63 +2454,63 @@ CF_INLINE void delta_determinant_common_kernel(const int single, const real_t on
     const real_t t16 = cf_rounded(single, one, v_z * t8) - cf_rounded(single, one, u_z * t12);
     const real_t t17 = cf_rounded(single, one, t16 * t16) + cf_rounded(single, one, m_y * m_y);
     const real_t product_2 = t17 + cf_rounded(single, one, m_z * m_z);
-    const real_t t18 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t18 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t9 * t9);
+    const real_t u_u = t18 + cf_rounded(single, one, t8 * t8);
     const real_t size = f + e + L + l;
     const real_t t19 = size * size;
-    const real_t t20 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t9 * t9);
-    const real_t u_u = t20 + cf_rounded(single, one, t8 * t8);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, product_2 <= t18 * (t19 * u_u), product_2);
-    const real_t t21 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t13 * (t9 - t13));
-    const real_t t22 = t21 + cf_rounded(single, one, t12 * (t8 - t12));
-    const real_t t23 = part * t22 * CLOSEDFORM_C(0.5);
-    const real_t t24 = (t8 * m_z + u_z * m_y) * t23 + t9 * CLOSEDFORM_C(0.5);
-    const real_t t25 = cf_rounded(single, one, product_2 * (t23 * t23));
-    const real_t t26 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t25));
-    const real_t t27 = cf_rounded(single, one, l * l) - t26;
-    const real_t slack = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t20 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t21 = t19 * t20;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t21) | (product_2 <= t20 * (t19 * u_u)), product_2);
+    const real_t t22 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t13 * (t9 - t13));
+    const real_t t23 = t22 + cf_rounded(single, one, t12 * (t8 - t12));
+    const real_t t24 = part * t23 * CLOSEDFORM_C(0.5);
+    const real_t t25 = (t8 * m_z + u_z * m_y) * t24 + t9 * CLOSEDFORM_C(0.5);
+    const real_t t26 = cf_rounded(single, one, product_2 * (t24 * t24));
+    const real_t t27 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t26));
+    const real_t t28 = cf_rounded(single, one, l * l) - t27;
+    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t28 = t16 * h;
-    const real_t t29 = t24 - t28;
-    const real_t t30 = s_alpha1 * t1;
-    const real_t t31 = t23 * (t9 * m_z - u_z * t16) - t8 * CLOSEDFORM_C(0.5);
-    const real_t t32 = m_y * h;
-    const real_t A_12 = t31 - t32;
-    const real_t t33 = u_z * CLOSEDFORM_C(0.5) - t23 * (t9 * m_y + t8 * t16);
-    const real_t t34 = m_z * h;
-    const real_t t35 = t33 - t34;
-    const real_t t36 = c_alpha2 * t14;
-    const real_t t37 = s_alpha2 * t14;
-    const real_t t38 = t36 * (t9 - t29) + t37 * (t8 + A_12) - t6 * (u_z - t35);
-    const real_t t39 = c_alpha3 * t15;
-    const real_t t40 = s_alpha3 * t15;
-    const real_t t41 = t39 * (t13 - t29) + t40 * (t12 + A_12) - t10 * (v_z - t35);
-    const real_t t42 = (t2 * t29 - t30 * A_12 - t3 * t35) * t38 * t41;
+    const real_t t29 = t16 * h;
+    const real_t t30 = t25 - t29;
+    const real_t t31 = s_alpha1 * t1;
+    const real_t t32 = t24 * (t9 * m_z - u_z * t16) - t8 * CLOSEDFORM_C(0.5);
+    const real_t t33 = m_y * h;
+    const real_t A_12 = t32 - t33;
+    const real_t t34 = u_z * CLOSEDFORM_C(0.5) - t24 * (t9 * m_y + t8 * t16);
+    const real_t t35 = m_z * h;
+    const real_t t36 = t34 - t35;
+    const real_t t37 = c_alpha2 * t14;
+    const real_t t38 = s_alpha2 * t14;
+    const real_t t39 = t37 * (t9 - t30) + t38 * (t8 + A_12) - t6 * (u_z - t36);
+    const real_t t40 = c_alpha3 * t15;
+    const real_t t41 = s_alpha3 * t15;
+    const real_t t42 = t40 * (t13 - t30) + t41 * (t12 + A_12) - t10 * (v_z - t36);
+    const real_t t43 = (t2 * t30 - t31 * A_12 - t3 * t36) * t39 * t42;
     const real_t Delta = product_2 * h;
-    const real_t t43 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t t44 = t42 / cf_divisor(single, (product_2 <= t18 * (t19 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t43), Delta);
-    const int t45 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t46 = t45 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t47 = t46 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t48 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int t49 = cf_abs(CLOSEDFORM_C(0.0)) <= t19 * CLOSEDFORM_FEASIBILITY;
-    const int t50 = t49 & (-(CLOSEDFORM_FEASIBILITY * t43) <= t27);
-    const real_t t51 = cf_poison(single, (!(t47 & t48)) | (!t50));
-    const real_t t52 = t24 + t28;
-    const real_t A_12_above = t31 + t32;
-    const real_t t53 = t33 + t34;
-    const real_t t54 = t36 * (t9 - t52) + t37 * (t8 + A_12_above) - t6 * (u_z - t53);
-    const real_t t55 = (t2 * t52 - t30 * A_12_above - t3 * t53) * t54;
-    const real_t t56 = t39 * (t13 - t52) + t40 * (t12 + A_12_above) - t10 * (v_z - t53);
-    const real_t t57 = t55 * t56 / cf_divisor(single, (product_2 <= t18 * (t19 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t43), Delta);
-    const real_t t58 = t19 * t18;
+    const real_t t44 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t t45 = t43 / cf_divisor(single, (u_u <= t21) | (product_2 <= t20 * (t19 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t44), Delta);
+    const int t46 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t47 = t46 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t49 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int t50 = cf_abs(CLOSEDFORM_C(0.0)) <= t19 * CLOSEDFORM_FEASIBILITY;
+    const int t51 = t50 & (-(CLOSEDFORM_FEASIBILITY * t44) <= t28);
+    const real_t t52 = cf_poison(single, (!(t48 & t49)) | (!t51));
+    const real_t t53 = t25 + t29;
+    const real_t A_12_above = t32 + t33;
+    const real_t t54 = t34 + t35;
+    const real_t t55 = t37 * (t9 - t53) + t38 * (t8 + A_12_above) - t6 * (u_z - t54);
+    const real_t t56 = (t2 * t53 - t31 * A_12_above - t3 * t54) * t55;
+    const real_t t57 = t40 * (t13 - t53) + t41 * (t12 + A_12_above) - t10 * (v_z - t54);
+    const real_t t58 = t56 * t57 / cf_divisor(single, (u_u <= t21) | (product_2 <= t20 * (t19 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t44), Delta);
     const real_t t59 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t13 * t13);
     const real_t v_v = t59 + cf_rounded(single, one, t12 * t12);
     const real_t t60 = u_u * v_v;
     const real_t t61 = product_2 - t60 * CLOSEDFORM_C(0.000244140625);
-    const int t62 = (u_u <= t58) | (u_u + v_v <= t58) | (t61 <= CLOSEDFORM_VANISHING * t60);
-    const int t63 = t62 | (product_2 <= t18 * (t19 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t43);
-    det[0] = -t44 + t51;
-    det[1] = t57 + t51;
+    const int t62 = (u_u <= t21) | (u_u + v_v <= t21) | (t61 <= CLOSEDFORM_VANISHING * t60);
+    const int t63 = t62 | (product_2 <= t20 * (t19 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t44);
+    det[0] = -t45 + t52;
+    det[1] = t58 + t52;
     rare[0] = (t63) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
@@ -3676,65 +2832,65 @@ CF_INLINE void delta_singularities_common_kernel(const int single, const real_t 
     const real_t t16 = cf_rounded(single, one, v_z * t8) - cf_rounded(single, one, u_z * t12);
     const real_t t17 = cf_rounded(single, one, t16 * t16) + cf_rounded(single, one, m_y * m_y);
     const real_t product_2 = t17 + cf_rounded(single, one, m_z * m_z);
-    const real_t t18 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t18 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t9 * t9);
+    const real_t u_u = t18 + cf_rounded(single, one, t8 * t8);
     const real_t size = f + e + L + l;
     const real_t t19 = size * size;
-    const real_t t20 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t9 * t9);
-    const real_t u_u = t20 + cf_rounded(single, one, t8 * t8);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, product_2 <= t18 * (t19 * u_u), product_2);
-    const real_t t21 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t13 * (t9 - t13));
-    const real_t t22 = t21 + cf_rounded(single, one, t12 * (t8 - t12));
-    const real_t t23 = part * t22 * CLOSEDFORM_C(0.5);
-    const real_t t24 = (t8 * m_z + u_z * m_y) * t23 + t9 * CLOSEDFORM_C(0.5);
-    const real_t t25 = cf_rounded(single, one, product_2 * (t23 * t23));
-    const real_t t26 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t25));
-    const real_t t27 = cf_rounded(single, one, l * l) - t26;
-    const real_t slack = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t20 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t21 = t19 * t20;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t21) | (product_2 <= t20 * (t19 * u_u)), product_2);
+    const real_t t22 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t13 * (t9 - t13));
+    const real_t t23 = t22 + cf_rounded(single, one, t12 * (t8 - t12));
+    const real_t t24 = part * t23 * CLOSEDFORM_C(0.5);
+    const real_t t25 = (t8 * m_z + u_z * m_y) * t24 + t9 * CLOSEDFORM_C(0.5);
+    const real_t t26 = cf_rounded(single, one, product_2 * (t24 * t24));
+    const real_t t27 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t26));
+    const real_t t28 = cf_rounded(single, one, l * l) - t27;
+    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t28 = t16 * h;
-    const real_t t29 = t24 - t28;
-    const real_t t30 = s_alpha1 * t1;
-    const real_t t31 = t23 * (t9 * m_z - u_z * t16) - t8 * CLOSEDFORM_C(0.5);
-    const real_t t32 = m_y * h;
-    const real_t A_12 = t31 - t32;
-    const real_t t33 = u_z * CLOSEDFORM_C(0.5) - t23 * (t9 * m_y + t8 * t16);
-    const real_t t34 = m_z * h;
-    const real_t t35 = t33 - t34;
-    const int t36 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t37 = t36 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t39 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int t40 = cf_abs(CLOSEDFORM_C(0.0)) <= t19 * CLOSEDFORM_FEASIBILITY;
-    const real_t t41 = CLOSEDFORM_C(0.9375) * (l * size);
-    const int t42 = t40 & (-(CLOSEDFORM_FEASIBILITY * t41) <= t27);
-    const real_t t43 = cf_poison(single, (!(t38 & t39)) | (!t42));
-    const real_t t44 = c_alpha2 * t14;
-    const real_t t45 = s_alpha2 * t14;
-    const real_t B_22 = t6 * (u_z - t35) - (t44 * (t9 - t29) + t45 * (t8 + A_12));
-    const real_t t46 = c_alpha3 * t15;
-    const real_t t47 = s_alpha3 * t15;
-    const real_t B_33 = t10 * (v_z - t35) - (t46 * (t13 - t29) + t47 * (t12 + A_12));
+    const real_t t29 = t16 * h;
+    const real_t t30 = t25 - t29;
+    const real_t t31 = s_alpha1 * t1;
+    const real_t t32 = t24 * (t9 * m_z - u_z * t16) - t8 * CLOSEDFORM_C(0.5);
+    const real_t t33 = m_y * h;
+    const real_t A_12 = t32 - t33;
+    const real_t t34 = u_z * CLOSEDFORM_C(0.5) - t24 * (t9 * m_y + t8 * t16);
+    const real_t t35 = m_z * h;
+    const real_t t36 = t34 - t35;
+    const int t37 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t39 = t38 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t40 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int t41 = cf_abs(CLOSEDFORM_C(0.0)) <= t19 * CLOSEDFORM_FEASIBILITY;
+    const real_t t42 = CLOSEDFORM_C(0.9375) * (l * size);
+    const int t43 = t41 & (-(CLOSEDFORM_FEASIBILITY * t42) <= t28);
+    const real_t t44 = cf_poison(single, (!(t39 & t40)) | (!t43));
+    const real_t t45 = c_alpha2 * t14;
+    const real_t t46 = s_alpha2 * t14;
+    const real_t B_22 = t6 * (u_z - t36) - (t45 * (t9 - t30) + t46 * (t8 + A_12));
+    const real_t t47 = c_alpha3 * t15;
+    const real_t t48 = s_alpha3 * t15;
+    const real_t B_33 = t10 * (v_z - t36) - (t47 * (t13 - t30) + t48 * (t12 + A_12));
     const real_t Delta = product_2 * h;
-    const real_t t48 = t24 + t28;
-    const real_t A_12_above = t31 + t32;
-    const real_t t49 = t33 + t34;
-    const real_t B_22_above = t6 * (u_z - t49) - (t44 * (t9 - t48) + t45 * (t8 + A_12_above));
-    const real_t B_33_above = t10 * (v_z - t49) - (t46 * (t13 - t48) + t47 * (t12 + A_12_above));
-    const real_t t50 = t19 * t18;
+    const real_t t49 = t25 + t29;
+    const real_t A_12_above = t32 + t33;
+    const real_t t50 = t34 + t35;
+    const real_t B_22_above = t6 * (u_z - t50) - (t45 * (t9 - t49) + t46 * (t8 + A_12_above));
+    const real_t B_33_above = t10 * (v_z - t50) - (t47 * (t13 - t49) + t48 * (t12 + A_12_above));
     const real_t t51 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t13 * t13);
     const real_t v_v = t51 + cf_rounded(single, one, t12 * t12);
     const real_t t52 = u_u * v_v;
     const real_t t53 = product_2 - t52 * CLOSEDFORM_C(0.000244140625);
-    const int t54 = (u_u <= t50) | (u_u + v_v <= t50) | (t53 <= CLOSEDFORM_VANISHING * t52);
-    const int t55 = t54 | (product_2 <= t18 * (t19 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t41);
-    factors[0] = t2 * t29 - t30 * A_12 - t3 * t35 + t43;
-    factors[1] = B_22 + t43;
-    factors[2] = B_33 + t43;
-    factors[3] = -Delta + t43;
-    factors[4] = t2 * t48 - t30 * A_12_above - t3 * t49 + t43;
-    factors[5] = B_22_above + t43;
-    factors[6] = B_33_above + t43;
-    factors[7] = Delta + t43;
+    const int t54 = (u_u <= t21) | (u_u + v_v <= t21) | (t53 <= CLOSEDFORM_VANISHING * t52);
+    const int t55 = t54 | (product_2 <= t20 * (t19 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t42);
+    factors[0] = t2 * t30 - t31 * A_12 - t3 * t36 + t44;
+    factors[1] = B_22 + t44;
+    factors[2] = B_33 + t44;
+    factors[3] = -Delta + t44;
+    factors[4] = t2 * t49 - t31 * A_12_above - t3 * t50 + t44;
+    factors[5] = B_22_above + t44;
+    factors[6] = B_33_above + t44;
+    factors[7] = Delta + t44;
     rare[0] = (t55) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
@@ -4076,92 +3232,92 @@ CF_INLINE void delta_condition_number_common_kernel(const int single, const real
     const real_t t10 = cf_rounded(single, one, v_z * t4) - cf_rounded(single, one, u_z * t7);
     const real_t t11 = cf_rounded(single, one, t10 * t10) + cf_rounded(single, one, m_y * m_y);
     const real_t product_2 = t11 + cf_rounded(single, one, m_z * m_z);
-    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t12 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t5 * t5);
+    const real_t u_u = t12 + cf_rounded(single, one, t4 * t4);
     const real_t size = f + e + L + l;
     const real_t t13 = size * size;
-    const real_t t14 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t5 * t5);
-    const real_t u_u = t14 + cf_rounded(single, one, t4 * t4);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, product_2 <= t12 * (t13 * u_u), product_2);
-    const real_t t15 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t8 * (t5 - t8));
-    const real_t t16 = t15 + cf_rounded(single, one, t7 * (t4 - t7));
-    const real_t t17 = part * t16 * CLOSEDFORM_C(0.5);
-    const real_t t18 = (t4 * m_z + u_z * m_y) * t17 + t5 * CLOSEDFORM_C(0.5);
-    const real_t t19 = cf_rounded(single, one, product_2 * (t17 * t17));
-    const real_t t20 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t19));
-    const real_t t21 = cf_rounded(single, one, l * l) - t20;
-    const real_t slack = cf_max(t21, CLOSEDFORM_C(0.0));
+    const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t15 = t13 * t14;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t15) | (product_2 <= t14 * (t13 * u_u)), product_2);
+    const real_t t16 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t8 * (t5 - t8));
+    const real_t t17 = t16 + cf_rounded(single, one, t7 * (t4 - t7));
+    const real_t t18 = part * t17 * CLOSEDFORM_C(0.5);
+    const real_t t19 = (t4 * m_z + u_z * m_y) * t18 + t5 * CLOSEDFORM_C(0.5);
+    const real_t t20 = cf_rounded(single, one, product_2 * (t18 * t18));
+    const real_t t21 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t20));
+    const real_t t22 = cf_rounded(single, one, l * l) - t21;
+    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t22 = t10 * h;
-    const real_t t23 = t18 - t22;
-    const real_t t24 = t17 * (t5 * m_z - u_z * t10) - t4 * CLOSEDFORM_C(0.5);
-    const real_t t25 = m_y * h;
-    const real_t A_12 = t24 - t25;
-    const real_t t26 = u_z * CLOSEDFORM_C(0.5) - t17 * (t5 * m_y + t4 * t10);
-    const real_t t27 = m_z * h;
-    const real_t t28 = t26 - t27;
-    const real_t A_21 = t5 - t23;
+    const real_t t23 = t10 * h;
+    const real_t t24 = t19 - t23;
+    const real_t t25 = t18 * (t5 * m_z - u_z * t10) - t4 * CLOSEDFORM_C(0.5);
+    const real_t t26 = m_y * h;
+    const real_t A_12 = t25 - t26;
+    const real_t t27 = u_z * CLOSEDFORM_C(0.5) - t18 * (t5 * m_y + t4 * t10);
+    const real_t t28 = m_z * h;
+    const real_t t29 = t27 - t28;
+    const real_t A_21 = t5 - t24;
     const real_t A_22 = t4 + A_12;
-    const real_t t29 = u_z - t28;
-    const real_t t30 = t23 * t23 + A_12 * A_12 + t28 * t28 + (A_21 * A_21 + A_22 * A_22 + t29 * t29);
-    const real_t A_31 = t8 - t23;
+    const real_t t30 = u_z - t29;
+    const real_t t31 = t24 * t24 + A_12 * A_12 + t29 * t29 + (A_21 * A_21 + A_22 * A_22 + t30 * t30);
+    const real_t A_31 = t8 - t24;
     const real_t A_32 = t7 + A_12;
-    const real_t t31 = v_z - t28;
-    const real_t t32 = t30 + (A_31 * A_31 + A_32 * A_32 + t31 * t31);
-    const real_t t33 = t23 * A_22 + A_12 * A_21;
-    const real_t t34 = t23 * t29 - t28 * A_21;
-    const real_t t35 = t23 * A_32 + A_12 * A_31;
-    const real_t t36 = t23 * t31 - t28 * A_31;
-    const real_t t37 = t33 * t33 + t34 * t34 + t35 * t35 + t36 * t36;
-    const real_t t38 = A_12 * t29 + t28 * A_22;
-    const real_t t39 = A_12 * t31 + t28 * A_32;
-    const real_t t40 = A_21 * A_32 - A_22 * A_31;
-    const real_t t41 = A_21 * t31 - t29 * A_31;
-    const real_t t42 = t37 + t38 * t38 + t39 * t39 + t40 * t40 + t41 * t41;
-    const real_t t43 = A_22 * t31 - t29 * A_32;
-    const real_t t44 = CLOSEDFORM_C(3.0) * (product_2 * h);
-    const real_t t45 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t t46 = cf_sqrt(t32 * (t42 + t43 * t43)) / cf_divisor(single, (product_2 <= t12 * (t13 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t45), t44);
-    const int t47 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t50 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int t51 = cf_abs(CLOSEDFORM_C(0.0)) <= t13 * CLOSEDFORM_FEASIBILITY;
-    const int t52 = t51 & (-(CLOSEDFORM_FEASIBILITY * t45) <= t21);
-    const real_t t53 = cf_poison(single, (!(t49 & t50)) | (!t52));
-    const real_t t54 = t18 + t22;
-    const real_t A_12_above = t24 + t25;
-    const real_t t55 = t26 + t27;
-    const real_t square1_above = t54 * t54 + A_12_above * A_12_above + t55 * t55;
-    const real_t A_21_above = t5 - t54;
+    const real_t t32 = v_z - t29;
+    const real_t t33 = t31 + (A_31 * A_31 + A_32 * A_32 + t32 * t32);
+    const real_t t34 = t24 * A_22 + A_12 * A_21;
+    const real_t t35 = t24 * t30 - t29 * A_21;
+    const real_t t36 = t24 * A_32 + A_12 * A_31;
+    const real_t t37 = t24 * t32 - t29 * A_31;
+    const real_t t38 = t34 * t34 + t35 * t35 + t36 * t36 + t37 * t37;
+    const real_t t39 = A_12 * t30 + t29 * A_22;
+    const real_t t40 = A_12 * t32 + t29 * A_32;
+    const real_t t41 = A_21 * A_32 - A_22 * A_31;
+    const real_t t42 = A_21 * t32 - t30 * A_31;
+    const real_t t43 = t38 + t39 * t39 + t40 * t40 + t41 * t41 + t42 * t42;
+    const real_t t44 = A_22 * t32 - t30 * A_32;
+    const real_t t45 = CLOSEDFORM_C(3.0) * (product_2 * h);
+    const real_t t46 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t t47 = cf_sqrt(t33 * (t43 + t44 * t44)) / cf_divisor(single, (u_u <= t15) | (product_2 <= t14 * (t13 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t46), t45);
+    const int t48 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t50 = t49 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t51 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int t52 = cf_abs(CLOSEDFORM_C(0.0)) <= t13 * CLOSEDFORM_FEASIBILITY;
+    const int t53 = t52 & (-(CLOSEDFORM_FEASIBILITY * t46) <= t22);
+    const real_t t54 = cf_poison(single, (!(t50 & t51)) | (!t53));
+    const real_t t55 = t19 + t23;
+    const real_t A_12_above = t25 + t26;
+    const real_t t56 = t27 + t28;
+    const real_t square1_above = t55 * t55 + A_12_above * A_12_above + t56 * t56;
+    const real_t A_21_above = t5 - t55;
     const real_t A_22_above = t4 + A_12_above;
-    const real_t t56 = A_21_above * A_21_above + A_22_above * A_22_above;
-    const real_t t57 = u_z - t55;
-    const real_t A_31_above = t8 - t54;
+    const real_t t57 = A_21_above * A_21_above + A_22_above * A_22_above;
+    const real_t t58 = u_z - t56;
+    const real_t A_31_above = t8 - t55;
     const real_t A_32_above = t7 + A_12_above;
-    const real_t t58 = A_31_above * A_31_above + A_32_above * A_32_above;
-    const real_t t59 = v_z - t55;
-    const real_t t60 = square1_above + (t56 + t57 * t57) + (t58 + t59 * t59);
-    const real_t t61 = t54 * A_22_above + A_12_above * A_21_above;
-    const real_t t62 = t54 * t57 - t55 * A_21_above;
-    const real_t t63 = t54 * A_32_above + A_12_above * A_31_above;
-    const real_t t64 = t54 * t59 - t55 * A_31_above;
-    const real_t t65 = t61 * t61 + t62 * t62 + t63 * t63 + t64 * t64;
-    const real_t t66 = A_12_above * t57 + t55 * A_22_above;
-    const real_t t67 = A_12_above * t59 + t55 * A_32_above;
-    const real_t t68 = A_21_above * A_32_above - A_22_above * A_31_above;
-    const real_t t69 = A_21_above * t59 - t57 * A_31_above;
-    const real_t t70 = t65 + t66 * t66 + t67 * t67 + t68 * t68 + t69 * t69;
-    const real_t t71 = A_22_above * t59 - t57 * A_32_above;
-    const real_t t72 = cf_sqrt(t60 * (t70 + t71 * t71)) / cf_divisor(single, (product_2 <= t12 * (t13 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t45), t44);
-    const real_t t73 = t13 * t12;
+    const real_t t59 = A_31_above * A_31_above + A_32_above * A_32_above;
+    const real_t t60 = v_z - t56;
+    const real_t t61 = square1_above + (t57 + t58 * t58) + (t59 + t60 * t60);
+    const real_t t62 = t55 * A_22_above + A_12_above * A_21_above;
+    const real_t t63 = t55 * t58 - t56 * A_21_above;
+    const real_t t64 = t55 * A_32_above + A_12_above * A_31_above;
+    const real_t t65 = t55 * t60 - t56 * A_31_above;
+    const real_t t66 = t62 * t62 + t63 * t63 + t64 * t64 + t65 * t65;
+    const real_t t67 = A_12_above * t58 + t56 * A_22_above;
+    const real_t t68 = A_12_above * t60 + t56 * A_32_above;
+    const real_t t69 = A_21_above * A_32_above - A_22_above * A_31_above;
+    const real_t t70 = A_21_above * t60 - t58 * A_31_above;
+    const real_t t71 = t66 + t67 * t67 + t68 * t68 + t69 * t69 + t70 * t70;
+    const real_t t72 = A_22_above * t60 - t58 * A_32_above;
+    const real_t t73 = cf_sqrt(t61 * (t71 + t72 * t72)) / cf_divisor(single, (u_u <= t15) | (product_2 <= t14 * (t13 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t46), t45);
     const real_t t74 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t8 * t8);
     const real_t v_v = t74 + cf_rounded(single, one, t7 * t7);
     const real_t t75 = u_u * v_v;
     const real_t t76 = product_2 - t75 * CLOSEDFORM_C(0.000244140625);
-    const int t77 = (u_u <= t73) | (u_u + v_v <= t73) | (t76 <= CLOSEDFORM_VANISHING * t75);
-    const int t78 = t77 | (product_2 <= t12 * (t13 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t45);
-    kappa[0] = t46 + t53;
-    kappa[1] = t72 + t53;
+    const int t77 = (u_u <= t15) | (u_u + v_v <= t15) | (t76 <= CLOSEDFORM_VANISHING * t75);
+    const int t78 = t77 | (product_2 <= t14 * (t13 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t46);
+    kappa[0] = t47 + t54;
+    kappa[1] = t73 + t54;
     rare[0] = (t78) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
@@ -4492,83 +3648,83 @@ CF_INLINE void delta_constraint_common_kernel(const int single, const real_t one
     const real_t t13 = cf_rounded(single, one, t10 * t10) + cf_rounded(single, one, m_y * m_y);
     const real_t m_z = cf_rounded(single, one, t11 * t9) - cf_rounded(single, one, t7 * t12);
     const real_t product_2 = t13 + cf_rounded(single, one, m_z * m_z);
-    const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t11 * t11);
+    const real_t u_u = t14 + cf_rounded(single, one, t7 * t7);
     const real_t size = f + e + L + l;
     const real_t t15 = size * size;
-    const real_t t16 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t11 * t11);
-    const real_t u_u = t16 + cf_rounded(single, one, t7 * t7);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, product_2 <= t14 * (t15 * u_u), product_2);
-    const real_t t17 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t12 * (t11 - t12));
-    const real_t t18 = t17 + cf_rounded(single, one, t9 * (t7 - t9));
-    const real_t t19 = part * t18 * CLOSEDFORM_C(0.5);
-    const real_t t20 = u_z * CLOSEDFORM_C(0.5) - t19 * (t11 * m_y + t7 * t10);
-    const real_t t21 = cf_rounded(single, one, product_2 * (t19 * t19));
-    const real_t t22 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t21));
-    const real_t t23 = cf_rounded(single, one, l * l) - t22;
-    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
+    const real_t t16 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t17 = t15 * t16;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t17) | (product_2 <= t16 * (t15 * u_u)), product_2);
+    const real_t t18 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t12 * (t11 - t12));
+    const real_t t19 = t18 + cf_rounded(single, one, t9 * (t7 - t9));
+    const real_t t20 = part * t19 * CLOSEDFORM_C(0.5);
+    const real_t t21 = u_z * CLOSEDFORM_C(0.5) - t20 * (t11 * m_y + t7 * t10);
+    const real_t t22 = cf_rounded(single, one, product_2 * (t20 * t20));
+    const real_t t23 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t22));
+    const real_t t24 = cf_rounded(single, one, l * l) - t23;
+    const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t24 = m_z * h;
-    const real_t t25 = t20 - t24;
-    const real_t t26 = u_z - t25;
-    const real_t t27 = t25 * t26;
-    const real_t t28 = t19 * (t11 * m_z - u_z * t10) - t7 * CLOSEDFORM_C(0.5);
-    const real_t t29 = m_y * h;
-    const real_t A_12 = t28 - t29;
-    const real_t t30 = t27 * (t9 + A_12);
-    const real_t t31 = c_alpha3 * t1;
-    const real_t t32 = (t7 * m_z + u_z * m_y) * t19 + t11 * CLOSEDFORM_C(0.5);
-    const real_t t33 = t10 * h;
-    const real_t t34 = t32 - t33;
-    const real_t t35 = v_z - t25;
-    const real_t t36 = t26 * t35;
-    const real_t t37 = t34 * t36;
-    const real_t t38 = s_alpha3 * (c_alpha1 * c_alpha2);
-    const real_t t39 = c_alpha3 * (s_alpha1 * s_alpha2);
-    const real_t t40 = t36 * A_12;
-    const real_t t41 = s_alpha1 * c_alpha2;
-    const real_t t42 = s_alpha3 * t41;
-    const real_t t43 = t31 * t37 - t38 * t37 - t39 * t40 + t42 * t40;
-    const real_t t44 = c_alpha3 * t41;
-    const real_t t45 = t25 * t35;
-    const real_t t46 = (t11 - t34) * t45;
-    const real_t t47 = t45 * (t7 + A_12);
-    const real_t t48 = t43 - t44 * t46 + t38 * t46 - t39 * t47 + t2 * t47;
-    const real_t t49 = (t12 - t34) * t27;
-    const real_t t50 = t2 * t30 - (t48 + t44 * t49 - t31 * t49 + t42 * t30);
-    const int t51 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t53 = t52 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t54 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int t55 = cf_abs(CLOSEDFORM_C(0.0)) <= t15 * CLOSEDFORM_FEASIBILITY;
-    const real_t t56 = CLOSEDFORM_C(0.9375) * (l * size);
-    const int t57 = t55 & (-(CLOSEDFORM_FEASIBILITY * t56) <= t23);
-    const real_t t58 = cf_poison(single, (!(t53 & t54)) | (!t57));
-    const real_t t59 = t20 + t24;
-    const real_t t60 = u_z - t59;
-    const real_t t61 = t59 * t60;
-    const real_t A_12_above = t28 + t29;
-    const real_t t62 = t61 * (t9 + A_12_above);
-    const real_t t63 = t32 + t33;
-    const real_t t64 = v_z - t59;
-    const real_t t65 = t60 * t64;
-    const real_t t66 = t63 * t65;
-    const real_t t67 = t65 * A_12_above;
-    const real_t t68 = t31 * t66 - t38 * t66 - t39 * t67 + t42 * t67;
-    const real_t t69 = t59 * t64;
-    const real_t t70 = (t11 - t63) * t69;
-    const real_t t71 = t69 * (t7 + A_12_above);
-    const real_t t72 = t68 - t44 * t70 + t38 * t70 - t39 * t71 + t2 * t71;
-    const real_t t73 = (t12 - t63) * t61;
-    const real_t t74 = t2 * t62 - (t72 + t44 * t73 - t31 * t73 + t42 * t62);
-    const real_t t75 = t15 * t14;
+    const real_t t25 = m_z * h;
+    const real_t t26 = t21 - t25;
+    const real_t t27 = u_z - t26;
+    const real_t t28 = t26 * t27;
+    const real_t t29 = t20 * (t11 * m_z - u_z * t10) - t7 * CLOSEDFORM_C(0.5);
+    const real_t t30 = m_y * h;
+    const real_t A_12 = t29 - t30;
+    const real_t t31 = t28 * (t9 + A_12);
+    const real_t t32 = c_alpha3 * t1;
+    const real_t t33 = (t7 * m_z + u_z * m_y) * t20 + t11 * CLOSEDFORM_C(0.5);
+    const real_t t34 = t10 * h;
+    const real_t t35 = t33 - t34;
+    const real_t t36 = v_z - t26;
+    const real_t t37 = t27 * t36;
+    const real_t t38 = t35 * t37;
+    const real_t t39 = s_alpha3 * (c_alpha1 * c_alpha2);
+    const real_t t40 = c_alpha3 * (s_alpha1 * s_alpha2);
+    const real_t t41 = t37 * A_12;
+    const real_t t42 = s_alpha1 * c_alpha2;
+    const real_t t43 = s_alpha3 * t42;
+    const real_t t44 = t32 * t38 - t39 * t38 - t40 * t41 + t43 * t41;
+    const real_t t45 = c_alpha3 * t42;
+    const real_t t46 = t26 * t36;
+    const real_t t47 = (t11 - t35) * t46;
+    const real_t t48 = t46 * (t7 + A_12);
+    const real_t t49 = t44 - t45 * t47 + t39 * t47 - t40 * t48 + t2 * t48;
+    const real_t t50 = (t12 - t35) * t28;
+    const real_t t51 = t2 * t31 - (t49 + t45 * t50 - t32 * t50 + t43 * t31);
+    const int t52 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t53 = t52 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t54 = t53 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t55 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int t56 = cf_abs(CLOSEDFORM_C(0.0)) <= t15 * CLOSEDFORM_FEASIBILITY;
+    const real_t t57 = CLOSEDFORM_C(0.9375) * (l * size);
+    const int t58 = t56 & (-(CLOSEDFORM_FEASIBILITY * t57) <= t24);
+    const real_t t59 = cf_poison(single, (!(t54 & t55)) | (!t58));
+    const real_t t60 = t21 + t25;
+    const real_t t61 = u_z - t60;
+    const real_t t62 = t60 * t61;
+    const real_t A_12_above = t29 + t30;
+    const real_t t63 = t62 * (t9 + A_12_above);
+    const real_t t64 = t33 + t34;
+    const real_t t65 = v_z - t60;
+    const real_t t66 = t61 * t65;
+    const real_t t67 = t64 * t66;
+    const real_t t68 = t66 * A_12_above;
+    const real_t t69 = t32 * t67 - t39 * t67 - t40 * t68 + t43 * t68;
+    const real_t t70 = t60 * t65;
+    const real_t t71 = (t11 - t64) * t70;
+    const real_t t72 = t70 * (t7 + A_12_above);
+    const real_t t73 = t69 - t45 * t71 + t39 * t71 - t40 * t72 + t2 * t72;
+    const real_t t74 = (t12 - t64) * t62;
+    const real_t t75 = t2 * t63 - (t73 + t45 * t74 - t32 * t74 + t43 * t63);
     const real_t t76 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t12 * t12);
     const real_t v_v = t76 + cf_rounded(single, one, t9 * t9);
     const real_t t77 = u_u * v_v;
     const real_t t78 = product_2 - t77 * CLOSEDFORM_C(0.000244140625);
-    const int t79 = (u_u <= t75) | (u_u + v_v <= t75) | (t78 <= CLOSEDFORM_VANISHING * t77);
-    const int t80 = t79 | (product_2 <= t14 * (t15 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t56);
-    factors[0] = t50 + t58;
-    factors[1] = t74 + t58;
+    const int t79 = (u_u <= t17) | (u_u + v_v <= t17) | (t78 <= CLOSEDFORM_VANISHING * t77);
+    const int t80 = t79 | (product_2 <= t16 * (t15 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t57);
+    factors[0] = t51 + t59;
+    factors[1] = t75 + t59;
     rare[0] = (t80) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 

@@ -7,8 +7,6 @@
  *   fk where nothing vanishes: 52 add, 29 compare and select, 6 divide, 59 multiply, 6 sincos, 1
  *     sqrt
  *   skeleton: 50 compare and select, 180 add, 13 divide, 99 multiply, 6 sincos, 2 sqrt
- *   skeleton where nothing vanishes: 173 add, 28 compare and select, 12 divide, 77 multiply, 6
- *     sincos, 1 sqrt
  *   jacobian_parallel: 50 compare and select, 80 add, 7 divide, 81 multiply, 6 sincos, 2 sqrt
  *   jacobian_parallel where nothing vanishes: 73 add, 28 compare and select, 6 divide, 59
  *     multiply, 6 sincos, 1 sqrt
@@ -16,8 +14,6 @@
  *   jacobian_serial where nothing vanishes: 73 add, 28 compare and select, 6 divide, 83 multiply,
  *     6 sincos, 1 sqrt
  *   jacobian: 50 compare and select, 110 add, 25 divide, 160 multiply, 6 sincos, 2 sqrt
- *   jacobian where nothing vanishes: 103 add, 28 compare and select, 24 divide, 138 multiply, 6
- *     sincos, 1 sqrt
  *   determinant: 50 compare and select, 76 add, 9 divide, 110 multiply, 6 sincos, 2 sqrt
  *   determinant where nothing vanishes: 69 add, 28 compare and select, 8 divide, 88 multiply, 6
  *     sincos, 1 sqrt

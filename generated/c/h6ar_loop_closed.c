@@ -3872,7 +3872,7 @@ CF_INLINE void h6ar_loop_closed_ik_common_kernel(const int single, const real_t 
     const real_t t96 = CLOSEDFORM_VANISHING * t95;
     const real_t M_right = cf_max(farther_right, t96);
     const real_t N_right = cf_max(nearer_right, t96);
-    const real_t t97 = CLOSEDFORM_C(1.0) / cf_divisor(single, t94 <= CLOSEDFORM_VANISHING * t49, M_right + N_right);
+    const real_t t97 = CLOSEDFORM_C(1.0) / cf_divisor(single, (t94 <= CLOSEDFORM_VANISHING * t49) | (fore_arm <= CLOSEDFORM_VANISHING * size), M_right + N_right);
     const real_t ahead_1_right = t78 + t93 * M_right * t97;
     const real_t sigma_right = cf_sign(-t81);
     const real_t t98 = CLOSEDFORM_C(2.0) * sigma_right;
@@ -3962,7 +3962,7 @@ CF_INLINE void h6ar_loop_closed_ik_common_kernel(const int single, const real_t 
     const real_t M_right_front_elbow_down_alike = cf_max(farther_right_front_elbow_down_alike, t96);
     const real_t N_right_front_elbow_down_alike = cf_max(nearer_right_front_elbow_down_alike, t96);
     const real_t whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike;
-    const real_t t156 = CLOSEDFORM_C(1.0) / cf_divisor(single, t94 <= CLOSEDFORM_VANISHING * t49, whole_right_front_elbow_down_alike);
+    const real_t t156 = CLOSEDFORM_C(1.0) / cf_divisor(single, (t94 <= CLOSEDFORM_VANISHING * t49) | (fore_arm <= CLOSEDFORM_VANISHING * size), whole_right_front_elbow_down_alike);
     const real_t ahead_1_right_front_elbow_down_alike = t78 + t93 * M_right_front_elbow_down_alike * t156;
     const real_t sigma_right_front_elbow_down_alike = cf_sign(-t138);
     const real_t t157 = CLOSEDFORM_C(2.0) * sigma_right_front_elbow_down_alike;
@@ -4036,7 +4036,7 @@ CF_INLINE void h6ar_loop_closed_ik_common_kernel(const int single, const real_t 
     const real_t M_right_rear_elbow_up_alike = cf_max(farther_right_rear_elbow_up_alike, t96);
     const real_t N_right_rear_elbow_up_alike = cf_max(nearer_right_rear_elbow_up_alike, t96);
     const real_t whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike;
-    const real_t t207 = CLOSEDFORM_C(1.0) / cf_divisor(single, t94 <= CLOSEDFORM_VANISHING * t49, whole_right_rear_elbow_up_alike);
+    const real_t t207 = CLOSEDFORM_C(1.0) / cf_divisor(single, (t94 <= CLOSEDFORM_VANISHING * t49) | (fore_arm <= CLOSEDFORM_VANISHING * size), whole_right_rear_elbow_up_alike);
     const real_t ahead_1_right_rear_elbow_up_alike = t78 + t93 * M_right_rear_elbow_up_alike * t207;
     const real_t t208 = h_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike;
     const real_t t209 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike;
@@ -4101,7 +4101,7 @@ CF_INLINE void h6ar_loop_closed_ik_common_kernel(const int single, const real_t 
     const real_t M_right_rear_elbow_down_alike = cf_max(farther_right_rear_elbow_down_alike, t96);
     const real_t N_right_rear_elbow_down_alike = cf_max(nearer_right_rear_elbow_down_alike, t96);
     const real_t whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike;
-    const real_t t254 = CLOSEDFORM_C(1.0) / cf_divisor(single, t94 <= CLOSEDFORM_VANISHING * t49, whole_right_rear_elbow_down_alike);
+    const real_t t254 = CLOSEDFORM_C(1.0) / cf_divisor(single, (t94 <= CLOSEDFORM_VANISHING * t49) | (fore_arm <= CLOSEDFORM_VANISHING * size), whole_right_rear_elbow_down_alike);
     const real_t t255 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike;
     const real_t t256 = cf_root(single, t255);
     const real_t t257 = fore_arm * (t254 * (t98 * t256));
@@ -4586,7 +4586,7 @@ CF_INLINE void h6ar_loop_closed_ik_branch_kernel(const int single, const real_t 
     const real_t t90 = CLOSEDFORM_VANISHING * t89;
     const real_t M_right = cf_max(farther_right, t90);
     const real_t N_right = cf_max(nearer_right, t90);
-    const real_t t91 = CLOSEDFORM_C(1.0) / cf_divisor(1, t88 <= CLOSEDFORM_VANISHING * t49, M_right + N_right);
+    const real_t t91 = CLOSEDFORM_C(1.0) / cf_divisor(1, (t88 <= CLOSEDFORM_VANISHING * t49) | (fore_arm <= CLOSEDFORM_VANISHING * size), M_right + N_right);
     const real_t ahead_1_right = t72 + t87 * M_right * t91;
     const real_t sigma_right = cf_sign(-t75);
     const real_t t92 = CLOSEDFORM_C(2.0) * cf_root(1, M_right * N_right);

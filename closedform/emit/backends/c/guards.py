@@ -36,8 +36,9 @@ def given_up_where(lowered: Lowered) -> Iterator[tuple[int, tuple[Node, ...]]]:
     """For quotients of a common case, the conditions that a factor of their divisor counts as zero.
 
     If one holds, the whole program is evaluated instead.  For each factor it is, among the
-    conditions that are already known, the one whose value is nearest to the factor.  A divisor is
-    left out if it vanishes with a bound that no condition is about.
+    conditions that are already known, the one whose value is nearest to the factor, and those about
+    what its limit is a multiple of.  A divisor is left out if it vanishes with a bound that no
+    condition is about.
     """
     if lowered.results[-1].name != "rare":
         return
@@ -57,7 +58,8 @@ def given_up_where(lowered: Lowered) -> Iterator[tuple[int, tuple[Node, ...]]]:
             vanish = [c for c in known if c.args[0].id in near]
             if vanish:
                 found = max(vanish, key=lambda c: place[c.args[0].id])
-                nearest[found.id] = found
+                limit = {n.id for n in reachable([found.args[1]])}
+                nearest |= {c.id: c for c in known if c is found or c.args[0].id in limit}
         if nearest:
             yield node.id, tuple(nearest.values())
 

@@ -75,6 +75,21 @@ class Evaluator:
     The expressions may contain the names in `named`, which stand for their values; the name of a
     condition stands for its truth value.  They are evaluated in each of the `cases`, one after the
     other; a case gives integer values to more symbols.
+
+    Parameters
+    ----------
+    symbols
+        what gets values
+    exprs
+        what is evaluated
+    rel_bits
+        the relative accuracy of a result
+    max_bits
+        the highest precision that is tried
+    named
+        the values that names in the expressions stand for
+    cases
+        the integer values of more symbols, in each case
     """
 
     def __init__(

@@ -150,7 +150,7 @@ class Hand:
     @cached_property
     def centres(self) -> list[sp.Matrix]:
         """The near ends of the rods, minus the places of their far ends on the hand."""
-        return [(leg.end() - self.place(leg)).applyfunc(sp.factor_terms) for leg in self.legs]
+        return [leg.end() - self.place(leg) for leg in self.legs]
 
     @cached_property
     def loop(self) -> tuple[sp.Expr, ...]:

@@ -2,15 +2,15 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 79 compare and select, 55 add, 10 divide, 86 multiply, 6 sincos, 2 sqrt
-#   skeleton: 142 compare and select, 112 add, 16 divide, 104 multiply, 6 sincos, 2 sqrt
-#   jacobian_parallel: 90 compare and select, 64 add, 10 divide, 86 multiply, 6 sincos, 2 sqrt
-#   jacobian_serial: 78 compare and select, 76 add, 10 divide, 110 multiply, 6 sincos, 2 sqrt
-#   jacobian: 88 compare and select, 94 add, 28 divide, 165 multiply, 6 sincos, 2 sqrt
-#   determinant: 72 compare and select, 76 add, 12 divide, 115 multiply, 6 sincos, 2 sqrt
-#   singularities: 77 compare and select, 76 add, 10 divide, 111 multiply, 6 sincos, 2 sqrt
-#   condition_number: 74 compare and select, 114 add, 12 divide, 162 multiply, 6 sincos, 4 sqrt
-#   constraint: 74 compare and select, 86 add, 10 divide, 148 multiply, 6 sincos, 2 sqrt
+#   fk: 70 compare and select, 62 add, 12 divide, 97 multiply, 6 sincos, 1 sqrt
+#   skeleton: 133 compare and select, 113 add, 18 divide, 96 multiply, 6 sincos, 1 sqrt
+#   jacobian_parallel: 81 compare and select, 71 add, 12 divide, 97 multiply, 6 sincos, 1 sqrt
+#   jacobian_serial: 69 compare and select, 83 add, 12 divide, 121 multiply, 6 sincos, 1 sqrt
+#   jacobian: 82 compare and select, 101 add, 30 divide, 176 multiply, 6 sincos, 1 sqrt
+#   determinant: 66 compare and select, 83 add, 14 divide, 126 multiply, 6 sincos, 1 sqrt
+#   singularities: 71 compare and select, 83 add, 12 divide, 122 multiply, 6 sincos, 1 sqrt
+#   condition_number: 68 compare and select, 121 add, 14 divide, 173 multiply, 6 sincos, 3 sqrt
+#   constraint: 65 compare and select, 93 add, 12 divide, 159 multiply, 6 sincos, 1 sqrt
 #   ik: 187 compare and select, 157 add, 6 atan2, 13 divide, 175 multiply, 3 sincos, 18 sqrt
 #   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -166,91 +166,93 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
     t3 = L * s1
     u_z = t3 - L * s2
-    t4 = f - e
-    t5 = L * c1 + t4
-    c1_x = c_alpha1 * t5
-    t6 = L * c2 + t4
-    t7 = c1_x - c_alpha2 * t6
-    c1_y = s_alpha1 * t5
-    t8 = c1_y - s_alpha2 * t6
-    u_u = u_z * u_z + t7 * t7 + t8 * t8
-    size = f + e + L + l
-    t9 = size * size
-    t10 = ops.vanishing * ops.vanishing
-    t11 = t9 * t10
-    same = u_u <= t11
-    t12 = L * c3 + t4
-    t13 = c1_y - s_alpha3 * t12
-    t14 = ops.select(same, t13, t8)
+    t4 = L * c1
+    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
+    t6 = L * c2
+    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
+    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
+    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
     v_z = t3 - L * s3
-    t15 = ops.select(same, u_z, v_z)
-    t16 = ops.select(same, t8, t13)
-    d_z = ops.select(same, v_z, u_z)
-    t17 = t14 * t15 - t16 * d_z
-    t18 = c1_x - c_alpha3 * t12
-    v_v = v_z * v_z + t18 * t18 + t13 * t13
-    all_same = u_u + v_v <= t11
+    t10 = L * c3
+    t11 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10)
+    t12 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10)
+    v_v = v_z * v_z + t11 * t11 + t12 * t12
+    size = f + e + L + l
+    t13 = size * size
+    t14 = ops.vanishing * ops.vanishing * t13
+    all_same = u_u + v_v <= t14
     whole = ops.select((size == 0.0), 1.0, size)
-    t19 = ops.select(same, t18, t7)
-    a_x = ops.select(all_same, whole, -t19)
-    t20 = ops.select(same, t7, t18)
-    t21 = a_x * t15 + t20 * d_z
-    t22 = a_x * t16 + t14 * t20
-    product_2 = t17 * t17 + t21 * t21 + t22 * t22
+    same = u_u <= t14
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t23 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t23 * 0.000244140625 <= ops.vanishing * t23
-    t24 = t14 * t22 + d_z * t21
-    t25 = a_x * t22 - d_z * t17
-    n_z = a_x * t21 + t14 * t17
-    t26 = t24 * t24 + t25 * t25 + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t26, product_2)
-    in_line = m_m <= t10 * (t9 * mu)
-    t27 = t20 * (t19 - t20) + t16 * (t14 - t16) + t15 * (d_z - t15)
-    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t9 * ops.feasibility
+    over = 1.0 / mu
+    t15 = ops.select(same, t12, t9)
+    d_x = ops.select(same, t11, t7)
+    a_x = ops.select(all_same, whole, d_x)
+    t16 = ops.select(same, t9, t12)
+    t17 = ops.select(same, t7, t11)
+    t18 = a_x * t16 - t15 * t17
+    d_z = ops.select(same, v_z, u_z)
+    t19 = ops.select(same, u_z, v_z)
+    t20 = a_x * t19 - t17 * d_z
+    t21 = t15 * t18 + d_z * t20
+    t22 = over * t21
+    t23 = t15 * t19 - t16 * d_z
+    t24 = a_x * t18 - d_z * t23
+    t25 = over * t24
+    t26 = a_x * t20 + t15 * t23
+    n_z = over * t26
+    nu = t22 * t22 + t25 * t25 + n_z * n_z
+    in_line = nu <= t14
+    t27 = t17 * (d_x - t17) + t16 * (t15 - t16) + t19 * (d_z - t19)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
     t29 = l * size * 0.75
     t30 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(-(t14 * a_x))
-    t31 = whole * (t14 - a_x * s_w)
+    s_w = ops.sign(t15 * a_x)
+    t31 = whole * (t15 + a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    w_w = ops.select(in_line, t32, m_m)
-    t33 = ops.select(in_line, 0.0, 1.0 / w_w * t27 * 0.5)
-    t34 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t33 * t33)))
-    t35 = t30 - t34
-    unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t35))
+    part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
+    t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
+    t34 = mu * 0.25
+    t35 = ops.select(all_same, 0.0, nu * (t33 * t33) + t34)
+    t36 = t30 - t35
+    unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
-    t36 = ops.opposite(failed)
-    touching = ops.max(t35, 0.0) <= ops.vanishing * t29
-    t37 = t36 & ops.opposite(touching)
-    t38 = ops.opposite(in_line)
-    t39 = t37 | ((t36 | (t37 & ops.opposite(all_same))) & t38)
-    t40 = ops.select((t36 & t38 & slim) | (t39 & t38 & slim), mu, 1.0)
-    over = 1.0 / t40
-    w_w_2 = ops.select(in_line, t32, ops.select(slim, over * t26, product_2))
-    part = 1.0 / ops.select(t39, w_w_2, 1.0)
-    t41 = ops.select(in_line, 0.0, part * t27 * 0.5)
-    t42 = t19 * 0.5 - (c1_x + t24 * t41)
-    t43 = ops.select(slim, over * (t14 * n_z - d_z * t25), t17)
-    t44 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t41 * t41)))
-    t45 = ops.select(t37, ops.max(t30 - t44, 0.0), 1.0)
-    t46 = ops.sqrt(ops.select(t37, part, 1.0)) * ops.sqrt(t45)
-    h = ops.select(touching, 0.0, t46)
-    t47 = ops.select(in_line, g_1 * s_w, -t43) * h
-    t48 = t14 * 0.5 - (c1_y + t25 * t41)
-    t49 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
-    t50 = h * ops.select(in_line, g_1, -t49)
-    t51 = d_z * 0.5 - (t3 + n_z * t41)
-    t52 = ops.select(slim, over * (a_x * t25 + t14 * t24), t22)
-    t53 = h * ops.select(in_line, t31, -t52)
+    t37 = ops.opposite(failed)
+    touching = ops.max(t36, 0.0) <= ops.vanishing * t29
+    t38 = t37 & ops.opposite(touching)
+    t39 = t37 | (t38 & ops.opposite(all_same))
+    t40 = ops.opposite(in_line)
+    t41 = t38 | (t39 & t40)
+    t42 = t41 & t40
+    over_2 = 1.0 / ops.select(t39 | t42, mu, 1.0)
+    t43 = over_2 * t21
+    t44 = over_2 * t24
+    n_z_2 = over_2 * t26
+    nu_2 = t43 * t43 + t44 * t44 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t41 & in_line, t32, 1.0), 1.0 / ops.select(t42, mu * nu_2, 1.0))
+    t45 = ops.select(in_line, 0.0, mu * part_2 * t27 * 0.5)
+    t46 = d_x * 0.5 - (t5 - t43 * t45)
+    w_x = ops.select(in_line, g_1 * s_w, t15 * n_z_2 - d_z * t44)
+    t47 = ops.select(all_same, 0.0, nu_2 * (t45 * t45) + t34)
+    t48 = ops.select(t38, part_2 * ops.max(t30 - t47, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t48))
+    t49 = w_x * h
+    t50 = t15 * 0.5 - (t8 + t44 * t45)
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t43))
+    t51 = h * w_y
+    t52 = d_z * 0.5 - (t3 + n_z_2 * t45)
+    w_z = ops.select(in_line, -t31, a_x * t44 + t15 * t43)
+    t53 = h * w_z
     t54 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, -(t42 + t47)),
-        ops.select(failed, ops.nan, -(t48 + t50)),
-        ops.select(failed, ops.nan, t51 - t53),
-        ops.select(failed, ops.nan, t47 - t42),
-        ops.select(failed, ops.nan, t50 - t48),
-        ops.select(failed, ops.nan, t51 + t53),
+        ops.select(failed, ops.nan, t46 - t49),
+        ops.select(failed, ops.nan, t50 - t51),
+        ops.select(failed, ops.nan, t52 - t53),
+        ops.select(failed, ops.nan, t49 + t46),
+        ops.select(failed, ops.nan, t51 + t50),
+        ops.select(failed, ops.nan, t53 + t52),
         t54,
         t54,
     )
@@ -263,7 +265,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 12),
+    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8),
 )
 
 
@@ -317,300 +319,300 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
     s3 = ops.sin(theta3)
     c3 = ops.cos(theta3)
+    s_alpha3 = ops.sin(alpha3)
+    c_alpha3 = ops.cos(alpha3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
     t3 = L * s1
     t4 = L * s2
     u_z = t3 - t4
-    t5 = L * c1
-    t6 = f - e
-    t7 = t5 + t6
-    c1_x = c_alpha1 * t7
-    t8 = L * c2
-    t9 = t8 + t6
-    t10 = c1_x - c_alpha2 * t9
-    c1_y = s_alpha1 * t7
-    t11 = c1_y - s_alpha2 * t9
-    u_u = u_z * u_z + t10 * t10 + t11 * t11
+    t5 = e * c_alpha1
+    t6 = f * c_alpha1
+    t7 = L * c1
+    t8 = t6 + c_alpha1 * t7
+    t9 = t5 - t8
+    t10 = e * c_alpha2
+    t11 = f * c_alpha2
+    t12 = L * c2
+    t13 = t11 + c_alpha2 * t12
+    t14 = t9 - (t10 - t13)
+    t15 = e * s_alpha1
+    t16 = f * s_alpha1
+    t17 = t16 + s_alpha1 * t7
+    t18 = t15 - t17
+    t19 = e * s_alpha2
+    t20 = f * s_alpha2
+    t21 = t20 + s_alpha2 * t12
+    t22 = t18 - (t19 - t21)
+    u_u = u_z * u_z + t14 * t14 + t22 * t22
+    t23 = L * s3
+    v_z = t3 - t23
+    t24 = e * c_alpha3
+    t25 = f * c_alpha3
+    t26 = L * c3
+    t27 = t25 + c_alpha3 * t26
+    t28 = t9 - (t24 - t27)
+    t29 = e * s_alpha3
+    t30 = f * s_alpha3
+    t31 = t30 + s_alpha3 * t26
+    t32 = t18 - (t29 - t31)
+    v_v = v_z * v_z + t28 * t28 + t32 * t32
     size = f + e + L + l
-    t12 = size * size
-    t13 = ops.vanishing * ops.vanishing
-    t14 = t12 * t13
-    same = u_u <= t14
-    t15 = L * c3
-    t16 = t15 + t6
-    t17 = c1_y - s_alpha3 * t16
-    t18 = ops.select(same, t17, t11)
-    t19 = L * s3
-    v_z = t3 - t19
-    t20 = ops.select(same, u_z, v_z)
-    d_z = ops.select(same, v_z, u_z)
-    t21 = ops.select(same, t11, t17)
-    t22 = t18 * t20 - d_z * t21
-    t23 = c1_x - c_alpha3 * t16
-    v_v = v_z * v_z + t23 * t23 + t17 * t17
-    all_same = u_u + v_v <= t14
+    t33 = size * size
+    t34 = ops.vanishing * ops.vanishing * t33
+    all_same = u_u + v_v <= t34
     whole = ops.select((size == 0.0), 1.0, size)
-    t24 = ops.select(same, t23, t10)
-    a_x = ops.select(all_same, whole, -t24)
-    t25 = ops.select(same, t10, t23)
-    t26 = t20 * a_x + d_z * t25
-    t27 = t21 * a_x + t18 * t25
-    product_2 = t22 * t22 + t26 * t26 + t27 * t27
+    same = u_u <= t34
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t28 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t28 * 0.000244140625 <= ops.vanishing * t28
-    t29 = t18 * t27 + d_z * t26
-    t30 = a_x * t27 - d_z * t22
-    n_z = a_x * t26 + t18 * t22
-    t31 = t29 * t29 + t30 * t30 + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t31, product_2)
-    in_line = m_m <= t13 * (t12 * mu)
-    t32 = t25 * (t24 - t25) + t21 * (t18 - t21) - t20 * (t20 - d_z)
-    t33 = ops.abs(ops.select(in_line, -t32, 0.0)) <= t12 * ops.feasibility
-    t34 = 0.9375 * (l * size)
-    t35 = l * l
+    over = 1.0 / mu
+    t35 = ops.select(same, t32, t22)
+    d_x = ops.select(same, t28, t14)
+    a_x = ops.select(all_same, whole, d_x)
+    t36 = ops.select(same, t22, t32)
+    t37 = ops.select(same, t14, t28)
+    t38 = a_x * t36 - t35 * t37
+    d_z = ops.select(same, v_z, u_z)
+    t39 = ops.select(same, u_z, v_z)
+    t40 = a_x * t39 - t37 * d_z
+    t41 = t35 * t38 + d_z * t40
+    t42 = over * t41
+    t43 = t35 * t39 - t36 * d_z
+    t44 = a_x * t38 - d_z * t43
+    t45 = over * t44
+    t46 = a_x * t40 + t35 * t43
+    n_z = over * t46
+    nu = t42 * t42 + t45 * t45 + n_z * n_z
+    in_line = nu <= t34
+    t47 = t37 * (d_x - t37) + t36 * (t35 - t36) + t39 * (d_z - t39)
+    t48 = ops.abs(ops.select(in_line, -t47, 0.0)) <= t33 * ops.feasibility
+    t49 = 0.9375 * (l * size)
+    t50 = l * l
+    t51 = mu * t47
     g_1 = whole * d_z
-    s_w = ops.sign(-(t18 * a_x))
-    t36 = whole * (t18 - a_x * s_w)
-    t37 = 2.0 * (g_1 * g_1) + t36 * t36
-    w_w = ops.select(in_line, t37, m_m)
-    t38 = ops.select(in_line, 0.0, t32 * (1.0 / w_w) * 0.5)
-    t39 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t38 * t38)))
-    t40 = t35 - t39
-    unreachable = ops.opposite(t33 & (-(ops.feasibility * t34) <= t40))
+    s_w = ops.sign(t35 * a_x)
+    t52 = whole * (t35 + a_x * s_w)
+    t53 = 2.0 * (g_1 * g_1) + t52 * t52
+    part = ops.select(in_line, 1.0 / t53, 1.0 / (mu * nu))
+    t54 = ops.select(in_line, 0.0, t51 * part * 0.5)
+    t55 = mu * 0.25
+    t56 = ops.select(all_same, 0.0, nu * (t54 * t54) + t55)
+    t57 = t50 - t56
+    unreachable = ops.opposite(t48 & (-(ops.feasibility * t49) <= t57))
     failed = invalid | unreachable
-    t41 = f * c_alpha1
-    t42 = ops.select(failed, ops.nan, t41)
-    t43 = f * s_alpha1
-    t44 = ops.select(failed, ops.nan, t43)
-    t45 = ops.select(failed, ops.nan, 0.0)
-    t46 = t41 + t5 * c_alpha1
-    t47 = ops.select(failed, ops.nan, t46)
-    t48 = t43 + t5 * s_alpha1
-    t49 = ops.select(failed, ops.nan, t48)
-    t50 = ops.select(failed, ops.nan, -t3)
-    t51 = e * c_alpha1
-    t52 = ops.opposite(failed)
-    touching = ops.max(t40, 0.0) <= ops.vanishing * t34
-    t53 = t52 & ops.opposite(touching)
-    t54 = ops.opposite(in_line)
-    t55 = t53 | ((t52 | (t53 & ops.opposite(all_same))) & t54)
-    t56 = ops.select((t52 & t54 & slim) | (t55 & t54 & slim), mu, 1.0)
-    over = 1.0 / t56
-    w_w_2 = ops.select(in_line, t37, ops.select(slim, over * t31, product_2))
-    part = 1.0 / ops.select(t55, w_w_2, 1.0)
-    t57 = ops.select(in_line, 0.0, t32 * part * 0.5)
-    t58 = t29 * t57 - t24 * 0.5
-    t59 = ops.select(slim, over * (t18 * n_z - d_z * t30), t22)
-    t60 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t57 * t57)))
-    t61 = ops.select(t53, ops.max(t35 - t60, 0.0), 1.0)
-    t62 = ops.sqrt(ops.select(t53, part, 1.0)) * ops.sqrt(t61)
-    h = ops.select(touching, 0.0, t62)
-    t63 = ops.select(in_line, g_1 * s_w, -t59) * h
-    t64 = c1_x + (t58 - t63)
-    t65 = t51 + t64
-    t66 = e * s_alpha1
-    t67 = t30 * t57 - t18 * 0.5
-    t68 = ops.select(slim, over * (a_x * n_z + d_z * t29), t26)
-    t69 = h * ops.select(in_line, g_1, -t68)
-    t70 = c1_y + (t67 - t69)
-    t71 = t66 + t70
-    t72 = n_z * t57 - d_z * 0.5
-    t73 = ops.select(slim, over * (a_x * t30 + t18 * t29), t27)
-    t74 = h * ops.select(in_line, t36, -t73)
-    t75 = ops.select(failed, ops.nan, -(t3 + (t72 + t74)))
-    t76 = t66 * 0.5
-    t77 = ops.select(failed, ops.nan, t46 - t76)
-    t78 = t51 * 0.5
-    t79 = ops.select(failed, ops.nan, t78 + t48)
-    t80 = ops.select(failed, ops.nan, t76 + t46)
-    t81 = ops.select(failed, ops.nan, t48 - t78)
-    t82 = f * c_alpha2
-    t83 = ops.select(failed, ops.nan, t82)
-    t84 = f * s_alpha2
-    t85 = ops.select(failed, ops.nan, t84)
-    t86 = t82 + t8 * c_alpha2
-    t87 = ops.select(failed, ops.nan, t86)
-    t88 = t84 + t8 * s_alpha2
-    t89 = ops.select(failed, ops.nan, t88)
-    t90 = ops.select(failed, ops.nan, -t4)
-    t91 = e * c_alpha2
-    t92 = t91 + t64
-    t93 = e * s_alpha2
-    t94 = t93 + t70
-    t95 = t93 * 0.5
-    t96 = ops.select(failed, ops.nan, t86 - t95)
-    t97 = t91 * 0.5
-    t98 = ops.select(failed, ops.nan, t97 + t88)
-    t99 = ops.select(failed, ops.nan, t95 + t86)
-    t100 = ops.select(failed, ops.nan, t88 - t97)
-    t101 = f * c_alpha3
-    t102 = ops.select(failed, ops.nan, t101)
-    t103 = f * s_alpha3
-    t104 = ops.select(failed, ops.nan, t103)
-    t105 = t101 + t15 * c_alpha3
-    t106 = ops.select(failed, ops.nan, t105)
-    t107 = t103 + t15 * s_alpha3
-    t108 = ops.select(failed, ops.nan, t107)
-    t109 = ops.select(failed, ops.nan, -t19)
-    t110 = e * c_alpha3
-    t111 = t110 + t64
-    t112 = e * s_alpha3
-    t113 = t112 + t70
-    t114 = t112 * 0.5
-    t115 = ops.select(failed, ops.nan, t105 - t114)
-    t116 = t110 * 0.5
-    t117 = ops.select(failed, ops.nan, t116 + t107)
-    t118 = ops.select(failed, ops.nan, t114 + t105)
-    t119 = ops.select(failed, ops.nan, t107 - t116)
-    t120 = c1_x + (t58 + t63)
-    t121 = t51 + t120
-    t122 = c1_y + (t67 + t69)
-    t123 = t66 + t122
-    t124 = ops.select(failed, ops.nan, -(t3 + (t72 - t74)))
-    t125 = t91 + t120
-    t126 = t93 + t122
-    t127 = t110 + t120
-    t128 = t112 + t122
+    t58 = ops.select(failed, ops.nan, t6)
+    t59 = ops.select(failed, ops.nan, t16)
+    t60 = ops.select(failed, ops.nan, 0.0)
+    t61 = ops.select(failed, ops.nan, t8)
+    t62 = ops.select(failed, ops.nan, t17)
+    t63 = ops.select(failed, ops.nan, -t3)
+    t64 = ops.opposite(failed)
+    touching = ops.max(t57, 0.0) <= ops.vanishing * t49
+    t65 = t64 & ops.opposite(touching)
+    t66 = t64 | (t65 & ops.opposite(all_same))
+    t67 = ops.opposite(in_line)
+    t68 = t65 | (t66 & t67)
+    t69 = t68 & t67
+    over_2 = 1.0 / ops.select(t66 | t69, mu, 1.0)
+    t70 = over_2 * t41
+    t71 = over_2 * t44
+    n_z_2 = over_2 * t46
+    nu_2 = t70 * t70 + t71 * t71 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t68 & in_line, t53, 1.0), 1.0 / ops.select(t69, mu * nu_2, 1.0))
+    t72 = ops.select(in_line, 0.0, t51 * part_2 * 0.5)
+    t73 = t70 * t72 + d_x * 0.5
+    w_x = ops.select(in_line, g_1 * s_w, t35 * n_z_2 - d_z * t71)
+    t74 = ops.select(all_same, 0.0, nu_2 * (t72 * t72) + t55)
+    t75 = ops.select(t65, part_2 * ops.max(t50 - t74, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t75))
+    t76 = w_x * h
+    t77 = t9 - (t73 - t76)
+    t78 = t5 - t77
+    t79 = t71 * t72 - t35 * 0.5
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t70))
+    t80 = h * w_y
+    t81 = t18 + (t79 + t80)
+    t82 = t15 - t81
+    t83 = n_z_2 * t72 - d_z * 0.5
+    w_z = ops.select(in_line, -t52, a_x * t71 + t35 * t70)
+    t84 = h * w_z
+    t85 = ops.select(failed, ops.nan, -(t3 + (t83 + t84)))
+    t86 = t15 * 0.5
+    t87 = ops.select(failed, ops.nan, t8 - t86)
+    t88 = t5 * 0.5
+    t89 = ops.select(failed, ops.nan, t88 + t17)
+    t90 = ops.select(failed, ops.nan, t86 + t8)
+    t91 = ops.select(failed, ops.nan, t17 - t88)
+    t92 = ops.select(failed, ops.nan, t11)
+    t93 = ops.select(failed, ops.nan, t20)
+    t94 = ops.select(failed, ops.nan, t13)
+    t95 = ops.select(failed, ops.nan, t21)
+    t96 = ops.select(failed, ops.nan, -t4)
+    t97 = t10 - t77
+    t98 = t19 - t81
+    t99 = t19 * 0.5
+    t100 = ops.select(failed, ops.nan, t13 - t99)
+    t101 = t10 * 0.5
+    t102 = ops.select(failed, ops.nan, t101 + t21)
+    t103 = ops.select(failed, ops.nan, t99 + t13)
+    t104 = ops.select(failed, ops.nan, t21 - t101)
+    t105 = ops.select(failed, ops.nan, t25)
+    t106 = ops.select(failed, ops.nan, t30)
+    t107 = ops.select(failed, ops.nan, t27)
+    t108 = ops.select(failed, ops.nan, t31)
+    t109 = ops.select(failed, ops.nan, -t23)
+    t110 = t24 - t77
+    t111 = t29 - t81
+    t112 = t29 * 0.5
+    t113 = ops.select(failed, ops.nan, t27 - t112)
+    t114 = t24 * 0.5
+    t115 = ops.select(failed, ops.nan, t114 + t31)
+    t116 = ops.select(failed, ops.nan, t112 + t27)
+    t117 = ops.select(failed, ops.nan, t31 - t114)
+    t118 = t9 - (t73 + t76)
+    t119 = t5 - t118
+    t120 = t18 + (t79 - t80)
+    t121 = t15 - t120
+    t122 = ops.select(failed, ops.nan, -(t3 + (t83 - t84)))
+    t123 = t10 - t118
+    t124 = t19 - t120
+    t125 = t24 - t118
+    t126 = t29 - t120
     return (
-        t42,
-        t44,
-        t45,
-        t47,
-        t49,
-        t50,
-        ops.select(failed, ops.nan, t65),
-        ops.select(failed, ops.nan, t71),
-        t75,
-        t77,
-        t79,
-        t50,
-        t80,
-        t81,
-        t50,
-        ops.select(failed, ops.nan, t65 - t76),
-        ops.select(failed, ops.nan, t78 + t71),
-        t75,
-        ops.select(failed, ops.nan, t76 + t65),
-        ops.select(failed, ops.nan, t71 - t78),
-        t75,
-        t83,
+        t58,
+        t59,
+        t60,
+        t61,
+        t62,
+        t63,
+        ops.select(failed, ops.nan, t78),
+        ops.select(failed, ops.nan, t82),
         t85,
-        t45,
         t87,
         t89,
+        t63,
         t90,
-        ops.select(failed, ops.nan, t92),
-        ops.select(failed, ops.nan, t94),
-        t75,
+        t91,
+        t63,
+        ops.select(failed, ops.nan, t78 - t86),
+        ops.select(failed, ops.nan, t88 + t82),
+        t85,
+        ops.select(failed, ops.nan, t86 + t78),
+        ops.select(failed, ops.nan, t82 - t88),
+        t85,
+        t92,
+        t93,
+        t60,
+        t94,
+        t95,
         t96,
-        t98,
-        t90,
-        t99,
+        ops.select(failed, ops.nan, t97),
+        ops.select(failed, ops.nan, t98),
+        t85,
         t100,
-        t90,
-        ops.select(failed, ops.nan, t92 - t95),
-        ops.select(failed, ops.nan, t97 + t94),
-        t75,
-        ops.select(failed, ops.nan, t95 + t92),
-        ops.select(failed, ops.nan, t94 - t97),
-        t75,
         t102,
+        t96,
+        t103,
         t104,
-        t45,
+        t96,
+        ops.select(failed, ops.nan, t97 - t99),
+        ops.select(failed, ops.nan, t101 + t98),
+        t85,
+        ops.select(failed, ops.nan, t99 + t97),
+        ops.select(failed, ops.nan, t98 - t101),
+        t85,
+        t105,
         t106,
+        t60,
+        t107,
         t108,
         t109,
+        ops.select(failed, ops.nan, t110),
         ops.select(failed, ops.nan, t111),
-        ops.select(failed, ops.nan, t113),
-        t75,
+        t85,
+        t113,
         t115,
+        t109,
+        t116,
         t117,
         t109,
-        t118,
-        t119,
-        t109,
-        ops.select(failed, ops.nan, t111 - t114),
-        ops.select(failed, ops.nan, t116 + t113),
-        t75,
+        ops.select(failed, ops.nan, t110 - t112),
         ops.select(failed, ops.nan, t114 + t111),
-        ops.select(failed, ops.nan, t113 - t116),
-        t75,
-        ops.select(failed, ops.nan, t64),
-        ops.select(failed, ops.nan, t70),
-        t75,
-        t42,
-        t44,
-        t45,
-        t47,
-        t49,
-        t50,
-        ops.select(failed, ops.nan, t121),
-        ops.select(failed, ops.nan, t123),
-        t124,
-        t77,
-        t79,
-        t50,
-        t80,
-        t81,
-        t50,
-        ops.select(failed, ops.nan, t121 - t76),
-        ops.select(failed, ops.nan, t78 + t123),
-        t124,
-        ops.select(failed, ops.nan, t76 + t121),
-        ops.select(failed, ops.nan, t123 - t78),
-        t124,
-        t83,
         t85,
-        t45,
+        ops.select(failed, ops.nan, t112 + t110),
+        ops.select(failed, ops.nan, t111 - t114),
+        t85,
+        ops.select(failed, ops.nan, -t77),
+        ops.select(failed, ops.nan, -t81),
+        t85,
+        t58,
+        t59,
+        t60,
+        t61,
+        t62,
+        t63,
+        ops.select(failed, ops.nan, t119),
+        ops.select(failed, ops.nan, t121),
+        t122,
         t87,
         t89,
+        t63,
         t90,
+        t91,
+        t63,
+        ops.select(failed, ops.nan, t119 - t86),
+        ops.select(failed, ops.nan, t88 + t121),
+        t122,
+        ops.select(failed, ops.nan, t86 + t119),
+        ops.select(failed, ops.nan, t121 - t88),
+        t122,
+        t92,
+        t93,
+        t60,
+        t94,
+        t95,
+        t96,
+        ops.select(failed, ops.nan, t123),
+        ops.select(failed, ops.nan, t124),
+        t122,
+        t100,
+        t102,
+        t96,
+        t103,
+        t104,
+        t96,
+        ops.select(failed, ops.nan, t123 - t99),
+        ops.select(failed, ops.nan, t101 + t124),
+        t122,
+        ops.select(failed, ops.nan, t99 + t123),
+        ops.select(failed, ops.nan, t124 - t101),
+        t122,
+        t105,
+        t106,
+        t60,
+        t107,
+        t108,
+        t109,
         ops.select(failed, ops.nan, t125),
         ops.select(failed, ops.nan, t126),
-        t124,
-        t96,
-        t98,
-        t90,
-        t99,
-        t100,
-        t90,
-        ops.select(failed, ops.nan, t125 - t95),
-        ops.select(failed, ops.nan, t97 + t126),
-        t124,
-        ops.select(failed, ops.nan, t95 + t125),
-        ops.select(failed, ops.nan, t126 - t97),
-        t124,
-        t102,
-        t104,
-        t45,
-        t106,
-        t108,
-        t109,
-        ops.select(failed, ops.nan, t127),
-        ops.select(failed, ops.nan, t128),
-        t124,
+        t122,
+        t113,
         t115,
+        t109,
+        t116,
         t117,
         t109,
-        t118,
-        t119,
-        t109,
-        ops.select(failed, ops.nan, t127 - t114),
-        ops.select(failed, ops.nan, t116 + t128),
-        t124,
-        ops.select(failed, ops.nan, t114 + t127),
-        ops.select(failed, ops.nan, t128 - t116),
-        t124,
-        ops.select(failed, ops.nan, t120),
-        ops.select(failed, ops.nan, t122),
-        t124,
+        ops.select(failed, ops.nan, t125 - t112),
+        ops.select(failed, ops.nan, t114 + t126),
+        t122,
+        ops.select(failed, ops.nan, t112 + t125),
+        ops.select(failed, ops.nan, t126 - t114),
+        t122,
+        ops.select(failed, ops.nan, -t118),
+        ops.select(failed, ops.nan, -t120),
+        t122,
     )
 
 
@@ -621,7 +623,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 12),
+    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 8),
 )
 
 
@@ -667,119 +669,123 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     c_alpha1 = ops.cos(alpha1)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
     s3 = ops.sin(theta3)
     c3 = ops.cos(theta3)
+    s_alpha3 = ops.sin(alpha3)
+    c_alpha3 = ops.cos(alpha3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
     t3 = L * s1
     u_z = t3 - L * s2
-    t4 = f - e
-    t5 = L * c1 + t4
-    c1_x = c_alpha1 * t5
-    t6 = L * c2 + t4
-    t7 = c1_x - c_alpha2 * t6
-    c1_y = s_alpha1 * t5
-    t8 = c1_y - s_alpha2 * t6
-    u_u = u_z * u_z + t7 * t7 + t8 * t8
-    size = f + e + L + l
-    t9 = size * size
-    t10 = ops.vanishing * ops.vanishing
-    t11 = t9 * t10
-    same = u_u <= t11
-    t12 = L * c3 + t4
-    t13 = c1_y - s_alpha3 * t12
-    t14 = ops.select(same, t13, t8)
+    t4 = L * c1
+    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
+    t6 = L * c2
+    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
+    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
+    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
     v_z = t3 - L * s3
-    t15 = ops.select(same, u_z, v_z)
-    t16 = ops.select(same, t8, t13)
-    d_z = ops.select(same, v_z, u_z)
-    t17 = t14 * t15 - t16 * d_z
-    t18 = c1_x - c_alpha3 * t12
-    v_v = v_z * v_z + t18 * t18 + t13 * t13
-    all_same = u_u + v_v <= t11
+    t10 = L * c3
+    t11 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10)
+    t12 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10)
+    v_v = v_z * v_z + t11 * t11 + t12 * t12
+    size = f + e + L + l
+    t13 = size * size
+    t14 = ops.vanishing * ops.vanishing * t13
+    all_same = u_u + v_v <= t14
     whole = ops.select((size == 0.0), 1.0, size)
-    t19 = ops.select(same, t18, t7)
-    a_x = ops.select(all_same, whole, -t19)
-    t20 = ops.select(same, t7, t18)
-    t21 = a_x * t15 + t20 * d_z
-    t22 = a_x * t16 + t14 * t20
-    product_2 = t17 * t17 + t21 * t21 + t22 * t22
+    same = u_u <= t14
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t23 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t23 * 0.000244140625 <= ops.vanishing * t23
-    t24 = t14 * t22 + d_z * t21
-    t25 = a_x * t22 - d_z * t17
-    n_z = a_x * t21 + t14 * t17
-    t26 = t24 * t24 + t25 * t25 + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t26, product_2)
-    in_line = m_m <= t10 * (t9 * mu)
-    t27 = t20 * (t19 - t20) + t16 * (t14 - t16) + t15 * (d_z - t15)
-    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t9 * ops.feasibility
+    over = 1.0 / mu
+    t15 = ops.select(same, t12, t9)
+    d_x = ops.select(same, t11, t7)
+    a_x = ops.select(all_same, whole, d_x)
+    t16 = ops.select(same, t9, t12)
+    t17 = ops.select(same, t7, t11)
+    t18 = a_x * t16 - t15 * t17
+    d_z = ops.select(same, v_z, u_z)
+    t19 = ops.select(same, u_z, v_z)
+    t20 = a_x * t19 - t17 * d_z
+    t21 = t15 * t18 + d_z * t20
+    t22 = over * t21
+    t23 = t15 * t19 - t16 * d_z
+    t24 = a_x * t18 - d_z * t23
+    t25 = over * t24
+    t26 = a_x * t20 + t15 * t23
+    n_z = over * t26
+    nu = t22 * t22 + t25 * t25 + n_z * n_z
+    in_line = nu <= t14
+    t27 = t17 * (d_x - t17) + t16 * (t15 - t16) + t19 * (d_z - t19)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
     t29 = 0.9375 * (l * size)
     t30 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(-(t14 * a_x))
-    t31 = whole * (t14 - a_x * s_w)
+    s_w = ops.sign(t15 * a_x)
+    t31 = whole * (t15 + a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    w_w = ops.select(in_line, t32, m_m)
-    t33 = ops.select(in_line, 0.0, 1.0 / w_w * t27 * 0.5)
-    t34 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t33 * t33)))
-    t35 = t30 - t34
-    unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t35))
+    part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
+    t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
+    t34 = mu * 0.25
+    t35 = ops.select(all_same, 0.0, nu * (t33 * t33) + t34)
+    t36 = t30 - t35
+    unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
-    t36 = ops.opposite(failed)
-    touching = ops.max(t35, 0.0) <= ops.vanishing * t29
-    t37 = t36 & ops.opposite(touching)
-    t38 = ops.opposite(in_line)
-    t39 = t37 | ((t36 | (t37 & ops.opposite(all_same))) & t38)
-    t40 = ops.select((t36 & t38 & slim) | (t39 & t38 & slim), mu, 1.0)
-    over = 1.0 / t40
-    w_w_2 = ops.select(in_line, t32, ops.select(slim, over * t26, product_2))
-    part = 1.0 / ops.select(t39, w_w_2, 1.0)
-    t41 = ops.select(in_line, 0.0, part * t27 * 0.5)
-    t42 = t24 * t41 - t19 * 0.5
-    t43 = ops.select(slim, over * (t14 * n_z - d_z * t25), t17)
-    t44 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t41 * t41)))
-    t45 = ops.select(t37, ops.max(t30 - t44, 0.0), 1.0)
-    t46 = ops.sqrt(ops.select(t37, part, 1.0)) * ops.sqrt(t45)
-    h = ops.select(touching, 0.0, t46)
-    t47 = ops.select(in_line, g_1 * s_w, -t43) * h
-    A_11 = t42 - t47
-    t48 = t25 * t41 - t14 * 0.5
-    t49 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
-    t50 = h * ops.select(in_line, g_1, -t49)
-    A_12 = t48 - t50
-    t51 = n_z * t41 - d_z * 0.5
-    t52 = ops.select(slim, over * (a_x * t25 + t14 * t24), t22)
-    t53 = h * ops.select(in_line, t31, -t52)
-    t54 = t51 + t53
-    A_11_above = t42 + t47
-    A_12_above = t48 + t50
-    t55 = t51 - t53
-    t56 = ops.select(failed, ops.nan, t18 + A_11_above)
-    t57 = ops.select(failed, ops.nan, t13 + A_12_above)
+    t37 = ops.opposite(failed)
+    touching = ops.max(t36, 0.0) <= ops.vanishing * t29
+    t38 = t37 & ops.opposite(touching)
+    t39 = t37 | (t38 & ops.opposite(all_same))
+    t40 = ops.opposite(in_line)
+    t41 = t38 | (t39 & t40)
+    t42 = t41 & t40
+    over_2 = 1.0 / ops.select(t39 | t42, mu, 1.0)
+    n_z_2 = over_2 * t26
+    t43 = over_2 * t24
+    w_x = ops.select(in_line, g_1 * s_w, t15 * n_z_2 - d_z * t43)
+    t44 = over_2 * t21
+    nu_2 = t44 * t44 + t43 * t43 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t41 & in_line, t32, 1.0), 1.0 / ops.select(t42, mu * nu_2, 1.0))
+    t45 = ops.select(in_line, 0.0, mu * part_2 * t27 * 0.5)
+    t46 = ops.select(all_same, 0.0, nu_2 * (t45 * t45) + t34)
+    t47 = ops.select(t38, part_2 * ops.max(t30 - t46, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t47))
+    t48 = w_x * h
+    t49 = t44 * t45 + d_x * 0.5
+    t50 = t48 - t49
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t44))
+    t51 = h * w_y
+    t52 = t43 * t45 - t15 * 0.5
+    t53 = t51 + t52
+    w_z = ops.select(in_line, -t31, a_x * t43 + t15 * t44)
+    t54 = h * w_z
+    t55 = n_z_2 * t45 - d_z * 0.5
+    t56 = t54 + t55
+    A_11_above = t48 + t49
+    A_12_above = t51 - t52
+    A_13_above = t54 - t55
+    t57 = ops.select(failed, ops.nan, A_13_above - u_z)
+    t58 = ops.select(failed, ops.nan, A_11_above - t11)
+    t59 = ops.select(failed, ops.nan, A_12_above - t12)
+    t60 = ops.select(failed, ops.nan, A_13_above - v_z)
     return (
-        ops.select(failed, ops.nan, A_11),
-        ops.select(failed, ops.nan, A_12),
-        ops.select(failed, ops.nan, -t54),
-        ops.select(failed, ops.nan, t7 + A_11),
-        ops.select(failed, ops.nan, t8 + A_12),
-        ops.select(failed, ops.nan, -(u_z + t54)),
-        ops.select(failed, ops.nan, t18 + A_11),
-        ops.select(failed, ops.nan, t13 + A_12),
-        ops.select(failed, ops.nan, -(v_z + t54)),
+        ops.select(failed, ops.nan, -t50),
+        ops.select(failed, ops.nan, -t53),
+        ops.select(failed, ops.nan, -t56),
+        ops.select(failed, ops.nan, -(t7 + t50)),
+        ops.select(failed, ops.nan, -(t9 + t53)),
+        ops.select(failed, ops.nan, -(u_z + t56)),
+        ops.select(failed, ops.nan, -(t11 + t50)),
+        ops.select(failed, ops.nan, -(t12 + t53)),
+        ops.select(failed, ops.nan, -(v_z + t56)),
         ops.select(failed, ops.nan, A_11_above),
         ops.select(failed, ops.nan, A_12_above),
-        ops.select(failed, ops.nan, -t55),
-        ops.select(failed, ops.nan, t7 + A_11_above),
-        ops.select(failed, ops.nan, t8 + A_12_above),
-        ops.select(failed, ops.nan, -(u_z + t55)),
-        t56,
+        ops.select(failed, ops.nan, A_13_above),
+        ops.select(failed, ops.nan, A_11_above - t7),
+        ops.select(failed, ops.nan, A_12_above - t9),
         t57,
-        ops.select(failed, ops.nan, -(v_z + t55)),
+        t58,
+        t59,
+        t60,
     )
 
 
@@ -790,7 +796,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 12),
+    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8),
 )
 
 
@@ -826,12 +832,12 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
 
 def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    s_alpha1 = ops.sin(alpha1)
+    c_alpha1 = ops.cos(alpha1)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
     s2 = ops.sin(theta2)
     c2 = ops.cos(theta2)
-    s_alpha1 = ops.sin(alpha1)
-    c_alpha1 = ops.cos(alpha1)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
     s3 = ops.sin(theta3)
@@ -845,111 +851,110 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t4 = L * s2
     u_z = t3 - t4
     t5 = L * c1
-    t6 = f - e
-    t7 = t5 + t6
-    c1_x = c_alpha1 * t7
-    t8 = L * c2
-    t9 = t8 + t6
-    t10 = c1_x - c_alpha2 * t9
-    c1_y = s_alpha1 * t7
-    t11 = c1_y - s_alpha2 * t9
-    u_u = u_z * u_z + t10 * t10 + t11 * t11
+    t6 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t5
+    t7 = L * c2
+    t8 = t6 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t7)
+    t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
+    t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
+    u_u = u_z * u_z + t8 * t8 + t10 * t10
+    t11 = L * s3
+    v_z = t3 - t11
+    t12 = L * c3
+    t13 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
+    t14 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
+    v_v = v_z * v_z + t13 * t13 + t14 * t14
     size = f + e + L + l
-    t12 = size * size
-    t13 = ops.vanishing * ops.vanishing
-    t14 = t12 * t13
-    same = u_u <= t14
-    t15 = L * c3
-    t16 = t15 + t6
-    t17 = c1_y - s_alpha3 * t16
-    t18 = ops.select(same, t17, t11)
-    t19 = L * s3
-    v_z = t3 - t19
-    t20 = ops.select(same, u_z, v_z)
-    t21 = ops.select(same, t11, t17)
-    d_z = ops.select(same, v_z, u_z)
-    t22 = t18 * t20 - t21 * d_z
-    t23 = c1_x - c_alpha3 * t16
-    v_v = v_z * v_z + t23 * t23 + t17 * t17
-    all_same = u_u + v_v <= t14
+    t15 = size * size
+    t16 = ops.vanishing * ops.vanishing * t15
+    all_same = u_u + v_v <= t16
     whole = ops.select((size == 0.0), 1.0, size)
-    t24 = ops.select(same, t23, t10)
-    a_x = ops.select(all_same, whole, -t24)
-    t25 = ops.select(same, t10, t23)
-    t26 = a_x * t20 + t25 * d_z
-    t27 = a_x * t21 + t18 * t25
-    product_2 = t22 * t22 + t26 * t26 + t27 * t27
+    same = u_u <= t16
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t28 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t28 * 0.000244140625 <= ops.vanishing * t28
-    t29 = t18 * t27 + d_z * t26
-    t30 = a_x * t27 - d_z * t22
-    n_z = a_x * t26 + t18 * t22
-    t31 = t29 * t29 + t30 * t30 + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t31, product_2)
-    in_line = m_m <= t13 * (t12 * mu)
-    t32 = t25 * (t24 - t25) + t21 * (t18 - t21) + t20 * (d_z - t20)
-    t33 = ops.abs(ops.select(in_line, -t32, 0.0)) <= t12 * ops.feasibility
-    t34 = 0.9375 * (l * size)
-    t35 = l * l
+    over = 1.0 / mu
+    t17 = ops.select(same, t14, t10)
+    d_x = ops.select(same, t13, t8)
+    a_x = ops.select(all_same, whole, d_x)
+    t18 = ops.select(same, t10, t14)
+    t19 = ops.select(same, t8, t13)
+    t20 = a_x * t18 - t17 * t19
+    d_z = ops.select(same, v_z, u_z)
+    t21 = ops.select(same, u_z, v_z)
+    t22 = a_x * t21 - t19 * d_z
+    t23 = t17 * t20 + d_z * t22
+    t24 = over * t23
+    t25 = t17 * t21 - t18 * d_z
+    t26 = a_x * t20 - d_z * t25
+    t27 = over * t26
+    t28 = a_x * t22 + t17 * t25
+    n_z = over * t28
+    nu = t24 * t24 + t27 * t27 + n_z * n_z
+    in_line = nu <= t16
+    t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
+    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
+    t31 = 0.9375 * (l * size)
+    t32 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(-(t18 * a_x))
-    t36 = whole * (t18 - a_x * s_w)
-    t37 = 2.0 * (g_1 * g_1) + t36 * t36
-    w_w = ops.select(in_line, t37, m_m)
-    t38 = ops.select(in_line, 0.0, 1.0 / w_w * t32 * 0.5)
-    t39 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t38 * t38)))
-    t40 = t35 - t39
-    unreachable = ops.opposite(t33 & (-(ops.feasibility * t34) <= t40))
+    s_w = ops.sign(t17 * a_x)
+    t33 = whole * (t17 + a_x * s_w)
+    t34 = 2.0 * (g_1 * g_1) + t33 * t33
+    part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
+    t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
+    t36 = mu * 0.25
+    t37 = ops.select(all_same, 0.0, nu * (t35 * t35) + t36)
+    t38 = t32 - t37
+    unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
-    t41 = ops.opposite(failed)
-    touching = ops.max(t40, 0.0) <= ops.vanishing * t34
-    t42 = t41 & ops.opposite(touching)
+    t39 = c_alpha1 * t3
+    t40 = ops.opposite(failed)
+    touching = ops.max(t38, 0.0) <= ops.vanishing * t31
+    t41 = t40 & ops.opposite(touching)
+    t42 = t40 | (t41 & ops.opposite(all_same))
     t43 = ops.opposite(in_line)
-    t44 = t42 | ((t41 | (t42 & ops.opposite(all_same))) & t43)
-    t45 = ops.select((t41 & t43 & slim) | (t44 & t43 & slim), mu, 1.0)
-    over = 1.0 / t45
-    w_w_2 = ops.select(in_line, t37, ops.select(slim, over * t31, product_2))
-    part = 1.0 / ops.select(t44, w_w_2, 1.0)
-    t46 = ops.select(in_line, 0.0, part * t32 * 0.5)
-    t47 = n_z * t46 - d_z * 0.5
-    t48 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t46 * t46)))
-    t49 = ops.select(t42, ops.max(t35 - t48, 0.0), 1.0)
-    t50 = ops.sqrt(ops.select(t42, part, 1.0)) * ops.sqrt(t49)
-    h = ops.select(touching, 0.0, t50)
-    t51 = ops.select(slim, over * (a_x * t30 + t18 * t29), t27)
-    t52 = h * ops.select(in_line, t36, -t51)
-    t53 = t47 + t52
-    t54 = c_alpha1 * t3
-    t55 = t29 * t46 - t24 * 0.5
-    t56 = ops.select(slim, over * (t18 * n_z - d_z * t30), t22)
-    t57 = ops.select(in_line, g_1 * s_w, -t56) * h
-    A_11 = t55 - t57
-    t58 = s_alpha1 * t3
-    t59 = t30 * t46 - t18 * 0.5
-    t60 = ops.select(slim, over * (a_x * n_z + d_z * t29), t26)
-    t61 = h * ops.select(in_line, g_1, -t60)
-    A_12 = t59 - t61
-    t62 = ops.select(failed, ops.nan, t5 * t53 - (t54 * A_11 + t58 * A_12))
-    t63 = c_alpha2 * t4
-    t64 = s_alpha2 * t4
-    B_22 = t8 * (u_z + t53) - (t63 * (t10 + A_11) + t64 * (t11 + A_12))
-    t65 = c_alpha3 * t19
-    t66 = s_alpha3 * t19
-    B_33 = t15 * (v_z + t53) - (t65 * (t23 + A_11) + t66 * (t17 + A_12))
-    t67 = t47 - t52
-    A_11_above = t55 + t57
-    A_12_above = t59 + t61
-    B_11_above = t5 * t67 - (t54 * A_11_above + t58 * A_12_above)
-    t68 = t63 * (t10 + A_11_above) + t64 * (t11 + A_12_above)
-    t69 = ops.select(failed, ops.nan, t8 * (u_z + t67) - t68)
-    t70 = t65 * (t23 + A_11_above) + t66 * (t17 + A_12_above)
-    t71 = ops.select(failed, ops.nan, t15 * (v_z + t67) - t70)
+    t44 = t41 | (t42 & t43)
+    t45 = t44 & t43
+    over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
+    n_z_2 = over_2 * t28
+    t46 = over_2 * t26
+    w_x = ops.select(in_line, g_1 * s_w, t17 * n_z_2 - d_z * t46)
+    t47 = over_2 * t23
+    nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t44 & in_line, t34, 1.0), 1.0 / ops.select(t45, mu * nu_2, 1.0))
+    t48 = ops.select(in_line, 0.0, mu * part_2 * t29 * 0.5)
+    t49 = ops.select(all_same, 0.0, nu_2 * (t48 * t48) + t36)
+    t50 = ops.select(t41, part_2 * ops.max(t32 - t49, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t50))
+    t51 = w_x * h
+    t52 = t47 * t48 + d_x * 0.5
+    t53 = t51 - t52
+    t54 = s_alpha1 * t3
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t47))
+    t55 = h * w_y
+    t56 = t46 * t48 - t17 * 0.5
+    t57 = t55 + t56
+    w_z = ops.select(in_line, -t33, a_x * t46 + t17 * t47)
+    t58 = h * w_z
+    t59 = n_z_2 * t48 - d_z * 0.5
+    t60 = t58 + t59
+    t61 = ops.select(failed, ops.nan, t39 * t53 + t54 * t57 + t5 * t60)
+    t62 = c_alpha2 * t4
+    t63 = s_alpha2 * t4
+    B_22 = t62 * (t8 + t53) + t63 * (t10 + t57) + t7 * (u_z + t60)
+    t64 = c_alpha3 * t11
+    t65 = s_alpha3 * t11
+    B_33 = t64 * (t13 + t53) + t65 * (t14 + t57) + t12 * (v_z + t60)
+    A_11_above = t51 + t52
+    A_12_above = t55 - t56
+    t66 = t58 - t59
+    t67 = t39 * A_11_above + t54 * A_12_above + t5 * t66
+    t68 = t62 * (t8 - A_11_above) + t63 * (t10 - A_12_above)
+    t69 = ops.select(failed, ops.nan, t68 + t7 * (u_z - t66))
+    t70 = t64 * (t13 - A_11_above) + t65 * (t14 - A_12_above)
+    t71 = ops.select(failed, ops.nan, t70 + t12 * (v_z - t66))
     return (
-        t62,
+        t61,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, B_33),
-        ops.select(failed, ops.nan, B_11_above),
+        ops.select(failed, ops.nan, -t67),
         t69,
         t71,
     )
@@ -962,7 +967,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 12),
+    _runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 8),
 )
 
 
@@ -1006,10 +1011,10 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
     s3 = ops.sin(theta3)
     c3 = ops.cos(theta3)
+    s_alpha3 = ops.sin(alpha3)
+    c_alpha3 = ops.cos(alpha3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
@@ -1017,155 +1022,154 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t4 = L * s2
     u_z = t3 - t4
     t5 = L * c1
-    t6 = f - e
-    t7 = t5 + t6
-    c1_x = c_alpha1 * t7
-    t8 = L * c2
-    t9 = t8 + t6
-    t10 = c1_x - c_alpha2 * t9
-    c1_y = s_alpha1 * t7
-    t11 = c1_y - s_alpha2 * t9
-    u_u = u_z * u_z + t10 * t10 + t11 * t11
+    t6 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t5
+    t7 = L * c2
+    t8 = t6 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t7)
+    t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
+    t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
+    u_u = u_z * u_z + t8 * t8 + t10 * t10
+    t11 = L * s3
+    v_z = t3 - t11
+    t12 = L * c3
+    t13 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
+    t14 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
+    v_v = v_z * v_z + t13 * t13 + t14 * t14
     size = f + e + L + l
-    t12 = size * size
-    t13 = ops.vanishing * ops.vanishing
-    t14 = t12 * t13
-    same = u_u <= t14
-    t15 = L * c3
-    t16 = t15 + t6
-    t17 = c1_y - s_alpha3 * t16
-    t18 = ops.select(same, t17, t11)
-    t19 = L * s3
-    v_z = t3 - t19
-    t20 = ops.select(same, u_z, v_z)
-    t21 = ops.select(same, t11, t17)
-    d_z = ops.select(same, v_z, u_z)
-    t22 = t18 * t20 - t21 * d_z
-    t23 = c1_x - c_alpha3 * t16
-    v_v = v_z * v_z + t23 * t23 + t17 * t17
-    all_same = u_u + v_v <= t14
+    t15 = size * size
+    t16 = ops.vanishing * ops.vanishing * t15
+    all_same = u_u + v_v <= t16
     whole = ops.select((size == 0.0), 1.0, size)
-    t24 = ops.select(same, t23, t10)
-    a_x = ops.select(all_same, whole, -t24)
-    t25 = ops.select(same, t10, t23)
-    t26 = a_x * t20 + t25 * d_z
-    t27 = a_x * t21 + t18 * t25
-    product_2 = t22 * t22 + t26 * t26 + t27 * t27
+    same = u_u <= t16
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t28 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t28 * 0.000244140625 <= ops.vanishing * t28
-    t29 = t18 * t27 + d_z * t26
-    t30 = a_x * t27 - d_z * t22
-    n_z = a_x * t26 + t18 * t22
-    t31 = t29 * t29 + t30 * t30 + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t31, product_2)
-    in_line = m_m <= t13 * (t12 * mu)
-    t32 = t25 * (t24 - t25) + t21 * (t18 - t21) + t20 * (d_z - t20)
-    t33 = ops.abs(ops.select(in_line, -t32, 0.0)) <= t12 * ops.feasibility
-    t34 = 0.9375 * (l * size)
-    t35 = l * l
+    over = 1.0 / mu
+    t17 = ops.select(same, t14, t10)
+    d_x = ops.select(same, t13, t8)
+    a_x = ops.select(all_same, whole, d_x)
+    t18 = ops.select(same, t10, t14)
+    t19 = ops.select(same, t8, t13)
+    t20 = a_x * t18 - t17 * t19
+    d_z = ops.select(same, v_z, u_z)
+    t21 = ops.select(same, u_z, v_z)
+    t22 = a_x * t21 - t19 * d_z
+    t23 = t17 * t20 + d_z * t22
+    t24 = over * t23
+    t25 = t17 * t21 - t18 * d_z
+    t26 = a_x * t20 - d_z * t25
+    t27 = over * t26
+    t28 = a_x * t22 + t17 * t25
+    n_z = over * t28
+    nu = t24 * t24 + t27 * t27 + n_z * n_z
+    in_line = nu <= t16
+    t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
+    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
+    t31 = 0.9375 * (l * size)
+    t32 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(-(t18 * a_x))
-    t36 = whole * (t18 - a_x * s_w)
-    t37 = 2.0 * (g_1 * g_1) + t36 * t36
-    w_w = ops.select(in_line, t37, m_m)
-    t38 = ops.select(in_line, 0.0, 1.0 / w_w * t32 * 0.5)
-    t39 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t38 * t38)))
-    t40 = t35 - t39
-    unreachable = ops.opposite(t33 & (-(ops.feasibility * t34) <= t40))
+    s_w = ops.sign(t17 * a_x)
+    t33 = whole * (t17 + a_x * s_w)
+    t34 = 2.0 * (g_1 * g_1) + t33 * t33
+    part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
+    t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
+    t36 = mu * 0.25
+    t37 = ops.select(all_same, 0.0, nu * (t35 * t35) + t36)
+    t38 = t32 - t37
+    unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
-    t41 = c_alpha1 * t3
-    t42 = ops.opposite(failed)
-    touching = ops.max(t40, 0.0) <= ops.vanishing * t34
-    t43 = t42 & ops.opposite(touching)
-    t44 = ops.opposite(in_line)
-    t45 = t43 | ((t42 | (t43 & ops.opposite(all_same))) & t44)
-    over = 1.0 / ops.select(t42 & t44 & slim, mu, 1.0)
-    w_w_2 = ops.select(in_line, t37, ops.select(slim, over * t31, product_2))
-    part = 1.0 / ops.select(t45, w_w_2, 1.0)
-    t46 = ops.select(in_line, 0.0, part * t32 * 0.5)
-    t47 = t29 * t46 - t24 * 0.5
-    t48 = ops.select(slim, over * (t18 * n_z - d_z * t30), t22)
-    t49 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t46 * t46)))
-    t50 = ops.select(t43, ops.max(t35 - t49, 0.0), 1.0)
-    t51 = ops.sqrt(ops.select(t43, part, 1.0)) * ops.sqrt(t50)
-    h = ops.select(touching, 0.0, t51)
-    t52 = ops.select(in_line, g_1 * s_w, -t48) * h
-    A_11 = t47 - t52
-    t53 = s_alpha1 * t3
-    t54 = t30 * t46 - t18 * 0.5
-    t55 = ops.select(slim, over * (a_x * n_z + d_z * t29), t26)
-    t56 = h * ops.select(in_line, g_1, -t55)
-    A_12 = t54 - t56
-    t57 = n_z * t46 - d_z * 0.5
-    t58 = ops.select(slim, over * (a_x * t30 + t18 * t29), t27)
-    t59 = h * ops.select(in_line, t36, -t58)
-    t60 = t57 + t59
-    t61 = t41 * A_11 + t53 * A_12 - t5 * t60
-    A_22 = t11 + A_12
-    t62 = v_z + t60
-    t63 = u_z + t60
-    A_32 = t17 + A_12
-    t64 = ops.select(t42, w_w_2 * h, 1.0)
-    t65 = ops.select(failed, ops.nan, -(t61 * (A_22 * t62 - t63 * A_32) / t64))
-    t66 = c_alpha2 * t4
-    A_21 = t10 + A_11
-    t67 = s_alpha2 * t4
-    t68 = t66 * A_21 + t67 * A_22 - t8 * t63
-    t69 = ops.select(failed, ops.nan, t68 * (A_12 * t62 - t60 * A_32) / t64)
-    t70 = c_alpha3 * t19
-    A_31 = t23 + A_11
-    t71 = s_alpha3 * t19
-    t72 = t70 * A_31 + t71 * A_32 - t15 * t62
-    t73 = ops.select(failed, ops.nan, -(t72 * (A_12 * t63 - t60 * A_22) / t64))
-    t74 = ops.select(failed, ops.nan, t61 * (t62 * A_21 - t63 * A_31) / t64)
-    t75 = ops.select(failed, ops.nan, -(t68 * (A_11 * t62 - t60 * A_31) / t64))
-    t76 = ops.select(failed, ops.nan, t72 * (A_11 * t63 - t60 * A_21) / t64)
-    t77 = ops.select(failed, ops.nan, t61 * (A_32 * A_21 - A_22 * A_31) / t64)
-    t78 = ops.select(failed, ops.nan, -(t68 * (A_11 * A_32 - A_12 * A_31) / t64))
-    t79 = ops.select(failed, ops.nan, t72 * (A_11 * A_22 - A_12 * A_21) / t64)
-    A_11_above = t47 + t52
-    A_12_above = t54 + t56
-    t80 = t57 - t59
-    t81 = t41 * A_11_above + t53 * A_12_above - t5 * t80
-    A_22_above = t11 + A_12_above
-    t82 = v_z + t80
-    t83 = u_z + t80
-    A_32_above = t17 + A_12_above
-    t84 = t81 * (A_22_above * t82 - t83 * A_32_above) / t64
-    A_21_above = t10 + A_11_above
-    t85 = t66 * A_21_above + t67 * A_22_above - t8 * t83
-    t86 = t85 * (A_12_above * t82 - t80 * A_32_above) / t64
-    A_31_above = t23 + A_11_above
-    t87 = t70 * A_31_above + t71 * A_32_above - t15 * t82
-    t88 = t87 * (A_12_above * t83 - t80 * A_22_above) / t64
-    t89 = t81 * (t82 * A_21_above - t83 * A_31_above) / t64
-    t90 = t85 * (A_11_above * t82 - t80 * A_31_above) / t64
-    t91 = t87 * (A_11_above * t83 - t80 * A_21_above) / t64
-    t92 = A_32_above * A_21_above - A_22_above * A_31_above
-    t93 = ops.select(failed, ops.nan, -(t81 * t92 / t64))
-    t94 = A_11_above * A_32_above - A_12_above * A_31_above
-    t95 = A_11_above * A_22_above - A_12_above * A_21_above
-    t96 = ops.select(failed, ops.nan, -(t87 * t95 / t64))
+    t39 = c_alpha1 * t3
+    t40 = ops.opposite(failed)
+    touching = ops.max(t38, 0.0) <= ops.vanishing * t31
+    t41 = t40 & ops.opposite(touching)
+    t42 = t40 | (t41 & ops.opposite(all_same))
+    t43 = ops.opposite(in_line)
+    t44 = t41 | (t42 & t43)
+    t45 = t44 & t43
+    over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
+    n_z_2 = over_2 * t28
+    t46 = over_2 * t26
+    w_x = ops.select(in_line, g_1 * s_w, t17 * n_z_2 - d_z * t46)
+    t47 = over_2 * t23
+    nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
+    t48 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t44 & in_line, t34, 1.0), 1.0 / ops.select(t45, t48, 1.0))
+    t49 = ops.select(in_line, 0.0, mu * part_2 * t29 * 0.5)
+    t50 = ops.select(all_same, 0.0, nu_2 * (t49 * t49) + t36)
+    t51 = ops.select(t41, part_2 * ops.max(t32 - t50, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t51))
+    t52 = w_x * h
+    t53 = t47 * t49 + d_x * 0.5
+    t54 = t52 - t53
+    t55 = s_alpha1 * t3
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t47))
+    t56 = h * w_y
+    t57 = t46 * t49 - t17 * 0.5
+    t58 = t56 + t57
+    w_z = ops.select(in_line, -t33, a_x * t46 + t17 * t47)
+    t59 = h * w_z
+    t60 = n_z_2 * t49 - d_z * 0.5
+    t61 = t59 + t60
+    t62 = t39 * t54 + t55 * t58 + t5 * t61
+    t63 = t10 + t58
+    t64 = v_z + t61
+    t65 = u_z + t61
+    t66 = t14 + t58
+    t67 = ops.select(t40, t48 * h, 1.0)
+    t68 = ops.select(failed, ops.nan, -(t62 * (t63 * t64 - t65 * t66) / t67))
+    t69 = c_alpha2 * t4
+    t70 = t8 + t54
+    t71 = s_alpha2 * t4
+    t72 = t69 * t70 + t71 * t63 + t7 * t65
+    t73 = ops.select(failed, ops.nan, t72 * (t58 * t64 - t61 * t66) / t67)
+    t74 = c_alpha3 * t11
+    t75 = t13 + t54
+    t76 = s_alpha3 * t11
+    t77 = t74 * t75 + t76 * t66 + t12 * t64
+    t78 = ops.select(failed, ops.nan, -(t77 * (t58 * t65 - t61 * t63) / t67))
+    t79 = ops.select(failed, ops.nan, t62 * (t64 * t70 - t65 * t75) / t67)
+    t80 = ops.select(failed, ops.nan, -(t72 * (t54 * t64 - t61 * t75) / t67))
+    t81 = ops.select(failed, ops.nan, t77 * (t54 * t65 - t61 * t70) / t67)
+    t82 = ops.select(failed, ops.nan, -(t62 * (t66 * t70 - t63 * t75) / t67))
+    t83 = ops.select(failed, ops.nan, t72 * (t54 * t66 - t58 * t75) / t67)
+    t84 = ops.select(failed, ops.nan, -(t77 * (t54 * t63 - t58 * t70) / t67))
+    A_11_above = t52 + t53
+    A_12_above = t56 - t57
+    t85 = t59 - t60
+    t86 = t39 * A_11_above + t55 * A_12_above + t5 * t85
+    t87 = t10 - A_12_above
+    t88 = v_z - t85
+    t89 = u_z - t85
+    t90 = t14 - A_12_above
+    t91 = ops.select(failed, ops.nan, -(t86 * (t87 * t88 - t89 * t90) / t67))
+    t92 = t8 - A_11_above
+    t93 = t69 * t92 + t71 * t87 + t7 * t89
+    t94 = ops.select(failed, ops.nan, t93 * (A_12_above * t88 - t85 * t90) / t67)
+    t95 = t13 - A_11_above
+    t96 = t74 * t95 + t76 * t90 + t12 * t88
+    t97 = -(t96 * (A_12_above * t89 - t85 * t87) / t67)
+    t98 = ops.select(failed, ops.nan, t86 * (t88 * t92 - t89 * t95) / t67)
+    t99 = -(t93 * (A_11_above * t88 - t85 * t95) / t67)
+    t100 = ops.select(failed, ops.nan, t96 * (A_11_above * t89 - t85 * t92) / t67)
+    t101 = ops.select(failed, ops.nan, -(t86 * (t90 * t92 - t87 * t95) / t67))
+    t102 = t93 * (A_11_above * t90 - A_12_above * t95) / t67
+    t103 = t96 * (A_11_above * t87 - A_12_above * t92) / t67
     return (
-        t65,
-        t69,
+        t68,
         t73,
-        t74,
-        t75,
-        t76,
-        t77,
         t78,
         t79,
-        ops.select(failed, ops.nan, t84),
-        ops.select(failed, ops.nan, -t86),
-        ops.select(failed, ops.nan, t88),
-        ops.select(failed, ops.nan, -t89),
-        ops.select(failed, ops.nan, t90),
-        ops.select(failed, ops.nan, -t91),
-        t93,
-        ops.select(failed, ops.nan, t85 * t94 / t64),
-        t96,
+        t80,
+        t81,
+        t82,
+        t83,
+        t84,
+        t91,
+        t94,
+        ops.select(failed, ops.nan, t97),
+        t98,
+        ops.select(failed, ops.nan, t99),
+        t100,
+        t101,
+        ops.select(failed, ops.nan, t102),
+        ops.select(failed, ops.nan, -t103),
     )
 
 
@@ -1176,7 +1180,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 12),
+    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8),
 )
 
 
@@ -1221,10 +1225,10 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
     s3 = ops.sin(theta3)
     c3 = ops.cos(theta3)
+    s_alpha3 = ops.sin(alpha3)
+    c_alpha3 = ops.cos(alpha3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
@@ -1232,108 +1236,109 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t4 = L * s2
     u_z = t3 - t4
     t5 = L * c1
-    t6 = f - e
-    t7 = t5 + t6
-    c1_x = c_alpha1 * t7
-    t8 = L * c2
-    t9 = t8 + t6
-    t10 = c1_x - c_alpha2 * t9
-    c1_y = s_alpha1 * t7
-    t11 = c1_y - s_alpha2 * t9
-    u_u = u_z * u_z + t10 * t10 + t11 * t11
+    t6 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t5
+    t7 = L * c2
+    t8 = t6 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t7)
+    t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
+    t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
+    u_u = u_z * u_z + t8 * t8 + t10 * t10
+    t11 = L * s3
+    v_z = t3 - t11
+    t12 = L * c3
+    t13 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
+    t14 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
+    v_v = v_z * v_z + t13 * t13 + t14 * t14
     size = f + e + L + l
-    t12 = size * size
-    t13 = ops.vanishing * ops.vanishing
-    t14 = t12 * t13
-    same = u_u <= t14
-    t15 = L * c3
-    t16 = t15 + t6
-    t17 = c1_y - s_alpha3 * t16
-    t18 = ops.select(same, t17, t11)
-    t19 = L * s3
-    v_z = t3 - t19
-    t20 = ops.select(same, u_z, v_z)
-    t21 = ops.select(same, t11, t17)
-    d_z = ops.select(same, v_z, u_z)
-    t22 = t18 * t20 - t21 * d_z
-    t23 = c1_x - c_alpha3 * t16
-    v_v = v_z * v_z + t23 * t23 + t17 * t17
-    all_same = u_u + v_v <= t14
+    t15 = size * size
+    t16 = ops.vanishing * ops.vanishing * t15
+    all_same = u_u + v_v <= t16
     whole = ops.select((size == 0.0), 1.0, size)
-    t24 = ops.select(same, t23, t10)
-    a_x = ops.select(all_same, whole, -t24)
-    t25 = ops.select(same, t10, t23)
-    t26 = a_x * t20 + t25 * d_z
-    t27 = a_x * t21 + t18 * t25
-    product_2 = t22 * t22 + t26 * t26 + t27 * t27
+    same = u_u <= t16
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t28 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t28 * 0.000244140625 <= ops.vanishing * t28
-    t29 = t18 * t27 + d_z * t26
-    t30 = a_x * t27 - d_z * t22
-    n_z = a_x * t26 + t18 * t22
-    t31 = t29 * t29 + t30 * t30 + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t31, product_2)
-    in_line = m_m <= t13 * (t12 * mu)
-    t32 = t25 * (t24 - t25) + t21 * (t18 - t21) + t20 * (d_z - t20)
-    t33 = ops.abs(ops.select(in_line, -t32, 0.0)) <= t12 * ops.feasibility
-    t34 = 0.9375 * (l * size)
-    t35 = l * l
+    over = 1.0 / mu
+    t17 = ops.select(same, t14, t10)
+    d_x = ops.select(same, t13, t8)
+    a_x = ops.select(all_same, whole, d_x)
+    t18 = ops.select(same, t10, t14)
+    t19 = ops.select(same, t8, t13)
+    t20 = a_x * t18 - t17 * t19
+    d_z = ops.select(same, v_z, u_z)
+    t21 = ops.select(same, u_z, v_z)
+    t22 = a_x * t21 - t19 * d_z
+    t23 = t17 * t20 + d_z * t22
+    t24 = over * t23
+    t25 = t17 * t21 - t18 * d_z
+    t26 = a_x * t20 - d_z * t25
+    t27 = over * t26
+    t28 = a_x * t22 + t17 * t25
+    n_z = over * t28
+    nu = t24 * t24 + t27 * t27 + n_z * n_z
+    in_line = nu <= t16
+    t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
+    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
+    t31 = 0.9375 * (l * size)
+    t32 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(-(t18 * a_x))
-    t36 = whole * (t18 - a_x * s_w)
-    t37 = 2.0 * (g_1 * g_1) + t36 * t36
-    w_w = ops.select(in_line, t37, m_m)
-    t38 = ops.select(in_line, 0.0, 1.0 / w_w * t32 * 0.5)
-    t39 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t38 * t38)))
-    t40 = t35 - t39
-    unreachable = ops.opposite(t33 & (-(ops.feasibility * t34) <= t40))
+    s_w = ops.sign(t17 * a_x)
+    t33 = whole * (t17 + a_x * s_w)
+    t34 = 2.0 * (g_1 * g_1) + t33 * t33
+    part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
+    t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
+    t36 = mu * 0.25
+    t37 = ops.select(all_same, 0.0, nu * (t35 * t35) + t36)
+    t38 = t32 - t37
+    unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
-    t41 = c_alpha1 * t3
-    t42 = ops.opposite(failed)
-    touching = ops.max(t40, 0.0) <= ops.vanishing * t34
-    t43 = t42 & ops.opposite(touching)
-    t44 = ops.opposite(in_line)
-    t45 = t43 | ((t42 | (t43 & ops.opposite(all_same))) & t44)
-    over = 1.0 / ops.select(t42 & t44 & slim, mu, 1.0)
-    w_w_2 = ops.select(in_line, t37, ops.select(slim, over * t31, product_2))
-    part = 1.0 / ops.select(t45, w_w_2, 1.0)
-    t46 = ops.select(in_line, 0.0, part * t32 * 0.5)
-    t47 = t29 * t46 - t24 * 0.5
-    t48 = ops.select(slim, over * (t18 * n_z - d_z * t30), t22)
-    t49 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t46 * t46)))
-    t50 = ops.select(t43, ops.max(t35 - t49, 0.0), 1.0)
-    t51 = ops.sqrt(ops.select(t43, part, 1.0)) * ops.sqrt(t50)
-    h = ops.select(touching, 0.0, t51)
-    t52 = ops.select(in_line, g_1 * s_w, -t48) * h
-    A_11 = t47 - t52
-    t53 = s_alpha1 * t3
-    t54 = t30 * t46 - t18 * 0.5
-    t55 = ops.select(slim, over * (a_x * n_z + d_z * t29), t26)
-    t56 = h * ops.select(in_line, g_1, -t55)
-    A_12 = t54 - t56
-    t57 = n_z * t46 - d_z * 0.5
-    t58 = ops.select(slim, over * (a_x * t30 + t18 * t29), t27)
-    t59 = h * ops.select(in_line, t36, -t58)
-    t60 = t57 + t59
-    t61 = c_alpha2 * t4
-    t62 = s_alpha2 * t4
-    t63 = t61 * (t10 + A_11) + t62 * (t11 + A_12) - t8 * (u_z + t60)
-    t64 = c_alpha3 * t19
-    t65 = s_alpha3 * t19
-    t66 = t64 * (t23 + A_11) + t65 * (t17 + A_12) - t15 * (v_z + t60)
-    t67 = (t41 * A_11 + t53 * A_12 - t5 * t60) * t63 * t66
-    t68 = ops.select(t42, w_w_2 * h, 1.0)
-    A_11_above = t47 + t52
-    A_12_above = t54 + t56
-    t69 = t57 - t59
-    t70 = t41 * A_11_above + t53 * A_12_above - t5 * t69
-    t71 = t61 * (t10 + A_11_above) + t62 * (t11 + A_12_above)
-    t72 = t64 * (t23 + A_11_above) + t65 * (t17 + A_12_above)
-    t73 = t70 * (t71 - t8 * (u_z + t69)) * (t72 - t15 * (v_z + t69))
+    t39 = c_alpha1 * t3
+    t40 = ops.opposite(failed)
+    touching = ops.max(t38, 0.0) <= ops.vanishing * t31
+    t41 = t40 & ops.opposite(touching)
+    t42 = t40 | (t41 & ops.opposite(all_same))
+    t43 = ops.opposite(in_line)
+    t44 = t41 | (t42 & t43)
+    t45 = t44 & t43
+    over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
+    n_z_2 = over_2 * t28
+    t46 = over_2 * t26
+    w_x = ops.select(in_line, g_1 * s_w, t17 * n_z_2 - d_z * t46)
+    t47 = over_2 * t23
+    nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
+    t48 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t44 & in_line, t34, 1.0), 1.0 / ops.select(t45, t48, 1.0))
+    t49 = ops.select(in_line, 0.0, mu * part_2 * t29 * 0.5)
+    t50 = ops.select(all_same, 0.0, nu_2 * (t49 * t49) + t36)
+    t51 = ops.select(t41, part_2 * ops.max(t32 - t50, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t51))
+    t52 = w_x * h
+    t53 = t47 * t49 + d_x * 0.5
+    t54 = t52 - t53
+    t55 = s_alpha1 * t3
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t47))
+    t56 = h * w_y
+    t57 = t46 * t49 - t17 * 0.5
+    t58 = t56 + t57
+    w_z = ops.select(in_line, -t33, a_x * t46 + t17 * t47)
+    t59 = h * w_z
+    t60 = n_z_2 * t49 - d_z * 0.5
+    t61 = t59 + t60
+    t62 = c_alpha2 * t4
+    t63 = s_alpha2 * t4
+    t64 = t62 * (t8 + t54) + t63 * (t10 + t58) + t7 * (u_z + t61)
+    t65 = c_alpha3 * t11
+    t66 = s_alpha3 * t11
+    t67 = t65 * (t13 + t54) + t66 * (t14 + t58) + t12 * (v_z + t61)
+    t68 = (t39 * t54 + t55 * t58 + t5 * t61) * t64 * t67
+    t69 = ops.select(t40, t48 * h, 1.0)
+    A_11_above = t52 + t53
+    A_12_above = t56 - t57
+    t70 = t59 - t60
+    t71 = t39 * A_11_above + t55 * A_12_above + t5 * t70
+    t72 = t62 * (t8 - A_11_above) + t63 * (t10 - A_12_above)
+    t73 = t65 * (t13 - A_11_above) + t66 * (t14 - A_12_above)
+    t74 = t71 * (t72 + t7 * (u_z - t70)) * (t73 + t12 * (v_z - t70))
     return (
-        ops.select(failed, ops.nan, t67 / t68),
-        ops.select(failed, ops.nan, -(t73 / t68)),
+        ops.select(failed, ops.nan, -(t68 / t69)),
+        ops.select(failed, ops.nan, -(t74 / t69)),
     )
 
 
@@ -1380,12 +1385,12 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
 
 def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    s_alpha1 = ops.sin(alpha1)
+    c_alpha1 = ops.cos(alpha1)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
     s2 = ops.sin(theta2)
     c2 = ops.cos(theta2)
-    s_alpha1 = ops.sin(alpha1)
-    c_alpha1 = ops.cos(alpha1)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
     s3 = ops.sin(theta3)
@@ -1399,114 +1404,115 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t4 = L * s2
     u_z = t3 - t4
     t5 = L * c1
-    t6 = f - e
-    t7 = t5 + t6
-    c1_x = c_alpha1 * t7
-    t8 = L * c2
-    t9 = t8 + t6
-    t10 = c1_x - c_alpha2 * t9
-    c1_y = s_alpha1 * t7
-    t11 = c1_y - s_alpha2 * t9
-    u_u = u_z * u_z + t10 * t10 + t11 * t11
+    t6 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t5
+    t7 = L * c2
+    t8 = t6 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t7)
+    t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
+    t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
+    u_u = u_z * u_z + t8 * t8 + t10 * t10
+    t11 = L * s3
+    v_z = t3 - t11
+    t12 = L * c3
+    t13 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
+    t14 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
+    v_v = v_z * v_z + t13 * t13 + t14 * t14
     size = f + e + L + l
-    t12 = size * size
-    t13 = ops.vanishing * ops.vanishing
-    t14 = t12 * t13
-    same = u_u <= t14
-    t15 = L * c3
-    t16 = t15 + t6
-    t17 = c1_y - s_alpha3 * t16
-    t18 = ops.select(same, t17, t11)
-    t19 = L * s3
-    v_z = t3 - t19
-    t20 = ops.select(same, u_z, v_z)
-    t21 = ops.select(same, t11, t17)
-    d_z = ops.select(same, v_z, u_z)
-    t22 = t18 * t20 - t21 * d_z
-    t23 = c1_x - c_alpha3 * t16
-    v_v = v_z * v_z + t23 * t23 + t17 * t17
-    all_same = u_u + v_v <= t14
+    t15 = size * size
+    t16 = ops.vanishing * ops.vanishing * t15
+    all_same = u_u + v_v <= t16
     whole = ops.select((size == 0.0), 1.0, size)
-    t24 = ops.select(same, t23, t10)
-    a_x = ops.select(all_same, whole, -t24)
-    t25 = ops.select(same, t10, t23)
-    t26 = a_x * t20 + t25 * d_z
-    t27 = a_x * t21 + t18 * t25
-    product_2 = t22 * t22 + t26 * t26 + t27 * t27
+    same = u_u <= t16
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t28 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t28 * 0.000244140625 <= ops.vanishing * t28
-    t29 = t18 * t27 + d_z * t26
-    t30 = a_x * t27 - d_z * t22
-    n_z = a_x * t26 + t18 * t22
-    t31 = t29 * t29 + t30 * t30 + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t31, product_2)
-    in_line = m_m <= t13 * (t12 * mu)
-    t32 = t25 * (t24 - t25) + t21 * (t18 - t21) + t20 * (d_z - t20)
-    t33 = ops.abs(ops.select(in_line, -t32, 0.0)) <= t12 * ops.feasibility
-    t34 = 0.9375 * (l * size)
-    t35 = l * l
+    over = 1.0 / mu
+    t17 = ops.select(same, t14, t10)
+    d_x = ops.select(same, t13, t8)
+    a_x = ops.select(all_same, whole, d_x)
+    t18 = ops.select(same, t10, t14)
+    t19 = ops.select(same, t8, t13)
+    t20 = a_x * t18 - t17 * t19
+    d_z = ops.select(same, v_z, u_z)
+    t21 = ops.select(same, u_z, v_z)
+    t22 = a_x * t21 - t19 * d_z
+    t23 = t17 * t20 + d_z * t22
+    t24 = over * t23
+    t25 = t17 * t21 - t18 * d_z
+    t26 = a_x * t20 - d_z * t25
+    t27 = over * t26
+    t28 = a_x * t22 + t17 * t25
+    n_z = over * t28
+    nu = t24 * t24 + t27 * t27 + n_z * n_z
+    in_line = nu <= t16
+    t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
+    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
+    t31 = 0.9375 * (l * size)
+    t32 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(-(t18 * a_x))
-    t36 = whole * (t18 - a_x * s_w)
-    t37 = 2.0 * (g_1 * g_1) + t36 * t36
-    w_w = ops.select(in_line, t37, m_m)
-    t38 = ops.select(in_line, 0.0, 1.0 / w_w * t32 * 0.5)
-    t39 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t38 * t38)))
-    t40 = t35 - t39
-    unreachable = ops.opposite(t33 & (-(ops.feasibility * t34) <= t40))
+    s_w = ops.sign(t17 * a_x)
+    t33 = whole * (t17 + a_x * s_w)
+    t34 = 2.0 * (g_1 * g_1) + t33 * t33
+    part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
+    t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
+    t36 = mu * 0.25
+    t37 = ops.select(all_same, 0.0, nu * (t35 * t35) + t36)
+    t38 = t32 - t37
+    unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
-    t41 = ops.opposite(failed)
-    touching = ops.max(t40, 0.0) <= ops.vanishing * t34
-    t42 = t41 & ops.opposite(touching)
+    t39 = c_alpha1 * t3
+    t40 = ops.opposite(failed)
+    touching = ops.max(t38, 0.0) <= ops.vanishing * t31
+    t41 = t40 & ops.opposite(touching)
+    t42 = t40 | (t41 & ops.opposite(all_same))
     t43 = ops.opposite(in_line)
-    t44 = t42 | ((t41 | (t42 & ops.opposite(all_same))) & t43)
-    over = 1.0 / ops.select(t41 & t43 & slim, mu, 1.0)
-    w_w_2 = ops.select(in_line, t37, ops.select(slim, over * t31, product_2))
-    part = 1.0 / ops.select(t44, w_w_2, 1.0)
-    t45 = ops.select(in_line, 0.0, part * t32 * 0.5)
-    t46 = n_z * t45 - d_z * 0.5
-    t47 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t45 * t45)))
-    t48 = ops.select(t42, ops.max(t35 - t47, 0.0), 1.0)
-    t49 = ops.sqrt(ops.select(t42, part, 1.0)) * ops.sqrt(t48)
-    h = ops.select(touching, 0.0, t49)
-    t50 = ops.select(slim, over * (a_x * t30 + t18 * t29), t27)
-    t51 = h * ops.select(in_line, t36, -t50)
-    t52 = t46 + t51
-    t53 = c_alpha1 * t3
-    t54 = t29 * t45 - t24 * 0.5
-    t55 = ops.select(slim, over * (t18 * n_z - d_z * t30), t22)
-    t56 = ops.select(in_line, g_1 * s_w, -t55) * h
-    A_11 = t54 - t56
-    t57 = s_alpha1 * t3
-    t58 = t30 * t45 - t18 * 0.5
-    t59 = ops.select(slim, over * (a_x * n_z + d_z * t29), t26)
-    t60 = h * ops.select(in_line, g_1, -t59)
-    A_12 = t58 - t60
-    t61 = ops.select(failed, ops.nan, t5 * t52 - (t53 * A_11 + t57 * A_12))
-    t62 = c_alpha2 * t4
-    t63 = s_alpha2 * t4
-    B_22 = t8 * (u_z + t52) - (t62 * (t10 + A_11) + t63 * (t11 + A_12))
-    t64 = c_alpha3 * t19
-    t65 = s_alpha3 * t19
-    B_33 = t15 * (v_z + t52) - (t64 * (t23 + A_11) + t65 * (t17 + A_12))
-    Delta = w_w_2 * h
-    t66 = t46 - t51
-    A_11_above = t54 + t56
-    A_12_above = t58 + t60
-    B_11_above = t5 * t66 - (t53 * A_11_above + t57 * A_12_above)
-    t67 = t62 * (t10 + A_11_above) + t63 * (t11 + A_12_above)
-    t68 = ops.select(failed, ops.nan, t8 * (u_z + t66) - t67)
-    t69 = t64 * (t23 + A_11_above) + t65 * (t17 + A_12_above)
-    t70 = ops.select(failed, ops.nan, t15 * (v_z + t66) - t69)
+    t44 = t41 | (t42 & t43)
+    t45 = t44 & t43
+    over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
+    n_z_2 = over_2 * t28
+    t46 = over_2 * t26
+    w_x = ops.select(in_line, g_1 * s_w, t17 * n_z_2 - d_z * t46)
+    t47 = over_2 * t23
+    nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
+    t48 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t44 & in_line, t34, 1.0), 1.0 / ops.select(t45, t48, 1.0))
+    t49 = ops.select(in_line, 0.0, mu * part_2 * t29 * 0.5)
+    t50 = ops.select(all_same, 0.0, nu_2 * (t49 * t49) + t36)
+    t51 = ops.select(t41, part_2 * ops.max(t32 - t50, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t51))
+    t52 = w_x * h
+    t53 = t47 * t49 + d_x * 0.5
+    t54 = t52 - t53
+    t55 = s_alpha1 * t3
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t47))
+    t56 = h * w_y
+    t57 = t46 * t49 - t17 * 0.5
+    t58 = t56 + t57
+    w_z = ops.select(in_line, -t33, a_x * t46 + t17 * t47)
+    t59 = h * w_z
+    t60 = n_z_2 * t49 - d_z * 0.5
+    t61 = t59 + t60
+    t62 = ops.select(failed, ops.nan, t39 * t54 + t55 * t58 + t5 * t61)
+    t63 = c_alpha2 * t4
+    t64 = s_alpha2 * t4
+    B_22 = t63 * (t8 + t54) + t64 * (t10 + t58) + t7 * (u_z + t61)
+    t65 = c_alpha3 * t11
+    t66 = s_alpha3 * t11
+    B_33 = t65 * (t13 + t54) + t66 * (t14 + t58) + t12 * (v_z + t61)
+    Delta = t48 * h
+    A_11_above = t52 + t53
+    A_12_above = t56 - t57
+    t67 = t59 - t60
+    t68 = t39 * A_11_above + t55 * A_12_above + t5 * t67
+    t69 = t63 * (t8 - A_11_above) + t64 * (t10 - A_12_above)
+    t70 = ops.select(failed, ops.nan, t69 + t7 * (u_z - t67))
+    t71 = t65 * (t13 - A_11_above) + t66 * (t14 - A_12_above)
+    t72 = ops.select(failed, ops.nan, t71 + t12 * (v_z - t67))
     return (
-        t61,
+        t62,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, B_33),
         ops.select(failed, ops.nan, -Delta),
-        ops.select(failed, ops.nan, B_11_above),
-        t68,
+        ops.select(failed, ops.nan, -t68),
         t70,
+        t72,
         ops.select(failed, ops.nan, Delta),
     )
 
@@ -1518,7 +1524,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 4)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 3), (4, 2), (5, 2), (6, 2), (7, 3)), 12),
+    _runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 3), (4, 2), (5, 2), (6, 2), (7, 3)), 8),
 )
 
 
@@ -1562,145 +1568,146 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     c_alpha1 = ops.cos(alpha1)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
     s3 = ops.sin(theta3)
     c3 = ops.cos(theta3)
+    s_alpha3 = ops.sin(alpha3)
+    c_alpha3 = ops.cos(alpha3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
     t3 = L * s1
     u_z = t3 - L * s2
-    t4 = f - e
-    t5 = L * c1 + t4
-    c1_x = c_alpha1 * t5
-    t6 = L * c2 + t4
-    t7 = c1_x - c_alpha2 * t6
-    c1_y = s_alpha1 * t5
-    t8 = c1_y - s_alpha2 * t6
-    u_u = u_z * u_z + t7 * t7 + t8 * t8
-    size = f + e + L + l
-    t9 = size * size
-    t10 = ops.vanishing * ops.vanishing
-    t11 = t9 * t10
-    same = u_u <= t11
-    t12 = L * c3 + t4
-    t13 = c1_y - s_alpha3 * t12
-    t14 = ops.select(same, t13, t8)
+    t4 = L * c1
+    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
+    t6 = L * c2
+    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
+    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
+    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
     v_z = t3 - L * s3
-    t15 = ops.select(same, u_z, v_z)
-    t16 = ops.select(same, t8, t13)
-    d_z = ops.select(same, v_z, u_z)
-    t17 = t14 * t15 - t16 * d_z
-    t18 = c1_x - c_alpha3 * t12
-    v_v = v_z * v_z + t18 * t18 + t13 * t13
-    all_same = u_u + v_v <= t11
+    t10 = L * c3
+    t11 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10)
+    t12 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10)
+    v_v = v_z * v_z + t11 * t11 + t12 * t12
+    size = f + e + L + l
+    t13 = size * size
+    t14 = ops.vanishing * ops.vanishing * t13
+    all_same = u_u + v_v <= t14
     whole = ops.select((size == 0.0), 1.0, size)
-    t19 = ops.select(same, t18, t7)
-    a_x = ops.select(all_same, whole, -t19)
-    t20 = ops.select(same, t7, t18)
-    t21 = a_x * t15 + t20 * d_z
-    t22 = a_x * t16 + t14 * t20
-    product_2 = t17 * t17 + t21 * t21 + t22 * t22
+    same = u_u <= t14
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t23 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t23 * 0.000244140625 <= ops.vanishing * t23
-    t24 = t14 * t22 + d_z * t21
-    t25 = a_x * t22 - d_z * t17
-    n_z = a_x * t21 + t14 * t17
-    t26 = t24 * t24 + t25 * t25 + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t26, product_2)
-    in_line = m_m <= t10 * (t9 * mu)
-    t27 = t20 * (t19 - t20) + t16 * (t14 - t16) + t15 * (d_z - t15)
-    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t9 * ops.feasibility
+    over = 1.0 / mu
+    t15 = ops.select(same, t12, t9)
+    d_x = ops.select(same, t11, t7)
+    a_x = ops.select(all_same, whole, d_x)
+    t16 = ops.select(same, t9, t12)
+    t17 = ops.select(same, t7, t11)
+    t18 = a_x * t16 - t15 * t17
+    d_z = ops.select(same, v_z, u_z)
+    t19 = ops.select(same, u_z, v_z)
+    t20 = a_x * t19 - t17 * d_z
+    t21 = t15 * t18 + d_z * t20
+    t22 = over * t21
+    t23 = t15 * t19 - t16 * d_z
+    t24 = a_x * t18 - d_z * t23
+    t25 = over * t24
+    t26 = a_x * t20 + t15 * t23
+    n_z = over * t26
+    nu = t22 * t22 + t25 * t25 + n_z * n_z
+    in_line = nu <= t14
+    t27 = t17 * (d_x - t17) + t16 * (t15 - t16) + t19 * (d_z - t19)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
     t29 = 0.9375 * (l * size)
     t30 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(-(t14 * a_x))
-    t31 = whole * (t14 - a_x * s_w)
+    s_w = ops.sign(t15 * a_x)
+    t31 = whole * (t15 + a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    w_w = ops.select(in_line, t32, m_m)
-    t33 = ops.select(in_line, 0.0, 1.0 / w_w * t27 * 0.5)
-    t34 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t33 * t33)))
-    t35 = t30 - t34
-    unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t35))
+    part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
+    t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
+    t34 = mu * 0.25
+    t35 = ops.select(all_same, 0.0, nu * (t33 * t33) + t34)
+    t36 = t30 - t35
+    unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
-    t36 = ops.opposite(failed)
-    touching = ops.max(t35, 0.0) <= ops.vanishing * t29
-    t37 = t36 & ops.opposite(touching)
-    t38 = ops.opposite(in_line)
-    t39 = t37 | ((t36 | (t37 & ops.opposite(all_same))) & t38)
-    over = 1.0 / ops.select(t36 & t38 & slim, mu, 1.0)
-    w_w_2 = ops.select(in_line, t32, ops.select(slim, over * t26, product_2))
-    part = 1.0 / ops.select(t39, w_w_2, 1.0)
-    t40 = ops.select(in_line, 0.0, part * t27 * 0.5)
-    t41 = t24 * t40 - t19 * 0.5
-    t42 = ops.select(slim, over * (t14 * n_z - d_z * t25), t17)
-    t43 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t40 * t40)))
-    t44 = ops.select(t37, ops.max(t30 - t43, 0.0), 1.0)
-    t45 = ops.sqrt(ops.select(t37, part, 1.0)) * ops.sqrt(t44)
-    h = ops.select(touching, 0.0, t45)
-    t46 = ops.select(in_line, g_1 * s_w, -t42) * h
-    A_11 = t41 - t46
-    t47 = t25 * t40 - t14 * 0.5
-    t48 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
-    t49 = h * ops.select(in_line, g_1, -t48)
-    A_12 = t47 - t49
-    t50 = n_z * t40 - d_z * 0.5
-    t51 = ops.select(slim, over * (a_x * t25 + t14 * t24), t22)
-    t52 = h * ops.select(in_line, t31, -t51)
-    t53 = t50 + t52
-    A_21 = t7 + A_11
-    A_22 = t8 + A_12
-    t54 = u_z + t53
-    t55 = A_11 * A_11 + A_12 * A_12 + t53 * t53 + (A_21 * A_21 + A_22 * A_22 + t54 * t54)
-    A_31 = t18 + A_11
-    A_32 = t13 + A_12
-    t56 = v_z + t53
-    t57 = t55 + (A_31 * A_31 + A_32 * A_32 + t56 * t56)
-    t58 = A_11 * A_22 - A_12 * A_21
-    t59 = A_11 * t54 - t53 * A_21
-    t60 = A_11 * A_32 - A_12 * A_31
-    t61 = A_11 * t56 - t53 * A_31
-    t62 = t58 * t58 + t59 * t59 + t60 * t60 + t61 * t61
-    t63 = A_12 * t54 - t53 * A_22
-    t64 = A_12 * t56 - t53 * A_32
-    t65 = A_21 * A_32 - A_22 * A_31
-    t66 = A_21 * t56 - t54 * A_31
-    t67 = t62 + t63 * t63 + t64 * t64 + t65 * t65 + t66 * t66
-    t68 = A_22 * t56 - t54 * A_32
-    t69 = ops.select(t36, t57 * (t67 + t68 * t68), 1.0)
-    t70 = ops.select(t36, 3.0 * (w_w_2 * h), 1.0)
-    t71 = ops.select(failed, ops.nan, ops.sqrt(t69) / t70)
-    A_11_above = t41 + t46
-    A_12_above = t47 + t49
-    t72 = A_11_above * A_11_above + A_12_above * A_12_above
-    t73 = t50 - t52
-    A_21_above = t7 + A_11_above
-    A_22_above = t8 + A_12_above
-    t74 = A_21_above * A_21_above + A_22_above * A_22_above
-    t75 = u_z + t73
-    A_31_above = t18 + A_11_above
-    A_32_above = t13 + A_12_above
-    t76 = A_31_above * A_31_above + A_32_above * A_32_above
-    t77 = v_z + t73
-    t78 = t72 + t73 * t73 + (t74 + t75 * t75) + (t76 + t77 * t77)
-    t79 = A_11_above * A_22_above - A_12_above * A_21_above
-    t80 = A_11_above * t75 - t73 * A_21_above
-    t81 = A_11_above * A_32_above - A_12_above * A_31_above
-    t82 = A_11_above * t77 - t73 * A_31_above
-    t83 = t79 * t79 + t80 * t80 + t81 * t81 + t82 * t82
-    t84 = A_12_above * t75 - t73 * A_22_above
-    t85 = A_12_above * t77 - t73 * A_32_above
-    t86 = A_21_above * A_32_above - A_22_above * A_31_above
-    t87 = A_21_above * t77 - t75 * A_31_above
-    t88 = t83 + t84 * t84 + t85 * t85 + t86 * t86 + t87 * t87
-    t89 = A_22_above * t77 - t75 * A_32_above
-    t90 = ops.select(t36, t78 * (t88 + t89 * t89), 1.0)
-    t91 = ops.select(failed, ops.nan, ops.sqrt(t90) / t70)
+    t37 = ops.opposite(failed)
+    touching = ops.max(t36, 0.0) <= ops.vanishing * t29
+    t38 = t37 & ops.opposite(touching)
+    t39 = t37 | (t38 & ops.opposite(all_same))
+    t40 = ops.opposite(in_line)
+    t41 = t38 | (t39 & t40)
+    t42 = t41 & t40
+    over_2 = 1.0 / ops.select(t39 | t42, mu, 1.0)
+    n_z_2 = over_2 * t26
+    t43 = over_2 * t24
+    w_x = ops.select(in_line, g_1 * s_w, t15 * n_z_2 - d_z * t43)
+    t44 = over_2 * t21
+    nu_2 = t44 * t44 + t43 * t43 + n_z_2 * n_z_2
+    t45 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t41 & in_line, t32, 1.0), 1.0 / ops.select(t42, t45, 1.0))
+    t46 = ops.select(in_line, 0.0, mu * part_2 * t27 * 0.5)
+    t47 = ops.select(all_same, 0.0, nu_2 * (t46 * t46) + t34)
+    t48 = ops.select(t38, part_2 * ops.max(t30 - t47, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t48))
+    t49 = w_x * h
+    t50 = t44 * t46 + d_x * 0.5
+    t51 = t49 - t50
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t44))
+    t52 = h * w_y
+    t53 = t43 * t46 - t15 * 0.5
+    t54 = t52 + t53
+    w_z = ops.select(in_line, -t31, a_x * t43 + t15 * t44)
+    t55 = h * w_z
+    t56 = n_z_2 * t46 - d_z * 0.5
+    t57 = t55 + t56
+    t58 = t7 + t51
+    t59 = t9 + t54
+    t60 = u_z + t57
+    t61 = t51 * t51 + t54 * t54 + t57 * t57 + (t58 * t58 + t59 * t59 + t60 * t60)
+    t62 = t11 + t51
+    t63 = t12 + t54
+    t64 = v_z + t57
+    t65 = t51 * t59 - t54 * t58
+    t66 = t51 * t60 - t57 * t58
+    t67 = t51 * t63 - t54 * t62
+    t68 = t51 * t64 - t57 * t62
+    t69 = t65 * t65 + t66 * t66 + t67 * t67 + t68 * t68
+    t70 = t54 * t60 - t57 * t59
+    t71 = t54 * t64 - t57 * t63
+    t72 = t58 * t63 - t59 * t62
+    t73 = t58 * t64 - t60 * t62
+    t74 = t69 + t70 * t70 + t71 * t71 + t72 * t72 + t73 * t73
+    t75 = t59 * t64 - t60 * t63
+    t76 = (t61 + (t62 * t62 + t63 * t63 + t64 * t64)) * (t74 + t75 * t75)
+    t77 = ops.select(t37, 3.0 * (t45 * h), 1.0)
+    t78 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t37, t76, 1.0)) / t77)
+    A_11_above = t49 + t50
+    A_12_above = t52 - t53
+    t79 = A_11_above * A_11_above + A_12_above * A_12_above
+    t80 = t55 - t56
+    t81 = t7 - A_11_above
+    t82 = t9 - A_12_above
+    t83 = u_z - t80
+    t84 = t79 + t80 * t80 + (t81 * t81 + t82 * t82 + t83 * t83)
+    t85 = t11 - A_11_above
+    t86 = t12 - A_12_above
+    t87 = v_z - t80
+    t88 = A_11_above * t82 - A_12_above * t81
+    t89 = A_11_above * t83 - t80 * t81
+    t90 = A_11_above * t86 - A_12_above * t85
+    t91 = A_11_above * t87 - t80 * t85
+    t92 = t88 * t88 + t89 * t89 + t90 * t90 + t91 * t91
+    t93 = A_12_above * t83 - t80 * t82
+    t94 = A_12_above * t87 - t80 * t86
+    t95 = t81 * t86 - t82 * t85
+    t96 = t81 * t87 - t83 * t85
+    t97 = t92 + t93 * t93 + t94 * t94 + t95 * t95 + t96 * t96
+    t98 = t82 * t87 - t83 * t86
+    t99 = (t84 + (t85 * t85 + t86 * t86 + t87 * t87)) * (t97 + t98 * t98)
+    t100 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t37, t99, 1.0)) / t77)
     return (
-        t71,
-        t91,
+        t78,
+        t100,
     )
 
 
@@ -1748,12 +1755,12 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
 
 def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
     s_alpha1 = ops.sin(alpha1)
     c_alpha1 = ops.cos(alpha1)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
+    s_alpha3 = ops.sin(alpha3)
+    c_alpha3 = ops.cos(alpha3)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
     s2 = ops.sin(theta2)
@@ -1765,134 +1772,136 @@ def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
     t3 = L * s1
     u_z = t3 - L * s2
-    t4 = f - e
-    t5 = L * c1 + t4
-    c1_x = c_alpha1 * t5
-    t6 = L * c2 + t4
-    t7 = c1_x - c_alpha2 * t6
-    c1_y = s_alpha1 * t5
-    t8 = c1_y - s_alpha2 * t6
-    u_u = u_z * u_z + t7 * t7 + t8 * t8
-    size = f + e + L + l
-    t9 = size * size
-    t10 = ops.vanishing * ops.vanishing
-    t11 = t9 * t10
-    same = u_u <= t11
-    t12 = L * c3 + t4
-    t13 = c1_y - s_alpha3 * t12
-    t14 = ops.select(same, t13, t8)
+    t4 = L * c1
+    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
+    t6 = L * c2
+    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
+    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
+    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
     v_z = t3 - L * s3
-    t15 = ops.select(same, u_z, v_z)
-    t16 = ops.select(same, t8, t13)
-    d_z = ops.select(same, v_z, u_z)
-    t17 = t14 * t15 - t16 * d_z
-    t18 = c1_x - c_alpha3 * t12
-    v_v = v_z * v_z + t18 * t18 + t13 * t13
-    all_same = u_u + v_v <= t11
+    t10 = L * c3
+    t11 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10)
+    t12 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10)
+    v_v = v_z * v_z + t11 * t11 + t12 * t12
+    size = f + e + L + l
+    t13 = size * size
+    t14 = ops.vanishing * ops.vanishing * t13
+    all_same = u_u + v_v <= t14
     whole = ops.select((size == 0.0), 1.0, size)
-    t19 = ops.select(same, t18, t7)
-    a_x = ops.select(all_same, whole, -t19)
-    t20 = ops.select(same, t7, t18)
-    t21 = a_x * t15 + t20 * d_z
-    t22 = a_x * t16 + t14 * t20
-    product_2 = t17 * t17 + t21 * t21 + t22 * t22
+    same = u_u <= t14
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t23 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t23 * 0.000244140625 <= ops.vanishing * t23
-    t24 = t14 * t22 + d_z * t21
-    t25 = a_x * t22 - d_z * t17
-    n_z = a_x * t21 + t14 * t17
-    t26 = t24 * t24 + t25 * t25 + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t26, product_2)
-    in_line = m_m <= t10 * (t9 * mu)
-    t27 = t20 * (t19 - t20) + t16 * (t14 - t16) + t15 * (d_z - t15)
-    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t9 * ops.feasibility
+    over = 1.0 / mu
+    t15 = ops.select(same, t12, t9)
+    d_x = ops.select(same, t11, t7)
+    a_x = ops.select(all_same, whole, d_x)
+    t16 = ops.select(same, t9, t12)
+    t17 = ops.select(same, t7, t11)
+    t18 = a_x * t16 - t15 * t17
+    d_z = ops.select(same, v_z, u_z)
+    t19 = ops.select(same, u_z, v_z)
+    t20 = a_x * t19 - t17 * d_z
+    t21 = t15 * t18 + d_z * t20
+    t22 = over * t21
+    t23 = t15 * t19 - t16 * d_z
+    t24 = a_x * t18 - d_z * t23
+    t25 = over * t24
+    t26 = a_x * t20 + t15 * t23
+    n_z = over * t26
+    nu = t22 * t22 + t25 * t25 + n_z * n_z
+    in_line = nu <= t14
+    t27 = t17 * (d_x - t17) + t16 * (t15 - t16) + t19 * (d_z - t19)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
     t29 = 0.9375 * (l * size)
     t30 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(-(t14 * a_x))
-    t31 = whole * (t14 - a_x * s_w)
+    s_w = ops.sign(t15 * a_x)
+    t31 = whole * (t15 + a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    w_w = ops.select(in_line, t32, m_m)
-    t33 = ops.select(in_line, 0.0, 1.0 / w_w * t27 * 0.5)
-    t34 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t33 * t33)))
-    t35 = t30 - t34
-    unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t35))
+    part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
+    t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
+    t34 = mu * 0.25
+    t35 = ops.select(all_same, 0.0, nu * (t33 * t33) + t34)
+    t36 = t30 - t35
+    unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
-    t36 = c_alpha1 * s_alpha2
-    t37 = c_alpha3 * t36
+    t37 = c_alpha1 * s_alpha2
+    touching = ops.max(t36, 0.0) <= ops.vanishing * t29
     t38 = ops.opposite(failed)
-    touching = ops.max(t35, 0.0) <= ops.vanishing * t29
     t39 = t38 & ops.opposite(touching)
-    t40 = ops.opposite(in_line)
-    t41 = t39 | ((t38 | (t39 & ops.opposite(all_same))) & t40)
-    t42 = ops.select((t38 & t40 & slim) | (t41 & t40 & slim), mu, 1.0)
-    over = 1.0 / t42
-    w_w_2 = ops.select(in_line, t32, ops.select(slim, over * t26, product_2))
-    part = 1.0 / ops.select(t41, w_w_2, 1.0)
-    t43 = ops.select(in_line, 0.0, part * t27 * 0.5)
-    t44 = t24 * t43 - t19 * 0.5
-    t45 = ops.select(slim, over * (t14 * n_z - d_z * t25), t17)
-    t46 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t43 * t43)))
-    t47 = ops.select(t39, ops.max(t30 - t46, 0.0), 1.0)
-    t48 = ops.sqrt(ops.select(t39, part, 1.0)) * ops.sqrt(t47)
-    h = ops.select(touching, 0.0, t48)
-    t49 = ops.select(in_line, g_1 * s_w, -t45) * h
-    A_11 = t44 - t49
-    t50 = n_z * t43 - d_z * 0.5
-    t51 = ops.select(slim, over * (a_x * t25 + t14 * t24), t22)
-    t52 = h * ops.select(in_line, t31, -t51)
-    t53 = t50 + t52
-    t54 = u_z + t53
-    t55 = v_z + t53
-    t56 = t54 * t55
-    t57 = A_11 * t56
-    t58 = c_alpha1 * c_alpha2
-    t59 = s_alpha3 * t58
-    t60 = s_alpha1 * s_alpha2
-    t61 = c_alpha3 * t60
-    t62 = t25 * t43 - t14 * 0.5
-    t63 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
-    t64 = h * ops.select(in_line, g_1, -t63)
-    A_12 = t62 - t64
-    t65 = t56 * A_12
-    t66 = s_alpha1 * c_alpha2
+    t40 = t38 | (t39 & ops.opposite(all_same))
+    t41 = ops.opposite(in_line)
+    t42 = t39 | (t40 & t41)
+    t43 = t42 & t41
+    over_2 = 1.0 / ops.select(t40 | t43, mu, 1.0)
+    t44 = over_2 * t21
+    t45 = over_2 * t24
+    n_z_2 = over_2 * t26
+    nu_2 = t44 * t44 + t45 * t45 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t42 & in_line, t32, 1.0), 1.0 / ops.select(t43, mu * nu_2, 1.0))
+    t46 = ops.select(in_line, 0.0, mu * part_2 * t27 * 0.5)
+    t47 = ops.select(all_same, 0.0, nu_2 * (t46 * t46) + t34)
+    t48 = ops.select(t39, part_2 * ops.max(t30 - t47, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t48))
+    w_z = ops.select(in_line, -t31, a_x * t45 + t15 * t44)
+    t49 = h * w_z
+    t50 = n_z_2 * t46 - d_z * 0.5
+    t51 = t49 + t50
+    t52 = s_alpha3 * t51
+    t53 = t37 * t52
+    t54 = u_z + t51
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t44))
+    t55 = h * w_y
+    t56 = t45 * t46 - t15 * 0.5
+    t57 = t55 + t56
+    t58 = t54 * (t12 + t57)
+    t59 = c_alpha3 * t37
+    w_x = ops.select(in_line, g_1 * s_w, t15 * n_z_2 - d_z * t45)
+    t60 = w_x * h
+    t61 = t44 * t46 + d_x * 0.5
+    t62 = t60 - t61
+    t63 = v_z + t51
+    t64 = t54 * t63
+    t65 = t62 * t64
+    t66 = c_alpha1 * c_alpha2
     t67 = s_alpha3 * t66
-    t68 = t37 * t57 - t59 * t57 + t61 * t65 - t67 * t65
-    t69 = c_alpha3 * t53
-    t70 = t66 * t69
-    t71 = t55 * (t7 + A_11)
-    t72 = s_alpha3 * t53
-    t73 = t55 * (t8 + A_12)
-    t74 = t68 - t70 * t71 + t58 * t71 * t72 - t60 * t69 * t73
-    t75 = t36 * t72
-    t76 = t54 * (t18 + A_11)
-    t77 = t74 + t73 * t75 + t70 * t76 - t36 * t69 * t76
-    t78 = t54 * (t13 + A_12)
-    t79 = ops.select(failed, ops.nan, t77 + t66 * t72 * t78 - t75 * t78)
-    A_11_above = t44 + t49
-    t80 = t50 - t52
-    t81 = u_z + t80
-    t82 = v_z + t80
-    t83 = t81 * t82
-    t84 = A_11_above * t83
-    A_12_above = t62 + t64
-    t85 = t83 * A_12_above
-    t86 = t37 * t84 - t59 * t84 + t61 * t85 - t67 * t85
-    t87 = c_alpha3 * t80
-    t88 = t66 * t87
-    t89 = t82 * (t7 + A_11_above)
-    t90 = s_alpha3 * t80
-    t91 = t82 * (t8 + A_12_above)
-    t92 = t86 - t88 * t89 + t58 * t89 * t90 - t60 * t87 * t91
-    t93 = t36 * t90
-    t94 = t81 * (t18 + A_11_above)
-    t95 = t92 + t91 * t93 + t88 * t94 - t36 * t87 * t94
-    t96 = t81 * (t13 + A_12_above)
-    t97 = ops.select(failed, ops.nan, t95 + t66 * t90 * t96 - t93 * t96)
+    t68 = s_alpha1 * s_alpha2
+    t69 = c_alpha3 * t68
+    t70 = t64 * t57
+    t71 = s_alpha1 * c_alpha2
+    t72 = s_alpha3 * t71
+    t73 = t59 * t65 - t67 * t65 + t69 * t70 - t72 * t70
+    t74 = c_alpha3 * t51
+    t75 = t71 * t74
+    t76 = t63 * (t7 + t62)
+    t77 = t63 * (t9 + t57)
+    t78 = t73 - t75 * t76 + t66 * t76 * t52 - t68 * t74 * t77
+    t79 = t54 * (t11 + t62)
+    t80 = t78 + t77 * t53 + t75 * t79 - t37 * t74 * t79
+    t81 = ops.select(failed, ops.nan, t53 * t58 - (t80 + t71 * t52 * t58))
+    A_11_above = t60 + t61
+    t82 = t49 - t50
+    t83 = u_z - t82
+    t84 = v_z - t82
+    t85 = t83 * t84
+    t86 = A_11_above * t85
+    A_12_above = t55 - t56
+    t87 = t85 * A_12_above
+    t88 = t59 * t86 - t67 * t86 + t69 * t87 - t72 * t87
+    t89 = c_alpha3 * t82
+    t90 = t71 * t89
+    t91 = t84 * (t7 - A_11_above)
+    t92 = s_alpha3 * t82
+    t93 = t84 * (t9 - A_12_above)
+    t94 = t88 - t90 * t91 + t66 * t91 * t92 - t68 * t89 * t93
+    t95 = t37 * t92
+    t96 = t83 * (t11 - A_11_above)
+    t97 = t94 + t93 * t95 + t90 * t96 - t37 * t89 * t96
+    t98 = t83 * (t12 - A_12_above)
+    t99 = ops.select(failed, ops.nan, t97 + t71 * t92 * t98 - t95 * t98)
     return (
-        t79,
-        t97,
+        t81,
+        t99,
     )
 
 
@@ -1903,7 +1912,7 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 1)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 12),
+    _runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 8),
 )
 
 

@@ -2,15 +2,15 @@
 # derivations/orthoglide.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 74 compare and select, 39 add, 10 divide, 70 multiply, 2 sqrt
-#   skeleton: 91 compare and select, 52 add, 11 divide, 70 multiply, 2 sqrt
-#   jacobian_parallel: 79 compare and select, 44 add, 10 divide, 70 multiply, 2 sqrt
-#   jacobian_serial: 73 compare and select, 42 add, 10 divide, 70 multiply, 2 sqrt
-#   jacobian: 83 compare and select, 62 add, 28 divide, 113 multiply, 2 sqrt
-#   determinant: 67 compare and select, 42 add, 12 divide, 75 multiply, 2 sqrt
-#   singularities: 72 compare and select, 42 add, 10 divide, 71 multiply, 2 sqrt
-#   condition_number: 69 compare and select, 94 add, 12 divide, 128 multiply, 4 sqrt
-#   constraint: 69 compare and select, 46 add, 10 divide, 78 multiply, 2 sqrt
+#   fk: 65 compare and select, 38 add, 12 divide, 69 multiply, 1 sqrt
+#   skeleton: 82 compare and select, 51 add, 13 divide, 69 multiply, 1 sqrt
+#   jacobian_parallel: 70 compare and select, 43 add, 12 divide, 69 multiply, 1 sqrt
+#   jacobian_serial: 64 compare and select, 41 add, 12 divide, 69 multiply, 1 sqrt
+#   jacobian: 77 compare and select, 61 add, 30 divide, 112 multiply, 1 sqrt
+#   determinant: 61 compare and select, 41 add, 14 divide, 74 multiply, 1 sqrt
+#   singularities: 66 compare and select, 41 add, 12 divide, 70 multiply, 1 sqrt
+#   condition_number: 63 compare and select, 93 add, 14 divide, 127 multiply, 3 sqrt
+#   constraint: 60 compare and select, 45 add, 12 divide, 77 multiply, 1 sqrt
 #   ik: 74 compare and select, 51 add, 1 divide, 47 multiply, 12 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
 """Orthoglide.
@@ -131,79 +131,82 @@ def _fk(ops, rho1, rho2, rho3, L):
     invalid = ops.opposite(t1)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing
-    t5 = t3 * t4
-    same = u_u <= t5
-    d_y = ops.select(same, 0.0, rho2)
-    t6 = ops.select(same, 0.0, rho3)
-    t7 = ops.select(same, rho2, 0.0)
-    d_z = ops.select(same, rho3, 0.0)
-    product_x = d_y * t6 - t7 * d_z
-    v_v = t2 + rho3 * rho3
-    all_same = u_u + v_v <= t5
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
     whole = ops.select((size == 0.0), 1.0, size)
-    a_x = ops.select(all_same, whole, -rho1)
-    t8 = a_x * t6 + rho1 * d_z
-    product_z = a_x * t7 + rho1 * d_y
-    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    same = u_u <= t4
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t9 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * product_z + d_z * t8
-    n_y = a_x * product_z - d_z * product_x
-    n_z = a_x * t8 + d_y * product_x
-    t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
-    in_line = m_m <= t4 * (t3 * mu)
-    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, whole, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 0.1875
     t15 = L * L
-    g_1 = whole * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, m_m)
-    t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
-    t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
-    t19 = t15 - t18
-    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t19))
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = invalid | unreachable
-    t20 = ops.opposite(failed)
-    t21 = ops.opposite(in_line)
-    touching = ops.max(t19, 0.0) <= ops.vanishing * t14
-    t22 = t20 & ops.opposite(touching)
-    t23 = t22 | ((t20 | (t22 & ops.opposite(all_same))) & t21)
-    t24 = ops.select((t20 & t21 & slim) | (t23 & t21 & slim), mu, 1.0)
-    over = 1.0 / t24
-    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
-    part = 1.0 / ops.select(t23, w_w_2, 1.0)
-    t25 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t26 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t25 * t25)))
-    t27 = ops.select(t22, ops.max(t15 - t26, 0.0), 1.0)
-    t28 = ops.sqrt(ops.select(t22, part, 1.0)) * ops.sqrt(t27)
-    h = ops.select(touching, 0.0, t28)
-    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t30 = t10 * t25 + (rho1 - rho1 * 0.5)
-    t31 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
-    t32 = h * ops.select(in_line, g_1, -t31)
-    t33 = n_y * t25 - d_y * 0.5
-    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
-    t34 = h * ops.select(in_line, -g_2, m_z)
-    t35 = n_z * t25 - d_z * 0.5
-    t36 = ops.status(invalid, unreachable, in_line)
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
+    t27 = over_2 * t8
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
+    t28 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t29 = ops.select(all_same, 0.0, nu_2 * (t28 * t28) + t18)
+    t30 = ops.select(t22, part_2 * ops.max(t15 - t29, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t30))
+    t31 = w_x * h
+    t32 = rho1 * 0.5 - (rho1 + t27 * t28)
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
+    t33 = w_y * h
+    t34 = n_y_2 * t28 - d_y * 0.5
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
+    t35 = w_z * h
+    t36 = n_z_2 * t28 - d_z * 0.5
+    t37 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t29 + t30),
-        ops.select(failed, ops.nan, t32 - t33),
-        ops.select(failed, ops.nan, t34 - t35),
-        ops.select(failed, ops.nan, t30 - t29),
-        ops.select(failed, ops.nan, -(t32 + t33)),
-        ops.select(failed, ops.nan, -(t34 + t35)),
-        t36,
-        t36,
+        ops.select(failed, ops.nan, t31 - t32),
+        ops.select(failed, ops.nan, t33 - t34),
+        ops.select(failed, ops.nan, t35 - t36),
+        ops.select(failed, ops.nan, -(t31 + t32)),
+        ops.select(failed, ops.nan, -(t33 + t34)),
+        ops.select(failed, ops.nan, -(t35 + t36)),
+        t37,
+        t37,
     )
 
 
@@ -214,7 +217,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 12),
+    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8),
 )
 
 
@@ -263,203 +266,206 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing
-    t5 = t3 * t4
-    same = u_u <= t5
-    d_y = ops.select(same, 0.0, rho2)
-    t6 = ops.select(same, 0.0, rho3)
-    d_z = ops.select(same, rho3, 0.0)
-    t7 = ops.select(same, rho2, 0.0)
-    product_x = d_y * t6 - d_z * t7
-    v_v = t2 + rho3 * rho3
-    all_same = u_u + v_v <= t5
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
     whole = ops.select((size == 0.0), 1.0, size)
-    a_x = ops.select(all_same, whole, -rho1)
-    t8 = t6 * a_x + rho1 * d_z
-    product_z = t7 * a_x + rho1 * d_y
-    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    same = u_u <= t4
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t9 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * product_z + d_z * t8
-    n_y = a_x * product_z - d_z * product_x
-    n_z = a_x * t8 + d_y * product_x
-    t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
-    in_line = m_m <= t4 * (t3 * mu)
-    t12 = t7 * (d_y - t7) - t6 * (t6 - d_z)
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, whole, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = whole * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, m_m)
-    t17 = ops.select(in_line, 0.0, t12 * (1.0 / w_w) * 0.5)
-    t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
-    t19 = t15 - t18
-    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t19))
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    t20 = ops.select(failed, ops.nan, 0.0)
-    t21 = ops.select(failed, ops.nan, rho1)
-    t22 = L * 0.0625
-    t23 = ops.select(failed, ops.nan, t22)
-    t24 = ops.select(failed, ops.nan, -t22)
-    t25 = ops.opposite(failed)
-    t26 = ops.opposite(in_line)
-    touching = ops.max(t19, 0.0) <= ops.vanishing * t14
-    t27 = t25 & ops.opposite(touching)
-    t28 = t27 | ((t25 | (t27 & ops.opposite(all_same))) & t26)
-    t29 = ops.select((t25 & t26 & slim) | (t28 & t26 & slim), mu, 1.0)
-    over = 1.0 / t29
-    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
-    part = 1.0 / ops.select(t28, w_w_2, 1.0)
-    t30 = ops.select(in_line, 0.0, t12 * part * 0.5)
-    t31 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t30 * t30)))
-    t32 = ops.select(t27, ops.max(t15 - t31, 0.0), 1.0)
-    t33 = ops.sqrt(ops.select(t27, part, 1.0)) * ops.sqrt(t32)
-    h = ops.select(touching, 0.0, t33)
-    t34 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t35 = rho1 * 0.5 - t10 * t30
-    t36 = rho1 + (t34 - t35)
-    t37 = ops.select(failed, ops.nan, t36)
-    t38 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
-    t39 = h * ops.select(in_line, g_1, -t38)
-    t40 = n_y * t30 - d_y * 0.5
-    A_12 = t39 - t40
-    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
-    t41 = h * ops.select(in_line, -g_2, m_z)
-    t42 = n_z * t30 - d_z * 0.5
-    A_13 = t41 - t42
-    t43 = ops.select(failed, ops.nan, A_13)
-    t44 = ops.select(failed, ops.nan, rho2)
-    t45 = ops.select(failed, ops.nan, A_12)
-    t46 = ops.select(failed, ops.nan, rho3)
-    t47 = rho1 - (t34 + t35)
-    t48 = ops.select(failed, ops.nan, t47)
-    t49 = t39 + t40
-    t50 = t41 + t42
-    t51 = ops.select(failed, ops.nan, -t50)
-    t52 = ops.select(failed, ops.nan, -t49)
+    t21 = ops.select(failed, ops.nan, 0.0)
+    t22 = ops.select(failed, ops.nan, rho1)
+    t23 = L * 0.0625
+    t24 = ops.select(failed, ops.nan, t23)
+    t25 = ops.select(failed, ops.nan, -t23)
+    t26 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t27 = t26 & ops.opposite(touching)
+    t28 = t26 | (t27 & ops.opposite(all_same))
+    t29 = ops.opposite(in_line)
+    t30 = t27 | (t28 & t29)
+    t31 = t30 & t29
+    over_2 = 1.0 / ops.select(t28 | t31, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
+    t32 = over_2 * t8
+    nu_2 = t32 * t32 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t30 & in_line, t16, 1.0), 1.0 / ops.select(t31, mu * nu_2, 1.0))
+    t33 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t34 = ops.select(all_same, 0.0, nu_2 * (t33 * t33) + t18)
+    t35 = ops.select(t27, part_2 * ops.max(t15 - t34, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t35))
+    t36 = w_x * h
+    t37 = t32 * t33 - rho1 * 0.5
+    t38 = rho1 + (t36 + t37)
+    t39 = ops.select(failed, ops.nan, t38)
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t32))
+    t40 = w_y * h
+    t41 = n_y_2 * t33 - d_y * 0.5
+    A_12 = t40 - t41
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t32)
+    t42 = w_z * h
+    t43 = n_z_2 * t33 - d_z * 0.5
+    A_13 = t42 - t43
+    t44 = ops.select(failed, ops.nan, A_13)
+    t45 = ops.select(failed, ops.nan, rho2)
+    t46 = ops.select(failed, ops.nan, A_12)
+    t47 = ops.select(failed, ops.nan, rho3)
+    t48 = rho1 - (t36 - t37)
+    t49 = ops.select(failed, ops.nan, t48)
+    t50 = t40 + t41
+    t51 = t42 + t43
+    t52 = ops.select(failed, ops.nan, -t51)
+    t53 = ops.select(failed, ops.nan, -t50)
     return (
-        t20,
-        t20,
-        t20,
         t21,
-        t20,
-        t20,
         t21,
-        t23,
-        t20,
         t21,
+        t22,
+        t21,
+        t21,
+        t22,
         t24,
-        t20,
-        t37,
-        ops.select(failed, ops.nan, t22 + A_12),
-        t43,
-        t37,
-        ops.select(failed, ops.nan, A_12 - t22),
-        t43,
-        t20,
-        t20,
-        t20,
-        t20,
+        t21,
+        t22,
+        t25,
+        t21,
+        t39,
+        ops.select(failed, ops.nan, t23 + A_12),
         t44,
-        t20,
-        t20,
+        t39,
+        ops.select(failed, ops.nan, A_12 - t23),
         t44,
-        t23,
-        t20,
-        t44,
-        t24,
-        t37,
+        t21,
+        t21,
+        t21,
+        t21,
         t45,
-        ops.select(failed, ops.nan, t22 + A_13),
-        t37,
-        t45,
-        ops.select(failed, ops.nan, A_13 - t22),
-        t20,
-        t20,
-        t20,
-        t20,
-        t20,
-        t46,
-        t23,
-        t20,
-        t46,
-        t24,
-        t20,
-        t46,
-        ops.select(failed, ops.nan, t22 + t36),
-        t45,
-        t43,
-        ops.select(failed, ops.nan, t36 - t22),
-        t45,
-        t43,
-        t37,
-        t45,
-        t43,
-        t20,
-        t20,
-        t20,
         t21,
-        t20,
-        t20,
         t21,
-        t23,
-        t20,
+        t45,
+        t24,
         t21,
-        t24,
-        t20,
-        t48,
-        ops.select(failed, ops.nan, t22 - t49),
-        t51,
-        t48,
-        ops.select(failed, ops.nan, -(t22 + t49)),
-        t51,
-        t20,
-        t20,
-        t20,
-        t20,
-        t44,
-        t20,
-        t20,
-        t44,
-        t23,
-        t20,
-        t44,
-        t24,
-        t48,
-        t52,
-        ops.select(failed, ops.nan, t22 - t50),
-        t48,
-        t52,
-        ops.select(failed, ops.nan, -(t22 + t50)),
-        t20,
-        t20,
-        t20,
-        t20,
-        t20,
+        t45,
+        t25,
+        t39,
         t46,
-        t23,
-        t20,
+        ops.select(failed, ops.nan, t23 + A_13),
+        t39,
         t46,
+        ops.select(failed, ops.nan, A_13 - t23),
+        t21,
+        t21,
+        t21,
+        t21,
+        t21,
+        t47,
         t24,
-        t20,
+        t21,
+        t47,
+        t25,
+        t21,
+        t47,
+        ops.select(failed, ops.nan, t23 + t38),
         t46,
-        ops.select(failed, ops.nan, t22 + t47),
+        t44,
+        ops.select(failed, ops.nan, t38 - t23),
+        t46,
+        t44,
+        t39,
+        t46,
+        t44,
+        t21,
+        t21,
+        t21,
+        t22,
+        t21,
+        t21,
+        t22,
+        t24,
+        t21,
+        t22,
+        t25,
+        t21,
+        t49,
+        ops.select(failed, ops.nan, t23 - t50),
         t52,
-        t51,
-        ops.select(failed, ops.nan, t47 - t22),
+        t49,
+        ops.select(failed, ops.nan, -(t23 + t50)),
         t52,
-        t51,
-        t48,
+        t21,
+        t21,
+        t21,
+        t21,
+        t45,
+        t21,
+        t21,
+        t45,
+        t24,
+        t21,
+        t45,
+        t25,
+        t49,
+        t53,
+        ops.select(failed, ops.nan, t23 - t51),
+        t49,
+        t53,
+        ops.select(failed, ops.nan, -(t23 + t51)),
+        t21,
+        t21,
+        t21,
+        t21,
+        t21,
+        t47,
+        t24,
+        t21,
+        t47,
+        t25,
+        t21,
+        t47,
+        ops.select(failed, ops.nan, t23 + t48),
+        t53,
         t52,
-        t51,
+        ops.select(failed, ops.nan, t48 - t23),
+        t53,
+        t52,
+        t49,
+        t53,
+        t52,
     )
 
 
@@ -470,7 +476,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 19, 3)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((3, 1), (6, 1), (7, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (22, 1), (25, 1), (26, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (41, 1), (42, 1), (44, 1), (45, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (60, 1), (63, 1), (64, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (79, 1), (82, 1), (83, 1), (85, 1), (86, 1), (87, 1), (88, 1), (89, 1), (90, 1), (91, 1), (92, 1), (98, 1), (99, 1), (101, 1), (102, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (110, 1), (111, 1), (112, 1), (113, 1)), 12),
+    _runtime.Size((0, 1, 2, 3), ((3, 1), (6, 1), (7, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (22, 1), (25, 1), (26, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (41, 1), (42, 1), (44, 1), (45, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (60, 1), (63, 1), (64, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (79, 1), (82, 1), (83, 1), (85, 1), (86, 1), (87, 1), (88, 1), (89, 1), (90, 1), (91, 1), (92, 1), (98, 1), (99, 1), (101, 1), (102, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (110, 1), (111, 1), (112, 1), (113, 1)), 8),
 )
 
 
@@ -511,100 +517,103 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing
-    t5 = t3 * t4
-    same = u_u <= t5
-    d_y = ops.select(same, 0.0, rho2)
-    t6 = ops.select(same, 0.0, rho3)
-    t7 = ops.select(same, rho2, 0.0)
-    d_z = ops.select(same, rho3, 0.0)
-    product_x = d_y * t6 - t7 * d_z
-    v_v = t2 + rho3 * rho3
-    all_same = u_u + v_v <= t5
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
     whole = ops.select((size == 0.0), 1.0, size)
-    a_x = ops.select(all_same, whole, -rho1)
-    t8 = a_x * t6 + rho1 * d_z
-    product_z = a_x * t7 + rho1 * d_y
-    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    same = u_u <= t4
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t9 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * product_z + d_z * t8
-    n_y = a_x * product_z - d_z * product_x
-    n_z = a_x * t8 + d_y * product_x
-    t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
-    in_line = m_m <= t4 * (t3 * mu)
-    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, whole, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = whole * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, m_m)
-    t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
-    t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
-    t19 = t15 - t18
-    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t19))
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    t20 = ops.opposite(failed)
-    t21 = ops.opposite(in_line)
-    touching = ops.max(t19, 0.0) <= ops.vanishing * t14
-    t22 = t20 & ops.opposite(touching)
-    t23 = t22 | ((t20 | (t22 & ops.opposite(all_same))) & t21)
-    t24 = ops.select((t20 & t21 & slim) | (t23 & t21 & slim), mu, 1.0)
-    over = 1.0 / t24
-    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
-    part = 1.0 / ops.select(t23, w_w_2, 1.0)
-    t25 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t26 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t25 * t25)))
-    t27 = ops.select(t22, ops.max(t15 - t26, 0.0), 1.0)
-    t28 = ops.sqrt(ops.select(t22, part, 1.0)) * ops.sqrt(t27)
-    h = ops.select(touching, 0.0, t28)
-    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t30 = rho1 * 0.5 - t10 * t25
-    A_11 = t29 - t30
-    t31 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
-    t32 = h * ops.select(in_line, g_1, -t31)
-    t33 = n_y * t25 - d_y * 0.5
-    A_12 = t32 - t33
-    t34 = ops.select(failed, ops.nan, A_12)
-    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
-    t35 = h * ops.select(in_line, -g_2, m_z)
-    t36 = n_z * t25 - d_z * 0.5
-    A_13 = t35 - t36
-    t37 = ops.select(failed, ops.nan, A_13)
-    t38 = ops.select(failed, ops.nan, rho1 + A_11)
-    t39 = t29 + t30
-    t40 = t32 + t33
-    t41 = ops.select(failed, ops.nan, -t40)
-    t42 = t35 + t36
-    t43 = ops.select(failed, ops.nan, -t42)
-    t44 = ops.select(failed, ops.nan, rho1 - t39)
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
+    t27 = over_2 * t8
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
+    t28 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t29 = ops.select(all_same, 0.0, nu_2 * (t28 * t28) + t18)
+    t30 = ops.select(t22, part_2 * ops.max(t15 - t29, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t30))
+    t31 = w_x * h
+    t32 = t27 * t28 - rho1 * 0.5
+    A_11 = t31 + t32
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
+    t33 = w_y * h
+    t34 = n_y_2 * t28 - d_y * 0.5
+    A_12 = t33 - t34
+    t35 = ops.select(failed, ops.nan, A_12)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
+    t36 = w_z * h
+    t37 = n_z_2 * t28 - d_z * 0.5
+    A_13 = t36 - t37
+    t38 = ops.select(failed, ops.nan, A_13)
+    t39 = ops.select(failed, ops.nan, rho1 + A_11)
+    t40 = t31 - t32
+    t41 = t33 + t34
+    t42 = ops.select(failed, ops.nan, -t41)
+    t43 = t36 + t37
+    t44 = ops.select(failed, ops.nan, -t43)
+    t45 = ops.select(failed, ops.nan, rho1 - t40)
     return (
         ops.select(failed, ops.nan, A_11),
-        t34,
-        t37,
+        t35,
         t38,
+        t39,
         ops.select(failed, ops.nan, A_12 - rho2),
-        t37,
         t38,
-        t34,
+        t39,
+        t35,
         ops.select(failed, ops.nan, A_13 - rho3),
-        ops.select(failed, ops.nan, -t39),
-        t41,
-        t43,
+        ops.select(failed, ops.nan, -t40),
+        t42,
         t44,
-        ops.select(failed, ops.nan, -(rho2 + t40)),
-        t43,
+        t45,
+        ops.select(failed, ops.nan, -(rho2 + t41)),
         t44,
-        t41,
-        ops.select(failed, ops.nan, -(rho3 + t42)),
+        t45,
+        t42,
+        ops.select(failed, ops.nan, -(rho3 + t43)),
     )
 
 
@@ -615,7 +624,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 12),
+    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8),
 )
 
 
@@ -654,80 +663,83 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing
-    t5 = t3 * t4
-    same = u_u <= t5
-    d_y = ops.select(same, 0.0, rho2)
-    t6 = ops.select(same, 0.0, rho3)
-    t7 = ops.select(same, rho2, 0.0)
-    d_z = ops.select(same, rho3, 0.0)
-    product_x = d_y * t6 - t7 * d_z
-    v_v = t2 + rho3 * rho3
-    all_same = u_u + v_v <= t5
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
     whole = ops.select((size == 0.0), 1.0, size)
-    a_x = ops.select(all_same, whole, -rho1)
-    t8 = a_x * t6 + rho1 * d_z
-    product_z = a_x * t7 + rho1 * d_y
-    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    same = u_u <= t4
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t9 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * product_z + d_z * t8
-    n_y = a_x * product_z - d_z * product_x
-    n_z = a_x * t8 + d_y * product_x
-    t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
-    in_line = m_m <= t4 * (t3 * mu)
-    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, whole, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = whole * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, m_m)
-    t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
-    t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
-    t19 = t15 - t18
-    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t19))
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    t20 = ops.opposite(failed)
-    t21 = ops.opposite(in_line)
-    touching = ops.max(t19, 0.0) <= ops.vanishing * t14
-    t22 = t20 & ops.opposite(touching)
-    t23 = t22 | ((t20 | (t22 & ops.opposite(all_same))) & t21)
-    t24 = ops.select((t20 & t21 & slim) | (t23 & t21 & slim), mu, 1.0)
-    over = 1.0 / t24
-    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
-    part = 1.0 / ops.select(t23, w_w_2, 1.0)
-    t25 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t26 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t25 * t25)))
-    t27 = ops.select(t22, ops.max(t15 - t26, 0.0), 1.0)
-    t28 = ops.sqrt(ops.select(t22, part, 1.0)) * ops.sqrt(t27)
-    h = ops.select(touching, 0.0, t28)
-    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t30 = rho1 * 0.5 - t10 * t25
-    t31 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
-    t32 = h * ops.select(in_line, g_1, -t31)
-    t33 = n_y * t25 - d_y * 0.5
-    t34 = ops.select(failed, ops.nan, t32 - t33 - rho2)
-    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
-    t35 = h * ops.select(in_line, -g_2, m_z)
-    t36 = n_z * t25 - d_z * 0.5
-    t37 = ops.select(failed, ops.nan, t35 - t36 - rho3)
-    t38 = ops.select(failed, ops.nan, -(rho2 + (t32 + t33)))
-    t39 = ops.select(failed, ops.nan, -(rho3 + (t35 + t36)))
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
+    t27 = over_2 * t8
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
+    t28 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t29 = ops.select(all_same, 0.0, nu_2 * (t28 * t28) + t18)
+    t30 = ops.select(t22, part_2 * ops.max(t15 - t29, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t30))
+    t31 = w_x * h
+    t32 = t27 * t28 - rho1 * 0.5
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
+    t33 = w_y * h
+    t34 = n_y_2 * t28 - d_y * 0.5
+    t35 = ops.select(failed, ops.nan, t33 - t34 - rho2)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
+    t36 = w_z * h
+    t37 = n_z_2 * t28 - d_z * 0.5
+    t38 = ops.select(failed, ops.nan, t36 - t37 - rho3)
+    t39 = ops.select(failed, ops.nan, -(rho2 + (t33 + t34)))
+    t40 = ops.select(failed, ops.nan, -(rho3 + (t36 + t37)))
     return (
-        ops.select(failed, ops.nan, t29 - t30),
-        t34,
-        t37,
-        ops.select(failed, ops.nan, -(t29 + t30)),
+        ops.select(failed, ops.nan, t31 + t32),
+        t35,
         t38,
+        ops.select(failed, ops.nan, t32 - t31),
         t39,
+        t40,
     )
 
 
@@ -738,7 +750,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 3)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 12),
+    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8),
 )
 
 
@@ -777,124 +789,129 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing
-    t5 = t3 * t4
-    same = u_u <= t5
-    d_y = ops.select(same, 0.0, rho2)
-    t6 = ops.select(same, 0.0, rho3)
-    t7 = ops.select(same, rho2, 0.0)
-    d_z = ops.select(same, rho3, 0.0)
-    product_x = d_y * t6 - t7 * d_z
-    v_v = t2 + rho3 * rho3
-    all_same = u_u + v_v <= t5
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
     whole = ops.select((size == 0.0), 1.0, size)
-    a_x = ops.select(all_same, whole, -rho1)
-    t8 = a_x * t6 + rho1 * d_z
-    product_z = a_x * t7 + rho1 * d_y
-    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    same = u_u <= t4
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t9 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * product_z + d_z * t8
-    n_y = a_x * product_z - d_z * product_x
-    n_z = a_x * t8 + d_y * product_x
-    t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
-    in_line = m_m <= t4 * (t3 * mu)
-    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, whole, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = whole * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, m_m)
-    t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
-    t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
-    t19 = t15 - t18
-    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t19))
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    t20 = ops.opposite(failed)
-    t21 = ops.opposite(in_line)
-    over = 1.0 / ops.select(t20 & t21 & slim, mu, 1.0)
-    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
-    touching = ops.max(t19, 0.0) <= ops.vanishing * t14
-    t22 = t20 & ops.opposite(touching)
-    t23 = t22 | ((t20 | (t22 & ops.opposite(all_same))) & t21)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
-    part = 1.0 / ops.select(t23, w_w_2, 1.0)
-    t24 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t24 * t24)))
-    t26 = ops.select(t22, ops.max(t15 - t25, 0.0), 1.0)
-    t27 = ops.sqrt(ops.select(t22, part, 1.0)) * ops.sqrt(t26)
-    h = ops.select(touching, 0.0, t27)
-    t28 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t29 = rho1 * 0.5 - t10 * t24
-    A_11 = t28 - t29
-    t30 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
-    t31 = h * ops.select(in_line, g_1, -t30)
-    t32 = n_y * t24 - d_y * 0.5
-    t33 = t31 - t32
-    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
-    t34 = h * ops.select(in_line, -g_2, m_z)
-    t35 = n_z * t24 - d_z * 0.5
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
+    t27 = over_2 * t8
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    t28 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, t28, 1.0))
+    t29 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t30 = ops.select(all_same, 0.0, nu_2 * (t29 * t29) + t18)
+    t31 = ops.select(t22, part_2 * ops.max(t15 - t30, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t31))
+    t32 = w_x * h
+    t33 = t27 * t29 - rho1 * 0.5
+    A_11 = t32 + t33
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
+    t34 = w_y * h
+    t35 = n_y_2 * t29 - d_y * 0.5
     t36 = t34 - t35
-    t37 = t33 * t36
-    t38 = rho2 - t33
-    t39 = rho3 - t36
-    t40 = ops.select(t20, w_w_2 * h, 1.0)
-    t41 = ops.select(failed, ops.nan, -(A_11 * (t37 - t38 * t39) / t40))
-    t42 = ops.select(failed, ops.nan, -(t38 * (t37 + t33 * t39) / t40))
-    t43 = ops.select(failed, ops.nan, -(t39 * (t37 + t36 * t38) / t40))
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
+    t37 = w_z * h
+    t38 = n_z_2 * t29 - d_z * 0.5
+    t39 = t37 - t38
+    t40 = t36 * t39
+    t41 = rho2 - t36
+    t42 = rho3 - t39
+    t43 = ops.select(t21, t28 * h, 1.0)
+    t44 = ops.select(failed, ops.nan, -(A_11 * (t40 - t41 * t42) / t43))
+    t45 = ops.select(failed, ops.nan, -(t41 * (t40 + t36 * t42) / t43))
+    t46 = ops.select(failed, ops.nan, -(t42 * (t40 + t39 * t41) / t43))
     A_21 = rho1 + A_11
-    t44 = t36 * A_21
-    t45 = ops.select(failed, ops.nan, A_11 * (t44 + t39 * A_21) / t40)
-    t46 = ops.select(failed, ops.nan, t38 * (t44 + A_11 * t39) / t40)
-    t47 = ops.select(failed, ops.nan, -(t39 * (t44 - A_11 * t36) / t40))
-    t48 = t33 * A_21
-    t49 = ops.select(failed, ops.nan, A_11 * (t48 + t38 * A_21) / t40)
-    t50 = ops.select(failed, ops.nan, -(t38 * (t48 - A_11 * t33) / t40))
-    t51 = ops.select(failed, ops.nan, t39 * (t48 + A_11 * t38) / t40)
-    t52 = t28 + t29
-    t53 = t31 + t32
-    t54 = t34 + t35
-    t55 = t53 * t54
-    t56 = rho2 + t53
-    t57 = rho3 + t54
-    t58 = ops.select(failed, ops.nan, -(t52 * (t55 - t56 * t57) / t40))
-    t59 = ops.select(failed, ops.nan, t56 * (t55 - t53 * t57) / t40)
-    t60 = ops.select(failed, ops.nan, t57 * (t55 - t54 * t56) / t40)
-    A_21_inner = rho1 - t52
-    t61 = t54 * A_21_inner
-    t62 = ops.select(failed, ops.nan, -(t52 * (t61 - t57 * A_21_inner) / t40))
-    t63 = ops.select(failed, ops.nan, t56 * (t61 + t52 * t57) / t40)
-    t64 = ops.select(failed, ops.nan, -(t57 * (t61 + t52 * t54) / t40))
-    t65 = t53 * A_21_inner
-    t66 = ops.select(failed, ops.nan, -(t52 * (t65 - t56 * A_21_inner) / t40))
-    t67 = ops.select(failed, ops.nan, -(t56 * (t65 + t52 * t53) / t40))
-    t68 = ops.select(failed, ops.nan, t57 * (t65 + t52 * t56) / t40)
+    t47 = t39 * A_21
+    t48 = ops.select(failed, ops.nan, A_11 * (t47 + t42 * A_21) / t43)
+    t49 = ops.select(failed, ops.nan, t41 * (t47 + A_11 * t42) / t43)
+    t50 = ops.select(failed, ops.nan, -(t42 * (t47 - A_11 * t39) / t43))
+    t51 = t36 * A_21
+    t52 = ops.select(failed, ops.nan, A_11 * (t51 + t41 * A_21) / t43)
+    t53 = ops.select(failed, ops.nan, -(t41 * (t51 - A_11 * t36) / t43))
+    t54 = ops.select(failed, ops.nan, t42 * (t51 + A_11 * t41) / t43)
+    t55 = t32 - t33
+    t56 = t34 + t35
+    t57 = t37 + t38
+    t58 = t56 * t57
+    t59 = rho2 + t56
+    t60 = rho3 + t57
+    t61 = ops.select(failed, ops.nan, -(t55 * (t58 - t59 * t60) / t43))
+    t62 = ops.select(failed, ops.nan, t59 * (t58 - t56 * t60) / t43)
+    t63 = ops.select(failed, ops.nan, t60 * (t58 - t57 * t59) / t43)
+    A_21_inner = rho1 - t55
+    t64 = t57 * A_21_inner
+    t65 = ops.select(failed, ops.nan, -(t55 * (t64 - t60 * A_21_inner) / t43))
+    t66 = ops.select(failed, ops.nan, t59 * (t64 + t55 * t60) / t43)
+    t67 = ops.select(failed, ops.nan, -(t60 * (t64 + t55 * t57) / t43))
+    t68 = t56 * A_21_inner
+    t69 = ops.select(failed, ops.nan, -(t55 * (t68 - t59 * A_21_inner) / t43))
+    t70 = ops.select(failed, ops.nan, -(t59 * (t68 + t55 * t56) / t43))
+    t71 = ops.select(failed, ops.nan, t60 * (t68 + t55 * t59) / t43)
     return (
-        t41,
-        t42,
-        t43,
+        t44,
         t45,
         t46,
-        t47,
+        t48,
         t49,
         t50,
-        t51,
-        t58,
-        t59,
-        t60,
+        t52,
+        t53,
+        t54,
+        t61,
         t62,
         t63,
-        t64,
+        t65,
         t66,
         t67,
-        t68,
+        t69,
+        t70,
+        t71,
     )
 
 
@@ -905,7 +922,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 3)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), (), 12),
+    _runtime.Size((0, 1, 2, 3), (), 8),
 )
 
 
@@ -945,74 +962,79 @@ def _determinant(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing
-    t5 = t3 * t4
-    same = u_u <= t5
-    d_y = ops.select(same, 0.0, rho2)
-    t6 = ops.select(same, 0.0, rho3)
-    t7 = ops.select(same, rho2, 0.0)
-    d_z = ops.select(same, rho3, 0.0)
-    product_x = d_y * t6 - t7 * d_z
-    v_v = t2 + rho3 * rho3
-    all_same = u_u + v_v <= t5
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
     whole = ops.select((size == 0.0), 1.0, size)
-    a_x = ops.select(all_same, whole, -rho1)
-    t8 = a_x * t6 + rho1 * d_z
-    product_z = a_x * t7 + rho1 * d_y
-    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    same = u_u <= t4
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t9 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * product_z + d_z * t8
-    n_y = a_x * product_z - d_z * product_x
-    n_z = a_x * t8 + d_y * product_x
-    t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
-    in_line = m_m <= t4 * (t3 * mu)
-    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, whole, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = whole * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, m_m)
-    t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
-    t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
-    t19 = t15 - t18
-    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t19))
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    t20 = ops.opposite(failed)
-    t21 = ops.opposite(in_line)
-    over = 1.0 / ops.select(t20 & t21 & slim, mu, 1.0)
-    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
-    touching = ops.max(t19, 0.0) <= ops.vanishing * t14
-    t22 = t20 & ops.opposite(touching)
-    t23 = t22 | ((t20 | (t22 & ops.opposite(all_same))) & t21)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
-    part = 1.0 / ops.select(t23, w_w_2, 1.0)
-    t24 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t24 * t24)))
-    t26 = ops.select(t22, ops.max(t15 - t25, 0.0), 1.0)
-    t27 = ops.sqrt(ops.select(t22, part, 1.0)) * ops.sqrt(t26)
-    h = ops.select(touching, 0.0, t27)
-    t28 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t29 = rho1 * 0.5 - t10 * t24
-    t30 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
-    t31 = h * ops.select(in_line, g_1, -t30)
-    t32 = n_y * t24 - d_y * 0.5
-    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
-    t33 = h * ops.select(in_line, -g_2, m_z)
-    t34 = n_z * t24 - d_z * 0.5
-    t35 = (t28 - t29) * (rho2 - (t31 - t32)) * (rho3 - (t33 - t34))
-    t36 = ops.select(t20, w_w_2 * h, 1.0)
-    t37 = (t28 + t29) * (rho2 + (t31 + t32)) * (rho3 + (t33 + t34))
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
+    t27 = over_2 * t8
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    t28 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, t28, 1.0))
+    t29 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t30 = ops.select(all_same, 0.0, nu_2 * (t29 * t29) + t18)
+    t31 = ops.select(t22, part_2 * ops.max(t15 - t30, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t31))
+    t32 = w_x * h
+    t33 = t27 * t29 - rho1 * 0.5
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
+    t34 = w_y * h
+    t35 = n_y_2 * t29 - d_y * 0.5
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
+    t36 = w_z * h
+    t37 = n_z_2 * t29 - d_z * 0.5
+    t38 = (t32 + t33) * (rho2 - (t34 - t35)) * (rho3 - (t36 - t37))
+    t39 = ops.select(t21, t28 * h, 1.0)
+    t40 = (t32 - t33) * (rho2 + (t34 + t35)) * (rho3 + (t36 + t37))
     return (
-        ops.select(failed, ops.nan, t35 / t36),
-        ops.select(failed, ops.nan, t37 / t36),
+        ops.select(failed, ops.nan, t38 / t39),
+        ops.select(failed, ops.nan, t40 / t39),
     )
 
 
@@ -1023,7 +1045,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", (2,)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), (), 12),
+    _runtime.Size((0, 1, 2, 3), (), 8),
 )
 
 
@@ -1062,81 +1084,86 @@ def _singularities(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing
-    t5 = t3 * t4
-    same = u_u <= t5
-    d_y = ops.select(same, 0.0, rho2)
-    t6 = ops.select(same, 0.0, rho3)
-    t7 = ops.select(same, rho2, 0.0)
-    d_z = ops.select(same, rho3, 0.0)
-    product_x = d_y * t6 - t7 * d_z
-    v_v = t2 + rho3 * rho3
-    all_same = u_u + v_v <= t5
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
     whole = ops.select((size == 0.0), 1.0, size)
-    a_x = ops.select(all_same, whole, -rho1)
-    t8 = a_x * t6 + rho1 * d_z
-    product_z = a_x * t7 + rho1 * d_y
-    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    same = u_u <= t4
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t9 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * product_z + d_z * t8
-    n_y = a_x * product_z - d_z * product_x
-    n_z = a_x * t8 + d_y * product_x
-    t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
-    in_line = m_m <= t4 * (t3 * mu)
-    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, whole, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = whole * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, m_m)
-    t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
-    t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
-    t19 = t15 - t18
-    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t19))
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    t20 = ops.opposite(failed)
-    t21 = ops.opposite(in_line)
-    over = 1.0 / ops.select(t20 & t21 & slim, mu, 1.0)
-    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
-    touching = ops.max(t19, 0.0) <= ops.vanishing * t14
-    t22 = t20 & ops.opposite(touching)
-    t23 = t22 | ((t20 | (t22 & ops.opposite(all_same))) & t21)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
-    part = 1.0 / ops.select(t23, w_w_2, 1.0)
-    t24 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t24 * t24)))
-    t26 = ops.select(t22, ops.max(t15 - t25, 0.0), 1.0)
-    t27 = ops.sqrt(ops.select(t22, part, 1.0)) * ops.sqrt(t26)
-    h = ops.select(touching, 0.0, t27)
-    t28 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t29 = rho1 * 0.5 - t10 * t24
-    t30 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
-    t31 = h * ops.select(in_line, g_1, -t30)
-    t32 = n_y * t24 - d_y * 0.5
-    t33 = ops.select(failed, ops.nan, t31 - t32 - rho2)
-    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
-    t34 = h * ops.select(in_line, -g_2, m_z)
-    t35 = n_z * t24 - d_z * 0.5
-    t36 = ops.select(failed, ops.nan, t34 - t35 - rho3)
-    Delta = w_w_2 * h
-    t37 = ops.select(failed, ops.nan, -(rho2 + (t31 + t32)))
-    t38 = ops.select(failed, ops.nan, -(rho3 + (t34 + t35)))
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
+    t27 = over_2 * t8
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    t28 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, t28, 1.0))
+    t29 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t30 = ops.select(all_same, 0.0, nu_2 * (t29 * t29) + t18)
+    t31 = ops.select(t22, part_2 * ops.max(t15 - t30, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t31))
+    t32 = w_x * h
+    t33 = t27 * t29 - rho1 * 0.5
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
+    t34 = w_y * h
+    t35 = n_y_2 * t29 - d_y * 0.5
+    t36 = ops.select(failed, ops.nan, t34 - t35 - rho2)
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
+    t37 = w_z * h
+    t38 = n_z_2 * t29 - d_z * 0.5
+    t39 = ops.select(failed, ops.nan, t37 - t38 - rho3)
+    Delta = t28 * h
+    t40 = ops.select(failed, ops.nan, -(rho2 + (t34 + t35)))
+    t41 = ops.select(failed, ops.nan, -(rho3 + (t37 + t38)))
     return (
-        ops.select(failed, ops.nan, t28 - t29),
-        t33,
+        ops.select(failed, ops.nan, t32 + t33),
         t36,
+        t39,
         ops.select(failed, ops.nan, Delta),
-        ops.select(failed, ops.nan, -(t28 + t29)),
-        t37,
-        t38,
+        ops.select(failed, ops.nan, t33 - t32),
+        t40,
+        t41,
         ops.select(failed, ops.nan, -Delta),
     )
 
@@ -1148,7 +1175,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 4)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 12),
+    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 8),
 )
 
 
@@ -1187,124 +1214,129 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing
-    t5 = t3 * t4
-    same = u_u <= t5
-    d_y = ops.select(same, 0.0, rho2)
-    t6 = ops.select(same, 0.0, rho3)
-    t7 = ops.select(same, rho2, 0.0)
-    d_z = ops.select(same, rho3, 0.0)
-    product_x = d_y * t6 - t7 * d_z
-    v_v = t2 + rho3 * rho3
-    all_same = u_u + v_v <= t5
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
     whole = ops.select((size == 0.0), 1.0, size)
-    a_x = ops.select(all_same, whole, -rho1)
-    t8 = a_x * t6 + rho1 * d_z
-    product_z = a_x * t7 + rho1 * d_y
-    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    same = u_u <= t4
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t9 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * product_z + d_z * t8
-    n_y = a_x * product_z - d_z * product_x
-    n_z = a_x * t8 + d_y * product_x
-    t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
-    in_line = m_m <= t4 * (t3 * mu)
-    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, whole, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = whole * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, m_m)
-    t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
-    t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
-    t19 = t15 - t18
-    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t19))
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    t20 = ops.opposite(failed)
-    t21 = ops.opposite(in_line)
-    over = 1.0 / ops.select(t20 & t21 & slim, mu, 1.0)
-    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
-    touching = ops.max(t19, 0.0) <= ops.vanishing * t14
-    t22 = t20 & ops.opposite(touching)
-    t23 = t22 | ((t20 | (t22 & ops.opposite(all_same))) & t21)
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
-    part = 1.0 / ops.select(t23, w_w_2, 1.0)
-    t24 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t25 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t24 * t24)))
-    t26 = ops.select(t22, ops.max(t15 - t25, 0.0), 1.0)
-    t27 = ops.sqrt(ops.select(t22, part, 1.0)) * ops.sqrt(t26)
-    h = ops.select(touching, 0.0, t27)
-    t28 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t29 = rho1 * 0.5 - t10 * t24
-    A_11 = t28 - t29
-    t30 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
-    t31 = h * ops.select(in_line, g_1, -t30)
-    t32 = n_y * t24 - d_y * 0.5
-    t33 = t31 - t32
-    t34 = t33 * t33
-    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
-    t35 = h * ops.select(in_line, -g_2, m_z)
-    t36 = n_z * t24 - d_z * 0.5
-    t37 = t35 - t36
-    t38 = t37 * t37
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    n_y_2 = over_2 * t10
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
+    t27 = over_2 * t8
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    t28 = mu * nu_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, t28, 1.0))
+    t29 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t30 = ops.select(all_same, 0.0, nu_2 * (t29 * t29) + t18)
+    t31 = ops.select(t22, part_2 * ops.max(t15 - t30, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t31))
+    t32 = w_x * h
+    t33 = t27 * t29 - rho1 * 0.5
+    A_11 = t32 + t33
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
+    t34 = w_y * h
+    t35 = n_y_2 * t29 - d_y * 0.5
+    t36 = t34 - t35
+    t37 = t36 * t36
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
+    t38 = w_z * h
+    t39 = n_z_2 * t29 - d_z * 0.5
+    t40 = t38 - t39
+    t41 = t40 * t40
     A_21 = rho1 + A_11
-    t39 = A_21 * A_21
-    t40 = rho2 - t33
-    t41 = A_11 * A_11 + t34 + t38 + (t38 + t39 + t40 * t40)
-    t42 = rho3 - t37
-    t43 = t33 * A_21
-    t44 = A_11 * t33 - t43
-    t45 = t37 * A_21
-    t46 = A_11 * t37 - t45
-    t47 = t43 + A_11 * t40
-    t48 = t45 + A_11 * t42
-    t49 = t44 * t44 + t46 * t46 + t47 * t47 + t48 * t48
-    t50 = t33 * t37
-    t51 = t50 - t40 * t42
-    t52 = t50 + t33 * t42
-    t53 = t50 + t37 * t40
-    t54 = t43 + A_21 * t40
-    t55 = t49 + t51 * t51 + t52 * t52 + t53 * t53 + t54 * t54
-    t56 = t45 + A_21 * t42
-    t57 = (t41 + (t34 + t39 + t42 * t42)) * (t55 + t56 * t56)
-    t58 = ops.select(t20, 3.0 * (w_w_2 * h), 1.0)
-    t59 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t20, t57, 1.0)) / t58)
-    t60 = t28 + t29
-    t61 = t31 + t32
-    t62 = t61 * t61
-    t63 = t35 + t36
-    t64 = t63 * t63
-    A_21_inner = rho1 - t60
-    t65 = A_21_inner * A_21_inner
-    t66 = rho2 + t61
-    t67 = t60 * t60 + t62 + t64 + (t64 + t65 + t66 * t66)
-    t68 = rho3 + t63
-    t69 = t61 * A_21_inner
-    t70 = t60 * t61 + t69
-    t71 = t63 * A_21_inner
-    t72 = t60 * t63 + t71
-    t73 = t69 + t60 * t66
-    t74 = t71 + t60 * t68
-    t75 = t70 * t70 + t72 * t72 + t73 * t73 + t74 * t74
-    t76 = t61 * t63
-    t77 = t76 - t66 * t68
-    t78 = t76 - t61 * t68
-    t79 = t76 - t63 * t66
-    t80 = t69 - A_21_inner * t66
-    t81 = t75 + t77 * t77 + t78 * t78 + t79 * t79 + t80 * t80
-    t82 = t71 - A_21_inner * t68
-    t83 = (t67 + (t62 + t65 + t68 * t68)) * (t81 + t82 * t82)
-    t84 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t20, t83, 1.0)) / t58)
+    t42 = A_21 * A_21
+    t43 = rho2 - t36
+    t44 = A_11 * A_11 + t37 + t41 + (t41 + t42 + t43 * t43)
+    t45 = rho3 - t40
+    t46 = t36 * A_21
+    t47 = A_11 * t36 - t46
+    t48 = t40 * A_21
+    t49 = A_11 * t40 - t48
+    t50 = t46 + A_11 * t43
+    t51 = t48 + A_11 * t45
+    t52 = t47 * t47 + t49 * t49 + t50 * t50 + t51 * t51
+    t53 = t36 * t40
+    t54 = t53 - t43 * t45
+    t55 = t53 + t36 * t45
+    t56 = t53 + t40 * t43
+    t57 = t46 + A_21 * t43
+    t58 = t52 + t54 * t54 + t55 * t55 + t56 * t56 + t57 * t57
+    t59 = t48 + A_21 * t45
+    t60 = (t44 + (t37 + t42 + t45 * t45)) * (t58 + t59 * t59)
+    t61 = ops.select(t21, 3.0 * (t28 * h), 1.0)
+    t62 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t21, t60, 1.0)) / t61)
+    t63 = t32 - t33
+    t64 = t34 + t35
+    t65 = t64 * t64
+    t66 = t38 + t39
+    t67 = t66 * t66
+    A_21_inner = rho1 - t63
+    t68 = A_21_inner * A_21_inner
+    t69 = rho2 + t64
+    t70 = t63 * t63 + t65 + t67 + (t67 + t68 + t69 * t69)
+    t71 = rho3 + t66
+    t72 = t64 * A_21_inner
+    t73 = t63 * t64 + t72
+    t74 = t66 * A_21_inner
+    t75 = t63 * t66 + t74
+    t76 = t72 + t63 * t69
+    t77 = t74 + t63 * t71
+    t78 = t73 * t73 + t75 * t75 + t76 * t76 + t77 * t77
+    t79 = t64 * t66
+    t80 = t79 - t69 * t71
+    t81 = t79 - t64 * t71
+    t82 = t79 - t66 * t69
+    t83 = t72 - A_21_inner * t69
+    t84 = t78 + t80 * t80 + t81 * t81 + t82 * t82 + t83 * t83
+    t85 = t74 - A_21_inner * t71
+    t86 = (t70 + (t65 + t68 + t71 * t71)) * (t84 + t85 * t85)
+    t87 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t21, t86, 1.0)) / t61)
     return (
-        t59,
-        t84,
+        t62,
+        t87,
     )
 
 
@@ -1355,80 +1387,83 @@ def _constraint(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
+    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing
-    t5 = t3 * t4
-    same = u_u <= t5
-    d_y = ops.select(same, 0.0, rho2)
-    t6 = ops.select(same, 0.0, rho3)
-    t7 = ops.select(same, rho2, 0.0)
-    d_z = ops.select(same, rho3, 0.0)
-    product_x = d_y * t6 - t7 * d_z
-    v_v = t2 + rho3 * rho3
-    all_same = u_u + v_v <= t5
+    t4 = ops.vanishing * ops.vanishing * t3
+    all_same = u_u + v_v <= t4
     whole = ops.select((size == 0.0), 1.0, size)
-    a_x = ops.select(all_same, whole, -rho1)
-    t8 = a_x * t6 + rho1 * d_z
-    product_z = a_x * t7 + rho1 * d_y
-    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    same = u_u <= t4
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    t9 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
-    t10 = d_y * product_z + d_z * t8
-    n_y = a_x * product_z - d_z * product_x
-    n_z = a_x * t8 + d_y * product_x
-    t11 = t10 * t10 + n_y * n_y + n_z * n_z
-    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
-    in_line = m_m <= t4 * (t3 * mu)
-    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
+    over = 1.0 / mu
+    d_y = ops.select(same, 0.0, rho2)
+    a_x = ops.select(all_same, whole, -rho1)
+    t5 = ops.select(same, rho2, 0.0)
+    m_z = a_x * t5 + rho1 * d_y
+    d_z = ops.select(same, rho3, 0.0)
+    t6 = ops.select(same, 0.0, rho3)
+    t7 = a_x * t6 + rho1 * d_z
+    t8 = d_y * m_z + d_z * t7
+    t9 = over * t8
+    m_x = d_y * t6 - d_z * t5
+    t10 = a_x * m_z - d_z * m_x
+    n_y = over * t10
+    t11 = a_x * t7 + d_y * m_x
+    n_z = over * t11
+    nu = t9 * t9 + n_y * n_y + n_z * n_z
+    in_line = nu <= t4
+    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = whole * d_z
+    g_1 = d_z * whole
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    w_w = ops.select(in_line, t16, m_m)
-    t17 = ops.select(in_line, 0.0, 1.0 / w_w * t12 * 0.5)
-    t18 = ops.select(all_same, 0.0, mu * (0.25 + w_w * (t17 * t17)))
-    t19 = t15 - t18
-    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t19))
+    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
+    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
+    t18 = mu * 0.25
+    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t20 = t15 - t19
+    unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    touching = ops.max(t19, 0.0) <= ops.vanishing * t14
-    t20 = ops.opposite(failed)
-    t21 = t20 & ops.opposite(touching)
-    t22 = ops.opposite(in_line)
-    t23 = t21 | ((t20 | (t21 & ops.opposite(all_same))) & t22)
-    t24 = ops.select((t20 & t22 & slim) | (t23 & t22 & slim), mu, 1.0)
-    over = 1.0 / t24
-    w_w_2 = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
-    part = 1.0 / ops.select(t23, w_w_2, 1.0)
-    t25 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t26 = ops.select(all_same, 0.0, mu * (0.25 + w_w_2 * (t25 * t25)))
-    t27 = ops.select(t21, ops.max(t15 - t26, 0.0), 1.0)
-    t28 = ops.sqrt(ops.select(t21, part, 1.0)) * ops.sqrt(t27)
-    h = ops.select(touching, 0.0, t28)
-    t29 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
-    t30 = h * ops.select(in_line, g_1, -t29)
-    t31 = n_y * t25 - d_y * 0.5
-    t32 = t30 - t31
-    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
-    t33 = h * ops.select(in_line, -g_2, m_z)
-    t34 = n_z * t25 - d_z * 0.5
-    t35 = t33 - t34
-    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
-    t36 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t37 = rho1 * 0.5 - t10 * t25
-    A_11 = t36 - t37
-    t38 = t32 * t35 * (rho1 + A_11) - A_11 * (rho2 - t32) * (rho3 - t35)
-    t39 = t36 + t37
-    t40 = t30 + t31
-    t41 = t33 + t34
-    t42 = t39 * (rho2 + t40) * (rho3 + t41) + t40 * t41 * (rho1 - t39)
+    t21 = ops.opposite(failed)
+    touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t22 = t21 & ops.opposite(touching)
+    t23 = t21 | (t22 & ops.opposite(all_same))
+    t24 = ops.opposite(in_line)
+    t25 = t22 | (t23 & t24)
+    t26 = t25 & t24
+    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
+    n_z_2 = over_2 * t11
+    t27 = over_2 * t8
+    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
+    n_y_2 = over_2 * t10
+    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
+    t28 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
+    t29 = ops.select(all_same, 0.0, nu_2 * (t28 * t28) + t18)
+    t30 = ops.select(t22, part_2 * ops.max(t15 - t29, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t30))
+    t31 = w_y * h
+    t32 = n_y_2 * t28 - d_y * 0.5
+    t33 = t31 - t32
+    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
+    t34 = w_z * h
+    t35 = n_z_2 * t28 - d_z * 0.5
+    t36 = t34 - t35
+    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
+    t37 = w_x * h
+    t38 = t27 * t28 - rho1 * 0.5
+    A_11 = t37 + t38
+    t39 = t33 * t36 * (rho1 + A_11) - A_11 * (rho2 - t33) * (rho3 - t36)
+    t40 = t37 - t38
+    t41 = t31 + t32
+    t42 = t34 + t35
+    t43 = t40 * (rho2 + t41) * (rho3 + t42) + t41 * t42 * (rho1 - t40)
     return (
-        ops.select(failed, ops.nan, t38),
-        ops.select(failed, ops.nan, t42),
+        ops.select(failed, ops.nan, t39),
+        ops.select(failed, ops.nan, t43),
     )
 
 
@@ -1439,7 +1474,7 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 1)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 3), (1, 3)), 12),
+    _runtime.Size((0, 1, 2, 3), ((0, 3), (1, 3)), 8),
 )
 
 

@@ -2,13 +2,13 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 111 compare and select, 76 add, 17 divide, 120 multiply, 7 sincos, 7 sqrt
-#   skeleton: 119 compare and select, 81 add, 17 divide, 126 multiply, 7 sincos, 7 sqrt
-#   jacobian_parallel: 122 compare and select, 85 add, 17 divide, 120 multiply, 7 sincos, 7 sqrt
-#   jacobian_serial: 108 compare and select, 85 add, 17 divide, 133 multiply, 7 sincos, 7 sqrt
-#   jacobian: 117 compare and select, 103 add, 29 divide, 170 multiply, 7 sincos, 7 sqrt
-#   singularities: 110 compare and select, 85 add, 17 divide, 134 multiply, 7 sincos, 7 sqrt
-#   condition_number: 117 compare and select, 129 add, 25 divide, 178 multiply, 7 sincos, 11 sqrt
+#   fk: 101 compare and select, 75 add, 16 divide, 116 multiply, 7 sincos, 7 sqrt
+#   skeleton: 109 compare and select, 78 add, 14 divide, 118 multiply, 7 sincos, 7 sqrt
+#   jacobian_parallel: 112 compare and select, 84 add, 14 divide, 118 multiply, 7 sincos, 7 sqrt
+#   jacobian_serial: 98 compare and select, 84 add, 14 divide, 130 multiply, 7 sincos, 7 sqrt
+#   jacobian: 107 compare and select, 102 add, 26 divide, 168 multiply, 7 sincos, 7 sqrt
+#   singularities: 100 compare and select, 84 add, 14 divide, 132 multiply, 7 sincos, 7 sqrt
+#   condition_number: 107 compare and select, 128 add, 22 divide, 177 multiply, 7 sincos, 11 sqrt
 #   ik: 149 compare and select, 107 add, 4 atan2, 14 divide, 133 multiply, 5 sincos, 14 sqrt
 #   workspace_contains: 53 compare and select, 26 add, 8 divide, 31 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -119,10 +119,10 @@ def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c_alpha1 = ops.cos(alpha1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
     s2 = ops.sin(theta2)
     c2 = ops.cos(theta2)
+    s_alpha2 = ops.sin(alpha2)
+    c_alpha2 = ops.cos(alpha2)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
     s_beta2_half = ops.sin(beta2 * 0.5)
@@ -133,18 +133,18 @@ def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
     t4 = -(ops.feasibility * (r * 0.25))
     c1_x = r * c_alpha1
-    t5 = ops.abs(s_alpha2)
+    t5 = r * ops.abs(s_alpha2)
     t6 = c2 * t5
-    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t6)
-    t8 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t8
-    t9 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t6)
-    c1_z = s1 * t8
-    t10 = r * s2 * t5 - c1_z
-    u_u = t7 * t7 + t9 * t9 + t10 * t10
-    t11 = r * r
-    t12 = ops.vanishing * ops.vanishing
-    t13 = t11 * t12
+    t7 = r * c_alpha2
+    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
+    t9 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t9
+    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
+    c1_z = s1 * t9
+    t11 = c1_z - s2 * t5
+    u_u = t8 * t8 + t10 * t10 + t11 * t11
+    t12 = r * r
+    t13 = ops.vanishing * ops.vanishing * t12
     same = u_u <= t13
     t14 = r * 2.0
     r_2 = ops.abs(s_beta2_half) * t14
@@ -164,106 +164,105 @@ def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t21 = ops.select(same, r_2, r)
     t22 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t21) * 0.5)
     over = 1.0 / mu
-    t23 = ops.select(same, c1_y, t9)
-    t24 = ops.select(same, -t10, c1_z)
-    t25 = ops.select(same, c1_z, -t10)
-    t26 = ops.select(same, t9, c1_y)
-    product_x = t23 * t24 - t25 * t26
-    t27 = ops.select(same, c1_x, t7)
-    a_x = ops.select(all_same, whole, -t27)
-    t28 = ops.select(same, t7, c1_x)
-    product_y = t24 * a_x + t25 * t28
-    t29 = product_x * product_x + product_y * product_y
-    t30 = t26 * a_x + t23 * t28
-    product_2 = t29 + t30 * t30
-    t31 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t31 * 0.000244140625 <= ops.vanishing * t31
-    t32 = t23 * t30 + t25 * product_y
-    t33 = a_x * t30 - t25 * product_x
-    t34 = a_x * product_y + t23 * product_x
-    t35 = t32 * t32 + t33 * t33 + t34 * t34
-    m_m = ops.select(slim, over * t35, product_2)
-    in_line = m_m <= t12 * (t11 * mu)
-    t36 = whole * t25
+    t23 = ops.select(same, c1_y, t10)
+    t24 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, whole, -t24)
+    t25 = ops.select(same, t10, c1_y)
+    t26 = ops.select(same, t8, c1_x)
+    t27 = a_x * t25 + t23 * t26
+    t28 = ops.select(same, c1_z, t11)
+    t29 = ops.select(same, t11, c1_z)
+    m_y = a_x * t29 + t26 * t28
+    t30 = t23 * t27 + t28 * m_y
+    t31 = over * t30
+    m_x = t23 * t29 - t25 * t28
+    t32 = a_x * t27 - t28 * m_x
+    t33 = over * t32
+    t34 = a_x * m_y + t23 * m_x
+    t35 = over * t34
+    nu = t31 * t31 + t33 * t33 + t35 * t35
+    t36 = ops.select(same, r_2 * r_2, t12)
+    in_line = nu <= t13
+    t37 = whole * t28
     s_w = ops.sign(-(t23 * a_x))
-    t37 = whole * (t23 - a_x * s_w)
-    t38 = 2.0 * (t36 * t36) + t37 * t37
-    nu = over * ops.select(in_line, t38, m_m)
-    t39 = ops.select(same, r_2 * r_2, t11)
+    t38 = whole * (t23 - a_x * s_w)
+    t39 = 2.0 * (t37 * t37) + t38 * t38
+    length_n = ops.sqrt(ops.select(in_line, over * t39, nu))
+    t40 = a_x * t26 - t23 * t25 - t28 * t29
+    t41 = length_n * (1.0 / (length_a * length_n)) * t40
     outer = ops.max(t19, 0.0)
     inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
     slack = ops.max(t17, 0.0)
-    t40 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t40)
-    beside_a = ops.sqrt(nu)
-    t41 = a_x * t28 - t23 * t26 - t24 * t25
-    t42 = beside_a * (1.0 / (length_a * beside_a)) * t41
-    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t44 = t42 + ops.select(all_same, 0.0, t43)
-    left = nu - t39 + rho * rho + t44 * t44
-    t45 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    t42 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t43 = t41 + ops.select(all_same, 0.0, t42)
+    t44 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t44)
+    left = nu - t36 + t43 * t43 + rho * rho
+    t45 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
     t46 = left + t45
     t47 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t46)
     t48 = t45 - left
     unreachable = ops.opposite(t47 & (-t22 <= t48))
     failed = invalid | unreachable
     t49 = ops.opposite(failed)
-    t50 = ops.opposite(in_line)
-    t51 = ops.select(t49 | (t49 & t50 & slim), mu, 1.0)
-    over_2 = 1.0 / t51
-    m_x = ops.select(slim, over_2 * (t23 * t34 - t25 * t33), product_x)
-    t52 = ops.opposite(all_same)
-    t53 = t49 & t52
-    length_a_2 = ops.sqrt(ops.select(t49 | (t53 & t52), mu, 1.0))
     flat = ops.max(t46, 0.0) + ops.max(t48, 0.0) <= ops.vanishing * (r * t21)
-    t54 = flat | in_line
-    t55 = t49 & ops.opposite(t54)
-    w_w = ops.select(in_line, t38, ops.select(slim, over_2 * t35, product_2))
-    nu_2 = over_2 * w_w
-    beside_a_2 = ops.sqrt(ops.select(t49 | (t55 & t50), nu_2, 1.0))
-    t56 = ops.select(t49, length_a_2 * beside_a_2, 1.0)
-    part = 1.0 / t56
+    t50 = flat | in_line
+    t51 = t49 & ops.opposite(t50)
+    t52 = t49 | (t51 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t52, mu, 1.0)
+    t53 = over_2 * t34
+    t54 = over_2 * t32
+    w_x = ops.select(in_line, -(t37 * s_w), t23 * t53 - t28 * t54)
+    t55 = ops.opposite(all_same)
+    t56 = t49 & t55
+    length_a_2 = ops.sqrt(ops.select(t49 | (t56 & t55), mu, 1.0))
+    t57 = over_2 * t30
+    nu_2 = t57 * t57 + t54 * t54 + t53 * t53
+    t58 = ops.select(t52, ops.select(in_line, over_2 * t39, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t58)
+    t59 = ops.select(t49, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t59
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t57 = D_2 + r_1
-    outer_2 = ops.max(t57 - t15, 0.0)
-    t58 = D_2 - r_1
-    inner_2 = ops.max(t15 + t58, 0.0)
-    share_2 = 1.0 / ops.select(t53, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t58, 0.0)
-    t59 = ops.select(t53, outer_2 * inner_2 * slack_2 * (t15 + t57), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t59))
-    over_a = beside_a_2 * part
-    t60 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t60 * 0.5)
-    t61 = over_a * t41 + along
-    left_2 = nu_2 - t39 + rho_2 * rho_2 + t61 * t61
-    t62 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
-    upper = ops.max(left_2 + t62, 0.0)
-    lower = ops.max(t62 - left_2, 0.0)
-    half = rho_2 / ops.select(t55, upper + lower, 1.0)
-    t63 = ops.sqrt(ops.select(t55, upper * lower, 1.0))
-    h = part * ops.select(t54, rho_2, 2.0 * half * t63)
-    t64 = ops.select(in_line, -(t36 * s_w), m_x) * h
-    Y = ops.select(t54, 0.0, part * over_a * half * (upper - lower))
+    t60 = D_2 + r_1
+    outer_2 = ops.max(t60 - t15, 0.0)
+    t61 = D_2 - r_1
+    inner_2 = ops.max(t15 + t61, 0.0)
+    share_2 = 1.0 / ops.select(t56, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t61, 0.0)
+    t62 = ops.select(t56, outer_2 * inner_2 * slack_2 * (t15 + t60), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t62))
+    over_a = length_n_2 * part
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
+    t64 = over_a * t40 + along
+    left_2 = nu_2 - t36 + t64 * t64 + rho_2 * rho_2
+    t65 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t65, 0.0)
+    lower = ops.max(t65 - left_2, 0.0)
+    half = rho_2 / ops.select(t51, upper + lower, 1.0)
+    t66 = ops.sqrt(ops.select(t51, upper * lower, 1.0))
+    h = part * ops.select(t50, rho_2, 2.0 * half * t66)
+    t67 = w_x * h
+    Y = ops.select(t50, 0.0, length_a_2 * part * half * (upper - lower))
     X = over_a * along
-    t65 = t32 * Y - (c1_x - t27 * X)
-    m_y = ops.select(slim, over_2 * (a_x * t34 + t25 * t32), product_y)
-    t66 = ops.select(in_line, -t36, m_y) * h
-    t67 = t33 * Y - (c1_y - t23 * X)
-    t68 = ops.select(slim, over_2 * (a_x * t33 + t23 * t32), t30)
-    t69 = ops.select(in_line, t37, -t68) * h
-    t70 = t34 * Y - (c1_z - t25 * X)
-    t71 = ops.status(invalid, unreachable, in_line)
+    t68 = t57 * Y - (c1_x - t24 * X)
+    w_y = ops.select(in_line, -t37, a_x * t53 + t28 * t57)
+    t69 = w_y * h
+    t70 = t54 * Y - (c1_y - t23 * X)
+    w_z = ops.select(in_line, t38, -(a_x * t54 + t23 * t57))
+    t71 = w_z * h
+    t72 = t53 * Y - (c1_z - t28 * X)
+    t73 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t64 - t65),
-        ops.select(failed, ops.nan, t66 - t67),
+        ops.select(failed, ops.nan, t67 - t68),
         ops.select(failed, ops.nan, t69 - t70),
-        ops.select(failed, ops.nan, -(t65 + t64)),
-        ops.select(failed, ops.nan, -(t67 + t66)),
+        ops.select(failed, ops.nan, t71 - t72),
+        ops.select(failed, ops.nan, -(t68 + t67)),
         ops.select(failed, ops.nan, -(t70 + t69)),
-        t71,
-        t71,
+        ops.select(failed, ops.nan, -(t72 + t71)),
+        t73,
+        t73,
     )
 
 
@@ -274,7 +273,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 12),
+    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8),
 )
 
 
@@ -322,10 +321,10 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c_alpha1 = ops.cos(alpha1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
     s2 = ops.sin(theta2)
     c2 = ops.cos(theta2)
+    s_alpha2 = ops.sin(alpha2)
+    c_alpha2 = ops.cos(alpha2)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
     s_beta2_half = ops.sin(beta2 * 0.5)
@@ -336,182 +335,183 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
     t4 = -(ops.feasibility * (r * 0.3125))
     c1_x = r * c_alpha1
-    t5 = ops.abs(s_alpha2)
+    t5 = r * ops.abs(s_alpha2)
     t6 = c2 * t5
-    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t6)
-    t8 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t8
-    t9 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t6)
-    c2_z = r * s2 * t5
-    c1_z = s1 * t8
-    t10 = c2_z - c1_z
-    u_u = t7 * t7 + t9 * t9 + t10 * t10
-    t11 = r * r
-    t12 = ops.vanishing * ops.vanishing
-    t13 = t11 * t12
-    same = u_u <= t13
-    t14 = r * 2.0
-    r_2 = ops.abs(s_beta2_half) * t14
-    t15 = ops.select(same, r, r_2)
-    r_1 = ops.abs(s_beta1_half) * t14
+    t7 = r * c_alpha2
+    t8 = c_gamma * t7
+    t9 = s_gamma * t6 - t8
+    t10 = c1_x + t9
+    t11 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t11
+    t12 = s_gamma * t7
+    c2_y = t12 + c_gamma * t6
+    t13 = c1_y - c2_y
+    c1_z = s1 * t11
+    c2_z = s2 * t5
+    t14 = c1_z - c2_z
+    u_u = t10 * t10 + t13 * t13 + t14 * t14
+    t15 = r * r
+    t16 = ops.vanishing * ops.vanishing * t15
+    same = u_u <= t16
+    t17 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t17
+    t18 = ops.select(same, r, r_2)
+    r_1 = ops.abs(s_beta1_half) * t17
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t13
+    all_same = u_u + v_v <= t16
     whole = ops.select((r == 0.0), 1.0, r)
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
-    t16 = r_1 - D
-    t17 = t15 + t16
-    t18 = r_1 + D
-    t19 = t18 - t15
-    t20 = t15 - t16
-    t21 = ops.select(same, r_2, r)
-    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
-    t23 = -(ops.feasibility * t22)
-    t24 = ops.select(same, c1_y, t9)
-    t25 = ops.select(same, -t10, c1_z)
-    t26 = ops.select(same, c1_z, -t10)
-    t27 = ops.select(same, t9, c1_y)
-    product_x = t24 * t25 - t26 * t27
-    t28 = ops.select(same, c1_x, t7)
+    t19 = r_1 - D
+    t20 = t18 + t19
+    t21 = r_1 + D
+    t22 = t21 - t18
+    t23 = t18 - t19
+    t24 = ops.select(same, r_2, r)
+    t25 = 0.625 * (r * (r * 2.2737367544323206e-13 + t24))
+    t26 = -(ops.feasibility * t25)
+    over = 1.0 / mu
+    t27 = ops.select(same, c1_y, t13)
+    t28 = ops.select(same, c1_x, t10)
     a_x = ops.select(all_same, whole, -t28)
-    t29 = ops.select(same, t7, c1_x)
-    product_y = t25 * a_x + t26 * t29
-    t30 = product_x * product_x + product_y * product_y
-    t31 = t27 * a_x + t24 * t29
-    product_2 = t30 + t31 * t31
-    t32 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t32 * 0.000244140625 <= ops.vanishing * t32
-    t33 = t24 * t31 + t26 * product_y
-    t34 = a_x * t31 - t26 * product_x
-    t35 = a_x * product_y + t24 * product_x
-    t36 = t33 * t33 + t34 * t34 + t35 * t35
-    m_m = ops.select(slim, 1.0 / mu * t36, product_2)
-    in_line = m_m <= t12 * (t11 * mu)
-    t37 = whole * t26
-    s_w = ops.sign(-(t24 * a_x))
-    t38 = whole * (t24 - a_x * s_w)
-    t39 = 2.0 * (t37 * t37) + t38 * t38
-    nu = ops.select(in_line, t39, m_m) / mu
-    t40 = ops.select(same, r_2 * r_2, t11)
-    beside_a = ops.sqrt(nu)
-    t41 = a_x * t29 - t24 * t27 - t25 * t26
-    t42 = beside_a * (1.0 / (length_a * beside_a)) * t41
-    outer = ops.max(t19, 0.0)
-    inner = ops.max(t20, 0.0)
+    t29 = ops.select(same, t13, c1_y)
+    t30 = ops.select(same, t10, c1_x)
+    t31 = a_x * t29 + t27 * t30
+    t32 = ops.select(same, c1_z, t14)
+    t33 = ops.select(same, t14, c1_z)
+    m_y = a_x * t33 + t30 * t32
+    t34 = t27 * t31 + t32 * m_y
+    t35 = over * t34
+    m_x = t27 * t33 - t29 * t32
+    t36 = a_x * t31 - t32 * m_x
+    t37 = over * t36
+    t38 = a_x * m_y + t27 * m_x
+    t39 = over * t38
+    nu = t35 * t35 + t37 * t37 + t39 * t39
+    t40 = ops.select(same, r_2 * r_2, t15)
+    in_line = nu <= t16
+    t41 = whole * t32
+    s_w = ops.sign(-(t27 * a_x))
+    t42 = whole * (t27 - a_x * s_w)
+    t43 = 2.0 * (t41 * t41) + t42 * t42
+    length_n = ops.sqrt(ops.select(in_line, over * t43, nu))
+    t44 = a_x * t30 - t27 * t29 - t32 * t33
+    t45 = length_n * (1.0 / (length_a * length_n)) * t44
+    outer = ops.max(t22, 0.0)
+    inner = ops.max(t23, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t17, 0.0)
-    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t44 = t42 + ops.select(all_same, 0.0, t43)
-    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t45)
-    left = nu - t40 + t44 * t44 + rho * rho
-    t46 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
-    t47 = left + t46
-    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
-    t49 = t46 - left
-    failed = invalid | ops.opposite(t48 & (t23 <= t49))
-    t50 = ops.select(failed, ops.nan, 0.0)
-    t51 = ops.select(failed, ops.nan, c1_x)
-    t52 = ops.select(failed, ops.nan, c1_y)
-    t53 = ops.select(failed, ops.nan, c1_z)
-    t54 = r * c_gamma
-    t55 = c_alpha2 * t54
-    t56 = ops.select(failed, ops.nan, t55)
-    t57 = r * s_gamma
-    t58 = c_alpha2 * t57
-    t59 = ops.select(failed, ops.nan, t58)
-    t60 = ops.select(failed, ops.nan, t55 - t6 * t57)
-    t61 = ops.select(failed, ops.nan, t58 + t6 * t54)
-    t62 = ops.select(failed, ops.nan, c2_z)
-    t63 = ops.opposite(failed)
-    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
-    t64 = flat | in_line
-    t65 = t63 & ops.opposite(t64)
-    t66 = ops.opposite(in_line)
-    over = 1.0 / ops.select(t63 & t66 & slim, mu, 1.0)
-    w_w = ops.select(in_line, t39, ops.select(slim, over * t36, product_2))
-    nu_2 = w_w / ops.select(t63, mu, 1.0)
-    beside_a_2 = ops.sqrt(ops.select(t63 | (t65 & t66), nu_2, 1.0))
-    t67 = ops.opposite(all_same)
-    t68 = t63 & t67
-    length_a_2 = ops.sqrt(ops.select(t63 | (t68 & t67), mu, 1.0))
-    t69 = ops.select(t63, length_a_2 * beside_a_2, 1.0)
-    part = 1.0 / t69
-    over_a = beside_a_2 * part
+    slack = ops.max(t20, 0.0)
+    t46 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t47 = t45 + ops.select(all_same, 0.0, t46)
+    t48 = ops.sqrt(outer * inner * slack * (t18 + t21))
+    rho = ops.select(all_same, r_1, share * t48)
+    left = nu - t40 + t47 * t47 + rho * rho
+    t49 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t50 = left + t49
+    t51 = (t4 <= t20) & (t4 <= t22) & (t4 <= t23) & (t26 <= t50)
+    t52 = t49 - left
+    failed = invalid | ops.opposite(t51 & (t26 <= t52))
+    t53 = ops.select(failed, ops.nan, 0.0)
+    t54 = ops.select(failed, ops.nan, c1_x)
+    t55 = ops.select(failed, ops.nan, c1_y)
+    t56 = ops.select(failed, ops.nan, c1_z)
+    t57 = ops.select(failed, ops.nan, t8)
+    t58 = ops.select(failed, ops.nan, t12)
+    t59 = ops.select(failed, ops.nan, -t9)
+    t60 = ops.select(failed, ops.nan, c2_y)
+    t61 = ops.select(failed, ops.nan, c2_z)
+    t62 = ops.opposite(failed)
+    flat = ops.max(t50, 0.0) + ops.max(t52, 0.0) <= ops.vanishing * (r * t24)
+    t63 = flat | in_line
+    t64 = t62 & ops.opposite(t63)
+    t65 = t62 | (t64 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t65, mu, 1.0)
+    t66 = over_2 * t34
+    t67 = over_2 * t36
+    t68 = over_2 * t38
+    nu_2 = t66 * t66 + t67 * t67 + t68 * t68
+    t69 = ops.select(t65, ops.select(in_line, over_2 * t43, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t69)
+    t70 = ops.opposite(all_same)
+    t71 = t62 & t70
+    length_a_2 = ops.sqrt(ops.select(t62 | (t71 & t70), mu, 1.0))
+    t72 = ops.select(t62, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t72
+    over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t70 = r_1 + D_2
-    outer_2 = ops.max(t70 - t15, 0.0)
-    t71 = r_1 - D_2
-    inner_2 = ops.max(t15 - t71, 0.0)
-    share_2 = 1.0 / ops.select(t68, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 + t71, 0.0)
-    t72 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t72 * 0.5)
+    t73 = r_1 + D_2
+    outer_2 = ops.max(t73 - t18, 0.0)
+    t74 = r_1 - D_2
+    inner_2 = ops.max(t18 - t74, 0.0)
+    share_2 = 1.0 / ops.select(t71, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t18 + t74, 0.0)
+    t75 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t75 * 0.5)
     X = over_a * along
-    t73 = ops.select(t68, outer_2 * inner_2 * slack_2 * (t15 + t70), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t73))
-    t74 = over_a * t41 + along
-    left_2 = nu_2 - t40 + t74 * t74 + rho_2 * rho_2
-    t75 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
-    upper = ops.max(left_2 + t75, 0.0)
-    lower = ops.max(t75 - left_2, 0.0)
-    half = rho_2 / ops.select(t65, upper + lower, 1.0)
-    Y = ops.select(t64, 0.0, part * over_a * half * (upper - lower))
-    t76 = t28 * X + t33 * Y
-    m_x = ops.select(slim, over * (t24 * t35 - t26 * t34), product_x)
-    t77 = ops.sqrt(ops.select(t65, upper * lower, 1.0))
-    h = part * ops.select(t64, rho_2, 2.0 * half * t77)
-    t78 = ops.select(in_line, -(t37 * s_w), m_x) * h
-    t79 = ops.select(failed, ops.nan, c1_x - (t76 - t78))
-    t80 = t24 * X + t34 * Y
-    m_y = ops.select(slim, over * (a_x * t35 + t26 * t33), product_y)
-    t81 = ops.select(in_line, -t37, m_y) * h
-    t82 = ops.select(failed, ops.nan, c1_y - (t80 - t81))
-    t83 = t26 * X + t35 * Y
-    t84 = ops.select(slim, over * (a_x * t34 + t24 * t33), t31)
-    t85 = ops.select(in_line, t38, -t84) * h
-    t86 = ops.select(failed, ops.nan, c1_z - (t83 - t85))
-    t87 = ops.select(failed, ops.nan, c1_x - (t76 + t78))
-    t88 = ops.select(failed, ops.nan, c1_y - (t80 + t81))
-    t89 = ops.select(failed, ops.nan, c1_z - (t83 + t85))
+    t76 = ops.select(t71, outer_2 * inner_2 * slack_2 * (t18 + t73), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t76))
+    t77 = over_a * t44 + along
+    left_2 = nu_2 - t40 + t77 * t77 + rho_2 * rho_2
+    t78 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t78, 0.0)
+    lower = ops.max(t78 - left_2, 0.0)
+    half = rho_2 / ops.select(t64, upper + lower, 1.0)
+    Y = ops.select(t63, 0.0, length_a_2 * part * half * (upper - lower))
+    t79 = t28 * X + t66 * Y
+    w_x = ops.select(in_line, -(t41 * s_w), t27 * t68 - t32 * t67)
+    t80 = ops.sqrt(ops.select(t64, upper * lower, 1.0))
+    h = part * ops.select(t63, rho_2, 2.0 * half * t80)
+    t81 = w_x * h
+    t82 = ops.select(failed, ops.nan, c1_x - (t79 - t81))
+    t83 = t27 * X + t67 * Y
+    w_y = ops.select(in_line, -t41, a_x * t68 + t32 * t66)
+    t84 = w_y * h
+    t85 = ops.select(failed, ops.nan, c1_y - (t83 - t84))
+    t86 = t32 * X + t68 * Y
+    w_z = ops.select(in_line, t42, -(a_x * t67 + t27 * t66))
+    t87 = w_z * h
+    t88 = ops.select(failed, ops.nan, c1_z - (t86 - t87))
+    t89 = ops.select(failed, ops.nan, c1_x - (t79 + t81))
+    t90 = ops.select(failed, ops.nan, c1_y - (t83 + t84))
+    t91 = ops.select(failed, ops.nan, c1_z - (t86 + t87))
     return (
-        t50,
-        t50,
-        t50,
-        t51,
-        t50,
-        t50,
-        t51,
-        t52,
         t53,
+        t53,
+        t53,
+        t54,
+        t53,
+        t53,
+        t54,
+        t55,
         t56,
+        t57,
+        t58,
+        t53,
         t59,
-        t50,
         t60,
         t61,
-        t62,
-        t79,
         t82,
-        t86,
-        t50,
-        t50,
-        t50,
-        t51,
-        t50,
-        t50,
-        t51,
-        t52,
+        t85,
+        t88,
         t53,
+        t53,
+        t53,
+        t54,
+        t53,
+        t53,
+        t54,
+        t55,
         t56,
+        t57,
+        t58,
+        t53,
         t59,
-        t50,
         t60,
         t61,
-        t62,
-        t87,
-        t88,
         t89,
+        t90,
+        t91,
     )
 
 
@@ -522,7 +522,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 6, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 12),
+    _runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 8),
 )
 
 
@@ -563,10 +563,10 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     c_alpha1 = ops.cos(alpha1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
     s2 = ops.sin(theta2)
     c2 = ops.cos(theta2)
+    s_alpha2 = ops.sin(alpha2)
+    c_alpha2 = ops.cos(alpha2)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
     s_beta1_half = ops.sin(beta1 * 0.5)
@@ -577,18 +577,18 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
     t4 = -(ops.feasibility * (r * 0.3125))
     c1_x = r * c_alpha1
-    t5 = ops.abs(s_alpha2)
+    t5 = r * ops.abs(s_alpha2)
     t6 = c2 * t5
-    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t6)
-    t8 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t8
-    t9 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t6)
-    c1_z = s1 * t8
-    t10 = r * s2 * t5 - c1_z
-    u_u = t7 * t7 + t9 * t9 + t10 * t10
-    t11 = r * r
-    t12 = ops.vanishing * ops.vanishing
-    t13 = t11 * t12
+    t7 = r * c_alpha2
+    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
+    t9 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t9
+    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
+    c1_z = s1 * t9
+    t11 = c1_z - s2 * t5
+    u_u = t8 * t8 + t10 * t10 + t11 * t11
+    t12 = r * r
+    t13 = ops.vanishing * ops.vanishing * t12
     same = u_u <= t13
     t14 = r * 2.0
     r_2 = ops.abs(s_beta2_half) * t14
@@ -608,35 +608,33 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     t21 = ops.select(same, r_2, r)
     t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
     t23 = -(ops.feasibility * t22)
-    t24 = ops.select(same, c1_y, t9)
-    t25 = ops.select(same, -t10, c1_z)
-    t26 = ops.select(same, c1_z, -t10)
-    t27 = ops.select(same, t9, c1_y)
-    product_x = t24 * t25 - t26 * t27
-    t28 = ops.select(same, c1_x, t7)
-    a_x = ops.select(all_same, whole, -t28)
-    t29 = ops.select(same, t7, c1_x)
-    product_y = t25 * a_x + t26 * t29
-    t30 = product_x * product_x + product_y * product_y
-    t31 = t27 * a_x + t24 * t29
-    product_2 = t30 + t31 * t31
-    t32 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t32 * 0.000244140625 <= ops.vanishing * t32
-    t33 = t24 * t31 + t26 * product_y
-    t34 = a_x * t31 - t26 * product_x
-    t35 = a_x * product_y + t24 * product_x
-    t36 = t33 * t33 + t34 * t34 + t35 * t35
-    m_m = ops.select(slim, 1.0 / mu * t36, product_2)
-    in_line = m_m <= t12 * (t11 * mu)
-    t37 = whole * t26
+    over = 1.0 / mu
+    t24 = ops.select(same, c1_y, t10)
+    t25 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, whole, -t25)
+    t26 = ops.select(same, t10, c1_y)
+    t27 = ops.select(same, t8, c1_x)
+    t28 = a_x * t26 + t24 * t27
+    t29 = ops.select(same, c1_z, t11)
+    t30 = ops.select(same, t11, c1_z)
+    m_y = a_x * t30 + t27 * t29
+    t31 = t24 * t28 + t29 * m_y
+    t32 = over * t31
+    m_x = t24 * t30 - t26 * t29
+    t33 = a_x * t28 - t29 * m_x
+    t34 = over * t33
+    t35 = a_x * m_y + t24 * m_x
+    t36 = over * t35
+    nu = t32 * t32 + t34 * t34 + t36 * t36
+    t37 = ops.select(same, r_2 * r_2, t12)
+    in_line = nu <= t13
+    t38 = whole * t29
     s_w = ops.sign(-(t24 * a_x))
-    t38 = whole * (t24 - a_x * s_w)
-    t39 = 2.0 * (t37 * t37) + t38 * t38
-    nu = ops.select(in_line, t39, m_m) / mu
-    t40 = ops.select(same, r_2 * r_2, t11)
-    beside_a = ops.sqrt(nu)
-    t41 = a_x * t29 - t24 * t27 - t25 * t26
-    t42 = beside_a * (1.0 / (length_a * beside_a)) * t41
+    t39 = whole * (t24 - a_x * s_w)
+    t40 = 2.0 * (t38 * t38) + t39 * t39
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t27 - t24 * t26 - t29 * t30
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
     outer = ops.max(t19, 0.0)
     inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
@@ -645,8 +643,8 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     t44 = t42 + ops.select(all_same, 0.0, t43)
     t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
     rho = ops.select(all_same, r_1, share * t45)
-    left = nu - t40 + t44 * t44 + rho * rho
-    t46 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    left = nu - t37 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
     t47 = left + t46
     t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
     t49 = t46 - left
@@ -655,72 +653,75 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
     t51 = flat | in_line
     t52 = t50 & ops.opposite(t51)
-    t53 = ops.opposite(in_line)
-    over = 1.0 / ops.select(t50 & t53 & slim, mu, 1.0)
-    w_w = ops.select(in_line, t39, ops.select(slim, over * t36, product_2))
-    nu_2 = w_w / ops.select(t50, mu, 1.0)
-    beside_a_2 = ops.sqrt(ops.select(t50 | (t52 & t53), nu_2, 1.0))
-    t54 = ops.opposite(all_same)
-    t55 = t50 & t54
-    length_a_2 = ops.sqrt(ops.select(t50 | (t55 & t54), mu, 1.0))
-    t56 = ops.select(t50, length_a_2 * beside_a_2, 1.0)
-    part = 1.0 / t56
-    over_a = beside_a_2 * part
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t31
+    t55 = over_2 * t33
+    t56 = over_2 * t35
+    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
+    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.opposite(all_same)
+    t59 = t50 & t58
+    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
+    over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t57 = D_2 + r_1
-    outer_2 = ops.max(t57 - t15, 0.0)
-    t58 = D_2 - r_1
-    inner_2 = ops.max(t15 + t58, 0.0)
-    share_2 = 1.0 / ops.select(t55, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t58, 0.0)
-    t59 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t59 * 0.5)
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t60 = ops.select(t55, outer_2 * inner_2 * slack_2 * (t15 + t57), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t60))
-    t61 = over_a * t41 + along
-    left_2 = nu_2 - t40 + t61 * t61 + rho_2 * rho_2
-    t62 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
-    upper = ops.max(left_2 + t62, 0.0)
-    lower = ops.max(t62 - left_2, 0.0)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t37 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
     half = rho_2 / ops.select(t52, upper + lower, 1.0)
-    Y = ops.select(t51, 0.0, part * over_a * half * (upper - lower))
-    t63 = t28 * X + t33 * Y
-    m_x = ops.select(slim, over * (t24 * t35 - t26 * t34), product_x)
-    t64 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
-    h = part * ops.select(t51, rho_2, 2.0 * half * t64)
-    t65 = ops.select(in_line, -(t37 * s_w), m_x) * h
-    t66 = t63 - t65
-    t67 = t24 * X + t34 * Y
-    m_y = ops.select(slim, over * (a_x * t35 + t26 * t33), product_y)
-    t68 = ops.select(in_line, -t37, m_y) * h
-    t69 = t67 - t68
-    t70 = t26 * X + t35 * Y
-    t71 = ops.select(slim, over * (a_x * t34 + t24 * t33), t31)
-    t72 = ops.select(in_line, t38, -t71) * h
-    t73 = t70 - t72
-    t74 = t63 + t65
-    t75 = t67 + t68
-    t76 = t70 + t72
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t67 = t25 * X + t54 * Y
+    w_x = ops.select(in_line, -(t38 * s_w), t24 * t56 - t29 * t55)
+    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
+    t69 = w_x * h
+    t70 = t67 - t69
+    t71 = t24 * X + t55 * Y
+    w_y = ops.select(in_line, -t38, a_x * t56 + t29 * t54)
+    t72 = w_y * h
+    t73 = t71 - t72
+    t74 = t29 * X + t56 * Y
+    w_z = ops.select(in_line, t39, -(a_x * t55 + t24 * t54))
+    t75 = w_z * h
+    t76 = t74 - t75
+    t77 = t67 + t69
+    t78 = t71 + t72
+    t79 = t74 + t75
     return (
-        ops.select(failed, ops.nan, c1_x - t66),
-        ops.select(failed, ops.nan, c1_y - t69),
-        ops.select(failed, ops.nan, c1_z - t73),
-        ops.select(failed, ops.nan, -t66),
-        ops.select(failed, ops.nan, -t69),
-        ops.select(failed, ops.nan, -t73),
-        ops.select(failed, ops.nan, t7 - t66),
-        ops.select(failed, ops.nan, t9 - t69),
-        ops.select(failed, ops.nan, -(t10 + t73)),
-        ops.select(failed, ops.nan, c1_x - t74),
-        ops.select(failed, ops.nan, c1_y - t75),
+        ops.select(failed, ops.nan, c1_x - t70),
+        ops.select(failed, ops.nan, c1_y - t73),
         ops.select(failed, ops.nan, c1_z - t76),
-        ops.select(failed, ops.nan, -t74),
-        ops.select(failed, ops.nan, -t75),
+        ops.select(failed, ops.nan, -t70),
+        ops.select(failed, ops.nan, -t73),
         ops.select(failed, ops.nan, -t76),
-        ops.select(failed, ops.nan, t7 - t74),
-        ops.select(failed, ops.nan, t9 - t75),
-        ops.select(failed, ops.nan, -(t10 + t76)),
+        ops.select(failed, ops.nan, t8 - t70),
+        ops.select(failed, ops.nan, t10 - t73),
+        ops.select(failed, ops.nan, t11 - t76),
+        ops.select(failed, ops.nan, c1_x - t77),
+        ops.select(failed, ops.nan, c1_y - t78),
+        ops.select(failed, ops.nan, c1_z - t79),
+        ops.select(failed, ops.nan, -t77),
+        ops.select(failed, ops.nan, -t78),
+        ops.select(failed, ops.nan, -t79),
+        ops.select(failed, ops.nan, t8 - t77),
+        ops.select(failed, ops.nan, t10 - t78),
+        ops.select(failed, ops.nan, t11 - t79),
     )
 
 
@@ -731,7 +732,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 12),
+    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8),
 )
 
 
@@ -773,10 +774,10 @@ def _jacobian_serial(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     c_alpha1 = ops.cos(alpha1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
     s2 = ops.sin(theta2)
     c2 = ops.cos(theta2)
+    s_alpha2 = ops.sin(alpha2)
+    c_alpha2 = ops.cos(alpha2)
     s_beta1_half = ops.sin(beta1 * 0.5)
     s_beta2_half = ops.sin(beta2 * 0.5)
     t1 = ops.finite(r, gamma, alpha1, alpha2, beta1, beta2)
@@ -785,142 +786,141 @@ def _jacobian_serial(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
     t4 = -(ops.feasibility * (r * 0.3125))
     c1_x = r * c_alpha1
-    t5 = ops.abs(s_alpha2)
+    t5 = r * ops.abs(s_alpha2)
     t6 = c2 * t5
-    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t6)
-    t8 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t8
-    t9 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t6)
-    t10 = r * t5
-    c2_z = s2 * t10
-    c1_z = s1 * t8
+    t7 = r * c_alpha2
+    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
+    t9 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t9
+    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
+    c2_z = s2 * t5
+    c1_z = s1 * t9
     t11 = c2_z - c1_z
-    u_u = t7 * t7 + t9 * t9 + t11 * t11
+    u_u = t8 * t8 + t10 * t10 + t11 * t11
     t12 = r * r
-    t13 = ops.vanishing * ops.vanishing
-    t14 = t12 * t13
-    same = u_u <= t14
-    t15 = r * 2.0
-    r_2 = ops.abs(s_beta2_half) * t15
-    t16 = ops.select(same, r, r_2)
+    t13 = ops.vanishing * ops.vanishing * t12
+    same = u_u <= t13
+    t14 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t14
+    t15 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t14
+    all_same = u_u + v_v <= t13
     whole = ops.select((r == 0.0), 1.0, r)
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
-    r_1 = ops.abs(s_beta1_half) * t15
-    t17 = D - r_1
-    t18 = t16 - t17
-    t19 = D + r_1
-    t20 = t19 - t16
-    t21 = t16 + t17
-    t22 = ops.select(same, r_2, r)
-    t23 = 0.625 * (r * (r * 2.2737367544323206e-13 + t22))
-    t24 = -(ops.feasibility * t23)
-    t25 = ops.select(same, c1_y, t9)
-    t26 = ops.select(same, -t11, c1_z)
-    t27 = ops.select(same, c1_z, -t11)
-    t28 = ops.select(same, t9, c1_y)
-    product_x = t25 * t26 - t27 * t28
-    t29 = ops.select(same, c1_x, t7)
-    a_x = ops.select(all_same, whole, -t29)
-    t30 = ops.select(same, t7, c1_x)
-    product_y = t26 * a_x + t27 * t30
-    t31 = product_x * product_x + product_y * product_y
-    t32 = t28 * a_x + t25 * t30
-    product_2 = t31 + t32 * t32
-    t33 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t33 * 0.000244140625 <= ops.vanishing * t33
-    t34 = t25 * t32 + t27 * product_y
-    t35 = a_x * t32 - t27 * product_x
-    t36 = a_x * product_y + t25 * product_x
-    t37 = t34 * t34 + t35 * t35 + t36 * t36
-    m_m = ops.select(slim, 1.0 / mu * t37, product_2)
-    in_line = m_m <= t13 * (t12 * mu)
-    t38 = whole * t27
-    s_w = ops.sign(-(t25 * a_x))
-    t39 = whole * (t25 - a_x * s_w)
+    r_1 = ops.abs(s_beta1_half) * t14
+    t16 = D - r_1
+    t17 = t15 - t16
+    t18 = D + r_1
+    t19 = t18 - t15
+    t20 = t15 + t16
+    t21 = ops.select(same, r_2, r)
+    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
+    t23 = -(ops.feasibility * t22)
+    over = 1.0 / mu
+    t24 = ops.select(same, c1_y, t10)
+    t25 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, whole, -t25)
+    t26 = ops.select(same, t10, c1_y)
+    t27 = ops.select(same, t8, c1_x)
+    t28 = a_x * t26 + t24 * t27
+    t29 = ops.select(same, c1_z, -t11)
+    t30 = ops.select(same, -t11, c1_z)
+    m_y = a_x * t30 + t27 * t29
+    t31 = t24 * t28 + t29 * m_y
+    t32 = over * t31
+    m_x = t24 * t30 - t26 * t29
+    t33 = a_x * t28 - t29 * m_x
+    t34 = over * t33
+    t35 = a_x * m_y + t24 * m_x
+    t36 = over * t35
+    nu = t32 * t32 + t34 * t34 + t36 * t36
+    t37 = ops.select(same, r_2 * r_2, t12)
+    in_line = nu <= t13
+    t38 = whole * t29
+    s_w = ops.sign(-(t24 * a_x))
+    t39 = whole * (t24 - a_x * s_w)
     t40 = 2.0 * (t38 * t38) + t39 * t39
-    nu = ops.select(in_line, t40, m_m) / mu
-    t41 = ops.select(same, r_2 * r_2, t12)
-    beside_a = ops.sqrt(nu)
-    t42 = a_x * t30 - t25 * t28 - t26 * t27
-    t43 = beside_a * (1.0 / (length_a * beside_a)) * t42
-    outer = ops.max(t20, 0.0)
-    inner = ops.max(t21, 0.0)
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t27 - t24 * t26 - t29 * t30
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
+    outer = ops.max(t19, 0.0)
+    inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t18, 0.0)
-    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t45 = t43 + ops.select(all_same, 0.0, t44)
-    t46 = ops.sqrt(outer * inner * slack * (t16 + t19))
-    rho = ops.select(all_same, r_1, share * t46)
-    left = nu - t41 + t45 * t45 + rho * rho
-    t47 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
-    t48 = left + t47
-    t49 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t48)
-    t50 = t47 - left
-    failed = invalid | ops.opposite(t49 & (t24 <= t50))
-    t51 = ops.opposite(failed)
-    flat = ops.max(t48, 0.0) + ops.max(t50, 0.0) <= ops.vanishing * (r * t22)
-    t52 = flat | in_line
-    t53 = t51 & ops.opposite(t52)
-    t54 = ops.opposite(in_line)
-    over = 1.0 / ops.select(t51 & t54 & slim, mu, 1.0)
-    w_w = ops.select(in_line, t40, ops.select(slim, over * t37, product_2))
-    nu_2 = w_w / ops.select(t51, mu, 1.0)
-    beside_a_2 = ops.sqrt(ops.select(t51 | (t53 & t54), nu_2, 1.0))
-    t55 = ops.opposite(all_same)
-    t56 = t51 & t55
-    length_a_2 = ops.sqrt(ops.select(t51 | (t56 & t55), mu, 1.0))
-    t57 = ops.select(t51, length_a_2 * beside_a_2, 1.0)
-    part = 1.0 / t57
-    over_a = beside_a_2 * part
+    slack = ops.max(t17, 0.0)
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t37 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (t23 <= t49))
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t31
+    t55 = over_2 * t33
+    t56 = over_2 * t35
+    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
+    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.opposite(all_same)
+    t59 = t50 & t58
+    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
+    over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t58 = D_2 + r_1
-    outer_2 = ops.max(t58 - t16, 0.0)
-    t59 = D_2 - r_1
-    inner_2 = ops.max(t16 + t59, 0.0)
-    share_2 = 1.0 / ops.select(t56, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t16 - t59, 0.0)
-    t60 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t60 * 0.5)
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t61 = ops.select(t56, outer_2 * inner_2 * slack_2 * (t16 + t58), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t61))
-    t62 = over_a * t42 + along
-    left_2 = nu_2 - t41 + t62 * t62 + rho_2 * rho_2
-    t63 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
-    upper = ops.max(left_2 + t63, 0.0)
-    lower = ops.max(t63 - left_2, 0.0)
-    half = rho_2 / ops.select(t53, upper + lower, 1.0)
-    Y = ops.select(t52, 0.0, part * over_a * half * (upper - lower))
-    t64 = t25 * X + t35 * Y
-    m_y = ops.select(slim, over * (a_x * t36 + t27 * t34), product_y)
-    t65 = ops.sqrt(ops.select(t53, upper * lower, 1.0))
-    h = part * ops.select(t52, rho_2, 2.0 * half * t65)
-    t66 = ops.select(in_line, -t38, m_y) * h
-    t67 = t64 - t66
-    t68 = t27 * X + t36 * Y
-    t69 = ops.select(slim, over * (a_x * t35 + t25 * t34), t32)
-    t70 = ops.select(in_line, t39, -t69) * h
-    t71 = t68 - t70
-    t72 = ops.select(failed, ops.nan, c1_z * t67 - c1_y * t71)
-    t73 = s_gamma * c2_z
-    t74 = t29 * X + t34 * Y
-    m_x = ops.select(slim, over * (t25 * t36 - t27 * t35), product_x)
-    t75 = ops.select(in_line, -(t38 * s_w), m_x) * h
-    t76 = c_gamma * c2_z
-    t77 = c2 * t10
-    B_22 = t73 * (t7 - (t74 - t75)) - t76 * (t9 - t67) - t77 * (t11 + t71)
-    t78 = t64 + t66
-    t79 = t68 + t70
-    t80 = ops.select(failed, ops.nan, c1_z * t78 - c1_y * t79)
-    B_22_below = t73 * (t7 - (t74 + t75)) - t76 * (t9 - t78) - t77 * (t11 + t79)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t37 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t67 = t24 * X + t55 * Y
+    w_y = ops.select(in_line, -t38, a_x * t56 + t29 * t54)
+    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
+    t69 = w_y * h
+    t70 = t67 - t69
+    t71 = t29 * X + t56 * Y
+    w_z = ops.select(in_line, t39, -(a_x * t55 + t24 * t54))
+    t72 = w_z * h
+    t73 = t71 - t72
+    t74 = ops.select(failed, ops.nan, c1_z * t70 - c1_y * t73)
+    t75 = s_gamma * c2_z
+    t76 = t25 * X + t54 * Y
+    w_x = ops.select(in_line, -(t38 * s_w), t24 * t56 - t29 * t55)
+    t77 = w_x * h
+    t78 = c_gamma * c2_z
+    B_22 = t75 * (t8 - (t76 - t77)) - t78 * (t10 - t70) - t6 * (t11 + t73)
+    t79 = t67 + t69
+    t80 = t71 + t72
+    t81 = ops.select(failed, ops.nan, c1_z * t79 - c1_y * t80)
+    B_22_below = t75 * (t8 - (t76 + t77)) - t78 * (t10 - t79) - t6 * (t11 + t80)
     return (
-        t72,
+        t74,
         ops.select(failed, ops.nan, B_22),
-        t80,
+        t81,
         ops.select(failed, ops.nan, B_22_below),
     )
 
@@ -932,7 +932,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 12),
+    _runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 8),
 )
 
 
@@ -974,10 +974,10 @@ def _jacobian(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c_alpha1 = ops.cos(alpha1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
     s2 = ops.sin(theta2)
     c2 = ops.cos(theta2)
+    s_alpha2 = ops.sin(alpha2)
+    c_alpha2 = ops.cos(alpha2)
     s_beta1_half = ops.sin(beta1 * 0.5)
     s_beta2_half = ops.sin(beta2 * 0.5)
     t1 = ops.finite(r, gamma, alpha1, alpha2, beta1, beta2)
@@ -986,179 +986,178 @@ def _jacobian(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
     t4 = -(ops.feasibility * (r * 0.3125))
     c1_x = r * c_alpha1
-    t5 = ops.abs(s_alpha2)
+    t5 = r * ops.abs(s_alpha2)
     t6 = c2 * t5
-    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t6)
-    t8 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t8
-    t9 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t6)
-    t10 = r * t5
-    c2_z = s2 * t10
-    c1_z = s1 * t8
+    t7 = r * c_alpha2
+    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
+    t9 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t9
+    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
+    c2_z = s2 * t5
+    c1_z = s1 * t9
     t11 = c2_z - c1_z
-    u_u = t7 * t7 + t9 * t9 + t11 * t11
+    u_u = t8 * t8 + t10 * t10 + t11 * t11
     t12 = r * r
-    t13 = ops.vanishing * ops.vanishing
-    t14 = t12 * t13
-    same = u_u <= t14
-    t15 = r * 2.0
-    r_2 = ops.abs(s_beta2_half) * t15
-    t16 = ops.select(same, r, r_2)
+    t13 = ops.vanishing * ops.vanishing * t12
+    same = u_u <= t13
+    t14 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t14
+    t15 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t14
+    all_same = u_u + v_v <= t13
     whole = ops.select((r == 0.0), 1.0, r)
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
-    r_1 = ops.abs(s_beta1_half) * t15
-    t17 = D - r_1
-    t18 = t16 - t17
-    t19 = D + r_1
-    t20 = t19 - t16
-    t21 = t16 + t17
-    t22 = ops.select(same, r_2, r)
-    t23 = 0.625 * (r * (r * 2.2737367544323206e-13 + t22))
-    t24 = -(ops.feasibility * t23)
-    t25 = ops.select(same, c1_y, t9)
-    t26 = ops.select(same, -t11, c1_z)
-    t27 = ops.select(same, c1_z, -t11)
-    t28 = ops.select(same, t9, c1_y)
-    product_x = t25 * t26 - t27 * t28
-    t29 = ops.select(same, c1_x, t7)
-    a_x = ops.select(all_same, whole, -t29)
-    t30 = ops.select(same, t7, c1_x)
-    product_y = t26 * a_x + t27 * t30
-    t31 = product_x * product_x + product_y * product_y
-    t32 = t28 * a_x + t25 * t30
-    product_2 = t31 + t32 * t32
-    t33 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t33 * 0.000244140625 <= ops.vanishing * t33
-    t34 = t25 * t32 + t27 * product_y
-    t35 = a_x * t32 - t27 * product_x
-    t36 = a_x * product_y + t25 * product_x
-    t37 = t34 * t34 + t35 * t35 + t36 * t36
-    m_m = ops.select(slim, 1.0 / mu * t37, product_2)
-    in_line = m_m <= t13 * (t12 * mu)
-    t38 = whole * t27
-    s_w = ops.sign(-(t25 * a_x))
-    t39 = whole * (t25 - a_x * s_w)
+    r_1 = ops.abs(s_beta1_half) * t14
+    t16 = D - r_1
+    t17 = t15 - t16
+    t18 = D + r_1
+    t19 = t18 - t15
+    t20 = t15 + t16
+    t21 = ops.select(same, r_2, r)
+    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
+    t23 = -(ops.feasibility * t22)
+    over = 1.0 / mu
+    t24 = ops.select(same, c1_y, t10)
+    t25 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, whole, -t25)
+    t26 = ops.select(same, t10, c1_y)
+    t27 = ops.select(same, t8, c1_x)
+    t28 = a_x * t26 + t24 * t27
+    t29 = ops.select(same, c1_z, -t11)
+    t30 = ops.select(same, -t11, c1_z)
+    m_y = a_x * t30 + t27 * t29
+    t31 = t24 * t28 + t29 * m_y
+    t32 = over * t31
+    m_x = t24 * t30 - t26 * t29
+    t33 = a_x * t28 - t29 * m_x
+    t34 = over * t33
+    t35 = a_x * m_y + t24 * m_x
+    t36 = over * t35
+    nu = t32 * t32 + t34 * t34 + t36 * t36
+    t37 = ops.select(same, r_2 * r_2, t12)
+    in_line = nu <= t13
+    t38 = whole * t29
+    s_w = ops.sign(-(t24 * a_x))
+    t39 = whole * (t24 - a_x * s_w)
     t40 = 2.0 * (t38 * t38) + t39 * t39
-    nu = ops.select(in_line, t40, m_m) / mu
-    t41 = ops.select(same, r_2 * r_2, t12)
-    beside_a = ops.sqrt(nu)
-    t42 = a_x * t30 - t25 * t28 - t26 * t27
-    t43 = beside_a * (1.0 / (length_a * beside_a)) * t42
-    outer = ops.max(t20, 0.0)
-    inner = ops.max(t21, 0.0)
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t27 - t24 * t26 - t29 * t30
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
+    outer = ops.max(t19, 0.0)
+    inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t18, 0.0)
-    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t45 = t43 + ops.select(all_same, 0.0, t44)
-    t46 = ops.sqrt(outer * inner * slack * (t16 + t19))
-    rho = ops.select(all_same, r_1, share * t46)
-    left = nu - t41 + t45 * t45 + rho * rho
-    t47 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
-    t48 = left + t47
-    t49 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t48)
-    t50 = t47 - left
-    failed = invalid | ops.opposite(t49 & (t24 <= t50))
-    t51 = ops.opposite(failed)
-    flat = ops.max(t48, 0.0) + ops.max(t50, 0.0) <= ops.vanishing * (r * t22)
-    t52 = flat | in_line
-    t53 = t51 & ops.opposite(t52)
-    t54 = ops.opposite(in_line)
-    over = 1.0 / ops.select(t51 & t54 & slim, mu, 1.0)
-    w_w = ops.select(in_line, t40, ops.select(slim, over * t37, product_2))
-    nu_2 = w_w / ops.select(t51, mu, 1.0)
-    beside_a_2 = ops.sqrt(ops.select(t51 | (t53 & t54), nu_2, 1.0))
-    t55 = ops.opposite(all_same)
-    t56 = t51 & t55
-    length_a_2 = ops.sqrt(ops.select(t51 | (t56 & t55), mu, 1.0))
-    t57 = ops.select(t51, length_a_2 * beside_a_2, 1.0)
-    part = 1.0 / t57
-    over_a = beside_a_2 * part
+    slack = ops.max(t17, 0.0)
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t37 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (t23 <= t49))
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t31
+    t55 = over_2 * t33
+    t56 = over_2 * t35
+    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
+    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.opposite(all_same)
+    t59 = t50 & t58
+    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
+    over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t58 = D_2 + r_1
-    outer_2 = ops.max(t58 - t16, 0.0)
-    t59 = D_2 - r_1
-    inner_2 = ops.max(t16 + t59, 0.0)
-    share_2 = 1.0 / ops.select(t56, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t16 - t59, 0.0)
-    t60 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t60 * 0.5)
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t61 = ops.select(t56, outer_2 * inner_2 * slack_2 * (t16 + t58), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t61))
-    t62 = over_a * t42 + along
-    left_2 = nu_2 - t41 + t62 * t62 + rho_2 * rho_2
-    t63 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
-    upper = ops.max(left_2 + t63, 0.0)
-    lower = ops.max(t63 - left_2, 0.0)
-    half = rho_2 / ops.select(t53, upper + lower, 1.0)
-    Y = ops.select(t52, 0.0, part * over_a * half * (upper - lower))
-    t64 = t25 * X + t35 * Y
-    m_y = ops.select(slim, over * (a_x * t36 + t27 * t34), product_y)
-    t65 = ops.sqrt(ops.select(t53, upper * lower, 1.0))
-    h = part * ops.select(t52, rho_2, 2.0 * half * t65)
-    t66 = ops.select(in_line, -t38, m_y) * h
-    t67 = t64 - t66
-    t68 = t27 * X + t36 * Y
-    t69 = ops.select(slim, over * (a_x * t35 + t25 * t34), t32)
-    t70 = ops.select(in_line, t39, -t69) * h
-    t71 = t68 - t70
-    B_11 = c1_z * t67 - c1_y * t71
-    A_02 = c1_y - t67
-    t72 = t11 + t71
-    A_03 = c1_z - t71
-    A_22 = t9 - t67
-    t73 = ops.select(t51, w_w * h, 1.0)
-    t74 = ops.select(failed, ops.nan, B_11 * (A_02 * t72 + A_03 * A_22) / t73)
-    t75 = s_gamma * c2_z
-    t76 = t29 * X + t34 * Y
-    m_x = ops.select(slim, over * (t25 * t36 - t27 * t35), product_x)
-    t77 = ops.select(in_line, -(t38 * s_w), m_x) * h
-    t78 = t76 - t77
-    A_21 = t7 - t78
-    t79 = c_gamma * c2_z
-    t80 = c2 * t10
-    B_22 = t75 * A_21 - t79 * A_22 - t80 * t72
-    t81 = ops.select(failed, ops.nan, -(B_22 * (t71 * A_02 - t67 * A_03) / t73))
-    A_01 = c1_x - t78
-    t82 = ops.select(failed, ops.nan, -(B_11 * (t72 * A_01 + A_03 * A_21) / t73))
-    t83 = ops.select(failed, ops.nan, B_22 * (t71 * A_01 - A_03 * t78) / t73)
-    t84 = ops.select(failed, ops.nan, -(B_11 * (A_22 * A_01 - A_02 * A_21) / t73))
-    t85 = ops.select(failed, ops.nan, -(B_22 * (t67 * A_01 - A_02 * t78) / t73))
-    t86 = t64 + t66
-    t87 = t68 + t70
-    B_11_below = c1_z * t86 - c1_y * t87
-    A_02_below = c1_y - t86
-    t88 = t11 + t87
-    A_03_below = c1_z - t87
-    A_22_below = t9 - t86
-    t89 = B_11_below * (A_02_below * t88 + A_03_below * A_22_below)
-    t90 = t76 + t77
-    A_21_below = t7 - t90
-    B_22_below = t75 * A_21_below - t79 * A_22_below - t80 * t88
-    t91 = B_22_below * (t87 * A_02_below - t86 * A_03_below)
-    A_01_below = c1_x - t90
-    t92 = B_11_below * (t88 * A_01_below + A_03_below * A_21_below)
-    t93 = B_22_below * (t87 * A_01_below - A_03_below * t90)
-    t94 = A_22_below * A_01_below - A_02_below * A_21_below
-    t95 = ops.select(failed, ops.nan, B_11_below * t94 / t73)
-    t96 = B_22_below * (t86 * A_01_below - A_02_below * t90)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t37 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t67 = t24 * X + t55 * Y
+    w_y = ops.select(in_line, -t38, a_x * t56 + t29 * t54)
+    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
+    t69 = w_y * h
+    t70 = t67 - t69
+    t71 = t29 * X + t56 * Y
+    w_z = ops.select(in_line, t39, -(a_x * t55 + t24 * t54))
+    t72 = w_z * h
+    t73 = t71 - t72
+    B_11 = c1_z * t70 - c1_y * t73
+    A_02 = c1_y - t70
+    t74 = t11 + t73
+    A_03 = c1_z - t73
+    A_22 = t10 - t70
+    t75 = ops.select(t50, mu * nu_2 * h, 1.0)
+    t76 = ops.select(failed, ops.nan, B_11 * (A_02 * t74 + A_03 * A_22) / t75)
+    t77 = s_gamma * c2_z
+    t78 = t25 * X + t54 * Y
+    w_x = ops.select(in_line, -(t38 * s_w), t24 * t56 - t29 * t55)
+    t79 = w_x * h
+    t80 = t78 - t79
+    A_21 = t8 - t80
+    t81 = c_gamma * c2_z
+    B_22 = t77 * A_21 - t81 * A_22 - t6 * t74
+    t82 = ops.select(failed, ops.nan, -(B_22 * (t73 * A_02 - t70 * A_03) / t75))
+    A_01 = c1_x - t80
+    t83 = ops.select(failed, ops.nan, -(B_11 * (t74 * A_01 + A_03 * A_21) / t75))
+    t84 = ops.select(failed, ops.nan, B_22 * (t73 * A_01 - A_03 * t80) / t75)
+    t85 = ops.select(failed, ops.nan, -(B_11 * (A_22 * A_01 - A_02 * A_21) / t75))
+    t86 = ops.select(failed, ops.nan, -(B_22 * (t70 * A_01 - A_02 * t80) / t75))
+    t87 = t67 + t69
+    t88 = t71 + t72
+    B_11_below = c1_z * t87 - c1_y * t88
+    A_02_below = c1_y - t87
+    t89 = t11 + t88
+    A_03_below = c1_z - t88
+    A_22_below = t10 - t87
+    t90 = B_11_below * (A_02_below * t89 + A_03_below * A_22_below)
+    t91 = t78 + t79
+    A_21_below = t8 - t91
+    B_22_below = t77 * A_21_below - t81 * A_22_below - t6 * t89
+    t92 = B_22_below * (t88 * A_02_below - t87 * A_03_below)
+    A_01_below = c1_x - t91
+    t93 = B_11_below * (t89 * A_01_below + A_03_below * A_21_below)
+    t94 = B_22_below * (t88 * A_01_below - A_03_below * t91)
+    t95 = A_22_below * A_01_below - A_02_below * A_21_below
+    t96 = ops.select(failed, ops.nan, B_11_below * t95 / t75)
+    t97 = B_22_below * (t87 * A_01_below - A_02_below * t91)
     return (
-        t74,
-        t81,
+        t76,
         t82,
         t83,
         t84,
         t85,
-        ops.select(failed, ops.nan, -(t89 / t73)),
-        ops.select(failed, ops.nan, t91 / t73),
-        ops.select(failed, ops.nan, t92 / t73),
-        ops.select(failed, ops.nan, -(t93 / t73)),
-        t95,
-        ops.select(failed, ops.nan, t96 / t73),
+        t86,
+        ops.select(failed, ops.nan, -(t90 / t75)),
+        ops.select(failed, ops.nan, t92 / t75),
+        ops.select(failed, ops.nan, t93 / t75),
+        ops.select(failed, ops.nan, -(t94 / t75)),
+        t96,
+        ops.select(failed, ops.nan, t97 / t75),
     )
 
 
@@ -1169,7 +1168,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1)), 12),
+    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1)), 8),
 )
 
 
@@ -1212,10 +1211,10 @@ def _singularities(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c_alpha1 = ops.cos(alpha1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
     s2 = ops.sin(theta2)
     c2 = ops.cos(theta2)
+    s_alpha2 = ops.sin(alpha2)
+    c_alpha2 = ops.cos(alpha2)
     s_beta1_half = ops.sin(beta1 * 0.5)
     s_beta2_half = ops.sin(beta2 * 0.5)
     t1 = ops.finite(r, gamma, alpha1, alpha2, beta1, beta2)
@@ -1224,144 +1223,143 @@ def _singularities(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
     t4 = -(ops.feasibility * (r * 0.3125))
     c1_x = r * c_alpha1
-    t5 = ops.abs(s_alpha2)
+    t5 = r * ops.abs(s_alpha2)
     t6 = c2 * t5
-    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t6)
-    t8 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t8
-    t9 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t6)
-    t10 = r * t5
-    c2_z = s2 * t10
-    c1_z = s1 * t8
+    t7 = r * c_alpha2
+    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
+    t9 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t9
+    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
+    c2_z = s2 * t5
+    c1_z = s1 * t9
     t11 = c2_z - c1_z
-    u_u = t7 * t7 + t9 * t9 + t11 * t11
+    u_u = t8 * t8 + t10 * t10 + t11 * t11
     t12 = r * r
-    t13 = ops.vanishing * ops.vanishing
-    t14 = t12 * t13
-    same = u_u <= t14
-    t15 = r * 2.0
-    r_2 = ops.abs(s_beta2_half) * t15
-    t16 = ops.select(same, r, r_2)
+    t13 = ops.vanishing * ops.vanishing * t12
+    same = u_u <= t13
+    t14 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t14
+    t15 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t14
+    all_same = u_u + v_v <= t13
     whole = ops.select((r == 0.0), 1.0, r)
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
-    r_1 = ops.abs(s_beta1_half) * t15
-    t17 = D - r_1
-    t18 = t16 - t17
-    t19 = D + r_1
-    t20 = t19 - t16
-    t21 = t16 + t17
-    t22 = ops.select(same, r_2, r)
-    t23 = 0.625 * (r * (r * 2.2737367544323206e-13 + t22))
-    t24 = -(ops.feasibility * t23)
-    t25 = ops.select(same, c1_y, t9)
-    t26 = ops.select(same, -t11, c1_z)
-    t27 = ops.select(same, c1_z, -t11)
-    t28 = ops.select(same, t9, c1_y)
-    product_x = t25 * t26 - t27 * t28
-    t29 = ops.select(same, c1_x, t7)
-    a_x = ops.select(all_same, whole, -t29)
-    t30 = ops.select(same, t7, c1_x)
-    product_y = t26 * a_x + t27 * t30
-    t31 = product_x * product_x + product_y * product_y
-    t32 = t28 * a_x + t25 * t30
-    product_2 = t31 + t32 * t32
-    t33 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t33 * 0.000244140625 <= ops.vanishing * t33
-    t34 = t25 * t32 + t27 * product_y
-    t35 = a_x * t32 - t27 * product_x
-    t36 = a_x * product_y + t25 * product_x
-    t37 = t34 * t34 + t35 * t35 + t36 * t36
-    m_m = ops.select(slim, 1.0 / mu * t37, product_2)
-    in_line = m_m <= t13 * (t12 * mu)
-    t38 = whole * t27
-    s_w = ops.sign(-(t25 * a_x))
-    t39 = whole * (t25 - a_x * s_w)
+    r_1 = ops.abs(s_beta1_half) * t14
+    t16 = D - r_1
+    t17 = t15 - t16
+    t18 = D + r_1
+    t19 = t18 - t15
+    t20 = t15 + t16
+    t21 = ops.select(same, r_2, r)
+    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
+    t23 = -(ops.feasibility * t22)
+    over = 1.0 / mu
+    t24 = ops.select(same, c1_y, t10)
+    t25 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, whole, -t25)
+    t26 = ops.select(same, t10, c1_y)
+    t27 = ops.select(same, t8, c1_x)
+    t28 = a_x * t26 + t24 * t27
+    t29 = ops.select(same, c1_z, -t11)
+    t30 = ops.select(same, -t11, c1_z)
+    m_y = a_x * t30 + t27 * t29
+    t31 = t24 * t28 + t29 * m_y
+    t32 = over * t31
+    m_x = t24 * t30 - t26 * t29
+    t33 = a_x * t28 - t29 * m_x
+    t34 = over * t33
+    t35 = a_x * m_y + t24 * m_x
+    t36 = over * t35
+    nu = t32 * t32 + t34 * t34 + t36 * t36
+    t37 = ops.select(same, r_2 * r_2, t12)
+    in_line = nu <= t13
+    t38 = whole * t29
+    s_w = ops.sign(-(t24 * a_x))
+    t39 = whole * (t24 - a_x * s_w)
     t40 = 2.0 * (t38 * t38) + t39 * t39
-    nu = ops.select(in_line, t40, m_m) / mu
-    t41 = ops.select(same, r_2 * r_2, t12)
-    beside_a = ops.sqrt(nu)
-    t42 = a_x * t30 - t25 * t28 - t26 * t27
-    t43 = beside_a * (1.0 / (length_a * beside_a)) * t42
-    outer = ops.max(t20, 0.0)
-    inner = ops.max(t21, 0.0)
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t27 - t24 * t26 - t29 * t30
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
+    outer = ops.max(t19, 0.0)
+    inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t18, 0.0)
-    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t45 = t43 + ops.select(all_same, 0.0, t44)
-    t46 = ops.sqrt(outer * inner * slack * (t16 + t19))
-    rho = ops.select(all_same, r_1, share * t46)
-    left = nu - t41 + t45 * t45 + rho * rho
-    t47 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
-    t48 = left + t47
-    t49 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t48)
-    t50 = t47 - left
-    failed = invalid | ops.opposite(t49 & (t24 <= t50))
-    t51 = ops.opposite(failed)
-    flat = ops.max(t48, 0.0) + ops.max(t50, 0.0) <= ops.vanishing * (r * t22)
-    t52 = flat | in_line
-    t53 = t51 & ops.opposite(t52)
-    t54 = ops.opposite(in_line)
-    over = 1.0 / ops.select(t51 & t54 & slim, mu, 1.0)
-    w_w = ops.select(in_line, t40, ops.select(slim, over * t37, product_2))
-    nu_2 = w_w / ops.select(t51, mu, 1.0)
-    beside_a_2 = ops.sqrt(ops.select(t51 | (t53 & t54), nu_2, 1.0))
-    t55 = ops.opposite(all_same)
-    t56 = t51 & t55
-    length_a_2 = ops.sqrt(ops.select(t51 | (t56 & t55), mu, 1.0))
-    t57 = ops.select(t51, length_a_2 * beside_a_2, 1.0)
-    part = 1.0 / t57
-    over_a = beside_a_2 * part
+    slack = ops.max(t17, 0.0)
+    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t44 = t42 + ops.select(all_same, 0.0, t43)
+    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
+    rho = ops.select(all_same, r_1, share * t45)
+    left = nu - t37 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
+    t47 = left + t46
+    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
+    t49 = t46 - left
+    failed = invalid | ops.opposite(t48 & (t23 <= t49))
+    t50 = ops.opposite(failed)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
+    t51 = flat | in_line
+    t52 = t50 & ops.opposite(t51)
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t31
+    t55 = over_2 * t33
+    t56 = over_2 * t35
+    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
+    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.opposite(all_same)
+    t59 = t50 & t58
+    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
+    over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t58 = D_2 + r_1
-    outer_2 = ops.max(t58 - t16, 0.0)
-    t59 = D_2 - r_1
-    inner_2 = ops.max(t16 + t59, 0.0)
-    share_2 = 1.0 / ops.select(t56, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t16 - t59, 0.0)
-    t60 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t60 * 0.5)
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t61 = ops.select(t56, outer_2 * inner_2 * slack_2 * (t16 + t58), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t61))
-    t62 = over_a * t42 + along
-    left_2 = nu_2 - t41 + t62 * t62 + rho_2 * rho_2
-    t63 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
-    upper = ops.max(left_2 + t63, 0.0)
-    lower = ops.max(t63 - left_2, 0.0)
-    half = rho_2 / ops.select(t53, upper + lower, 1.0)
-    Y = ops.select(t52, 0.0, part * over_a * half * (upper - lower))
-    t64 = t25 * X + t35 * Y
-    m_y = ops.select(slim, over * (a_x * t36 + t27 * t34), product_y)
-    t65 = ops.sqrt(ops.select(t53, upper * lower, 1.0))
-    h = part * ops.select(t52, rho_2, 2.0 * half * t65)
-    t66 = ops.select(in_line, -t38, m_y) * h
-    t67 = t64 - t66
-    t68 = t27 * X + t36 * Y
-    t69 = ops.select(slim, over * (a_x * t35 + t25 * t34), t32)
-    t70 = ops.select(in_line, t39, -t69) * h
-    t71 = t68 - t70
-    t72 = ops.select(failed, ops.nan, c1_z * t67 - c1_y * t71)
-    t73 = s_gamma * c2_z
-    t74 = t29 * X + t34 * Y
-    m_x = ops.select(slim, over * (t25 * t36 - t27 * t35), product_x)
-    t75 = ops.select(in_line, -(t38 * s_w), m_x) * h
-    t76 = c_gamma * c2_z
-    t77 = c2 * t10
-    B_22 = t73 * (t7 - (t74 - t75)) - t76 * (t9 - t67) - t77 * (t11 + t71)
-    Delta = w_w * h
-    t78 = t64 + t66
-    t79 = t68 + t70
-    t80 = ops.select(failed, ops.nan, c1_z * t78 - c1_y * t79)
-    B_22_below = t73 * (t7 - (t74 + t75)) - t76 * (t9 - t78) - t77 * (t11 + t79)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t37 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
+    half = rho_2 / ops.select(t52, upper + lower, 1.0)
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t67 = t24 * X + t55 * Y
+    w_y = ops.select(in_line, -t38, a_x * t56 + t29 * t54)
+    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
+    t69 = w_y * h
+    t70 = t67 - t69
+    t71 = t29 * X + t56 * Y
+    w_z = ops.select(in_line, t39, -(a_x * t55 + t24 * t54))
+    t72 = w_z * h
+    t73 = t71 - t72
+    t74 = ops.select(failed, ops.nan, c1_z * t70 - c1_y * t73)
+    t75 = s_gamma * c2_z
+    t76 = t25 * X + t54 * Y
+    w_x = ops.select(in_line, -(t38 * s_w), t24 * t56 - t29 * t55)
+    t77 = w_x * h
+    t78 = c_gamma * c2_z
+    B_22 = t75 * (t8 - (t76 - t77)) - t78 * (t10 - t70) - t6 * (t11 + t73)
+    Delta = mu * nu_2 * h
+    t79 = t67 + t69
+    t80 = t71 + t72
+    t81 = ops.select(failed, ops.nan, c1_z * t79 - c1_y * t80)
+    B_22_below = t75 * (t8 - (t76 + t77)) - t78 * (t10 - t79) - t6 * (t11 + t80)
     return (
-        t72,
+        t74,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, Delta),
-        t80,
+        t81,
         ops.select(failed, ops.nan, B_22_below),
         ops.select(failed, ops.nan, -Delta),
     )
@@ -1374,7 +1372,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 12),
+    _runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 8),
 )
 
 
@@ -1414,10 +1412,10 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     c_alpha1 = ops.cos(alpha1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
     s2 = ops.sin(theta2)
     c2 = ops.cos(theta2)
+    s_alpha2 = ops.sin(alpha2)
+    c_alpha2 = ops.cos(alpha2)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
     s_beta1_half = ops.sin(beta1 * 0.5)
@@ -1428,18 +1426,18 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
     t4 = -(ops.feasibility * (r * 0.3125))
     c1_x = r * c_alpha1
-    t5 = ops.abs(s_alpha2)
+    t5 = r * ops.abs(s_alpha2)
     t6 = c2 * t5
-    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t6)
-    t8 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t8
-    t9 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t6)
-    c1_z = s1 * t8
-    t10 = r * s2 * t5 - c1_z
-    u_u = t7 * t7 + t9 * t9 + t10 * t10
-    t11 = r * r
-    t12 = ops.vanishing * ops.vanishing
-    t13 = t11 * t12
+    t7 = r * c_alpha2
+    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
+    t9 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t9
+    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
+    c1_z = s1 * t9
+    t11 = c1_z - s2 * t5
+    u_u = t8 * t8 + t10 * t10 + t11 * t11
+    t12 = r * r
+    t13 = ops.vanishing * ops.vanishing * t12
     same = u_u <= t13
     t14 = r * 2.0
     r_2 = ops.abs(s_beta2_half) * t14
@@ -1459,35 +1457,33 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     t21 = ops.select(same, r_2, r)
     t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
     t23 = -(ops.feasibility * t22)
-    t24 = ops.select(same, c1_y, t9)
-    t25 = ops.select(same, -t10, c1_z)
-    t26 = ops.select(same, c1_z, -t10)
-    t27 = ops.select(same, t9, c1_y)
-    product_x = t24 * t25 - t26 * t27
-    t28 = ops.select(same, c1_x, t7)
-    a_x = ops.select(all_same, whole, -t28)
-    t29 = ops.select(same, t7, c1_x)
-    product_y = t25 * a_x + t26 * t29
-    t30 = product_x * product_x + product_y * product_y
-    t31 = t27 * a_x + t24 * t29
-    product_2 = t30 + t31 * t31
-    t32 = mu * ops.select(same, u_u, v_v)
-    slim = product_2 - t32 * 0.000244140625 <= ops.vanishing * t32
-    t33 = t24 * t31 + t26 * product_y
-    t34 = a_x * t31 - t26 * product_x
-    t35 = a_x * product_y + t24 * product_x
-    t36 = t33 * t33 + t34 * t34 + t35 * t35
-    m_m = ops.select(slim, 1.0 / mu * t36, product_2)
-    in_line = m_m <= t12 * (t11 * mu)
-    t37 = whole * t26
+    over = 1.0 / mu
+    t24 = ops.select(same, c1_y, t10)
+    t25 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, whole, -t25)
+    t26 = ops.select(same, t10, c1_y)
+    t27 = ops.select(same, t8, c1_x)
+    t28 = a_x * t26 + t24 * t27
+    t29 = ops.select(same, c1_z, t11)
+    t30 = ops.select(same, t11, c1_z)
+    m_y = a_x * t30 + t27 * t29
+    t31 = t24 * t28 + t29 * m_y
+    t32 = over * t31
+    m_x = t24 * t30 - t26 * t29
+    t33 = a_x * t28 - t29 * m_x
+    t34 = over * t33
+    t35 = a_x * m_y + t24 * m_x
+    t36 = over * t35
+    nu = t32 * t32 + t34 * t34 + t36 * t36
+    t37 = ops.select(same, r_2 * r_2, t12)
+    in_line = nu <= t13
+    t38 = whole * t29
     s_w = ops.sign(-(t24 * a_x))
-    t38 = whole * (t24 - a_x * s_w)
-    t39 = 2.0 * (t37 * t37) + t38 * t38
-    nu = ops.select(in_line, t39, m_m) / mu
-    t40 = ops.select(same, r_2 * r_2, t11)
-    beside_a = ops.sqrt(nu)
-    t41 = a_x * t29 - t24 * t27 - t25 * t26
-    t42 = beside_a * (1.0 / (length_a * beside_a)) * t41
+    t39 = whole * (t24 - a_x * s_w)
+    t40 = 2.0 * (t38 * t38) + t39 * t39
+    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
+    t41 = a_x * t27 - t24 * t26 - t29 * t30
+    t42 = length_n * (1.0 / (length_a * length_n)) * t41
     outer = ops.max(t19, 0.0)
     inner = ops.max(t20, 0.0)
     share = 1.0 / (outer + inner)
@@ -1496,8 +1492,8 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     t44 = t42 + ops.select(all_same, 0.0, t43)
     t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
     rho = ops.select(all_same, r_1, share * t45)
-    left = nu - t40 + t44 * t44 + rho * rho
-    t46 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    left = nu - t37 + t44 * t44 + rho * rho
+    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
     t47 = left + t46
     t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
     t49 = t46 - left
@@ -1506,114 +1502,117 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
     t51 = flat | in_line
     t52 = t50 & ops.opposite(t51)
-    t53 = ops.opposite(in_line)
-    over = 1.0 / ops.select(t50 & t53 & slim, mu, 1.0)
-    w_w = ops.select(in_line, t39, ops.select(slim, over * t36, product_2))
-    nu_2 = w_w / ops.select(t50, mu, 1.0)
-    beside_a_2 = ops.sqrt(ops.select(t50 | (t52 & t53), nu_2, 1.0))
-    t54 = ops.opposite(all_same)
-    t55 = t50 & t54
-    length_a_2 = ops.sqrt(ops.select(t50 | (t55 & t54), mu, 1.0))
-    t56 = ops.select(t50, length_a_2 * beside_a_2, 1.0)
-    part = 1.0 / t56
-    over_a = beside_a_2 * part
+    t53 = t50 | (t52 & ops.opposite(in_line))
+    over_2 = 1.0 / ops.select(t53, mu, 1.0)
+    t54 = over_2 * t31
+    t55 = over_2 * t33
+    t56 = over_2 * t35
+    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
+    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
+    length_n_2 = ops.sqrt(t57)
+    t58 = ops.opposite(all_same)
+    t59 = t50 & t58
+    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    part = 1.0 / t60
+    over_a = length_n_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t57 = D_2 + r_1
-    outer_2 = ops.max(t57 - t15, 0.0)
-    t58 = D_2 - r_1
-    inner_2 = ops.max(t15 + t58, 0.0)
-    share_2 = 1.0 / ops.select(t55, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t58, 0.0)
-    t59 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t59 * 0.5)
+    t61 = D_2 + r_1
+    outer_2 = ops.max(t61 - t15, 0.0)
+    t62 = D_2 - r_1
+    inner_2 = ops.max(t15 + t62, 0.0)
+    share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t62, 0.0)
+    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t60 = ops.select(t55, outer_2 * inner_2 * slack_2 * (t15 + t57), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t60))
-    t61 = over_a * t41 + along
-    left_2 = nu_2 - t40 + t61 * t61 + rho_2 * rho_2
-    t62 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
-    upper = ops.max(left_2 + t62, 0.0)
-    lower = ops.max(t62 - left_2, 0.0)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = over_a * t41 + along
+    left_2 = nu_2 - t37 + t65 * t65 + rho_2 * rho_2
+    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
+    upper = ops.max(left_2 + t66, 0.0)
+    lower = ops.max(t66 - left_2, 0.0)
     half = rho_2 / ops.select(t52, upper + lower, 1.0)
-    Y = ops.select(t51, 0.0, part * over_a * half * (upper - lower))
-    t63 = t28 * X + t33 * Y
-    m_x = ops.select(slim, over * (t24 * t35 - t26 * t34), product_x)
-    t64 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
-    h = part * ops.select(t51, rho_2, 2.0 * half * t64)
-    t65 = ops.select(in_line, -(t37 * s_w), m_x) * h
-    t66 = t63 - t65
-    A_01 = c1_x - t66
-    t67 = t24 * X + t34 * Y
-    m_y = ops.select(slim, over * (a_x * t35 + t26 * t33), product_y)
-    t68 = ops.select(in_line, -t37, m_y) * h
-    t69 = t67 - t68
-    A_02 = c1_y - t69
-    t70 = t26 * X + t35 * Y
-    t71 = ops.select(slim, over * (a_x * t34 + t24 * t33), t31)
-    t72 = ops.select(in_line, t38, -t71) * h
-    t73 = t70 - t72
-    A_03 = c1_z - t73
-    t74 = ops.select(t50, A_01 * A_01 + A_02 * A_02 + A_03 * A_03, 1.0)
-    strut = ops.sqrt(t74)
-    t75 = ops.select(t50, strut, 1.0)
-    radial_x = A_01 / t75
-    radial_y = A_02 / t75
-    radial_z = A_03 / t75
-    t76 = t66 * radial_x + t69 * radial_y + t73 * radial_z
-    t77 = t66 - radial_x * t76
-    t78 = t69 - radial_y * t76
-    t79 = t73 - radial_z * t76
-    square1 = t77 * t77 + t78 * t78 + t79 * t79
-    A_21 = t7 - t66
-    A_22 = t9 - t69
-    t80 = t10 + t73
-    off2 = radial_x * A_21 + radial_y * A_22 - radial_z * t80
+    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
+    t67 = t25 * X + t54 * Y
+    w_x = ops.select(in_line, -(t38 * s_w), t24 * t56 - t29 * t55)
+    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
+    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
+    t69 = w_x * h
+    t70 = t67 - t69
+    A_01 = c1_x - t70
+    t71 = t24 * X + t55 * Y
+    w_y = ops.select(in_line, -t38, a_x * t56 + t29 * t54)
+    t72 = w_y * h
+    t73 = t71 - t72
+    A_02 = c1_y - t73
+    t74 = t29 * X + t56 * Y
+    w_z = ops.select(in_line, t39, -(a_x * t55 + t24 * t54))
+    t75 = w_z * h
+    t76 = t74 - t75
+    A_03 = c1_z - t76
+    t77 = ops.select(t50, A_01 * A_01 + A_02 * A_02 + A_03 * A_03, 1.0)
+    strut = ops.sqrt(t77)
+    t78 = ops.select(t50, strut, 1.0)
+    radial_x = A_01 / t78
+    radial_y = A_02 / t78
+    radial_z = A_03 / t78
+    t79 = t70 * radial_x + t73 * radial_y + t76 * radial_z
+    t80 = t70 - radial_x * t79
+    t81 = t73 - radial_y * t79
+    t82 = t76 - radial_z * t79
+    square1 = t80 * t80 + t81 * t81 + t82 * t82
+    A_21 = t8 - t70
+    A_22 = t10 - t73
+    A_23 = t11 - t76
+    off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23
     t2_x = A_21 - radial_x * off2
     t2_y = A_22 - radial_y * off2
-    t81 = t80 + radial_z * off2
-    square2 = t2_x * t2_x + t2_y * t2_y + t81 * t81
-    t82 = square1 - square2
-    t83 = t77 * t2_x + t78 * t2_y - t79 * t81
-    t84 = ops.select(t50, t82 * t82, 1.0) + 4.0 * ops.select(t50, t83 * t83, 1.0)
-    t85 = square1 + square2 + ops.sqrt(ops.select(t50, t84, 1.0))
-    t86 = ops.select(t50, 2.0 * (w_w * h), 1.0)
-    t87 = ops.select(failed, ops.nan, strut * t85 / t86)
-    t88 = t63 + t65
-    A_01_below = c1_x - t88
-    t89 = t67 + t68
-    A_02_below = c1_y - t89
-    t90 = A_01_below * A_01_below + A_02_below * A_02_below
-    t91 = t70 + t72
-    A_03_below = c1_z - t91
-    t92 = ops.select(t50, t90 + A_03_below * A_03_below, 1.0)
-    strut_below = ops.sqrt(t92)
-    t93 = ops.select(t50, strut_below, 1.0)
-    radial_x_below = A_01_below / t93
-    radial_y_below = A_02_below / t93
-    radial_z_below = A_03_below / t93
-    t94 = t88 * radial_x_below + t89 * radial_y_below + t91 * radial_z_below
-    t95 = t88 - radial_x_below * t94
-    t96 = t89 - radial_y_below * t94
-    t97 = t91 - radial_z_below * t94
-    square1_below = t95 * t95 + t96 * t96 + t97 * t97
-    A_21_below = t7 - t88
-    A_22_below = t9 - t89
-    t98 = radial_x_below * A_21_below + radial_y_below * A_22_below
-    t99 = t10 + t91
-    off2_below = t98 - radial_z_below * t99
+    t2_z = A_23 - radial_z * off2
+    square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z
+    t83 = square1 - square2
+    t84 = t80 * t2_x + t81 * t2_y + t82 * t2_z
+    t85 = ops.select(t50, t83 * t83, 1.0) + 4.0 * ops.select(t50, t84 * t84, 1.0)
+    t86 = square1 + square2 + ops.sqrt(ops.select(t50, t85, 1.0))
+    t87 = ops.select(t50, 2.0 * (mu * nu_2 * h), 1.0)
+    t88 = ops.select(failed, ops.nan, strut * t86 / t87)
+    t89 = t67 + t69
+    A_01_below = c1_x - t89
+    t90 = t71 + t72
+    A_02_below = c1_y - t90
+    t91 = A_01_below * A_01_below + A_02_below * A_02_below
+    t92 = t74 + t75
+    A_03_below = c1_z - t92
+    t93 = ops.select(t50, t91 + A_03_below * A_03_below, 1.0)
+    strut_below = ops.sqrt(t93)
+    t94 = ops.select(t50, strut_below, 1.0)
+    radial_x_below = A_01_below / t94
+    radial_y_below = A_02_below / t94
+    radial_z_below = A_03_below / t94
+    t95 = t89 * radial_x_below + t90 * radial_y_below + t92 * radial_z_below
+    t96 = t89 - radial_x_below * t95
+    t97 = t90 - radial_y_below * t95
+    t98 = t92 - radial_z_below * t95
+    square1_below = t96 * t96 + t97 * t97 + t98 * t98
+    A_21_below = t8 - t89
+    A_22_below = t10 - t90
+    t99 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    A_23_below = t11 - t92
+    off2_below = t99 + radial_z_below * A_23_below
     t2_x_below = A_21_below - radial_x_below * off2_below
     t2_y_below = A_22_below - radial_y_below * off2_below
     t100 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
-    t101 = t99 + radial_z_below * off2_below
-    square2_below = t100 + t101 * t101
-    t102 = square1_below - square2_below
-    t103 = t95 * t2_x_below + t96 * t2_y_below - t97 * t101
-    t104 = ops.select(t50, t102 * t102, 1.0) + 4.0 * ops.select(t50, t103 * t103, 1.0)
-    t105 = square1_below + square2_below + ops.sqrt(ops.select(t50, t104, 1.0))
-    t106 = ops.select(failed, ops.nan, strut_below * t105 / t86)
+    t2_z_below = A_23_below - radial_z_below * off2_below
+    square2_below = t100 + t2_z_below * t2_z_below
+    t101 = square1_below - square2_below
+    t102 = t96 * t2_x_below + t97 * t2_y_below + t98 * t2_z_below
+    t103 = ops.select(t50, t101 * t101, 1.0) + 4.0 * ops.select(t50, t102 * t102, 1.0)
+    t104 = square1_below + square2_below + ops.sqrt(ops.select(t50, t103, 1.0))
+    t105 = ops.select(failed, ops.nan, strut_below * t104 / t87)
     return (
-        t87,
-        t106,
+        t88,
+        t105,
     )
 
 

@@ -3,29 +3,17 @@
  * derivations/delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 51 compare and select, 59 add, 7 divide, 81 multiply, 6 sincos, 2 sqrt
- *   fk where nothing vanishes: 52 add, 29 compare and select, 6 divide, 59 multiply, 6 sincos, 1
+ *   fk: 45 compare and select, 64 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
+ *   fk where nothing vanishes: 62 add, 27 compare and select, 7 divide, 77 multiply, 6 sincos, 1
  *     sqrt
- *   skeleton: 50 compare and select, 180 add, 13 divide, 99 multiply, 6 sincos, 2 sqrt
- *   jacobian_parallel: 50 compare and select, 80 add, 7 divide, 81 multiply, 6 sincos, 2 sqrt
- *   jacobian_parallel where nothing vanishes: 73 add, 28 compare and select, 6 divide, 59
- *     multiply, 6 sincos, 1 sqrt
- *   jacobian_serial: 50 compare and select, 80 add, 7 divide, 105 multiply, 6 sincos, 2 sqrt
- *   jacobian_serial where nothing vanishes: 73 add, 28 compare and select, 6 divide, 83 multiply,
- *     6 sincos, 1 sqrt
- *   jacobian: 50 compare and select, 110 add, 25 divide, 160 multiply, 6 sincos, 2 sqrt
- *   determinant: 50 compare and select, 76 add, 9 divide, 110 multiply, 6 sincos, 2 sqrt
- *   determinant where nothing vanishes: 69 add, 28 compare and select, 8 divide, 88 multiply, 6
- *     sincos, 1 sqrt
- *   singularities: 50 compare and select, 82 add, 7 divide, 106 multiply, 6 sincos, 2 sqrt
- *   singularities where nothing vanishes: 75 add, 28 compare and select, 6 divide, 84 multiply, 6
- *     sincos, 1 sqrt
- *   condition_number: 50 compare and select, 114 add, 9 divide, 157 multiply, 6 sincos, 4 sqrt
- *   condition_number where nothing vanishes: 107 add, 28 compare and select, 8 divide, 135
- *     multiply, 6 sincos, 3 sqrt
- *   constraint: 50 compare and select, 86 add, 7 divide, 143 multiply, 6 sincos, 2 sqrt
- *   constraint where nothing vanishes: 79 add, 28 compare and select, 6 divide, 111 multiply, 6
- *     sincos, 1 sqrt
+ *   skeleton: 44 compare and select, 179 add, 14 divide, 86 multiply, 6 sincos, 1 sqrt
+ *   jacobian_parallel: 44 compare and select, 85 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
+ *   jacobian_serial: 44 compare and select, 85 add, 8 divide, 110 multiply, 6 sincos, 1 sqrt
+ *   jacobian: 44 compare and select, 115 add, 26 divide, 165 multiply, 6 sincos, 1 sqrt
+ *   determinant: 44 compare and select, 81 add, 10 divide, 115 multiply, 6 sincos, 1 sqrt
+ *   singularities: 44 compare and select, 87 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
+ *   condition_number: 44 compare and select, 119 add, 10 divide, 162 multiply, 6 sincos, 3 sqrt
+ *   constraint: 44 compare and select, 91 add, 8 divide, 148 multiply, 6 sincos, 1 sqrt
  *   ik: 139 compare and select, 130 add, 6 atan2, 13 divide, 151 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
  */
@@ -61,95 +49,98 @@ CF_INLINE void delta_fk_whole_kernel(const int single, const real_t one,
     const real_t c3 = cosines[5];
     const real_t t1 = cf_rounded(single, one, L * s1);
     const real_t u_z = t1 - cf_rounded(single, one, L * s2);
-    const real_t t2 = f - e;
-    const real_t t3 = cf_rounded(single, one, L * c1) + t2;
-    const real_t c1_x = cf_rounded(single, one, c_alpha1 * t3);
-    const real_t t4 = cf_rounded(single, one, L * c2) + t2;
-    const real_t t5 = c1_x - cf_rounded(single, one, c_alpha2 * t4);
-    const real_t t6 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t5 * t5);
-    const real_t c1_y = cf_rounded(single, one, s_alpha1 * t3);
-    const real_t t7 = c1_y - cf_rounded(single, one, s_alpha2 * t4);
-    const real_t u_u = t6 + cf_rounded(single, one, t7 * t7);
+    const real_t t2 = cf_rounded(single, one, e * c_alpha1) - cf_rounded(single, one, f * c_alpha1);
+    const real_t t3 = L * c1;
+    const real_t t4 = t2 - cf_rounded(single, one, c_alpha1 * t3);
+    const real_t t5 = cf_rounded(single, one, e * c_alpha2) - cf_rounded(single, one, f * c_alpha2);
+    const real_t t6 = L * c2;
+    const real_t t7 = t4 - (t5 - cf_rounded(single, one, c_alpha2 * t6));
+    const real_t t8 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t7 * t7);
+    const real_t t9 = cf_rounded(single, one, e * s_alpha1) - cf_rounded(single, one, f * s_alpha1);
+    const real_t t10 = t9 - cf_rounded(single, one, s_alpha1 * t3);
+    const real_t t11 = cf_rounded(single, one, e * s_alpha2) - cf_rounded(single, one, f * s_alpha2);
+    const real_t t12 = t10 - (t11 - cf_rounded(single, one, s_alpha2 * t6));
+    const real_t u_u = t8 + cf_rounded(single, one, t12 * t12);
     const real_t size = f + e + L + l;
-    const real_t t8 = size * size;
-    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t10 = t8 * t9;
-    const int same = u_u <= t10;
-    const real_t t11 = cf_rounded(single, one, L * c3) + t2;
-    const real_t t12 = c1_x - cf_rounded(single, one, c_alpha3 * t11);
-    const real_t t13 = cf_rarely(single, same, t12, t5);
-    const real_t t14 = c1_y - cf_rounded(single, one, s_alpha3 * t11);
-    const real_t t15 = cf_rarely(single, same, t14, t7);
+    const real_t t13 = size * size;
+    const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t13;
+    const int same = u_u <= t14;
+    const real_t t15 = cf_rounded(single, one, e * c_alpha3) - cf_rounded(single, one, f * c_alpha3);
+    const real_t t16 = L * c3;
+    const real_t t17 = t15 - cf_rounded(single, one, c_alpha3 * t16);
+    const real_t t18 = t4 - t17;
+    const real_t d_x = cf_rarely(single, same, t18, t7);
     const real_t v_z = t1 - cf_rounded(single, one, L * s3);
-    const real_t t16 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t12 * t12);
-    const real_t v_v = t16 + cf_rounded(single, one, t14 * t14);
-    const int all_same = u_u + v_v <= t10;
+    const real_t t19 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t18 * t18);
+    const real_t t20 = cf_rounded(single, one, e * s_alpha3) - cf_rounded(single, one, f * s_alpha3);
+    const real_t t21 = t20 - cf_rounded(single, one, s_alpha3 * t16);
+    const real_t t22 = t10 - t21;
+    const real_t v_v = t19 + cf_rounded(single, one, t22 * t22);
+    const int all_same = u_u + v_v <= t14;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t13);
-    const real_t t17 = cf_rarely(single, same, t7, t14);
-    const real_t t18 = cf_rarely(single, same, t5, t12);
-    const real_t t19 = cf_rounded(single, one, a_x * t17) + cf_rounded(single, one, t15 * t18);
-    const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t20 = cf_rarely(single, same, u_z, v_z);
-    const real_t t21 = cf_rounded(single, one, a_x * t20) + cf_rounded(single, one, t18 * d_z);
-    const real_t t22 = cf_rounded(single, one, t15 * t19) + cf_rounded(single, one, d_z * t21);
-    const real_t t23 = cf_rounded(single, one, t15 * t20) - cf_rounded(single, one, t17 * d_z);
-    const real_t t24 = cf_rounded(single, one, t23 * t23) + cf_rounded(single, one, t21 * t21);
-    const real_t product_2 = t24 + cf_rounded(single, one, t19 * t19);
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t25 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t26 = product_2 - t25 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t26 <= CLOSEDFORM_VANISHING * t25;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t27 = cf_rounded(single, one, a_x * t19) - cf_rounded(single, one, d_z * t23);
-    const real_t t28 = cf_rounded(single, one, t22 * t22) + cf_rounded(single, one, t27 * t27);
-    const real_t n_z = cf_rounded(single, one, a_x * t21) + cf_rounded(single, one, t15 * t23);
-    const real_t t29 = over * (t28 + cf_rounded(single, one, n_z * n_z));
-    const real_t m_m = cf_rarely(single, slim, t29, product_2);
-    const int in_line = m_m <= t9 * (t8 * mu);
+    const real_t t23 = cf_rarely(single, same, t22, t12);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t24 = cf_rarely(single, same, t12, t22);
+    const real_t t25 = cf_rarely(single, same, t7, t18);
+    const real_t t26 = cf_rounded(single, one, a_x * t24) - cf_rounded(single, one, t23 * t25);
+    const real_t d_z = cf_rarely(single, same, v_z, u_z);
+    const real_t t27 = cf_rarely(single, same, u_z, v_z);
+    const real_t t28 = cf_rounded(single, one, a_x * t27) - cf_rounded(single, one, t25 * d_z);
+    const real_t t29 = cf_rounded(single, one, t23 * t26) + cf_rounded(single, one, d_z * t28);
+    const real_t t30 = over * t29;
+    const real_t t31 = cf_rounded(single, one, t23 * t27) - cf_rounded(single, one, t24 * d_z);
+    const real_t t32 = cf_rounded(single, one, a_x * t26) - cf_rounded(single, one, d_z * t31);
+    const real_t t33 = over * t32;
+    const real_t t34 = cf_rounded(single, one, t30 * t30) + cf_rounded(single, one, t33 * t33);
+    const real_t t35 = cf_rounded(single, one, a_x * t28) + cf_rounded(single, one, t23 * t31);
+    const real_t n_z = over * t35;
+    const real_t nu = t34 + cf_rounded(single, one, n_z * n_z);
+    const int in_line = nu <= t14;
     const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(-(t15 * a_x));
-    const real_t t30 = whole * (t15 - a_x * s_w);
-    const real_t t31 = CLOSEDFORM_C(2.0) * (g_1 * g_1) + cf_rounded(single, one, t30 * t30);
-    const real_t w_w = cf_rarely(single, in_line, t31, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t32 = cf_rounded(single, one, t18 * (t13 - t18)) + cf_rounded(single, one, t17 * (t15 - t17));
-    const real_t t33 = t32 + cf_rounded(single, one, t20 * (d_z - t20));
-    const real_t t34 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t33 * CLOSEDFORM_C(0.5));
-    const real_t t35 = t13 * CLOSEDFORM_C(0.5) - (c1_x + t22 * t34);
-    const real_t t36 = cf_rarely(single, slim, over * (t15 * n_z - d_z * t27), t23);
-    const real_t t37 = CLOSEDFORM_C(0.25) + cf_rounded(single, one, w_w * (t34 * t34));
-    const real_t t38 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), mu * t37);
-    const real_t t39 = cf_rounded(single, one, l * l) - t38;
-    const real_t slack = cf_max(t39, CLOSEDFORM_C(0.0));
-    const real_t t40 = l * size * CLOSEDFORM_C(0.75);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t40, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t41 = cf_rarely(single, in_line, g_1 * s_w, -t36) * h;
-    const int t42 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t43 = t42 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t44 = t43 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t45 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int invalid = !(t44 & t45);
-    const real_t t46 = cf_rarely(single, in_line, -t33, CLOSEDFORM_C(0.0));
-    const int t47 = cf_abs(t46) <= t8 * CLOSEDFORM_FEASIBILITY;
-    const int t48 = t47 & (-(CLOSEDFORM_FEASIBILITY * t40) <= t39);
-    const int unreachable = !t48;
-    const real_t t49 = cf_poison(single, invalid | unreachable);
-    const real_t t50 = t15 * CLOSEDFORM_C(0.5) - (c1_y + t27 * t34);
-    const real_t t51 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t22), t21);
-    const real_t t52 = h * cf_rarely(single, in_line, g_1, -t51);
-    const real_t t53 = d_z * CLOSEDFORM_C(0.5) - (t1 + n_z * t34);
-    const real_t t54 = cf_rarely(single, slim, over * (a_x * t27 + t15 * t22), t19);
-    const real_t t55 = h * cf_rarely(single, in_line, t30, -t54);
-    const real_t t56 = cf_status(single, invalid, unreachable, in_line);
-    p[0] = -(t35 + t41) + t49;
-    p[1] = -(t50 + t52) + t49;
-    p[2] = t53 - t55 + t49;
-    p[3] = t41 - t35 + t49;
-    p[4] = t52 - t50 + t49;
-    p[5] = t53 + t55 + t49;
-    status[0] = t56;
-    status[1] = t56;
+    const real_t s_w = cf_sign(t23 * a_x);
+    const real_t t36 = whole * (t23 + a_x * s_w);
+    const real_t t37 = CLOSEDFORM_C(2.0) * (g_1 * g_1) + cf_rounded(single, one, t36 * t36);
+    const real_t t38 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t37), t38);
+    const real_t t39 = cf_rounded(single, one, t25 * (d_x - t25)) + cf_rounded(single, one, t24 * (t23 - t24));
+    const real_t t40 = t39 + cf_rounded(single, one, t27 * (d_z - t27));
+    const real_t t41 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t40 * CLOSEDFORM_C(0.5));
+    const real_t t42 = d_x * CLOSEDFORM_C(0.5) - (t4 - t30 * t41);
+    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t23 * n_z - d_z * t33);
+    const real_t t43 = cf_rounded(single, one, nu * (t41 * t41)) + mu * CLOSEDFORM_C(0.25);
+    const real_t t44 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t43);
+    const real_t t45 = cf_rounded(single, one, l * l) - t44;
+    const real_t slack = cf_max(t45, CLOSEDFORM_C(0.0));
+    const real_t t46 = l * size * CLOSEDFORM_C(0.75);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t46, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t47 = w_x * h;
+    const int t48 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t50 = t49 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t51 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int invalid = !(t50 & t51);
+    const real_t t52 = cf_rarely(single, in_line, -t40, CLOSEDFORM_C(0.0));
+    const int t53 = cf_abs(t52) <= t13 * CLOSEDFORM_FEASIBILITY;
+    const int t54 = t53 & (-(CLOSEDFORM_FEASIBILITY * t46) <= t45);
+    const int unreachable = !t54;
+    const real_t t55 = cf_poison(single, invalid | unreachable);
+    const real_t t56 = t23 * CLOSEDFORM_C(0.5) - (t10 + t33 * t41);
+    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t30));
+    const real_t t57 = h * w_y;
+    const real_t t58 = d_z * CLOSEDFORM_C(0.5) - (t1 + n_z * t41);
+    const real_t w_z = cf_rarely(single, in_line, -t36, a_x * t33 + t23 * t30);
+    const real_t t59 = h * w_z;
+    const real_t t60 = cf_status(single, invalid, unreachable, in_line);
+    p[0] = t42 - t47 + t55;
+    p[1] = t56 - t57 + t55;
+    p[2] = t58 - t59 + t55;
+    p[3] = t47 + t42 + t55;
+    p[4] = t57 + t56 + t55;
+    p[5] = t59 + t58 + t55;
+    status[0] = t60;
+    status[1] = t60;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -182,83 +173,92 @@ CF_INLINE void delta_fk_common_kernel(const int single, const real_t one,
     const real_t theta1 = q[0];
     const real_t theta2 = q[1];
     const real_t theta3 = q[2];
-    const real_t s1 = sines[0];
-    const real_t c1 = cosines[0];
-    const real_t s3 = sines[1];
-    const real_t c3 = cosines[1];
-    const real_t s_alpha1 = sines[2];
-    const real_t c_alpha1 = cosines[2];
-    const real_t s_alpha2 = sines[3];
-    const real_t c_alpha2 = cosines[3];
-    const real_t s2 = sines[4];
-    const real_t c2 = cosines[4];
-    const real_t s_alpha3 = sines[5];
-    const real_t c_alpha3 = cosines[5];
-    const real_t t1 = cf_rounded(single, one, L * s1);
-    const real_t v_z = t1 - cf_rounded(single, one, L * s3);
-    const real_t t2 = f - e;
-    const real_t t3 = cf_rounded(single, one, L * c1) + t2;
-    const real_t c1_y = cf_rounded(single, one, s_alpha1 * t3);
-    const real_t t4 = cf_rounded(single, one, L * c2) + t2;
-    const real_t t5 = c1_y - cf_rounded(single, one, s_alpha2 * t4);
-    const real_t u_z = t1 - cf_rounded(single, one, L * s2);
-    const real_t t6 = cf_rounded(single, one, L * c3) + t2;
-    const real_t t7 = c1_y - cf_rounded(single, one, s_alpha3 * t6);
-    const real_t t8 = cf_rounded(single, one, v_z * t5) - cf_rounded(single, one, u_z * t7);
-    const real_t c1_x = cf_rounded(single, one, c_alpha1 * t3);
-    const real_t t9 = c1_x - cf_rounded(single, one, c_alpha2 * t4);
-    const real_t t10 = c1_x - cf_rounded(single, one, c_alpha3 * t6);
-    const real_t m_y = cf_rounded(single, one, v_z * t9) - cf_rounded(single, one, u_z * t10);
-    const real_t t11 = cf_rounded(single, one, t8 * t8) + cf_rounded(single, one, m_y * m_y);
-    const real_t m_z = cf_rounded(single, one, t9 * t7) - cf_rounded(single, one, t5 * t10);
-    const real_t product_2 = t11 + cf_rounded(single, one, m_z * m_z);
-    const real_t t12 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t9 * t9);
-    const real_t u_u = t12 + cf_rounded(single, one, t5 * t5);
+    const real_t s_alpha1 = sines[0];
+    const real_t c_alpha1 = cosines[0];
+    const real_t s1 = sines[1];
+    const real_t c1 = cosines[1];
+    const real_t s_alpha2 = sines[2];
+    const real_t c_alpha2 = cosines[2];
+    const real_t s2 = sines[3];
+    const real_t c2 = cosines[3];
+    const real_t s_alpha3 = sines[4];
+    const real_t c_alpha3 = cosines[4];
+    const real_t s3 = sines[5];
+    const real_t c3 = cosines[5];
+    const real_t t1 = cf_rounded(single, one, e * c_alpha1) - cf_rounded(single, one, f * c_alpha1);
+    const real_t t2 = L * c1;
+    const real_t t3 = t1 - cf_rounded(single, one, c_alpha1 * t2);
+    const real_t t4 = cf_rounded(single, one, e * c_alpha2) - cf_rounded(single, one, f * c_alpha2);
+    const real_t t5 = L * c2;
+    const real_t t6 = t3 - (t4 - cf_rounded(single, one, c_alpha2 * t5));
+    const real_t t7 = cf_rounded(single, one, L * s1);
+    const real_t u_z = t7 - cf_rounded(single, one, L * s2);
+    const real_t t8 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t6 * t6);
+    const real_t t9 = cf_rounded(single, one, e * s_alpha1) - cf_rounded(single, one, f * s_alpha1);
+    const real_t t10 = t9 - cf_rounded(single, one, s_alpha1 * t2);
+    const real_t t11 = cf_rounded(single, one, e * s_alpha2) - cf_rounded(single, one, f * s_alpha2);
+    const real_t t12 = t10 - (t11 - cf_rounded(single, one, s_alpha2 * t5));
+    const real_t u_u = t8 + cf_rounded(single, one, t12 * t12);
     const real_t size = f + e + L + l;
     const real_t t13 = size * size;
-    const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t15 = t13 * t14;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t15) | (product_2 <= t14 * (t13 * u_u)), product_2);
-    const real_t t16 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t10 * (t9 - t10));
-    const real_t t17 = t16 + cf_rounded(single, one, t7 * (t5 - t7));
-    const real_t t18 = part * t17 * CLOSEDFORM_C(0.5);
-    const real_t t19 = cf_rounded(single, one, product_2 * (t18 * t18));
-    const real_t t20 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t19));
-    const real_t t21 = cf_rounded(single, one, l * l) - t20;
-    const real_t slack = cf_max(t21, CLOSEDFORM_C(0.0));
+    const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t13;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t14, u_u);
+    const real_t t15 = cf_rounded(single, one, e * s_alpha3) - cf_rounded(single, one, f * s_alpha3);
+    const real_t t16 = L * c3;
+    const real_t t17 = t15 - cf_rounded(single, one, s_alpha3 * t16);
+    const real_t t18 = t10 - t17;
+    const real_t t19 = cf_rounded(single, one, e * c_alpha3) - cf_rounded(single, one, f * c_alpha3);
+    const real_t t20 = t19 - cf_rounded(single, one, c_alpha3 * t16);
+    const real_t t21 = t3 - t20;
+    const real_t t22 = cf_rounded(single, one, t6 * t18) - cf_rounded(single, one, t12 * t21);
+    const real_t v_z = t7 - cf_rounded(single, one, L * s3);
+    const real_t t23 = cf_rounded(single, one, v_z * t6) - cf_rounded(single, one, u_z * t21);
+    const real_t t24 = cf_rounded(single, one, t12 * t22) + cf_rounded(single, one, u_z * t23);
+    const real_t t25 = over * t24;
+    const real_t t26 = cf_rounded(single, one, v_z * t12) - cf_rounded(single, one, u_z * t18);
+    const real_t t27 = cf_rounded(single, one, t6 * t22) - cf_rounded(single, one, u_z * t26);
+    const real_t t28 = over * t27;
+    const real_t t29 = cf_rounded(single, one, t25 * t25) + cf_rounded(single, one, t28 * t28);
+    const real_t t30 = cf_rounded(single, one, t6 * t23) + cf_rounded(single, one, t12 * t26);
+    const real_t n_z = over * t30;
+    const real_t nu = t29 + cf_rounded(single, one, n_z * n_z);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t14) | (nu <= t14), u_u * nu);
+    const real_t t31 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t21 * (t6 - t21));
+    const real_t t32 = t31 + cf_rounded(single, one, t18 * (t12 - t18));
+    const real_t t33 = u_u * part * t32 * CLOSEDFORM_C(0.5);
+    const real_t t34 = t6 * CLOSEDFORM_C(0.5) - (t3 - t25 * t33);
+    const real_t t35 = cf_rounded(single, one, nu * (t33 * t33)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t36 = cf_rounded(single, one, l * l) - t35;
+    const real_t slack = cf_max(t36, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t22 = t8 * h;
-    const real_t t23 = t9 * CLOSEDFORM_C(0.5) - (c1_x - (t5 * m_z + u_z * m_y) * t18);
-    const int t24 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t25 = t24 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t26 = t25 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t27 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int invalid = !(t26 & t27);
-    const int t28 = cf_abs(CLOSEDFORM_C(0.0)) <= t13 * CLOSEDFORM_FEASIBILITY;
-    const real_t t29 = l * size * CLOSEDFORM_C(0.75);
-    const int t30 = t28 & (-(CLOSEDFORM_FEASIBILITY * t29) <= t21);
-    const int unreachable = !t30;
-    const real_t t31 = cf_poison(single, invalid | unreachable);
-    const real_t t32 = t5 * CLOSEDFORM_C(0.5) - (c1_y + t18 * (t9 * m_z - u_z * t8));
-    const real_t t33 = m_y * h;
-    const real_t t34 = u_z * CLOSEDFORM_C(0.5) - (t1 + t18 * (t9 * m_y + t5 * t8));
-    const real_t t35 = m_z * h;
-    const real_t t36 = cf_status(single, invalid, unreachable, 0);
-    const real_t t37 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t10 * t10);
-    const real_t v_v = t37 + cf_rounded(single, one, t7 * t7);
-    const real_t t38 = u_u * v_v;
-    const real_t t39 = product_2 - t38 * CLOSEDFORM_C(0.000244140625);
-    const int t40 = (u_u <= t15) | (u_u + v_v <= t15) | (t39 <= CLOSEDFORM_VANISHING * t38);
-    const int t41 = t40 | (product_2 <= t14 * (t13 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t29);
-    p[0] = t22 - t23 + t31;
-    p[1] = -(t32 + t33) + t31;
-    p[2] = t34 - t35 + t31;
-    p[3] = -(t23 + t22) + t31;
-    p[4] = t33 - t32 + t31;
-    p[5] = t34 + t35 + t31;
-    status[0] = t36;
-    status[1] = t36;
-    rare[0] = (t41) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t37 = (t12 * n_z - u_z * t28) * h;
+    const int t38 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t39 = t38 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t40 = t39 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t41 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int invalid = !(t40 & t41);
+    const int t42 = cf_abs(CLOSEDFORM_C(0.0)) <= t13 * CLOSEDFORM_FEASIBILITY;
+    const real_t t43 = l * size * CLOSEDFORM_C(0.75);
+    const int t44 = t42 & (-(CLOSEDFORM_FEASIBILITY * t43) <= t36);
+    const int unreachable = !t44;
+    const real_t t45 = cf_poison(single, invalid | unreachable);
+    const real_t t46 = h * (t6 * n_z + u_z * t25);
+    const real_t t47 = t12 * CLOSEDFORM_C(0.5) - (t10 + t28 * t33);
+    const real_t t48 = h * (t6 * t28 + t12 * t25);
+    const real_t t49 = n_z * t33 + (t7 - u_z * CLOSEDFORM_C(0.5));
+    const real_t t50 = cf_status(single, invalid, unreachable, 0);
+    const real_t t51 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t21 * t21);
+    const real_t t52 = u_u + (t51 + cf_rounded(single, one, t18 * t18));
+    const int t53 = (u_u <= t14) | (t52 <= t14) | (nu <= t14) | (slack <= CLOSEDFORM_VANISHING * t43);
+    p[0] = t34 - t37 + t45;
+    p[1] = t46 + t47 + t45;
+    p[2] = -(t48 + t49) + t45;
+    p[3] = t37 + t34 + t45;
+    p[4] = t47 - t46 + t45;
+    p[5] = t48 - t49 + t45;
+    status[0] = t50;
+    status[1] = t50;
+    rare[0] = (t53) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void delta_fk_common_batch(size_t n, const delta_params *params,
@@ -273,21 +273,21 @@ CF_INLINE void delta_fk_common_batch(size_t n, const delta_params *params,
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
-        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[1], cosines[1]);
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = params->alpha1;
+        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
         real_t angle_2[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha1;
+            angle_2[i] = params->alpha2;
         cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[3], cosines[3]);
+        real_t angle_4[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
+            angle_4[i] = params->alpha3;
+        cf_sincos_block_rounded(length, one, angle_4, sines[4], cosines[4]);
+        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[5], cosines[5]);
         real_t status_real[2][CLOSEDFORM_BLOCK];
         real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
@@ -326,7 +326,7 @@ CF_INLINE void delta_fk_common(const delta_params *params, const real_t q[3],
 {
     const real_t one = cf_one();
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[2], params->alpha1, params->alpha2, q[1], params->alpha3, params->alpha3, params->alpha3 };
+    const real_t lanes[8] = { params->alpha1, q[0], params->alpha2, q[1], params->alpha3, q[2], q[2], q[2] };
     cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
     real_t status_real[2];
     real_t rare_real[1];
@@ -345,7 +345,7 @@ void delta_fk(const delta_params *params, const real_t q[3],
     delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -386,7 +386,7 @@ void delta_fk_batch(size_t n, const delta_params *params,
     uint8_t *status, size_t status_stride)
 {
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
         delta_fk_other_sizes(n, params, q, q_stride, p, p_stride, status, status_stride);
         return;
     }
@@ -430,10 +430,10 @@ CF_INLINE void delta_skeleton_kernel(const int single, const delta_params *param
     const real_t c2 = cosines[2];
     const real_t s_alpha2 = sines[3];
     const real_t c_alpha2 = cosines[3];
-    const real_t s_alpha3 = sines[4];
-    const real_t c_alpha3 = cosines[4];
-    const real_t s3 = sines[5];
-    const real_t c3 = cosines[5];
+    const real_t s3 = sines[4];
+    const real_t c3 = cosines[4];
+    const real_t s_alpha3 = sines[5];
+    const real_t c_alpha3 = cosines[5];
     const real_t t1 = f * c_alpha1;
     const int t2 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
     const int t3 = t2 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
@@ -442,278 +442,269 @@ CF_INLINE void delta_skeleton_kernel(const int single, const delta_params *param
     const real_t t6 = L * s1;
     const real_t t7 = L * s2;
     const real_t u_z = t6 - t7;
-    const real_t t8 = L * c1;
-    const real_t t9 = f - e;
-    const real_t t10 = t8 + t9;
-    const real_t c1_x = c_alpha1 * t10;
-    const real_t t11 = L * c2;
-    const real_t t12 = t11 + t9;
-    const real_t t13 = c1_x - c_alpha2 * t12;
-    const real_t c1_y = s_alpha1 * t10;
-    const real_t t14 = c1_y - s_alpha2 * t12;
-    const real_t u_u = u_z * u_z + t13 * t13 + t14 * t14;
+    const real_t t8 = e * c_alpha1;
+    const real_t t9 = L * c1;
+    const real_t t10 = t1 + c_alpha1 * t9;
+    const real_t t11 = t8 - t10;
+    const real_t t12 = e * c_alpha2;
+    const real_t t13 = f * c_alpha2;
+    const real_t t14 = L * c2;
+    const real_t t15 = t13 + c_alpha2 * t14;
+    const real_t t16 = t11 - (t12 - t15);
+    const real_t t17 = e * s_alpha1;
+    const real_t t18 = f * s_alpha1;
+    const real_t t19 = t18 + s_alpha1 * t9;
+    const real_t t20 = t17 - t19;
+    const real_t t21 = e * s_alpha2;
+    const real_t t22 = f * s_alpha2;
+    const real_t t23 = t22 + s_alpha2 * t14;
+    const real_t t24 = t20 - (t21 - t23);
+    const real_t u_u = u_z * u_z + t16 * t16 + t24 * t24;
+    const real_t t25 = L * s3;
+    const real_t v_z = t6 - t25;
+    const real_t t26 = e * c_alpha3;
+    const real_t t27 = f * c_alpha3;
+    const real_t t28 = L * c3;
+    const real_t t29 = t27 + c_alpha3 * t28;
+    const real_t t30 = t11 - (t26 - t29);
+    const real_t t31 = e * s_alpha3;
+    const real_t t32 = f * s_alpha3;
+    const real_t t33 = t32 + s_alpha3 * t28;
+    const real_t t34 = t20 - (t31 - t33);
+    const real_t v_v = v_z * v_z + t30 * t30 + t34 * t34;
     const real_t size = f + e + L + l;
-    const real_t t15 = size * size;
-    const real_t t16 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t17 = t15 * t16;
-    const int same = u_u <= t17;
-    const real_t t18 = L * c3;
-    const real_t t19 = t18 + t9;
-    const real_t t20 = c1_y - s_alpha3 * t19;
-    const real_t t21 = cf_rarely(single, same, t20, t14);
-    const real_t t22 = L * s3;
-    const real_t v_z = t6 - t22;
-    const real_t t23 = cf_rarely(single, same, u_z, v_z);
-    const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t24 = cf_rarely(single, same, t14, t20);
-    const real_t t25 = t21 * t23 - d_z * t24;
-    const real_t t26 = c1_x - c_alpha3 * t19;
-    const real_t v_v = v_z * v_z + t26 * t26 + t20 * t20;
-    const int all_same = u_u + v_v <= t17;
+    const real_t t35 = size * size;
+    const real_t t36 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t35;
+    const int all_same = u_u + v_v <= t36;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t t27 = cf_rarely(single, same, t26, t13);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t27);
-    const real_t t28 = cf_rarely(single, same, t13, t26);
-    const real_t t29 = t23 * a_x + d_z * t28;
-    const real_t t30 = t24 * a_x + t21 * t28;
-    const real_t product_2 = t25 * t25 + t29 * t29 + t30 * t30;
+    const int same = u_u <= t36;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t31 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t32 = product_2 - t31 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t32 <= CLOSEDFORM_VANISHING * t31;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t33 = t21 * t30 + d_z * t29;
-    const real_t t34 = a_x * t30 - d_z * t25;
-    const real_t n_z = a_x * t29 + t21 * t25;
-    const real_t m_m = cf_rarely(single, slim, over * (t33 * t33 + t34 * t34 + n_z * n_z), product_2);
-    const int in_line = m_m <= t16 * (t15 * mu);
-    const real_t t35 = t28 * (t27 - t28) + t24 * (t21 - t24) - t23 * (t23 - d_z);
-    const real_t t36 = cf_rarely(single, in_line, -t35, CLOSEDFORM_C(0.0));
-    const int t37 = cf_abs(t36) <= t15 * CLOSEDFORM_FEASIBILITY;
-    const real_t t38 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t t37 = cf_rarely(single, same, t34, t24);
+    const real_t d_x = cf_rarely(single, same, t30, t16);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t38 = cf_rarely(single, same, t24, t34);
+    const real_t t39 = cf_rarely(single, same, t16, t30);
+    const real_t t40 = a_x * t38 - t37 * t39;
+    const real_t d_z = cf_rarely(single, same, v_z, u_z);
+    const real_t t41 = cf_rarely(single, same, u_z, v_z);
+    const real_t t42 = a_x * t41 - t39 * d_z;
+    const real_t t43 = over * (t37 * t40 + d_z * t42);
+    const real_t t44 = t37 * t41 - t38 * d_z;
+    const real_t t45 = over * (a_x * t40 - d_z * t44);
+    const real_t n_z = over * (a_x * t42 + t37 * t44);
+    const real_t nu = t43 * t43 + t45 * t45 + n_z * n_z;
+    const int in_line = nu <= t36;
+    const real_t t46 = t39 * (d_x - t39) + t38 * (t37 - t38) + t41 * (d_z - t41);
+    const real_t t47 = cf_rarely(single, in_line, -t46, CLOSEDFORM_C(0.0));
+    const int t48 = cf_abs(t47) <= t35 * CLOSEDFORM_FEASIBILITY;
+    const real_t t49 = CLOSEDFORM_C(0.9375) * (l * size);
     const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(-(t21 * a_x));
-    const real_t t39 = whole * (t21 - a_x * s_w);
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t39 * t39, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t40 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), t35 * part * CLOSEDFORM_C(0.5));
-    const real_t t41 = mu * (CLOSEDFORM_C(0.25) + w_w * (t40 * t40));
-    const real_t t42 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t41);
-    const real_t t43 = l * l - t42;
-    const int t44 = t37 & (-(CLOSEDFORM_FEASIBILITY * t38) <= t43);
-    const real_t t45 = cf_poison(single, (!(t4 & t5)) | (!t44));
-    const real_t t46 = t1 + t45;
-    const real_t t47 = f * s_alpha1;
-    const real_t t48 = t47 + t45;
-    const real_t t49 = CLOSEDFORM_C(0.0) + t45;
-    const real_t t50 = t1 + t8 * c_alpha1;
-    const real_t t51 = t50 + t45;
-    const real_t t52 = t47 + t8 * s_alpha1;
-    const real_t t53 = t52 + t45;
-    const real_t t54 = -t6 + t45;
-    const real_t t55 = e * c_alpha1;
-    const real_t t56 = t33 * t40 - t27 * CLOSEDFORM_C(0.5);
-    const real_t t57 = cf_rarely(single, slim, over * (t21 * n_z - d_z * t34), t25);
-    const real_t slack = cf_max(t43, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t38, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t58 = cf_rarely(single, in_line, g_1 * s_w, -t57) * h;
-    const real_t t59 = c1_x + (t56 - t58);
-    const real_t t60 = t55 + t59;
-    const real_t t61 = e * s_alpha1;
-    const real_t t62 = t34 * t40 - t21 * CLOSEDFORM_C(0.5);
-    const real_t t63 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t33), t29);
-    const real_t t64 = h * cf_rarely(single, in_line, g_1, -t63);
-    const real_t t65 = c1_y + (t62 - t64);
-    const real_t t66 = t61 + t65;
-    const real_t t67 = n_z * t40 - d_z * CLOSEDFORM_C(0.5);
-    const real_t t68 = cf_rarely(single, slim, over * (a_x * t34 + t21 * t33), t30);
-    const real_t t69 = h * cf_rarely(single, in_line, t39, -t68);
-    const real_t t70 = -(t6 + (t67 + t69)) + t45;
-    const real_t t71 = t61 * CLOSEDFORM_C(0.5);
-    const real_t t72 = t50 - t71 + t45;
-    const real_t t73 = t55 * CLOSEDFORM_C(0.5);
-    const real_t t74 = t73 + t52 + t45;
-    const real_t t75 = t71 + t50 + t45;
-    const real_t t76 = t52 - t73 + t45;
-    const real_t t77 = f * c_alpha2;
-    const real_t t78 = t77 + t45;
-    const real_t t79 = f * s_alpha2;
-    const real_t t80 = t79 + t45;
-    const real_t t81 = t77 + t11 * c_alpha2;
-    const real_t t82 = t81 + t45;
-    const real_t t83 = t79 + t11 * s_alpha2;
-    const real_t t84 = t83 + t45;
-    const real_t t85 = -t7 + t45;
-    const real_t t86 = e * c_alpha2;
-    const real_t t87 = t86 + t59;
-    const real_t t88 = e * s_alpha2;
-    const real_t t89 = t88 + t65;
-    const real_t t90 = t88 * CLOSEDFORM_C(0.5);
-    const real_t t91 = t81 - t90 + t45;
-    const real_t t92 = t86 * CLOSEDFORM_C(0.5);
-    const real_t t93 = t92 + t83 + t45;
-    const real_t t94 = t90 + t81 + t45;
-    const real_t t95 = t83 - t92 + t45;
-    const real_t t96 = f * c_alpha3;
-    const real_t t97 = t96 + t45;
-    const real_t t98 = f * s_alpha3;
-    const real_t t99 = t98 + t45;
-    const real_t t100 = t96 + t18 * c_alpha3;
-    const real_t t101 = t100 + t45;
-    const real_t t102 = t98 + t18 * s_alpha3;
-    const real_t t103 = t102 + t45;
-    const real_t t104 = -t22 + t45;
-    const real_t t105 = e * c_alpha3;
-    const real_t t106 = t105 + t59;
-    const real_t t107 = e * s_alpha3;
-    const real_t t108 = t107 + t65;
-    const real_t t109 = t107 * CLOSEDFORM_C(0.5);
-    const real_t t110 = t100 - t109 + t45;
-    const real_t t111 = t105 * CLOSEDFORM_C(0.5);
-    const real_t t112 = t111 + t102 + t45;
-    const real_t t113 = t109 + t100 + t45;
-    const real_t t114 = t102 - t111 + t45;
-    const real_t t115 = c1_x + (t56 + t58);
-    const real_t t116 = t55 + t115;
-    const real_t t117 = c1_y + (t62 + t64);
-    const real_t t118 = t61 + t117;
-    const real_t t119 = -(t6 + (t67 - t69)) + t45;
-    const real_t t120 = t86 + t115;
-    const real_t t121 = t88 + t117;
-    const real_t t122 = t105 + t115;
-    const real_t t123 = t107 + t117;
-    points[0] = t46;
-    points[1] = t48;
-    points[2] = t49;
-    points[3] = t51;
-    points[4] = t53;
-    points[5] = t54;
-    points[6] = t60 + t45;
-    points[7] = t66 + t45;
-    points[8] = t70;
-    points[9] = t72;
-    points[10] = t74;
-    points[11] = t54;
-    points[12] = t75;
-    points[13] = t76;
-    points[14] = t54;
-    points[15] = t60 - t71 + t45;
-    points[16] = t73 + t66 + t45;
-    points[17] = t70;
-    points[18] = t71 + t60 + t45;
-    points[19] = t66 - t73 + t45;
-    points[20] = t70;
-    points[21] = t78;
-    points[22] = t80;
-    points[23] = t49;
-    points[24] = t82;
+    const real_t s_w = cf_sign(t37 * a_x);
+    const real_t t50 = whole * (t37 + a_x * s_w);
+    const real_t t51 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t50 * t50);
+    const real_t t52 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, t51, t52);
+    const real_t t53 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * t46 * part * CLOSEDFORM_C(0.5));
+    const real_t t54 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t53 * t53) + mu * CLOSEDFORM_C(0.25));
+    const real_t t55 = l * l - t54;
+    const int t56 = t48 & (-(CLOSEDFORM_FEASIBILITY * t49) <= t55);
+    const real_t t57 = cf_poison(single, (!(t4 & t5)) | (!t56));
+    const real_t t58 = t1 + t57;
+    const real_t t59 = t18 + t57;
+    const real_t t60 = CLOSEDFORM_C(0.0) + t57;
+    const real_t t61 = t10 + t57;
+    const real_t t62 = t19 + t57;
+    const real_t t63 = -t6 + t57;
+    const real_t t64 = t43 * t53 + d_x * CLOSEDFORM_C(0.5);
+    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t37 * n_z - d_z * t45);
+    const real_t slack = cf_max(t55, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t49, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t65 = w_x * h;
+    const real_t t66 = t11 - (t64 - t65);
+    const real_t t67 = t8 - t66;
+    const real_t t68 = t45 * t53 - t37 * CLOSEDFORM_C(0.5);
+    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t43));
+    const real_t t69 = h * w_y;
+    const real_t t70 = t20 + (t68 + t69);
+    const real_t t71 = t17 - t70;
+    const real_t t72 = n_z * t53 - d_z * CLOSEDFORM_C(0.5);
+    const real_t w_z = cf_rarely(single, in_line, -t50, a_x * t45 + t37 * t43);
+    const real_t t73 = h * w_z;
+    const real_t t74 = -(t6 + (t72 + t73)) + t57;
+    const real_t t75 = t17 * CLOSEDFORM_C(0.5);
+    const real_t t76 = t10 - t75 + t57;
+    const real_t t77 = t8 * CLOSEDFORM_C(0.5);
+    const real_t t78 = t77 + t19 + t57;
+    const real_t t79 = t75 + t10 + t57;
+    const real_t t80 = t19 - t77 + t57;
+    const real_t t81 = t13 + t57;
+    const real_t t82 = t22 + t57;
+    const real_t t83 = t15 + t57;
+    const real_t t84 = t23 + t57;
+    const real_t t85 = -t7 + t57;
+    const real_t t86 = t12 - t66;
+    const real_t t87 = t21 - t70;
+    const real_t t88 = t21 * CLOSEDFORM_C(0.5);
+    const real_t t89 = t15 - t88 + t57;
+    const real_t t90 = t12 * CLOSEDFORM_C(0.5);
+    const real_t t91 = t90 + t23 + t57;
+    const real_t t92 = t88 + t15 + t57;
+    const real_t t93 = t23 - t90 + t57;
+    const real_t t94 = t27 + t57;
+    const real_t t95 = t32 + t57;
+    const real_t t96 = t29 + t57;
+    const real_t t97 = t33 + t57;
+    const real_t t98 = -t25 + t57;
+    const real_t t99 = t26 - t66;
+    const real_t t100 = t31 - t70;
+    const real_t t101 = t31 * CLOSEDFORM_C(0.5);
+    const real_t t102 = t29 - t101 + t57;
+    const real_t t103 = t26 * CLOSEDFORM_C(0.5);
+    const real_t t104 = t103 + t33 + t57;
+    const real_t t105 = t101 + t29 + t57;
+    const real_t t106 = t33 - t103 + t57;
+    const real_t t107 = t11 - (t64 + t65);
+    const real_t t108 = t8 - t107;
+    const real_t t109 = t20 + (t68 - t69);
+    const real_t t110 = t17 - t109;
+    const real_t t111 = -(t6 + (t72 - t73)) + t57;
+    const real_t t112 = t12 - t107;
+    const real_t t113 = t21 - t109;
+    const real_t t114 = t26 - t107;
+    const real_t t115 = t31 - t109;
+    points[0] = t58;
+    points[1] = t59;
+    points[2] = t60;
+    points[3] = t61;
+    points[4] = t62;
+    points[5] = t63;
+    points[6] = t67 + t57;
+    points[7] = t71 + t57;
+    points[8] = t74;
+    points[9] = t76;
+    points[10] = t78;
+    points[11] = t63;
+    points[12] = t79;
+    points[13] = t80;
+    points[14] = t63;
+    points[15] = t67 - t75 + t57;
+    points[16] = t77 + t71 + t57;
+    points[17] = t74;
+    points[18] = t75 + t67 + t57;
+    points[19] = t71 - t77 + t57;
+    points[20] = t74;
+    points[21] = t81;
+    points[22] = t82;
+    points[23] = t60;
+    points[24] = t83;
     points[25] = t84;
     points[26] = t85;
-    points[27] = t87 + t45;
-    points[28] = t89 + t45;
-    points[29] = t70;
-    points[30] = t91;
-    points[31] = t93;
+    points[27] = t86 + t57;
+    points[28] = t87 + t57;
+    points[29] = t74;
+    points[30] = t89;
+    points[31] = t91;
     points[32] = t85;
-    points[33] = t94;
-    points[34] = t95;
+    points[33] = t92;
+    points[34] = t93;
     points[35] = t85;
-    points[36] = t87 - t90 + t45;
-    points[37] = t92 + t89 + t45;
-    points[38] = t70;
-    points[39] = t90 + t87 + t45;
-    points[40] = t89 - t92 + t45;
-    points[41] = t70;
-    points[42] = t97;
-    points[43] = t99;
-    points[44] = t49;
-    points[45] = t101;
-    points[46] = t103;
-    points[47] = t104;
-    points[48] = t106 + t45;
-    points[49] = t108 + t45;
-    points[50] = t70;
-    points[51] = t110;
-    points[52] = t112;
-    points[53] = t104;
-    points[54] = t113;
-    points[55] = t114;
-    points[56] = t104;
-    points[57] = t106 - t109 + t45;
-    points[58] = t111 + t108 + t45;
-    points[59] = t70;
-    points[60] = t109 + t106 + t45;
-    points[61] = t108 - t111 + t45;
-    points[62] = t70;
-    points[63] = t59 + t45;
-    points[64] = t65 + t45;
-    points[65] = t70;
-    points[66] = t46;
-    points[67] = t48;
-    points[68] = t49;
-    points[69] = t51;
-    points[70] = t53;
-    points[71] = t54;
-    points[72] = t116 + t45;
-    points[73] = t118 + t45;
-    points[74] = t119;
-    points[75] = t72;
-    points[76] = t74;
-    points[77] = t54;
-    points[78] = t75;
-    points[79] = t76;
-    points[80] = t54;
-    points[81] = t116 - t71 + t45;
-    points[82] = t73 + t118 + t45;
-    points[83] = t119;
-    points[84] = t71 + t116 + t45;
-    points[85] = t118 - t73 + t45;
-    points[86] = t119;
-    points[87] = t78;
-    points[88] = t80;
-    points[89] = t49;
-    points[90] = t82;
+    points[36] = t86 - t88 + t57;
+    points[37] = t90 + t87 + t57;
+    points[38] = t74;
+    points[39] = t88 + t86 + t57;
+    points[40] = t87 - t90 + t57;
+    points[41] = t74;
+    points[42] = t94;
+    points[43] = t95;
+    points[44] = t60;
+    points[45] = t96;
+    points[46] = t97;
+    points[47] = t98;
+    points[48] = t99 + t57;
+    points[49] = t100 + t57;
+    points[50] = t74;
+    points[51] = t102;
+    points[52] = t104;
+    points[53] = t98;
+    points[54] = t105;
+    points[55] = t106;
+    points[56] = t98;
+    points[57] = t99 - t101 + t57;
+    points[58] = t103 + t100 + t57;
+    points[59] = t74;
+    points[60] = t101 + t99 + t57;
+    points[61] = t100 - t103 + t57;
+    points[62] = t74;
+    points[63] = -t66 + t57;
+    points[64] = -t70 + t57;
+    points[65] = t74;
+    points[66] = t58;
+    points[67] = t59;
+    points[68] = t60;
+    points[69] = t61;
+    points[70] = t62;
+    points[71] = t63;
+    points[72] = t108 + t57;
+    points[73] = t110 + t57;
+    points[74] = t111;
+    points[75] = t76;
+    points[76] = t78;
+    points[77] = t63;
+    points[78] = t79;
+    points[79] = t80;
+    points[80] = t63;
+    points[81] = t108 - t75 + t57;
+    points[82] = t77 + t110 + t57;
+    points[83] = t111;
+    points[84] = t75 + t108 + t57;
+    points[85] = t110 - t77 + t57;
+    points[86] = t111;
+    points[87] = t81;
+    points[88] = t82;
+    points[89] = t60;
+    points[90] = t83;
     points[91] = t84;
     points[92] = t85;
-    points[93] = t120 + t45;
-    points[94] = t121 + t45;
-    points[95] = t119;
-    points[96] = t91;
-    points[97] = t93;
+    points[93] = t112 + t57;
+    points[94] = t113 + t57;
+    points[95] = t111;
+    points[96] = t89;
+    points[97] = t91;
     points[98] = t85;
-    points[99] = t94;
-    points[100] = t95;
+    points[99] = t92;
+    points[100] = t93;
     points[101] = t85;
-    points[102] = t120 - t90 + t45;
-    points[103] = t92 + t121 + t45;
-    points[104] = t119;
-    points[105] = t90 + t120 + t45;
-    points[106] = t121 - t92 + t45;
-    points[107] = t119;
-    points[108] = t97;
-    points[109] = t99;
-    points[110] = t49;
-    points[111] = t101;
-    points[112] = t103;
-    points[113] = t104;
-    points[114] = t122 + t45;
-    points[115] = t123 + t45;
-    points[116] = t119;
-    points[117] = t110;
-    points[118] = t112;
-    points[119] = t104;
-    points[120] = t113;
-    points[121] = t114;
-    points[122] = t104;
-    points[123] = t122 - t109 + t45;
-    points[124] = t111 + t123 + t45;
-    points[125] = t119;
-    points[126] = t109 + t122 + t45;
-    points[127] = t123 - t111 + t45;
-    points[128] = t119;
-    points[129] = t115 + t45;
-    points[130] = t117 + t45;
-    points[131] = t119;
+    points[102] = t112 - t88 + t57;
+    points[103] = t90 + t113 + t57;
+    points[104] = t111;
+    points[105] = t88 + t112 + t57;
+    points[106] = t113 - t90 + t57;
+    points[107] = t111;
+    points[108] = t94;
+    points[109] = t95;
+    points[110] = t60;
+    points[111] = t96;
+    points[112] = t97;
+    points[113] = t98;
+    points[114] = t114 + t57;
+    points[115] = t115 + t57;
+    points[116] = t111;
+    points[117] = t102;
+    points[118] = t104;
+    points[119] = t98;
+    points[120] = t105;
+    points[121] = t106;
+    points[122] = t98;
+    points[123] = t114 - t101 + t57;
+    points[124] = t103 + t115 + t57;
+    points[125] = t111;
+    points[126] = t101 + t114 + t57;
+    points[127] = t115 - t103 + t57;
+    points[128] = t111;
+    points[129] = -t107 + t57;
+    points[130] = -t109 + t57;
+    points[131] = t111;
 }
 
 /* The same for one posture; operations that repeat are the lanes of vectors. */
@@ -739,22 +730,20 @@ CF_INLINE void delta_skeleton_lanes(const delta_params *params, const real_t q[3
     const real_t c2 = cosines[2];
     const real_t s_alpha2 = sines[3];
     const real_t c_alpha2 = cosines[3];
-    const real_t s_alpha3 = sines[4];
-    const real_t c_alpha3 = cosines[4];
-    const real_t s3 = sines[5];
-    const real_t c3 = cosines[5];
+    const real_t s3 = sines[4];
+    const real_t c3 = cosines[4];
+    const real_t s_alpha3 = sines[5];
+    const real_t c_alpha3 = cosines[5];
     const int t1 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
     const int t2 = t1 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
     const int t3 = t2 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
     const int t4 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t5 = f - e;
     const real_t size = f + e + L + l;
-    const real_t t6 = size * size;
-    const real_t t7 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t8 = t6 * t7;
+    const real_t t5 = size * size;
+    const real_t t6 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t5;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t t9 = CLOSEDFORM_C(0.9375) * (l * size);
-    real_t t10_lanes[4], t11_lanes[4], c1_x_lanes[4], c1_y_lanes[4], t12_lanes[4], t13_lanes[4], t14_lanes[4], c1_z_lanes[4], t15_lanes[4], t16_lanes[4], t17_lanes[4], t18_lanes[4], t19_lanes[4], t20_lanes[4], t21_lanes[4], t22_lanes[4];
+    const real_t t7 = CLOSEDFORM_C(0.9375) * (l * size);
+    real_t t8_lanes[4], t9_lanes[4], t10_lanes[4], t11_lanes[4], t12_lanes[4], t13_lanes[4], t14_lanes[4], t15_lanes[4], t16_lanes[4], c1_z_lanes[4], t17_lanes[4], t18_lanes[4], t19_lanes[4], t20_lanes[4], t21_lanes[4], t22_lanes[4];
     const real_t t23_of[4] = { c_alpha1, c_alpha2, c_alpha3, c_alpha3 };
     real_t t23[4];
     cf_side_by_side(4, t23_of, t23);
@@ -769,256 +758,251 @@ CF_INLINE void delta_skeleton_lanes(const delta_params *params, const real_t q[3
     cf_side_by_side(4, t26_of, t26);
     for (size_t k = 0; k < 4; ++k) {
         const real_t t27 = f * t23[k];
-        t10_lanes[k] = t27;
+        t8_lanes[k] = t27;
         const real_t t28 = L * t24[k];
-        t11_lanes[k] = t28;
-        const real_t t29 = L * t25[k];
-        const real_t t30 = t29 + t5;
-        c1_x_lanes[k] = t23[k] * t30;
-        c1_y_lanes[k] = t26[k] * t30;
-        const real_t t31 = f * t26[k];
-        t12_lanes[k] = t31;
-        const real_t t32 = t27 + t29 * t23[k];
+        t9_lanes[k] = t28;
+        const real_t t29 = e * t23[k];
+        t10_lanes[k] = t29;
+        const real_t t30 = L * t25[k];
+        const real_t t31 = t27 + t23[k] * t30;
+        t11_lanes[k] = t31;
+        t12_lanes[k] = t29 - t31;
+        const real_t t32 = e * t26[k];
         t13_lanes[k] = t32;
-        const real_t t33 = t31 + t29 * t26[k];
+        const real_t t33 = f * t26[k];
         t14_lanes[k] = t33;
-        c1_z_lanes[k] = -t28;
-        const real_t t34 = e * t23[k];
+        const real_t t34 = t33 + t26[k] * t30;
         t15_lanes[k] = t34;
-        const real_t t35 = e * t26[k];
-        t16_lanes[k] = t35;
-        const real_t t36 = t35 * CLOSEDFORM_C(0.5);
-        t17_lanes[k] = t36;
-        t18_lanes[k] = t32 - t36;
-        const real_t t37 = t34 * CLOSEDFORM_C(0.5);
-        t19_lanes[k] = t37;
-        t20_lanes[k] = t37 + t33;
-        t21_lanes[k] = t36 + t32;
-        t22_lanes[k] = t33 - t37;
+        t16_lanes[k] = t32 - t34;
+        c1_z_lanes[k] = -t28;
+        const real_t t35 = t32 * CLOSEDFORM_C(0.5);
+        t17_lanes[k] = t35;
+        t18_lanes[k] = t31 - t35;
+        const real_t t36 = t29 * CLOSEDFORM_C(0.5);
+        t19_lanes[k] = t36;
+        t20_lanes[k] = t36 + t34;
+        t21_lanes[k] = t35 + t31;
+        t22_lanes[k] = t34 - t36;
     }
-    const real_t u_z = t11_lanes[0] - t11_lanes[1];
-    const real_t t38 = c1_x_lanes[0] - c1_x_lanes[1];
-    const real_t t39 = c1_y_lanes[0] - c1_y_lanes[1];
-    const real_t u_u = u_z * u_z + t38 * t38 + t39 * t39;
-    const int same = u_u <= t8;
-    const real_t t40 = c1_y_lanes[0] - c1_y_lanes[2];
-    const real_t t41 = cf_rarely(1, same, t40, t39);
-    const real_t v_z = t11_lanes[0] - t11_lanes[2];
-    const real_t t42 = cf_rarely(1, same, u_z, v_z);
-    const real_t d_z = cf_rarely(1, same, v_z, u_z);
-    const real_t t43 = cf_rarely(1, same, t39, t40);
-    const real_t t44 = t41 * t42 - d_z * t43;
-    const real_t t45 = c1_x_lanes[0] - c1_x_lanes[2];
-    const real_t v_v = v_z * v_z + t45 * t45 + t40 * t40;
-    const int all_same = u_u + v_v <= t8;
-    const real_t t46 = cf_rarely(1, same, t45, t38);
-    const real_t a_x = cf_rarely(1, all_same, whole, -t46);
-    const real_t t47 = cf_rarely(1, same, t38, t45);
-    const real_t t48 = t42 * a_x + d_z * t47;
-    const real_t t49 = t43 * a_x + t41 * t47;
-    const real_t product_2 = t44 * t44 + t48 * t48 + t49 * t49;
+    const real_t u_z = t9_lanes[0] - t9_lanes[1];
+    const real_t t37 = t12_lanes[0] - t12_lanes[1];
+    const real_t t38 = t16_lanes[0] - t16_lanes[1];
+    const real_t u_u = u_z * u_z + t37 * t37 + t38 * t38;
+    const real_t v_z = t9_lanes[0] - t9_lanes[2];
+    const real_t t39 = t12_lanes[0] - t12_lanes[2];
+    const real_t t40 = t16_lanes[0] - t16_lanes[2];
+    const real_t v_v = v_z * v_z + t39 * t39 + t40 * t40;
+    const int all_same = u_u + v_v <= t6;
+    const int same = u_u <= t6;
     const real_t mu = cf_rarely(1, all_same, whole * whole, cf_rarely(1, same, v_v, u_u));
-    const real_t t50 = mu * cf_rarely(1, same, u_u, v_v);
-    const real_t t51 = product_2 - t50 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t51 <= CLOSEDFORM_VANISHING * t50;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(1, mu);
-    const real_t t52 = t41 * t49 + d_z * t48;
-    const real_t t53 = a_x * t49 - d_z * t44;
-    const real_t n_z = a_x * t48 + t41 * t44;
-    const real_t m_m = cf_rarely(1, slim, over * (t52 * t52 + t53 * t53 + n_z * n_z), product_2);
-    const int in_line = m_m <= t7 * (t6 * mu);
-    const real_t t54 = t47 * (t46 - t47) + t43 * (t41 - t43) - t42 * (t42 - d_z);
-    const real_t t55 = cf_rarely(1, in_line, -t54, CLOSEDFORM_C(0.0));
-    const int t56 = cf_abs(t55) <= t6 * CLOSEDFORM_FEASIBILITY;
+    const real_t t41 = cf_rarely(1, same, t40, t38);
+    const real_t d_x = cf_rarely(1, same, t39, t37);
+    const real_t a_x = cf_rarely(1, all_same, whole, d_x);
+    const real_t t42 = cf_rarely(1, same, t38, t40);
+    const real_t t43 = cf_rarely(1, same, t37, t39);
+    const real_t t44 = a_x * t42 - t41 * t43;
+    const real_t d_z = cf_rarely(1, same, v_z, u_z);
+    const real_t t45 = cf_rarely(1, same, u_z, v_z);
+    const real_t t46 = a_x * t45 - t43 * d_z;
+    const real_t t47 = over * (t41 * t44 + d_z * t46);
+    const real_t t48 = t41 * t45 - t42 * d_z;
+    const real_t t49 = over * (a_x * t44 - d_z * t48);
+    const real_t n_z = over * (a_x * t46 + t41 * t48);
+    const real_t nu = t47 * t47 + t49 * t49 + n_z * n_z;
+    const int in_line = nu <= t6;
+    const real_t t50 = t43 * (d_x - t43) + t42 * (t41 - t42) + t45 * (d_z - t45);
+    const real_t t51 = cf_rarely(1, in_line, -t50, CLOSEDFORM_C(0.0));
+    const int t52 = cf_abs(t51) <= t5 * CLOSEDFORM_FEASIBILITY;
     const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(-(t41 * a_x));
-    const real_t t57 = whole * (t41 - a_x * s_w);
-    const real_t w_w = cf_rarely(1, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t57 * t57, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(1, w_w);
-    const real_t t58 = cf_rarely(1, in_line, CLOSEDFORM_C(0.0), t54 * part * CLOSEDFORM_C(0.5));
-    const real_t t59 = mu * (CLOSEDFORM_C(0.25) + w_w * (t58 * t58));
-    const real_t t60 = cf_rarely(1, all_same, CLOSEDFORM_C(0.0), t59);
-    const real_t t61 = l * l - t60;
-    const int t62 = t56 & (-(CLOSEDFORM_FEASIBILITY * t9) <= t61);
-    const real_t t63 = cf_poison(0, (!(t3 & t4)) | (!t62));
-    const real_t t64 = CLOSEDFORM_C(0.0) + t63;
-    const real_t t65 = t52 * t58 - t46 * CLOSEDFORM_C(0.5);
-    const real_t t66 = cf_rarely(1, slim, over * (t41 * n_z - d_z * t53), t44);
-    const real_t slack = cf_max(t61, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t9, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t67 = cf_rarely(1, in_line, g_1 * s_w, -t66) * h;
-    const real_t t68 = c1_x_lanes[0] + (t65 - t67);
-    const real_t t69 = t53 * t58 - t41 * CLOSEDFORM_C(0.5);
-    const real_t t70 = cf_rarely(1, slim, over * (a_x * n_z + d_z * t52), t48);
-    const real_t t71 = h * cf_rarely(1, in_line, g_1, -t70);
-    const real_t t72 = c1_y_lanes[0] + (t69 - t71);
-    const real_t t73 = n_z * t58 - d_z * CLOSEDFORM_C(0.5);
-    const real_t t74 = cf_rarely(1, slim, over * (a_x * t53 + t41 * t52), t49);
-    const real_t t75 = h * cf_rarely(1, in_line, t57, -t74);
-    const real_t t76 = -(t11_lanes[0] + (t73 + t75)) + t63;
-    const real_t t77 = c1_x_lanes[0] + (t65 + t67);
-    const real_t t78 = c1_y_lanes[0] + (t69 + t71);
-    const real_t t79 = -(t11_lanes[0] + (t73 - t75)) + t63;
-    real_t t80_lanes[4], t81_lanes[4], t82_lanes[4], t83_lanes[4], t84_lanes[4], t85_lanes[4], t86_lanes[4], t87_lanes[4], t88_lanes[4], t89_lanes[4], t90_lanes[4], t91_lanes[4], t92_lanes[4], t93_lanes[4], t94_lanes[4], t95_lanes[4], t96_lanes[4], t97_lanes[4], t98_lanes[4], t99_lanes[4], t100_lanes[4];
+    const real_t s_w = cf_sign(t41 * a_x);
+    const real_t t53 = whole * (t41 + a_x * s_w);
+    const real_t t54 = CLOSEDFORM_C(1.0) / cf_nonzero(1, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t53 * t53);
+    const real_t t55 = CLOSEDFORM_C(1.0) / cf_divisor(1, in_line, mu * nu);
+    const real_t part = cf_rarely(1, in_line, t54, t55);
+    const real_t t56 = cf_rarely(1, in_line, CLOSEDFORM_C(0.0), mu * t50 * part * CLOSEDFORM_C(0.5));
+    const real_t t57 = cf_rarely(1, all_same, CLOSEDFORM_C(0.0), nu * (t56 * t56) + mu * CLOSEDFORM_C(0.25));
+    const real_t t58 = l * l - t57;
+    const int t59 = t52 & (-(CLOSEDFORM_FEASIBILITY * t7) <= t58);
+    const real_t t60 = cf_poison(0, (!(t3 & t4)) | (!t59));
+    const real_t t61 = CLOSEDFORM_C(0.0) + t60;
+    const real_t t62 = t47 * t56 + d_x * CLOSEDFORM_C(0.5);
+    const real_t w_x = cf_rarely(1, in_line, g_1 * s_w, t41 * n_z - d_z * t49);
+    const real_t slack = cf_max(t58, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t7, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t63 = w_x * h;
+    const real_t t64 = t12_lanes[0] - (t62 - t63);
+    const real_t t65 = t49 * t56 - t41 * CLOSEDFORM_C(0.5);
+    const real_t w_y = cf_rarely(1, in_line, g_1, -(a_x * n_z + d_z * t47));
+    const real_t t66 = h * w_y;
+    const real_t t67 = t16_lanes[0] + (t65 + t66);
+    const real_t t68 = n_z * t56 - d_z * CLOSEDFORM_C(0.5);
+    const real_t w_z = cf_rarely(1, in_line, -t53, a_x * t49 + t41 * t47);
+    const real_t t69 = h * w_z;
+    const real_t t70 = -(t9_lanes[0] + (t68 + t69)) + t60;
+    const real_t t71 = t12_lanes[0] - (t62 + t63);
+    const real_t t72 = t16_lanes[0] + (t65 - t66);
+    const real_t t73 = -(t9_lanes[0] + (t68 - t69)) + t60;
+    real_t t74_lanes[4], t75_lanes[4], t76_lanes[4], t77_lanes[4], t78_lanes[4], t79_lanes[4], t80_lanes[4], t81_lanes[4], t82_lanes[4], t83_lanes[4], t84_lanes[4], t85_lanes[4], t86_lanes[4], t87_lanes[4], t88_lanes[4], t89_lanes[4], t90_lanes[4], t91_lanes[4], t92_lanes[4], t93_lanes[4], t94_lanes[4];
     for (size_t k = 0; k < 4; ++k) {
-        t80_lanes[k] = t10_lanes[k] + t63;
-        t81_lanes[k] = t12_lanes[k] + t63;
-        t82_lanes[k] = t13_lanes[k] + t63;
-        t83_lanes[k] = t14_lanes[k] + t63;
-        t84_lanes[k] = c1_z_lanes[k] + t63;
-        const real_t t101 = t15_lanes[k] + t68;
-        t85_lanes[k] = t101 + t63;
-        const real_t t102 = t16_lanes[k] + t72;
-        t86_lanes[k] = t102 + t63;
-        t87_lanes[k] = t18_lanes[k] + t63;
-        t88_lanes[k] = t20_lanes[k] + t63;
-        t89_lanes[k] = t21_lanes[k] + t63;
-        t90_lanes[k] = t22_lanes[k] + t63;
-        t91_lanes[k] = t101 - t17_lanes[k] + t63;
-        t92_lanes[k] = t19_lanes[k] + t102 + t63;
-        t93_lanes[k] = t17_lanes[k] + t101 + t63;
-        t94_lanes[k] = t102 - t19_lanes[k] + t63;
-        const real_t t103 = t15_lanes[k] + t77;
-        t95_lanes[k] = t103 + t63;
-        const real_t t104 = t16_lanes[k] + t78;
-        t96_lanes[k] = t104 + t63;
-        t97_lanes[k] = t103 - t17_lanes[k] + t63;
-        t98_lanes[k] = t19_lanes[k] + t104 + t63;
-        t99_lanes[k] = t17_lanes[k] + t103 + t63;
-        t100_lanes[k] = t104 - t19_lanes[k] + t63;
+        t74_lanes[k] = t8_lanes[k] + t60;
+        t75_lanes[k] = t14_lanes[k] + t60;
+        t76_lanes[k] = t11_lanes[k] + t60;
+        t77_lanes[k] = t15_lanes[k] + t60;
+        t78_lanes[k] = c1_z_lanes[k] + t60;
+        const real_t t95 = t10_lanes[k] - t64;
+        t79_lanes[k] = t95 + t60;
+        const real_t t96 = t13_lanes[k] - t67;
+        t80_lanes[k] = t96 + t60;
+        t81_lanes[k] = t18_lanes[k] + t60;
+        t82_lanes[k] = t20_lanes[k] + t60;
+        t83_lanes[k] = t21_lanes[k] + t60;
+        t84_lanes[k] = t22_lanes[k] + t60;
+        t85_lanes[k] = t95 - t17_lanes[k] + t60;
+        t86_lanes[k] = t19_lanes[k] + t96 + t60;
+        t87_lanes[k] = t17_lanes[k] + t95 + t60;
+        t88_lanes[k] = t96 - t19_lanes[k] + t60;
+        const real_t t97 = t10_lanes[k] - t71;
+        t89_lanes[k] = t97 + t60;
+        const real_t t98 = t13_lanes[k] - t72;
+        t90_lanes[k] = t98 + t60;
+        t91_lanes[k] = t97 - t17_lanes[k] + t60;
+        t92_lanes[k] = t19_lanes[k] + t98 + t60;
+        t93_lanes[k] = t17_lanes[k] + t97 + t60;
+        t94_lanes[k] = t98 - t19_lanes[k] + t60;
     }
-    points[0] = t80_lanes[0];
-    points[1] = t81_lanes[0];
-    points[2] = t64;
-    points[3] = t82_lanes[0];
-    points[4] = t83_lanes[0];
-    points[5] = t84_lanes[0];
-    points[6] = t85_lanes[0];
-    points[7] = t86_lanes[0];
-    points[8] = t76;
-    points[9] = t87_lanes[0];
-    points[10] = t88_lanes[0];
-    points[11] = t84_lanes[0];
-    points[12] = t89_lanes[0];
-    points[13] = t90_lanes[0];
-    points[14] = t84_lanes[0];
-    points[15] = t91_lanes[0];
-    points[16] = t92_lanes[0];
-    points[17] = t76;
-    points[18] = t93_lanes[0];
-    points[19] = t94_lanes[0];
-    points[20] = t76;
-    points[21] = t80_lanes[1];
-    points[22] = t81_lanes[1];
-    points[23] = t64;
-    points[24] = t82_lanes[1];
-    points[25] = t83_lanes[1];
-    points[26] = t84_lanes[1];
-    points[27] = t85_lanes[1];
-    points[28] = t86_lanes[1];
-    points[29] = t76;
-    points[30] = t87_lanes[1];
-    points[31] = t88_lanes[1];
-    points[32] = t84_lanes[1];
-    points[33] = t89_lanes[1];
-    points[34] = t90_lanes[1];
-    points[35] = t84_lanes[1];
-    points[36] = t91_lanes[1];
-    points[37] = t92_lanes[1];
-    points[38] = t76;
-    points[39] = t93_lanes[1];
-    points[40] = t94_lanes[1];
-    points[41] = t76;
-    points[42] = t80_lanes[2];
-    points[43] = t81_lanes[2];
-    points[44] = t64;
-    points[45] = t82_lanes[2];
-    points[46] = t83_lanes[2];
-    points[47] = t84_lanes[2];
-    points[48] = t85_lanes[2];
-    points[49] = t86_lanes[2];
-    points[50] = t76;
-    points[51] = t87_lanes[2];
-    points[52] = t88_lanes[2];
-    points[53] = t84_lanes[2];
-    points[54] = t89_lanes[2];
-    points[55] = t90_lanes[2];
-    points[56] = t84_lanes[2];
-    points[57] = t91_lanes[2];
-    points[58] = t92_lanes[2];
-    points[59] = t76;
-    points[60] = t93_lanes[2];
-    points[61] = t94_lanes[2];
-    points[62] = t76;
-    points[63] = t68 + t63;
-    points[64] = t72 + t63;
-    points[65] = t76;
-    points[66] = t80_lanes[0];
-    points[67] = t81_lanes[0];
-    points[68] = t64;
-    points[69] = t82_lanes[0];
-    points[70] = t83_lanes[0];
-    points[71] = t84_lanes[0];
-    points[72] = t95_lanes[0];
-    points[73] = t96_lanes[0];
-    points[74] = t79;
-    points[75] = t87_lanes[0];
-    points[76] = t88_lanes[0];
-    points[77] = t84_lanes[0];
-    points[78] = t89_lanes[0];
-    points[79] = t90_lanes[0];
-    points[80] = t84_lanes[0];
-    points[81] = t97_lanes[0];
-    points[82] = t98_lanes[0];
-    points[83] = t79;
-    points[84] = t99_lanes[0];
-    points[85] = t100_lanes[0];
-    points[86] = t79;
-    points[87] = t80_lanes[1];
-    points[88] = t81_lanes[1];
-    points[89] = t64;
-    points[90] = t82_lanes[1];
-    points[91] = t83_lanes[1];
-    points[92] = t84_lanes[1];
-    points[93] = t95_lanes[1];
-    points[94] = t96_lanes[1];
-    points[95] = t79;
-    points[96] = t87_lanes[1];
-    points[97] = t88_lanes[1];
-    points[98] = t84_lanes[1];
-    points[99] = t89_lanes[1];
-    points[100] = t90_lanes[1];
-    points[101] = t84_lanes[1];
-    points[102] = t97_lanes[1];
-    points[103] = t98_lanes[1];
-    points[104] = t79;
-    points[105] = t99_lanes[1];
-    points[106] = t100_lanes[1];
-    points[107] = t79;
-    points[108] = t80_lanes[2];
-    points[109] = t81_lanes[2];
-    points[110] = t64;
-    points[111] = t82_lanes[2];
-    points[112] = t83_lanes[2];
-    points[113] = t84_lanes[2];
-    points[114] = t95_lanes[2];
-    points[115] = t96_lanes[2];
-    points[116] = t79;
-    points[117] = t87_lanes[2];
-    points[118] = t88_lanes[2];
-    points[119] = t84_lanes[2];
-    points[120] = t89_lanes[2];
-    points[121] = t90_lanes[2];
-    points[122] = t84_lanes[2];
-    points[123] = t97_lanes[2];
-    points[124] = t98_lanes[2];
-    points[125] = t79;
-    points[126] = t99_lanes[2];
-    points[127] = t100_lanes[2];
-    points[128] = t79;
-    points[129] = t77 + t63;
-    points[130] = t78 + t63;
-    points[131] = t79;
+    points[0] = t74_lanes[0];
+    points[1] = t75_lanes[0];
+    points[2] = t61;
+    points[3] = t76_lanes[0];
+    points[4] = t77_lanes[0];
+    points[5] = t78_lanes[0];
+    points[6] = t79_lanes[0];
+    points[7] = t80_lanes[0];
+    points[8] = t70;
+    points[9] = t81_lanes[0];
+    points[10] = t82_lanes[0];
+    points[11] = t78_lanes[0];
+    points[12] = t83_lanes[0];
+    points[13] = t84_lanes[0];
+    points[14] = t78_lanes[0];
+    points[15] = t85_lanes[0];
+    points[16] = t86_lanes[0];
+    points[17] = t70;
+    points[18] = t87_lanes[0];
+    points[19] = t88_lanes[0];
+    points[20] = t70;
+    points[21] = t74_lanes[1];
+    points[22] = t75_lanes[1];
+    points[23] = t61;
+    points[24] = t76_lanes[1];
+    points[25] = t77_lanes[1];
+    points[26] = t78_lanes[1];
+    points[27] = t79_lanes[1];
+    points[28] = t80_lanes[1];
+    points[29] = t70;
+    points[30] = t81_lanes[1];
+    points[31] = t82_lanes[1];
+    points[32] = t78_lanes[1];
+    points[33] = t83_lanes[1];
+    points[34] = t84_lanes[1];
+    points[35] = t78_lanes[1];
+    points[36] = t85_lanes[1];
+    points[37] = t86_lanes[1];
+    points[38] = t70;
+    points[39] = t87_lanes[1];
+    points[40] = t88_lanes[1];
+    points[41] = t70;
+    points[42] = t74_lanes[2];
+    points[43] = t75_lanes[2];
+    points[44] = t61;
+    points[45] = t76_lanes[2];
+    points[46] = t77_lanes[2];
+    points[47] = t78_lanes[2];
+    points[48] = t79_lanes[2];
+    points[49] = t80_lanes[2];
+    points[50] = t70;
+    points[51] = t81_lanes[2];
+    points[52] = t82_lanes[2];
+    points[53] = t78_lanes[2];
+    points[54] = t83_lanes[2];
+    points[55] = t84_lanes[2];
+    points[56] = t78_lanes[2];
+    points[57] = t85_lanes[2];
+    points[58] = t86_lanes[2];
+    points[59] = t70;
+    points[60] = t87_lanes[2];
+    points[61] = t88_lanes[2];
+    points[62] = t70;
+    points[63] = -t64 + t60;
+    points[64] = -t67 + t60;
+    points[65] = t70;
+    points[66] = t74_lanes[0];
+    points[67] = t75_lanes[0];
+    points[68] = t61;
+    points[69] = t76_lanes[0];
+    points[70] = t77_lanes[0];
+    points[71] = t78_lanes[0];
+    points[72] = t89_lanes[0];
+    points[73] = t90_lanes[0];
+    points[74] = t73;
+    points[75] = t81_lanes[0];
+    points[76] = t82_lanes[0];
+    points[77] = t78_lanes[0];
+    points[78] = t83_lanes[0];
+    points[79] = t84_lanes[0];
+    points[80] = t78_lanes[0];
+    points[81] = t91_lanes[0];
+    points[82] = t92_lanes[0];
+    points[83] = t73;
+    points[84] = t93_lanes[0];
+    points[85] = t94_lanes[0];
+    points[86] = t73;
+    points[87] = t74_lanes[1];
+    points[88] = t75_lanes[1];
+    points[89] = t61;
+    points[90] = t76_lanes[1];
+    points[91] = t77_lanes[1];
+    points[92] = t78_lanes[1];
+    points[93] = t89_lanes[1];
+    points[94] = t90_lanes[1];
+    points[95] = t73;
+    points[96] = t81_lanes[1];
+    points[97] = t82_lanes[1];
+    points[98] = t78_lanes[1];
+    points[99] = t83_lanes[1];
+    points[100] = t84_lanes[1];
+    points[101] = t78_lanes[1];
+    points[102] = t91_lanes[1];
+    points[103] = t92_lanes[1];
+    points[104] = t73;
+    points[105] = t93_lanes[1];
+    points[106] = t94_lanes[1];
+    points[107] = t73;
+    points[108] = t74_lanes[2];
+    points[109] = t75_lanes[2];
+    points[110] = t61;
+    points[111] = t76_lanes[2];
+    points[112] = t77_lanes[2];
+    points[113] = t78_lanes[2];
+    points[114] = t89_lanes[2];
+    points[115] = t90_lanes[2];
+    points[116] = t73;
+    points[117] = t81_lanes[2];
+    points[118] = t82_lanes[2];
+    points[119] = t78_lanes[2];
+    points[120] = t83_lanes[2];
+    points[121] = t84_lanes[2];
+    points[122] = t78_lanes[2];
+    points[123] = t91_lanes[2];
+    points[124] = t92_lanes[2];
+    points[125] = t73;
+    points[126] = t93_lanes[2];
+    points[127] = t94_lanes[2];
+    points[128] = t73;
+    points[129] = -t71 + t60;
+    points[130] = -t72 + t60;
+    points[131] = t73;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1029,7 +1013,7 @@ void delta_skeleton(const delta_params *params, const real_t q[3],
     delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -1039,7 +1023,7 @@ void delta_skeleton(const delta_params *params, const real_t q[3],
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, params->alpha3, q[2], q[2], q[2] };
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_skeleton_lanes(params, q, sines, cosines, points);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -1068,7 +1052,7 @@ void delta_skeleton_batch(size_t n, const delta_params *params,
 {
     const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
         delta_skeleton_other_sizes(n, params, q, q_stride, points, points_stride);
         return;
     }
@@ -1085,11 +1069,11 @@ void delta_skeleton_batch(size_t n, const delta_params *params,
         for (size_t i = 0; i < length; ++i)
             angle_3[i] = params->alpha2;
         cf_sincos_block(length, angle_3, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha3;
-        cf_sincos_block(length, angle_4, sines[4], cosines[4]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[5], cosines[5]);
+            angle_5[i] = params->alpha3;
+        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
@@ -1233,8 +1217,7 @@ void delta_skeleton_batch(size_t n, const delta_params *params,
     }
 }
 
-/* Every case. */
-CF_INLINE void delta_jacobian_parallel_whole_kernel(const int single, const delta_params *params,
+CF_INLINE void delta_jacobian_parallel_kernel(const int single, const delta_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t A[18])
 {
@@ -1256,299 +1239,101 @@ CF_INLINE void delta_jacobian_parallel_whole_kernel(const int single, const delt
     const real_t c_alpha1 = cosines[2];
     const real_t s_alpha2 = sines[3];
     const real_t c_alpha2 = cosines[3];
-    const real_t s_alpha3 = sines[4];
-    const real_t c_alpha3 = cosines[4];
-    const real_t s3 = sines[5];
-    const real_t c3 = cosines[5];
+    const real_t s3 = sines[4];
+    const real_t c3 = cosines[4];
+    const real_t s_alpha3 = sines[5];
+    const real_t c_alpha3 = cosines[5];
     const real_t t1 = L * s1;
     const real_t u_z = t1 - L * s2;
-    const real_t t2 = f - e;
-    const real_t t3 = L * c1 + t2;
-    const real_t c1_x = c_alpha1 * t3;
-    const real_t t4 = L * c2 + t2;
-    const real_t t5 = c1_x - c_alpha2 * t4;
-    const real_t c1_y = s_alpha1 * t3;
-    const real_t t6 = c1_y - s_alpha2 * t4;
-    const real_t u_u = u_z * u_z + t5 * t5 + t6 * t6;
-    const real_t size = f + e + L + l;
-    const real_t t7 = size * size;
-    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t9 = t7 * t8;
-    const int same = u_u <= t9;
-    const real_t t10 = L * c3 + t2;
-    const real_t t11 = c1_y - s_alpha3 * t10;
-    const real_t t12 = cf_rarely(single, same, t11, t6);
+    const real_t t2 = L * c1;
+    const real_t t3 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t2;
+    const real_t t4 = L * c2;
+    const real_t t5 = t3 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t4);
+    const real_t t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t2;
+    const real_t t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4);
+    const real_t u_u = u_z * u_z + t5 * t5 + t7 * t7;
     const real_t v_z = t1 - L * s3;
-    const real_t t13 = c1_x - c_alpha3 * t10;
-    const real_t v_v = v_z * v_z + t13 * t13 + t11 * t11;
-    const int all_same = u_u + v_v <= t9;
-    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t t14 = cf_rarely(single, same, t13, t5);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t14);
-    const real_t t15 = cf_rarely(single, same, t6, t11);
-    const real_t t16 = cf_rarely(single, same, t5, t13);
-    const real_t t17 = a_x * t15 + t12 * t16;
-    const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t18 = cf_rarely(single, same, u_z, v_z);
-    const real_t t19 = a_x * t18 + t16 * d_z;
-    const real_t t20 = t12 * t17 + d_z * t19;
-    const real_t t21 = t12 * t18 - t15 * d_z;
-    const real_t product_2 = t21 * t21 + t19 * t19 + t17 * t17;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t22 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t23 = product_2 - t22 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t23 <= CLOSEDFORM_VANISHING * t22;
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t24 = a_x * t17 - d_z * t21;
-    const real_t n_z = a_x * t19 + t12 * t21;
-    const real_t m_m = cf_rarely(single, slim, over * (t20 * t20 + t24 * t24 + n_z * n_z), product_2);
-    const int in_line = m_m <= t8 * (t7 * mu);
-    const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(-(t12 * a_x));
-    const real_t t25 = whole * (t12 - a_x * s_w);
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t26 = t16 * (t14 - t16) + t15 * (t12 - t15) + t18 * (d_z - t18);
-    const real_t t27 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t26 * CLOSEDFORM_C(0.5));
-    const real_t t28 = t20 * t27 - t14 * CLOSEDFORM_C(0.5);
-    const real_t t29 = cf_rarely(single, slim, over * (t12 * n_z - d_z * t24), t21);
-    const real_t t30 = mu * (CLOSEDFORM_C(0.25) + w_w * (t27 * t27));
-    const real_t t31 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t30);
-    const real_t t32 = l * l - t31;
-    const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
-    const real_t t33 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t33, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t34 = cf_rarely(single, in_line, g_1 * s_w, -t29) * h;
-    const real_t A_11 = t28 - t34;
-    const int t35 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t36 = t35 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t37 = t36 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t38 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t39 = cf_rarely(single, in_line, -t26, CLOSEDFORM_C(0.0));
-    const int t40 = cf_abs(t39) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t41 = t40 & (-(CLOSEDFORM_FEASIBILITY * t33) <= t32);
-    const real_t t42 = cf_poison(single, (!(t37 & t38)) | (!t41));
-    const real_t t43 = t24 * t27 - t12 * CLOSEDFORM_C(0.5);
-    const real_t t44 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t20), t19);
-    const real_t t45 = h * cf_rarely(single, in_line, g_1, -t44);
-    const real_t A_12 = t43 - t45;
-    const real_t t46 = n_z * t27 - d_z * CLOSEDFORM_C(0.5);
-    const real_t t47 = cf_rarely(single, slim, over * (a_x * t24 + t12 * t20), t17);
-    const real_t t48 = h * cf_rarely(single, in_line, t25, -t47);
-    const real_t t49 = t46 + t48;
-    const real_t A_11_above = t28 + t34;
-    const real_t A_12_above = t43 + t45;
-    const real_t t50 = t46 - t48;
-    A[0] = A_11 + t42;
-    A[1] = A_12 + t42;
-    A[2] = -t49 + t42;
-    A[3] = t5 + A_11 + t42;
-    A[4] = t6 + A_12 + t42;
-    A[5] = -(u_z + t49) + t42;
-    A[6] = t13 + A_11 + t42;
-    A[7] = t11 + A_12 + t42;
-    A[8] = -(v_z + t49) + t42;
-    A[9] = A_11_above + t42;
-    A[10] = A_12_above + t42;
-    A[11] = -t50 + t42;
-    A[12] = t5 + A_11_above + t42;
-    A[13] = t6 + A_12_above + t42;
-    A[14] = -(u_z + t50) + t42;
-    A[15] = t13 + A_11_above + t42;
-    A[16] = t11 + A_12_above + t42;
-    A[17] = -(v_z + t50) + t42;
-}
-
-CLOSEDFORM_DISPATCHED
-CF_OUT_OF_LINE void delta_jacobian_parallel_whole(const delta_params *params, const real_t q[3],
-    real_t A[18])
-{
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, params->alpha3, q[2], q[2], q[2] };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    delta_jacobian_parallel_whole_kernel(1, params, q, sines, cosines, A);
-}
-
-/* Where nothing vanishes; rare is whether something does. */
-CF_INLINE void delta_jacobian_parallel_common_kernel(const int single, const real_t one,
-    const delta_params *params, const real_t q[3],
-    const real_t *sines, const real_t *cosines,
-    real_t A[18], real_t rare[1])
-{
-    const real_t f = params->f;
-    const real_t e = params->e;
-    const real_t L = params->L;
-    const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
-    const real_t theta1 = q[0];
-    const real_t theta2 = q[1];
-    const real_t theta3 = q[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s1 = sines[1];
-    const real_t c1 = cosines[1];
-    const real_t s_alpha2 = sines[2];
-    const real_t c_alpha2 = cosines[2];
-    const real_t s2 = sines[3];
-    const real_t c2 = cosines[3];
-    const real_t s_alpha3 = sines[4];
-    const real_t c_alpha3 = cosines[4];
-    const real_t s3 = sines[5];
-    const real_t c3 = cosines[5];
-    const real_t t1 = f - e;
-    const real_t t2 = cf_rounded(single, one, L * c1) + t1;
-    const real_t c1_y = cf_rounded(single, one, s_alpha1 * t2);
-    const real_t t3 = cf_rounded(single, one, L * c2) + t1;
-    const real_t t4 = c1_y - cf_rounded(single, one, s_alpha2 * t3);
-    const real_t c1_x = cf_rounded(single, one, c_alpha1 * t2);
-    const real_t t5 = c1_x - cf_rounded(single, one, c_alpha2 * t3);
-    const real_t t6 = cf_rounded(single, one, L * c3) + t1;
-    const real_t t7 = c1_y - cf_rounded(single, one, s_alpha3 * t6);
-    const real_t t8 = c1_x - cf_rounded(single, one, c_alpha3 * t6);
-    const real_t m_z = cf_rounded(single, one, t5 * t7) - cf_rounded(single, one, t4 * t8);
-    const real_t t9 = cf_rounded(single, one, L * s1);
-    const real_t u_z = t9 - cf_rounded(single, one, L * s2);
-    const real_t v_z = t9 - cf_rounded(single, one, L * s3);
-    const real_t m_y = cf_rounded(single, one, v_z * t5) - cf_rounded(single, one, u_z * t8);
-    const real_t t10 = cf_rounded(single, one, v_z * t4) - cf_rounded(single, one, u_z * t7);
-    const real_t t11 = cf_rounded(single, one, t10 * t10) + cf_rounded(single, one, m_y * m_y);
-    const real_t product_2 = t11 + cf_rounded(single, one, m_z * m_z);
-    const real_t t12 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t5 * t5);
-    const real_t u_u = t12 + cf_rounded(single, one, t4 * t4);
+    const real_t t8 = L * c3;
+    const real_t t9 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8);
+    const real_t t10 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8);
+    const real_t v_v = v_z * v_z + t9 * t9 + t10 * t10;
     const real_t size = f + e + L + l;
-    const real_t t13 = size * size;
-    const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t15 = t13 * t14;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t15) | (product_2 <= t14 * (t13 * u_u)), product_2);
-    const real_t t16 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t8 * (t5 - t8));
-    const real_t t17 = t16 + cf_rounded(single, one, t7 * (t4 - t7));
-    const real_t t18 = part * t17 * CLOSEDFORM_C(0.5);
-    const real_t t19 = (t4 * m_z + u_z * m_y) * t18 + t5 * CLOSEDFORM_C(0.5);
-    const real_t t20 = cf_rounded(single, one, product_2 * (t18 * t18));
-    const real_t t21 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t20));
-    const real_t t22 = cf_rounded(single, one, l * l) - t21;
-    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
-    const real_t h = cf_sqrt(part * slack);
-    const real_t t23 = t10 * h;
-    const real_t t24 = t19 - t23;
-    const int t25 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t26 = t25 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t27 = t26 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t28 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int t29 = cf_abs(CLOSEDFORM_C(0.0)) <= t13 * CLOSEDFORM_FEASIBILITY;
-    const real_t t30 = CLOSEDFORM_C(0.9375) * (l * size);
-    const int t31 = t29 & (-(CLOSEDFORM_FEASIBILITY * t30) <= t22);
-    const real_t t32 = cf_poison(single, (!(t27 & t28)) | (!t31));
-    const real_t t33 = t18 * (t5 * m_z - u_z * t10) - t4 * CLOSEDFORM_C(0.5);
-    const real_t t34 = m_y * h;
-    const real_t A_12 = t33 - t34;
-    const real_t t35 = u_z * CLOSEDFORM_C(0.5) - t18 * (t5 * m_y + t4 * t10);
-    const real_t t36 = m_z * h;
-    const real_t A_13 = t35 - t36;
-    const real_t t37 = t19 + t23;
-    const real_t A_12_above = t33 + t34;
-    const real_t A_13_above = t35 + t36;
-    const real_t t38 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t8 * t8);
-    const real_t v_v = t38 + cf_rounded(single, one, t7 * t7);
-    const real_t t39 = u_u * v_v;
-    const real_t t40 = product_2 - t39 * CLOSEDFORM_C(0.000244140625);
-    const int t41 = (u_u <= t15) | (u_u + v_v <= t15) | (t40 <= CLOSEDFORM_VANISHING * t39);
-    const int t42 = t41 | (product_2 <= t14 * (t13 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t30);
-    A[0] = -t24 + t32;
-    A[1] = A_12 + t32;
-    A[2] = A_13 + t32;
-    A[3] = t5 - t24 + t32;
-    A[4] = t4 + A_12 + t32;
-    A[5] = A_13 - u_z + t32;
-    A[6] = t8 - t24 + t32;
-    A[7] = t7 + A_12 + t32;
-    A[8] = A_13 - v_z + t32;
-    A[9] = -t37 + t32;
-    A[10] = A_12_above + t32;
-    A[11] = A_13_above + t32;
-    A[12] = t5 - t37 + t32;
-    A[13] = t4 + A_12_above + t32;
-    A[14] = A_13_above - u_z + t32;
-    A[15] = t8 - t37 + t32;
-    A[16] = t7 + A_12_above + t32;
-    A[17] = A_13_above - v_z + t32;
-    rare[0] = (t42) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
-}
-
-CF_INLINE void delta_jacobian_parallel_common_batch(size_t n, const delta_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *A, size_t A_stride,
-    uint8_t *rare, size_t rare_stride)
-{
-    (void)rare_stride;
-    const delta_params local = *params;
-    const real_t one = cf_one();
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_4, sines[4], cosines[4]);
-        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[5], cosines[5]);
-        real_t rare_real[1][CLOSEDFORM_BLOCK];
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
-            real_t A_i[18];
-            real_t rare_i[1];
-            delta_jacobian_parallel_common_kernel(0, one, &local, q_i, sines_i, cosines_i, A_i, rare_i);
-            A[start + i] = A_i[0];
-            A[A_stride + start + i] = A_i[1];
-            A[2 * A_stride + start + i] = A_i[2];
-            A[3 * A_stride + start + i] = A_i[3];
-            A[4 * A_stride + start + i] = A_i[4];
-            A[5 * A_stride + start + i] = A_i[5];
-            A[6 * A_stride + start + i] = A_i[6];
-            A[7 * A_stride + start + i] = A_i[7];
-            A[8 * A_stride + start + i] = A_i[8];
-            A[9 * A_stride + start + i] = A_i[9];
-            A[10 * A_stride + start + i] = A_i[10];
-            A[11 * A_stride + start + i] = A_i[11];
-            A[12 * A_stride + start + i] = A_i[12];
-            A[13 * A_stride + start + i] = A_i[13];
-            A[14 * A_stride + start + i] = A_i[14];
-            A[15 * A_stride + start + i] = A_i[15];
-            A[16 * A_stride + start + i] = A_i[16];
-            A[17 * A_stride + start + i] = A_i[17];
-            rare_real[0][i] = rare_i[0];
-        }
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i)
-            rare[start + i] = (uint8_t)rare_real[0][i];
-    }
-}
-
-CF_INLINE void delta_jacobian_parallel_common(const delta_params *params, const real_t q[3],
-    real_t A[18], uint8_t rare[1])
-{
-    const real_t one = cf_one();
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], params->alpha2, q[1], params->alpha3, q[2], q[2], q[2] };
-    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
-    real_t rare_real[1];
-    delta_jacobian_parallel_common_kernel(1, one, params, q, sines, cosines, A, rare_real);
-    for (size_t i = 0; i < 1; ++i)
-        rare[i] = (uint8_t)rare_real[i];
+    const real_t t11 = size * size;
+    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t11;
+    const int all_same = u_u + v_v <= t12;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
+    const int same = u_u <= t12;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t13 = cf_rarely(single, same, t10, t7);
+    const real_t d_x = cf_rarely(single, same, t9, t5);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t14 = cf_rarely(single, same, t7, t10);
+    const real_t t15 = cf_rarely(single, same, t5, t9);
+    const real_t t16 = a_x * t14 - t13 * t15;
+    const real_t d_z = cf_rarely(single, same, v_z, u_z);
+    const real_t t17 = cf_rarely(single, same, u_z, v_z);
+    const real_t t18 = a_x * t17 - t15 * d_z;
+    const real_t t19 = over * (t13 * t16 + d_z * t18);
+    const real_t t20 = t13 * t17 - t14 * d_z;
+    const real_t t21 = over * (a_x * t16 - d_z * t20);
+    const real_t n_z = over * (a_x * t18 + t13 * t20);
+    const real_t nu = t19 * t19 + t21 * t21 + n_z * n_z;
+    const int in_line = nu <= t12;
+    const real_t g_1 = whole * d_z;
+    const real_t s_w = cf_sign(t13 * a_x);
+    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t13 * n_z - d_z * t21);
+    const real_t t22 = whole * (t13 + a_x * s_w);
+    const real_t t23 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t22 * t22);
+    const real_t t24 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, t23, t24);
+    const real_t t25 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17);
+    const real_t t26 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t25 * CLOSEDFORM_C(0.5));
+    const real_t t27 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t26 * t26) + mu * CLOSEDFORM_C(0.25));
+    const real_t t28 = l * l - t27;
+    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
+    const real_t t29 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t29, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t30 = w_x * h;
+    const real_t t31 = t19 * t26 + d_x * CLOSEDFORM_C(0.5);
+    const real_t t32 = t30 - t31;
+    const int t33 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t34 = t33 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t35 = t34 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t36 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t37 = cf_rarely(single, in_line, -t25, CLOSEDFORM_C(0.0));
+    const int t38 = cf_abs(t37) <= t11 * CLOSEDFORM_FEASIBILITY;
+    const int t39 = t38 & (-(CLOSEDFORM_FEASIBILITY * t29) <= t28);
+    const real_t t40 = cf_poison(single, (!(t35 & t36)) | (!t39));
+    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t19));
+    const real_t t41 = h * w_y;
+    const real_t t42 = t21 * t26 - t13 * CLOSEDFORM_C(0.5);
+    const real_t t43 = t41 + t42;
+    const real_t w_z = cf_rarely(single, in_line, -t22, a_x * t21 + t13 * t19);
+    const real_t t44 = h * w_z;
+    const real_t t45 = n_z * t26 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t46 = t44 + t45;
+    const real_t A_11_above = t30 + t31;
+    const real_t A_12_above = t41 - t42;
+    const real_t A_13_above = t44 - t45;
+    A[0] = -t32 + t40;
+    A[1] = -t43 + t40;
+    A[2] = -t46 + t40;
+    A[3] = -(t5 + t32) + t40;
+    A[4] = -(t7 + t43) + t40;
+    A[5] = -(u_z + t46) + t40;
+    A[6] = -(t9 + t32) + t40;
+    A[7] = -(t10 + t43) + t40;
+    A[8] = -(v_z + t46) + t40;
+    A[9] = A_11_above + t40;
+    A[10] = A_12_above + t40;
+    A[11] = A_13_above + t40;
+    A[12] = A_11_above - t5 + t40;
+    A[13] = A_12_above - t7 + t40;
+    A[14] = A_13_above - u_z + t40;
+    A[15] = A_11_above - t9 + t40;
+    A[16] = A_12_above - t10 + t40;
+    A[17] = A_13_above - v_z + t40;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1559,7 +1344,7 @@ void delta_jacobian_parallel(const delta_params *params, const real_t q[3],
     delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -1568,9 +1353,10 @@ void delta_jacobian_parallel(const delta_params *params, const real_t q[3],
         params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
         params = &params_scaled;
     }
-    uint8_t rare[1];
-    delta_jacobian_parallel_common(params, q, A, rare);
-    if (CF_UNLIKELY(rare[0])) delta_jacobian_parallel_whole(params, q, A);
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    delta_jacobian_parallel_kernel(1, params, q, sines, cosines, A);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(18, A_degrees, exponent, A, A);
     }
@@ -1595,172 +1381,62 @@ void delta_jacobian_parallel_batch(size_t n, const delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *A, size_t A_stride)
 {
+    const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
         delta_jacobian_parallel_other_sizes(n, params, q, q_stride, A, A_stride);
         return;
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        uint8_t rare[CLOSEDFORM_BLOCK];
-        delta_jacobian_parallel_common_batch(length, params, q + start, q_stride, A + start, A_stride, rare, CLOSEDFORM_BLOCK);
-        for (size_t i = start; i < start + length; ++i) {
-            if (!CF_UNLIKELY(rare[i - start])) continue;
-            real_t q_i[3];
-            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        real_t angle_2[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_2[i] = params->alpha1;
+        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = params->alpha2;
+        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_5[i] = params->alpha3;
+        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
             real_t A_i[18];
-            delta_jacobian_parallel_whole(params, q_i, A_i);
-            for (size_t k = 0; k < 18; ++k) A[k * A_stride + i] = A_i[k];
-
+            delta_jacobian_parallel_kernel(0, &local, q_i, sines_i, cosines_i, A_i);
+            A[start + i] = A_i[0];
+            A[A_stride + start + i] = A_i[1];
+            A[2 * A_stride + start + i] = A_i[2];
+            A[3 * A_stride + start + i] = A_i[3];
+            A[4 * A_stride + start + i] = A_i[4];
+            A[5 * A_stride + start + i] = A_i[5];
+            A[6 * A_stride + start + i] = A_i[6];
+            A[7 * A_stride + start + i] = A_i[7];
+            A[8 * A_stride + start + i] = A_i[8];
+            A[9 * A_stride + start + i] = A_i[9];
+            A[10 * A_stride + start + i] = A_i[10];
+            A[11 * A_stride + start + i] = A_i[11];
+            A[12 * A_stride + start + i] = A_i[12];
+            A[13 * A_stride + start + i] = A_i[13];
+            A[14 * A_stride + start + i] = A_i[14];
+            A[15 * A_stride + start + i] = A_i[15];
+            A[16 * A_stride + start + i] = A_i[16];
+            A[17 * A_stride + start + i] = A_i[17];
         }
     }
 }
 
-/* Every case. */
-CF_INLINE void delta_jacobian_serial_whole_kernel(const int single, const delta_params *params,
+CF_INLINE void delta_jacobian_serial_kernel(const int single, const delta_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t B[6])
-{
-    const real_t f = params->f;
-    const real_t e = params->e;
-    const real_t L = params->L;
-    const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
-    const real_t theta1 = q[0];
-    const real_t theta2 = q[1];
-    const real_t theta3 = q[2];
-    const real_t s1 = sines[0];
-    const real_t c1 = cosines[0];
-    const real_t s2 = sines[1];
-    const real_t c2 = cosines[1];
-    const real_t s_alpha1 = sines[2];
-    const real_t c_alpha1 = cosines[2];
-    const real_t s_alpha2 = sines[3];
-    const real_t c_alpha2 = cosines[3];
-    const real_t s3 = sines[4];
-    const real_t c3 = cosines[4];
-    const real_t s_alpha3 = sines[5];
-    const real_t c_alpha3 = cosines[5];
-    const real_t t1 = L * c1;
-    const real_t t2 = L * s1;
-    const real_t t3 = L * s2;
-    const real_t u_z = t2 - t3;
-    const real_t t4 = f - e;
-    const real_t t5 = t1 + t4;
-    const real_t c1_x = c_alpha1 * t5;
-    const real_t t6 = L * c2;
-    const real_t t7 = t6 + t4;
-    const real_t t8 = c1_x - c_alpha2 * t7;
-    const real_t c1_y = s_alpha1 * t5;
-    const real_t t9 = c1_y - s_alpha2 * t7;
-    const real_t u_u = u_z * u_z + t8 * t8 + t9 * t9;
-    const real_t t10 = L * s3;
-    const real_t v_z = t2 - t10;
-    const real_t t11 = L * c3;
-    const real_t t12 = t11 + t4;
-    const real_t t13 = c1_x - c_alpha3 * t12;
-    const real_t t14 = c1_y - s_alpha3 * t12;
-    const real_t v_v = v_z * v_z + t13 * t13 + t14 * t14;
-    const real_t size = f + e + L + l;
-    const real_t t15 = size * size;
-    const real_t t16 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t17 = t15 * t16;
-    const int all_same = u_u + v_v <= t17;
-    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t17;
-    const real_t t18 = cf_rarely(single, same, t13, t8);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t18);
-    const real_t t19 = cf_rarely(single, same, u_z, v_z);
-    const real_t t20 = cf_rarely(single, same, t8, t13);
-    const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t21 = a_x * t19 + t20 * d_z;
-    const real_t t22 = cf_rarely(single, same, t14, t9);
-    const real_t t23 = cf_rarely(single, same, t9, t14);
-    const real_t t24 = t22 * t19 - t23 * d_z;
-    const real_t n_z = a_x * t21 + t22 * t24;
-    const real_t t25 = a_x * t23 + t22 * t20;
-    const real_t product_2 = t24 * t24 + t21 * t21 + t25 * t25;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t26 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t27 = product_2 - t26 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t27 <= CLOSEDFORM_VANISHING * t26;
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t28 = t22 * t25 + d_z * t21;
-    const real_t t29 = a_x * t25 - d_z * t24;
-    const real_t m_m = cf_rarely(single, slim, over * (t28 * t28 + t29 * t29 + n_z * n_z), product_2);
-    const int in_line = m_m <= t16 * (t15 * mu);
-    const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(-(t22 * a_x));
-    const real_t t30 = whole * (t22 - a_x * s_w);
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t30 * t30, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t31 = t20 * (t18 - t20) + t23 * (t22 - t23) + t19 * (d_z - t19);
-    const real_t t32 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t31 * CLOSEDFORM_C(0.5));
-    const real_t t33 = n_z * t32 - d_z * CLOSEDFORM_C(0.5);
-    const real_t t34 = mu * (CLOSEDFORM_C(0.25) + w_w * (t32 * t32));
-    const real_t t35 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t34);
-    const real_t t36 = l * l - t35;
-    const real_t slack = cf_max(t36, CLOSEDFORM_C(0.0));
-    const real_t t37 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t37, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t38 = cf_rarely(single, slim, over * (a_x * t29 + t22 * t28), t25);
-    const real_t t39 = h * cf_rarely(single, in_line, t30, -t38);
-    const real_t t40 = t33 + t39;
-    const real_t t41 = c_alpha1 * t2;
-    const real_t t42 = t28 * t32 - t18 * CLOSEDFORM_C(0.5);
-    const real_t t43 = cf_rarely(single, slim, over * (t22 * n_z - d_z * t29), t24);
-    const real_t t44 = cf_rarely(single, in_line, g_1 * s_w, -t43) * h;
-    const real_t A_11 = t42 - t44;
-    const real_t t45 = s_alpha1 * t2;
-    const real_t t46 = t29 * t32 - t22 * CLOSEDFORM_C(0.5);
-    const real_t t47 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t28), t21);
-    const real_t t48 = h * cf_rarely(single, in_line, g_1, -t47);
-    const real_t A_12 = t46 - t48;
-    const int t49 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t50 = t49 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t51 = t50 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t52 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t53 = cf_rarely(single, in_line, -t31, CLOSEDFORM_C(0.0));
-    const int t54 = cf_abs(t53) <= t15 * CLOSEDFORM_FEASIBILITY;
-    const int t55 = t54 & (-(CLOSEDFORM_FEASIBILITY * t37) <= t36);
-    const real_t t56 = cf_poison(single, (!(t51 & t52)) | (!t55));
-    const real_t t57 = c_alpha2 * t3;
-    const real_t t58 = s_alpha2 * t3;
-    const real_t B_22 = t6 * (u_z + t40) - (t57 * (t8 + A_11) + t58 * (t9 + A_12));
-    const real_t t59 = c_alpha3 * t10;
-    const real_t t60 = s_alpha3 * t10;
-    const real_t B_33 = t11 * (v_z + t40) - (t59 * (t13 + A_11) + t60 * (t14 + A_12));
-    const real_t t61 = t33 - t39;
-    const real_t A_11_above = t42 + t44;
-    const real_t A_12_above = t46 + t48;
-    const real_t B_11_above = t1 * t61 - (t41 * A_11_above + t45 * A_12_above);
-    const real_t t62 = t57 * (t8 + A_11_above) + t58 * (t9 + A_12_above);
-    const real_t t63 = t59 * (t13 + A_11_above) + t60 * (t14 + A_12_above);
-    B[0] = t1 * t40 - (t41 * A_11 + t45 * A_12) + t56;
-    B[1] = B_22 + t56;
-    B[2] = B_33 + t56;
-    B[3] = B_11_above + t56;
-    B[4] = t6 * (u_z + t61) - t62 + t56;
-    B[5] = t11 * (v_z + t61) - t63 + t56;
-}
-
-CLOSEDFORM_DISPATCHED
-CF_OUT_OF_LINE void delta_jacobian_serial_whole(const delta_params *params, const real_t q[3],
-    real_t B[6])
-{
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    delta_jacobian_serial_whole_kernel(1, params, q, sines, cosines, B);
-}
-
-/* Where nothing vanishes; rare is whether something does. */
-CF_INLINE void delta_jacobian_serial_common_kernel(const int single, const real_t one,
-    const delta_params *params, const real_t q[3],
-    const real_t *sines, const real_t *cosines,
-    real_t B[6], real_t rare[1])
 {
     const real_t f = params->f;
     const real_t e = params->e;
@@ -1776,157 +1452,106 @@ CF_INLINE void delta_jacobian_serial_common_kernel(const int single, const real_
     const real_t c_alpha1 = cosines[0];
     const real_t s1 = sines[1];
     const real_t c1 = cosines[1];
-    const real_t s_alpha2 = sines[2];
-    const real_t c_alpha2 = cosines[2];
-    const real_t s2 = sines[3];
-    const real_t c2 = cosines[3];
-    const real_t s_alpha3 = sines[4];
-    const real_t c_alpha3 = cosines[4];
-    const real_t s3 = sines[5];
-    const real_t c3 = cosines[5];
-    const real_t t1 = cf_rounded(single, one, L * s1);
+    const real_t s2 = sines[2];
+    const real_t c2 = cosines[2];
+    const real_t s_alpha2 = sines[3];
+    const real_t c_alpha2 = cosines[3];
+    const real_t s3 = sines[4];
+    const real_t c3 = cosines[4];
+    const real_t s_alpha3 = sines[5];
+    const real_t c_alpha3 = cosines[5];
+    const real_t t1 = L * s1;
     const real_t t2 = c_alpha1 * t1;
-    const real_t t3 = cf_rounded(single, one, L * c1);
-    const real_t t4 = f - e;
-    const real_t t5 = t3 + t4;
-    const real_t c1_y = cf_rounded(single, one, s_alpha1 * t5);
-    const real_t t6 = cf_rounded(single, one, L * c2);
-    const real_t t7 = t6 + t4;
-    const real_t t8 = c1_y - cf_rounded(single, one, s_alpha2 * t7);
-    const real_t c1_x = cf_rounded(single, one, c_alpha1 * t5);
-    const real_t t9 = c1_x - cf_rounded(single, one, c_alpha2 * t7);
-    const real_t t10 = cf_rounded(single, one, L * c3);
-    const real_t t11 = t10 + t4;
-    const real_t t12 = c1_y - cf_rounded(single, one, s_alpha3 * t11);
-    const real_t t13 = c1_x - cf_rounded(single, one, c_alpha3 * t11);
-    const real_t m_z = cf_rounded(single, one, t9 * t12) - cf_rounded(single, one, t8 * t13);
-    const real_t t14 = cf_rounded(single, one, L * s2);
-    const real_t u_z = t1 - t14;
-    const real_t t15 = cf_rounded(single, one, L * s3);
-    const real_t v_z = t1 - t15;
-    const real_t m_y = cf_rounded(single, one, v_z * t9) - cf_rounded(single, one, u_z * t13);
-    const real_t t16 = cf_rounded(single, one, v_z * t8) - cf_rounded(single, one, u_z * t12);
-    const real_t t17 = cf_rounded(single, one, t16 * t16) + cf_rounded(single, one, m_y * m_y);
-    const real_t product_2 = t17 + cf_rounded(single, one, m_z * m_z);
-    const real_t t18 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t9 * t9);
-    const real_t u_u = t18 + cf_rounded(single, one, t8 * t8);
+    const real_t t3 = L * s2;
+    const real_t u_z = t1 - t3;
+    const real_t t4 = L * c1;
+    const real_t t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4;
+    const real_t t6 = L * c2;
+    const real_t t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6);
+    const real_t t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4;
+    const real_t t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6);
+    const real_t u_u = u_z * u_z + t7 * t7 + t9 * t9;
+    const real_t t10 = L * s3;
+    const real_t v_z = t1 - t10;
+    const real_t t11 = L * c3;
+    const real_t t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11);
+    const real_t t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11);
+    const real_t v_v = v_z * v_z + t12 * t12 + t13 * t13;
     const real_t size = f + e + L + l;
-    const real_t t19 = size * size;
-    const real_t t20 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t21 = t19 * t20;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t21) | (product_2 <= t20 * (t19 * u_u)), product_2);
-    const real_t t22 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t13 * (t9 - t13));
-    const real_t t23 = t22 + cf_rounded(single, one, t12 * (t8 - t12));
-    const real_t t24 = part * t23 * CLOSEDFORM_C(0.5);
-    const real_t t25 = (t8 * m_z + u_z * m_y) * t24 + t9 * CLOSEDFORM_C(0.5);
-    const real_t t26 = cf_rounded(single, one, product_2 * (t24 * t24));
-    const real_t t27 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t26));
-    const real_t t28 = cf_rounded(single, one, l * l) - t27;
-    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
-    const real_t h = cf_sqrt(part * slack);
-    const real_t t29 = t16 * h;
-    const real_t t30 = t25 - t29;
-    const real_t t31 = s_alpha1 * t1;
-    const real_t t32 = t24 * (t9 * m_z - u_z * t16) - t8 * CLOSEDFORM_C(0.5);
-    const real_t t33 = m_y * h;
-    const real_t A_12 = t32 - t33;
-    const real_t t34 = u_z * CLOSEDFORM_C(0.5) - t24 * (t9 * m_y + t8 * t16);
-    const real_t t35 = m_z * h;
-    const real_t t36 = t34 - t35;
-    const int t37 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t39 = t38 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t40 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int t41 = cf_abs(CLOSEDFORM_C(0.0)) <= t19 * CLOSEDFORM_FEASIBILITY;
-    const real_t t42 = CLOSEDFORM_C(0.9375) * (l * size);
-    const int t43 = t41 & (-(CLOSEDFORM_FEASIBILITY * t42) <= t28);
-    const real_t t44 = cf_poison(single, (!(t39 & t40)) | (!t43));
-    const real_t t45 = c_alpha2 * t14;
-    const real_t t46 = s_alpha2 * t14;
-    const real_t B_22 = t6 * (u_z - t36) - (t45 * (t9 - t30) + t46 * (t8 + A_12));
-    const real_t t47 = c_alpha3 * t15;
-    const real_t t48 = s_alpha3 * t15;
-    const real_t B_33 = t10 * (v_z - t36) - (t47 * (t13 - t30) + t48 * (t12 + A_12));
-    const real_t t49 = t25 + t29;
-    const real_t A_12_above = t32 + t33;
-    const real_t t50 = t34 + t35;
-    const real_t B_22_above = t6 * (u_z - t50) - (t45 * (t9 - t49) + t46 * (t8 + A_12_above));
-    const real_t B_33_above = t10 * (v_z - t50) - (t47 * (t13 - t49) + t48 * (t12 + A_12_above));
-    const real_t t51 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t13 * t13);
-    const real_t v_v = t51 + cf_rounded(single, one, t12 * t12);
-    const real_t t52 = u_u * v_v;
-    const real_t t53 = product_2 - t52 * CLOSEDFORM_C(0.000244140625);
-    const int t54 = (u_u <= t21) | (u_u + v_v <= t21) | (t53 <= CLOSEDFORM_VANISHING * t52);
-    const int t55 = t54 | (product_2 <= t20 * (t19 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t42);
-    B[0] = t2 * t30 - t31 * A_12 - t3 * t36 + t44;
-    B[1] = B_22 + t44;
-    B[2] = B_33 + t44;
-    B[3] = t2 * t49 - t31 * A_12_above - t3 * t50 + t44;
-    B[4] = B_22_above + t44;
-    B[5] = B_33_above + t44;
-    rare[0] = (t55) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
-}
-
-CF_INLINE void delta_jacobian_serial_common_batch(size_t n, const delta_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *B, size_t B_stride,
-    uint8_t *rare, size_t rare_stride)
-{
-    (void)rare_stride;
-    const delta_params local = *params;
-    const real_t one = cf_one();
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_4, sines[4], cosines[4]);
-        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[5], cosines[5]);
-        real_t rare_real[1][CLOSEDFORM_BLOCK];
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
-            real_t B_i[6];
-            real_t rare_i[1];
-            delta_jacobian_serial_common_kernel(0, one, &local, q_i, sines_i, cosines_i, B_i, rare_i);
-            B[start + i] = B_i[0];
-            B[B_stride + start + i] = B_i[1];
-            B[2 * B_stride + start + i] = B_i[2];
-            B[3 * B_stride + start + i] = B_i[3];
-            B[4 * B_stride + start + i] = B_i[4];
-            B[5 * B_stride + start + i] = B_i[5];
-            rare_real[0][i] = rare_i[0];
-        }
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i)
-            rare[start + i] = (uint8_t)rare_real[0][i];
-    }
-}
-
-CF_INLINE void delta_jacobian_serial_common(const delta_params *params, const real_t q[3],
-    real_t B[6], uint8_t rare[1])
-{
-    const real_t one = cf_one();
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], params->alpha2, q[1], params->alpha3, q[2], q[2], q[2] };
-    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
-    real_t rare_real[1];
-    delta_jacobian_serial_common_kernel(1, one, params, q, sines, cosines, B, rare_real);
-    for (size_t i = 0; i < 1; ++i)
-        rare[i] = (uint8_t)rare_real[i];
+    const real_t t14 = size * size;
+    const real_t t15 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t14;
+    const int all_same = u_u + v_v <= t15;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
+    const int same = u_u <= t15;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t16 = cf_rarely(single, same, t13, t9);
+    const real_t d_x = cf_rarely(single, same, t12, t7);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t17 = cf_rarely(single, same, t9, t13);
+    const real_t t18 = cf_rarely(single, same, t7, t12);
+    const real_t t19 = a_x * t17 - t16 * t18;
+    const real_t d_z = cf_rarely(single, same, v_z, u_z);
+    const real_t t20 = cf_rarely(single, same, u_z, v_z);
+    const real_t t21 = a_x * t20 - t18 * d_z;
+    const real_t t22 = over * (t16 * t19 + d_z * t21);
+    const real_t t23 = t16 * t20 - t17 * d_z;
+    const real_t t24 = over * (a_x * t19 - d_z * t23);
+    const real_t n_z = over * (a_x * t21 + t16 * t23);
+    const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
+    const int in_line = nu <= t15;
+    const real_t g_1 = whole * d_z;
+    const real_t s_w = cf_sign(t16 * a_x);
+    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t16 * n_z - d_z * t24);
+    const real_t t25 = whole * (t16 + a_x * s_w);
+    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25);
+    const real_t t27 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, t26, t27);
+    const real_t t28 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
+    const real_t t29 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t28 * CLOSEDFORM_C(0.5));
+    const real_t t30 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t29 * t29) + mu * CLOSEDFORM_C(0.25));
+    const real_t t31 = l * l - t30;
+    const real_t slack = cf_max(t31, CLOSEDFORM_C(0.0));
+    const real_t t32 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t32, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t33 = w_x * h;
+    const real_t t34 = t22 * t29 + d_x * CLOSEDFORM_C(0.5);
+    const real_t t35 = t33 - t34;
+    const real_t t36 = s_alpha1 * t1;
+    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t22));
+    const real_t t37 = h * w_y;
+    const real_t t38 = t24 * t29 - t16 * CLOSEDFORM_C(0.5);
+    const real_t t39 = t37 + t38;
+    const real_t w_z = cf_rarely(single, in_line, -t25, a_x * t24 + t16 * t22);
+    const real_t t40 = h * w_z;
+    const real_t t41 = n_z * t29 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t42 = t40 + t41;
+    const int t43 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t44 = t43 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t45 = t44 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t46 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t47 = cf_rarely(single, in_line, -t28, CLOSEDFORM_C(0.0));
+    const int t48 = cf_abs(t47) <= t14 * CLOSEDFORM_FEASIBILITY;
+    const int t49 = t48 & (-(CLOSEDFORM_FEASIBILITY * t32) <= t31);
+    const real_t t50 = cf_poison(single, (!(t45 & t46)) | (!t49));
+    const real_t t51 = c_alpha2 * t3;
+    const real_t t52 = s_alpha2 * t3;
+    const real_t B_22 = t51 * (t7 + t35) + t52 * (t9 + t39) + t6 * (u_z + t42);
+    const real_t t53 = c_alpha3 * t10;
+    const real_t t54 = s_alpha3 * t10;
+    const real_t B_33 = t53 * (t12 + t35) + t54 * (t13 + t39) + t11 * (v_z + t42);
+    const real_t A_11_above = t33 + t34;
+    const real_t A_12_above = t37 - t38;
+    const real_t t55 = t40 - t41;
+    const real_t t56 = t2 * A_11_above + t36 * A_12_above + t4 * t55;
+    const real_t t57 = t51 * (t7 - A_11_above) + t52 * (t9 - A_12_above);
+    const real_t t58 = t53 * (t12 - A_11_above) + t54 * (t13 - A_12_above);
+    B[0] = t2 * t35 + t36 * t39 + t4 * t42 + t50;
+    B[1] = B_22 + t50;
+    B[2] = B_33 + t50;
+    B[3] = -t56 + t50;
+    B[4] = t57 + t6 * (u_z - t55) + t50;
+    B[5] = t58 + t11 * (v_z - t55) + t50;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1937,7 +1562,7 @@ void delta_jacobian_serial(const delta_params *params, const real_t q[3],
     delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -1946,9 +1571,10 @@ void delta_jacobian_serial(const delta_params *params, const real_t q[3],
         params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
         params = &params_scaled;
     }
-    uint8_t rare[1];
-    delta_jacobian_serial_common(params, q, B, rare);
-    if (CF_UNLIKELY(rare[0])) delta_jacobian_serial_whole(params, q, B);
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    delta_jacobian_serial_kernel(1, params, q, sines, cosines, B);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(6, B_degrees, exponent, B, B);
     }
@@ -1973,23 +1599,43 @@ void delta_jacobian_serial_batch(size_t n, const delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *B, size_t B_stride)
 {
+    const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
         delta_jacobian_serial_other_sizes(n, params, q, q_stride, B, B_stride);
         return;
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        uint8_t rare[CLOSEDFORM_BLOCK];
-        delta_jacobian_serial_common_batch(length, params, q + start, q_stride, B + start, B_stride, rare, CLOSEDFORM_BLOCK);
-        for (size_t i = start; i < start + length; ++i) {
-            if (!CF_UNLIKELY(rare[i - start])) continue;
-            real_t q_i[3];
-            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = params->alpha1;
+        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
+        cf_sincos_block(length, q + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + q_stride + start, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = params->alpha2;
+        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_5[i] = params->alpha3;
+        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
             real_t B_i[6];
-            delta_jacobian_serial_whole(params, q_i, B_i);
-            for (size_t k = 0; k < 6; ++k) B[k * B_stride + i] = B_i[k];
-
+            delta_jacobian_serial_kernel(0, &local, q_i, sines_i, cosines_i, B_i);
+            B[start + i] = B_i[0];
+            B[B_stride + start + i] = B_i[1];
+            B[2 * B_stride + start + i] = B_i[2];
+            B[3 * B_stride + start + i] = B_i[3];
+            B[4 * B_stride + start + i] = B_i[4];
+            B[5 * B_stride + start + i] = B_i[5];
         }
     }
 }
@@ -2016,153 +1662,136 @@ CF_INLINE void delta_jacobian_kernel(const int single, const delta_params *param
     const real_t c2 = cosines[2];
     const real_t s_alpha2 = sines[3];
     const real_t c_alpha2 = cosines[3];
-    const real_t s_alpha3 = sines[4];
-    const real_t c_alpha3 = cosines[4];
-    const real_t s3 = sines[5];
-    const real_t c3 = cosines[5];
+    const real_t s3 = sines[4];
+    const real_t c3 = cosines[4];
+    const real_t s_alpha3 = sines[5];
+    const real_t c_alpha3 = cosines[5];
     const real_t t1 = L * s1;
     const real_t t2 = c_alpha1 * t1;
     const real_t t3 = L * s2;
     const real_t u_z = t1 - t3;
     const real_t t4 = L * c1;
-    const real_t t5 = f - e;
-    const real_t t6 = t4 + t5;
-    const real_t c1_x = c_alpha1 * t6;
-    const real_t t7 = L * c2;
-    const real_t t8 = t7 + t5;
-    const real_t t9 = c1_x - c_alpha2 * t8;
-    const real_t c1_y = s_alpha1 * t6;
-    const real_t t10 = c1_y - s_alpha2 * t8;
-    const real_t u_u = u_z * u_z + t9 * t9 + t10 * t10;
+    const real_t t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4;
+    const real_t t6 = L * c2;
+    const real_t t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6);
+    const real_t t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4;
+    const real_t t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6);
+    const real_t u_u = u_z * u_z + t7 * t7 + t9 * t9;
+    const real_t t10 = L * s3;
+    const real_t v_z = t1 - t10;
+    const real_t t11 = L * c3;
+    const real_t t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11);
+    const real_t t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11);
+    const real_t v_v = v_z * v_z + t12 * t12 + t13 * t13;
     const real_t size = f + e + L + l;
-    const real_t t11 = size * size;
-    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t13 = t11 * t12;
-    const int same = u_u <= t13;
-    const real_t t14 = L * c3;
-    const real_t t15 = t14 + t5;
-    const real_t t16 = c1_y - s_alpha3 * t15;
-    const real_t t17 = cf_rarely(single, same, t16, t10);
-    const real_t t18 = L * s3;
-    const real_t v_z = t1 - t18;
-    const real_t t19 = c1_x - c_alpha3 * t15;
-    const real_t v_v = v_z * v_z + t19 * t19 + t16 * t16;
-    const int all_same = u_u + v_v <= t13;
+    const real_t t14 = size * size;
+    const real_t t15 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t14;
+    const int all_same = u_u + v_v <= t15;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t t20 = cf_rarely(single, same, t19, t9);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t20);
-    const real_t t21 = cf_rarely(single, same, t10, t16);
-    const real_t t22 = cf_rarely(single, same, t9, t19);
-    const real_t t23 = a_x * t21 + t17 * t22;
-    const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t24 = cf_rarely(single, same, u_z, v_z);
-    const real_t t25 = a_x * t24 + t22 * d_z;
-    const real_t t26 = t17 * t23 + d_z * t25;
-    const real_t t27 = t17 * t24 - t21 * d_z;
-    const real_t product_2 = t27 * t27 + t25 * t25 + t23 * t23;
+    const int same = u_u <= t15;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t28 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t29 = product_2 - t28 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t29 <= CLOSEDFORM_VANISHING * t28;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t30 = a_x * t23 - d_z * t27;
-    const real_t n_z = a_x * t25 + t17 * t27;
-    const real_t m_m = cf_rarely(single, slim, over * (t26 * t26 + t30 * t30 + n_z * n_z), product_2);
-    const int in_line = m_m <= t12 * (t11 * mu);
+    const real_t t16 = cf_rarely(single, same, t13, t9);
+    const real_t d_x = cf_rarely(single, same, t12, t7);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t17 = cf_rarely(single, same, t9, t13);
+    const real_t t18 = cf_rarely(single, same, t7, t12);
+    const real_t t19 = a_x * t17 - t16 * t18;
+    const real_t d_z = cf_rarely(single, same, v_z, u_z);
+    const real_t t20 = cf_rarely(single, same, u_z, v_z);
+    const real_t t21 = a_x * t20 - t18 * d_z;
+    const real_t t22 = over * (t16 * t19 + d_z * t21);
+    const real_t t23 = t16 * t20 - t17 * d_z;
+    const real_t t24 = over * (a_x * t19 - d_z * t23);
+    const real_t n_z = over * (a_x * t21 + t16 * t23);
+    const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
+    const int in_line = nu <= t15;
     const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(-(t17 * a_x));
-    const real_t t31 = whole * (t17 - a_x * s_w);
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t31 * t31, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t32 = t22 * (t20 - t22) + t21 * (t17 - t21) + t24 * (d_z - t24);
-    const real_t t33 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t32 * CLOSEDFORM_C(0.5));
-    const real_t t34 = t26 * t33 - t20 * CLOSEDFORM_C(0.5);
-    const real_t t35 = cf_rarely(single, slim, over * (t17 * n_z - d_z * t30), t27);
-    const real_t t36 = mu * (CLOSEDFORM_C(0.25) + w_w * (t33 * t33));
-    const real_t t37 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t36);
-    const real_t t38 = l * l - t37;
-    const real_t slack = cf_max(t38, CLOSEDFORM_C(0.0));
-    const real_t t39 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t39, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t40 = cf_rarely(single, in_line, g_1 * s_w, -t35) * h;
-    const real_t A_11 = t34 - t40;
-    const real_t t41 = s_alpha1 * t1;
-    const real_t t42 = t30 * t33 - t17 * CLOSEDFORM_C(0.5);
-    const real_t t43 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t26), t25);
-    const real_t t44 = h * cf_rarely(single, in_line, g_1, -t43);
-    const real_t A_12 = t42 - t44;
-    const real_t t45 = n_z * t33 - d_z * CLOSEDFORM_C(0.5);
-    const real_t t46 = cf_rarely(single, slim, over * (a_x * t30 + t17 * t26), t23);
-    const real_t t47 = h * cf_rarely(single, in_line, t31, -t46);
-    const real_t t48 = t45 + t47;
-    const real_t t49 = t2 * A_11 + t41 * A_12 - t4 * t48;
-    const real_t A_22 = t10 + A_12;
-    const real_t t50 = v_z + t48;
-    const real_t t51 = u_z + t48;
-    const real_t A_32 = t16 + A_12;
-    const real_t Delta = w_w * h;
-    const real_t t52 = cf_nonzero(single, Delta);
-    const int t53 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t54 = t53 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t55 = t54 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t56 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t57 = cf_rarely(single, in_line, -t32, CLOSEDFORM_C(0.0));
-    const int t58 = cf_abs(t57) <= t11 * CLOSEDFORM_FEASIBILITY;
-    const int t59 = t58 & (-(CLOSEDFORM_FEASIBILITY * t39) <= t38);
-    const real_t t60 = cf_poison(single, (!(t55 & t56)) | (!t59));
-    const real_t t61 = -(t49 * (A_22 * t50 - t51 * A_32) / t52) + t60;
-    const real_t t62 = c_alpha2 * t3;
-    const real_t A_21 = t9 + A_11;
-    const real_t t63 = s_alpha2 * t3;
-    const real_t t64 = t62 * A_21 + t63 * A_22 - t7 * t51;
-    const real_t t65 = c_alpha3 * t18;
-    const real_t A_31 = t19 + A_11;
-    const real_t t66 = s_alpha3 * t18;
-    const real_t t67 = t65 * A_31 + t66 * A_32 - t14 * t50;
-    const real_t t68 = -(t67 * (A_12 * t51 - t48 * A_22) / t52) + t60;
-    const real_t t69 = -(t64 * (A_11 * t50 - t48 * A_31) / t52) + t60;
-    const real_t t70 = t49 * (A_32 * A_21 - A_22 * A_31) / t52 + t60;
-    const real_t t71 = -(t64 * (A_11 * A_32 - A_12 * A_31) / t52) + t60;
-    const real_t t72 = t67 * (A_11 * A_22 - A_12 * A_21) / t52 + t60;
-    const real_t A_11_above = t34 + t40;
-    const real_t A_12_above = t42 + t44;
-    const real_t t73 = t45 - t47;
-    const real_t t74 = t2 * A_11_above + t41 * A_12_above - t4 * t73;
-    const real_t A_22_above = t10 + A_12_above;
-    const real_t t75 = v_z + t73;
-    const real_t t76 = u_z + t73;
-    const real_t A_32_above = t16 + A_12_above;
-    const real_t t77 = t74 * (A_22_above * t75 - t76 * A_32_above) / t52;
-    const real_t A_21_above = t9 + A_11_above;
-    const real_t t78 = t62 * A_21_above + t63 * A_22_above - t7 * t76;
-    const real_t t79 = t78 * (A_12_above * t75 - t73 * A_32_above) / t52;
-    const real_t A_31_above = t19 + A_11_above;
-    const real_t t80 = t65 * A_31_above + t66 * A_32_above - t14 * t75;
-    const real_t t81 = t80 * (A_12_above * t76 - t73 * A_22_above) / t52;
-    const real_t t82 = t74 * (t75 * A_21_above - t76 * A_31_above) / t52;
-    const real_t t83 = t78 * (A_11_above * t75 - t73 * A_31_above) / t52;
-    const real_t t84 = t80 * (A_11_above * t76 - t73 * A_21_above) / t52;
-    const real_t t85 = A_32_above * A_21_above - A_22_above * A_31_above;
-    const real_t t86 = A_11_above * A_32_above - A_12_above * A_31_above;
-    const real_t t87 = A_11_above * A_22_above - A_12_above * A_21_above;
-    J[0] = t61;
-    J[1] = t64 * (A_12 * t50 - t48 * A_32) / t52 + t60;
-    J[2] = t68;
-    J[3] = t49 * (t50 * A_21 - t51 * A_31) / t52 + t60;
-    J[4] = t69;
-    J[5] = t67 * (A_11 * t51 - t48 * A_21) / t52 + t60;
-    J[6] = t70;
-    J[7] = t71;
-    J[8] = t72;
-    J[9] = t77 + t60;
-    J[10] = -t79 + t60;
-    J[11] = t81 + t60;
-    J[12] = -t82 + t60;
-    J[13] = t83 + t60;
-    J[14] = -t84 + t60;
-    J[15] = -(t74 * t85 / t52) + t60;
-    J[16] = t78 * t86 / t52 + t60;
-    J[17] = -(t80 * t87 / t52) + t60;
+    const real_t s_w = cf_sign(t16 * a_x);
+    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t16 * n_z - d_z * t24);
+    const real_t t25 = whole * (t16 + a_x * s_w);
+    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25);
+    const real_t t27 = mu * nu;
+    const real_t t28 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t27);
+    const real_t part = cf_rarely(single, in_line, t26, t28);
+    const real_t t29 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
+    const real_t t30 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t29 * CLOSEDFORM_C(0.5));
+    const real_t t31 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t30 * t30) + mu * CLOSEDFORM_C(0.25));
+    const real_t t32 = l * l - t31;
+    const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
+    const real_t t33 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t33, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t34 = w_x * h;
+    const real_t t35 = t22 * t30 + d_x * CLOSEDFORM_C(0.5);
+    const real_t t36 = t34 - t35;
+    const real_t t37 = s_alpha1 * t1;
+    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t22));
+    const real_t t38 = h * w_y;
+    const real_t t39 = t24 * t30 - t16 * CLOSEDFORM_C(0.5);
+    const real_t t40 = t38 + t39;
+    const real_t w_z = cf_rarely(single, in_line, -t25, a_x * t24 + t16 * t22);
+    const real_t t41 = h * w_z;
+    const real_t t42 = n_z * t30 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t43 = t41 + t42;
+    const real_t t44 = t2 * t36 + t37 * t40 + t4 * t43;
+    const real_t t45 = t9 + t40;
+    const real_t t46 = v_z + t43;
+    const real_t t47 = u_z + t43;
+    const real_t t48 = t13 + t40;
+    const real_t Delta = t27 * h;
+    const real_t t49 = cf_nonzero(single, Delta);
+    const int t50 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t51 = t50 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t53 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t54 = cf_rarely(single, in_line, -t29, CLOSEDFORM_C(0.0));
+    const int t55 = cf_abs(t54) <= t14 * CLOSEDFORM_FEASIBILITY;
+    const int t56 = t55 & (-(CLOSEDFORM_FEASIBILITY * t33) <= t32);
+    const real_t t57 = cf_poison(single, (!(t52 & t53)) | (!t56));
+    const real_t t58 = c_alpha2 * t3;
+    const real_t t59 = t7 + t36;
+    const real_t t60 = s_alpha2 * t3;
+    const real_t t61 = t58 * t59 + t60 * t45 + t6 * t47;
+    const real_t t62 = c_alpha3 * t10;
+    const real_t t63 = t12 + t36;
+    const real_t t64 = s_alpha3 * t10;
+    const real_t t65 = t62 * t63 + t64 * t48 + t11 * t46;
+    const real_t A_11_above = t34 + t35;
+    const real_t A_12_above = t38 - t39;
+    const real_t t66 = t41 - t42;
+    const real_t t67 = t2 * A_11_above + t37 * A_12_above + t4 * t66;
+    const real_t t68 = t9 - A_12_above;
+    const real_t t69 = v_z - t66;
+    const real_t t70 = u_z - t66;
+    const real_t t71 = t13 - A_12_above;
+    const real_t t72 = t7 - A_11_above;
+    const real_t t73 = t58 * t72 + t60 * t68 + t6 * t70;
+    const real_t t74 = t73 * (A_12_above * t69 - t66 * t71) / t49 + t57;
+    const real_t t75 = t12 - A_11_above;
+    const real_t t76 = t62 * t75 + t64 * t71 + t11 * t69;
+    const real_t t77 = -(t76 * (A_12_above * t70 - t66 * t68) / t49);
+    const real_t t78 = -(t73 * (A_11_above * t69 - t66 * t75) / t49);
+    const real_t t79 = t76 * (A_11_above * t70 - t66 * t72) / t49 + t57;
+    const real_t t80 = t73 * (A_11_above * t71 - A_12_above * t75) / t49;
+    const real_t t81 = t76 * (A_11_above * t68 - A_12_above * t72) / t49;
+    J[0] = -(t44 * (t45 * t46 - t47 * t48) / t49) + t57;
+    J[1] = t61 * (t40 * t46 - t43 * t48) / t49 + t57;
+    J[2] = -(t65 * (t40 * t47 - t43 * t45) / t49) + t57;
+    J[3] = t44 * (t46 * t59 - t47 * t63) / t49 + t57;
+    J[4] = -(t61 * (t36 * t46 - t43 * t63) / t49) + t57;
+    J[5] = t65 * (t36 * t47 - t43 * t59) / t49 + t57;
+    J[6] = -(t44 * (t48 * t59 - t45 * t63) / t49) + t57;
+    J[7] = t61 * (t36 * t48 - t40 * t63) / t49 + t57;
+    J[8] = -(t65 * (t36 * t45 - t40 * t59) / t49) + t57;
+    J[9] = -(t67 * (t68 * t69 - t70 * t71) / t49) + t57;
+    J[10] = t74;
+    J[11] = t77 + t57;
+    J[12] = t67 * (t69 * t72 - t70 * t75) / t49 + t57;
+    J[13] = t78 + t57;
+    J[14] = t79;
+    J[15] = -(t67 * (t71 * t72 - t68 * t75) / t49) + t57;
+    J[16] = t80 + t57;
+    J[17] = -t81 + t57;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2173,7 +1802,7 @@ void delta_jacobian(const delta_params *params, const real_t q[3],
     delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -2183,7 +1812,7 @@ void delta_jacobian(const delta_params *params, const real_t q[3],
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, params->alpha3, q[2], q[2], q[2] };
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_jacobian_kernel(1, params, q, sines, cosines, J);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -2212,7 +1841,7 @@ void delta_jacobian_batch(size_t n, const delta_params *params,
 {
     const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
         delta_jacobian_other_sizes(n, params, q, q_stride, J, J_stride);
         return;
     }
@@ -2229,11 +1858,11 @@ void delta_jacobian_batch(size_t n, const delta_params *params,
         for (size_t i = 0; i < length; ++i)
             angle_3[i] = params->alpha2;
         cf_sincos_block(length, angle_3, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha3;
-        cf_sincos_block(length, angle_4, sines[4], cosines[4]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[5], cosines[5]);
+            angle_5[i] = params->alpha3;
+        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
@@ -2263,8 +1892,7 @@ void delta_jacobian_batch(size_t n, const delta_params *params,
     }
 }
 
-/* Every case. */
-CF_INLINE void delta_determinant_whole_kernel(const int single, const delta_params *params,
+CF_INLINE void delta_determinant_kernel(const int single, const delta_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t det[2])
 {
@@ -2286,290 +1914,102 @@ CF_INLINE void delta_determinant_whole_kernel(const int single, const delta_para
     const real_t c2 = cosines[2];
     const real_t s_alpha2 = sines[3];
     const real_t c_alpha2 = cosines[3];
-    const real_t s_alpha3 = sines[4];
-    const real_t c_alpha3 = cosines[4];
-    const real_t s3 = sines[5];
-    const real_t c3 = cosines[5];
+    const real_t s3 = sines[4];
+    const real_t c3 = cosines[4];
+    const real_t s_alpha3 = sines[5];
+    const real_t c_alpha3 = cosines[5];
     const real_t t1 = L * s1;
     const real_t t2 = c_alpha1 * t1;
     const real_t t3 = L * s2;
     const real_t u_z = t1 - t3;
     const real_t t4 = L * c1;
-    const real_t t5 = f - e;
-    const real_t t6 = t4 + t5;
-    const real_t c1_x = c_alpha1 * t6;
-    const real_t t7 = L * c2;
-    const real_t t8 = t7 + t5;
-    const real_t t9 = c1_x - c_alpha2 * t8;
-    const real_t c1_y = s_alpha1 * t6;
-    const real_t t10 = c1_y - s_alpha2 * t8;
-    const real_t u_u = u_z * u_z + t9 * t9 + t10 * t10;
+    const real_t t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4;
+    const real_t t6 = L * c2;
+    const real_t t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6);
+    const real_t t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4;
+    const real_t t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6);
+    const real_t u_u = u_z * u_z + t7 * t7 + t9 * t9;
+    const real_t t10 = L * s3;
+    const real_t v_z = t1 - t10;
+    const real_t t11 = L * c3;
+    const real_t t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11);
+    const real_t t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11);
+    const real_t v_v = v_z * v_z + t12 * t12 + t13 * t13;
     const real_t size = f + e + L + l;
-    const real_t t11 = size * size;
-    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t13 = t11 * t12;
-    const int same = u_u <= t13;
-    const real_t t14 = L * c3;
-    const real_t t15 = t14 + t5;
-    const real_t t16 = c1_y - s_alpha3 * t15;
-    const real_t t17 = cf_rarely(single, same, t16, t10);
-    const real_t t18 = L * s3;
-    const real_t v_z = t1 - t18;
-    const real_t t19 = c1_x - c_alpha3 * t15;
-    const real_t v_v = v_z * v_z + t19 * t19 + t16 * t16;
-    const int all_same = u_u + v_v <= t13;
+    const real_t t14 = size * size;
+    const real_t t15 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t14;
+    const int all_same = u_u + v_v <= t15;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t t20 = cf_rarely(single, same, t19, t9);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t20);
-    const real_t t21 = cf_rarely(single, same, t10, t16);
-    const real_t t22 = cf_rarely(single, same, t9, t19);
-    const real_t t23 = a_x * t21 + t17 * t22;
-    const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t24 = cf_rarely(single, same, u_z, v_z);
-    const real_t t25 = a_x * t24 + t22 * d_z;
-    const real_t t26 = t17 * t23 + d_z * t25;
-    const real_t t27 = t17 * t24 - t21 * d_z;
-    const real_t product_2 = t27 * t27 + t25 * t25 + t23 * t23;
+    const int same = u_u <= t15;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t28 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t29 = product_2 - t28 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t29 <= CLOSEDFORM_VANISHING * t28;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t30 = a_x * t23 - d_z * t27;
-    const real_t n_z = a_x * t25 + t17 * t27;
-    const real_t m_m = cf_rarely(single, slim, over * (t26 * t26 + t30 * t30 + n_z * n_z), product_2);
-    const int in_line = m_m <= t12 * (t11 * mu);
+    const real_t t16 = cf_rarely(single, same, t13, t9);
+    const real_t d_x = cf_rarely(single, same, t12, t7);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t17 = cf_rarely(single, same, t9, t13);
+    const real_t t18 = cf_rarely(single, same, t7, t12);
+    const real_t t19 = a_x * t17 - t16 * t18;
+    const real_t d_z = cf_rarely(single, same, v_z, u_z);
+    const real_t t20 = cf_rarely(single, same, u_z, v_z);
+    const real_t t21 = a_x * t20 - t18 * d_z;
+    const real_t t22 = over * (t16 * t19 + d_z * t21);
+    const real_t t23 = t16 * t20 - t17 * d_z;
+    const real_t t24 = over * (a_x * t19 - d_z * t23);
+    const real_t n_z = over * (a_x * t21 + t16 * t23);
+    const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
+    const int in_line = nu <= t15;
     const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(-(t17 * a_x));
-    const real_t t31 = whole * (t17 - a_x * s_w);
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t31 * t31, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t32 = t22 * (t20 - t22) + t21 * (t17 - t21) + t24 * (d_z - t24);
-    const real_t t33 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t32 * CLOSEDFORM_C(0.5));
-    const real_t t34 = t26 * t33 - t20 * CLOSEDFORM_C(0.5);
-    const real_t t35 = cf_rarely(single, slim, over * (t17 * n_z - d_z * t30), t27);
-    const real_t t36 = mu * (CLOSEDFORM_C(0.25) + w_w * (t33 * t33));
-    const real_t t37 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t36);
-    const real_t t38 = l * l - t37;
-    const real_t slack = cf_max(t38, CLOSEDFORM_C(0.0));
-    const real_t t39 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t39, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t40 = cf_rarely(single, in_line, g_1 * s_w, -t35) * h;
-    const real_t A_11 = t34 - t40;
-    const real_t t41 = s_alpha1 * t1;
-    const real_t t42 = t30 * t33 - t17 * CLOSEDFORM_C(0.5);
-    const real_t t43 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t26), t25);
-    const real_t t44 = h * cf_rarely(single, in_line, g_1, -t43);
-    const real_t A_12 = t42 - t44;
-    const real_t t45 = n_z * t33 - d_z * CLOSEDFORM_C(0.5);
-    const real_t t46 = cf_rarely(single, slim, over * (a_x * t30 + t17 * t26), t23);
-    const real_t t47 = h * cf_rarely(single, in_line, t31, -t46);
-    const real_t t48 = t45 + t47;
-    const real_t t49 = c_alpha2 * t3;
-    const real_t t50 = s_alpha2 * t3;
-    const real_t t51 = t49 * (t9 + A_11) + t50 * (t10 + A_12) - t7 * (u_z + t48);
-    const real_t t52 = c_alpha3 * t18;
-    const real_t t53 = s_alpha3 * t18;
-    const real_t t54 = t52 * (t19 + A_11) + t53 * (t16 + A_12) - t14 * (v_z + t48);
-    const real_t t55 = (t2 * A_11 + t41 * A_12 - t4 * t48) * t51 * t54;
-    const real_t Delta = w_w * h;
-    const int t56 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t57 = t56 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t58 = t57 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t59 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t60 = cf_rarely(single, in_line, -t32, CLOSEDFORM_C(0.0));
-    const int t61 = cf_abs(t60) <= t11 * CLOSEDFORM_FEASIBILITY;
-    const int t62 = t61 & (-(CLOSEDFORM_FEASIBILITY * t39) <= t38);
-    const real_t t63 = cf_poison(single, (!(t58 & t59)) | (!t62));
-    const real_t A_11_above = t34 + t40;
-    const real_t A_12_above = t42 + t44;
-    const real_t t64 = t45 - t47;
-    const real_t t65 = t2 * A_11_above + t41 * A_12_above - t4 * t64;
-    const real_t t66 = t49 * (t9 + A_11_above) + t50 * (t10 + A_12_above);
-    const real_t t67 = t52 * (t19 + A_11_above) + t53 * (t16 + A_12_above);
-    const real_t t68 = t65 * (t66 - t7 * (u_z + t64)) * (t67 - t14 * (v_z + t64));
-    det[0] = cf_quotient(single, t55, Delta) + t63;
-    det[1] = -cf_quotient(single, t68, Delta) + t63;
-}
-
-CLOSEDFORM_DISPATCHED
-CF_OUT_OF_LINE void delta_determinant_whole(const delta_params *params, const real_t q[3],
-    real_t det[2])
-{
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, params->alpha3, q[2], q[2], q[2] };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    delta_determinant_whole_kernel(1, params, q, sines, cosines, det);
-}
-
-/* Where nothing vanishes; rare is whether something does. */
-CF_INLINE void delta_determinant_common_kernel(const int single, const real_t one,
-    const delta_params *params, const real_t q[3],
-    const real_t *sines, const real_t *cosines,
-    real_t det[2], real_t rare[1])
-{
-    const real_t f = params->f;
-    const real_t e = params->e;
-    const real_t L = params->L;
-    const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
-    const real_t theta1 = q[0];
-    const real_t theta2 = q[1];
-    const real_t theta3 = q[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s1 = sines[1];
-    const real_t c1 = cosines[1];
-    const real_t s_alpha2 = sines[2];
-    const real_t c_alpha2 = cosines[2];
-    const real_t s2 = sines[3];
-    const real_t c2 = cosines[3];
-    const real_t s_alpha3 = sines[4];
-    const real_t c_alpha3 = cosines[4];
-    const real_t s3 = sines[5];
-    const real_t c3 = cosines[5];
-    const real_t t1 = cf_rounded(single, one, L * s1);
-    const real_t t2 = c_alpha1 * t1;
-    const real_t t3 = cf_rounded(single, one, L * c1);
-    const real_t t4 = f - e;
-    const real_t t5 = t3 + t4;
-    const real_t c1_y = cf_rounded(single, one, s_alpha1 * t5);
-    const real_t t6 = cf_rounded(single, one, L * c2);
-    const real_t t7 = t6 + t4;
-    const real_t t8 = c1_y - cf_rounded(single, one, s_alpha2 * t7);
-    const real_t c1_x = cf_rounded(single, one, c_alpha1 * t5);
-    const real_t t9 = c1_x - cf_rounded(single, one, c_alpha2 * t7);
-    const real_t t10 = cf_rounded(single, one, L * c3);
-    const real_t t11 = t10 + t4;
-    const real_t t12 = c1_y - cf_rounded(single, one, s_alpha3 * t11);
-    const real_t t13 = c1_x - cf_rounded(single, one, c_alpha3 * t11);
-    const real_t m_z = cf_rounded(single, one, t9 * t12) - cf_rounded(single, one, t8 * t13);
-    const real_t t14 = cf_rounded(single, one, L * s2);
-    const real_t u_z = t1 - t14;
-    const real_t t15 = cf_rounded(single, one, L * s3);
-    const real_t v_z = t1 - t15;
-    const real_t m_y = cf_rounded(single, one, v_z * t9) - cf_rounded(single, one, u_z * t13);
-    const real_t t16 = cf_rounded(single, one, v_z * t8) - cf_rounded(single, one, u_z * t12);
-    const real_t t17 = cf_rounded(single, one, t16 * t16) + cf_rounded(single, one, m_y * m_y);
-    const real_t product_2 = t17 + cf_rounded(single, one, m_z * m_z);
-    const real_t t18 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t9 * t9);
-    const real_t u_u = t18 + cf_rounded(single, one, t8 * t8);
-    const real_t size = f + e + L + l;
-    const real_t t19 = size * size;
-    const real_t t20 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t21 = t19 * t20;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t21) | (product_2 <= t20 * (t19 * u_u)), product_2);
-    const real_t t22 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t13 * (t9 - t13));
-    const real_t t23 = t22 + cf_rounded(single, one, t12 * (t8 - t12));
-    const real_t t24 = part * t23 * CLOSEDFORM_C(0.5);
-    const real_t t25 = (t8 * m_z + u_z * m_y) * t24 + t9 * CLOSEDFORM_C(0.5);
-    const real_t t26 = cf_rounded(single, one, product_2 * (t24 * t24));
-    const real_t t27 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t26));
-    const real_t t28 = cf_rounded(single, one, l * l) - t27;
-    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
-    const real_t h = cf_sqrt(part * slack);
-    const real_t t29 = t16 * h;
-    const real_t t30 = t25 - t29;
-    const real_t t31 = s_alpha1 * t1;
-    const real_t t32 = t24 * (t9 * m_z - u_z * t16) - t8 * CLOSEDFORM_C(0.5);
-    const real_t t33 = m_y * h;
-    const real_t A_12 = t32 - t33;
-    const real_t t34 = u_z * CLOSEDFORM_C(0.5) - t24 * (t9 * m_y + t8 * t16);
-    const real_t t35 = m_z * h;
+    const real_t s_w = cf_sign(t16 * a_x);
+    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t16 * n_z - d_z * t24);
+    const real_t t25 = whole * (t16 + a_x * s_w);
+    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25);
+    const real_t t27 = mu * nu;
+    const real_t t28 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t27);
+    const real_t part = cf_rarely(single, in_line, t26, t28);
+    const real_t t29 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
+    const real_t t30 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t29 * CLOSEDFORM_C(0.5));
+    const real_t t31 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t30 * t30) + mu * CLOSEDFORM_C(0.25));
+    const real_t t32 = l * l - t31;
+    const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
+    const real_t t33 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t33, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t34 = w_x * h;
+    const real_t t35 = t22 * t30 + d_x * CLOSEDFORM_C(0.5);
     const real_t t36 = t34 - t35;
-    const real_t t37 = c_alpha2 * t14;
-    const real_t t38 = s_alpha2 * t14;
-    const real_t t39 = t37 * (t9 - t30) + t38 * (t8 + A_12) - t6 * (u_z - t36);
-    const real_t t40 = c_alpha3 * t15;
-    const real_t t41 = s_alpha3 * t15;
-    const real_t t42 = t40 * (t13 - t30) + t41 * (t12 + A_12) - t10 * (v_z - t36);
-    const real_t t43 = (t2 * t30 - t31 * A_12 - t3 * t36) * t39 * t42;
-    const real_t Delta = product_2 * h;
-    const real_t t44 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t t45 = t43 / cf_divisor(single, (u_u <= t21) | (product_2 <= t20 * (t19 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t44), Delta);
-    const int t46 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t47 = t46 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t49 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int t50 = cf_abs(CLOSEDFORM_C(0.0)) <= t19 * CLOSEDFORM_FEASIBILITY;
-    const int t51 = t50 & (-(CLOSEDFORM_FEASIBILITY * t44) <= t28);
-    const real_t t52 = cf_poison(single, (!(t48 & t49)) | (!t51));
-    const real_t t53 = t25 + t29;
-    const real_t A_12_above = t32 + t33;
-    const real_t t54 = t34 + t35;
-    const real_t t55 = t37 * (t9 - t53) + t38 * (t8 + A_12_above) - t6 * (u_z - t54);
-    const real_t t56 = (t2 * t53 - t31 * A_12_above - t3 * t54) * t55;
-    const real_t t57 = t40 * (t13 - t53) + t41 * (t12 + A_12_above) - t10 * (v_z - t54);
-    const real_t t58 = t56 * t57 / cf_divisor(single, (u_u <= t21) | (product_2 <= t20 * (t19 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t44), Delta);
-    const real_t t59 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t13 * t13);
-    const real_t v_v = t59 + cf_rounded(single, one, t12 * t12);
-    const real_t t60 = u_u * v_v;
-    const real_t t61 = product_2 - t60 * CLOSEDFORM_C(0.000244140625);
-    const int t62 = (u_u <= t21) | (u_u + v_v <= t21) | (t61 <= CLOSEDFORM_VANISHING * t60);
-    const int t63 = t62 | (product_2 <= t20 * (t19 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t44);
-    det[0] = -t45 + t52;
-    det[1] = t58 + t52;
-    rare[0] = (t63) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
-}
-
-CF_INLINE void delta_determinant_common_batch(size_t n, const delta_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *det, size_t det_stride,
-    uint8_t *rare, size_t rare_stride)
-{
-    (void)rare_stride;
-    const delta_params local = *params;
-    const real_t one = cf_one();
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_4, sines[4], cosines[4]);
-        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[5], cosines[5]);
-        real_t rare_real[1][CLOSEDFORM_BLOCK];
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
-            real_t det_i[2];
-            real_t rare_i[1];
-            delta_determinant_common_kernel(0, one, &local, q_i, sines_i, cosines_i, det_i, rare_i);
-            det[start + i] = det_i[0];
-            det[det_stride + start + i] = det_i[1];
-            rare_real[0][i] = rare_i[0];
-        }
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i)
-            rare[start + i] = (uint8_t)rare_real[0][i];
-    }
-}
-
-CF_INLINE void delta_determinant_common(const delta_params *params, const real_t q[3],
-    real_t det[2], uint8_t rare[1])
-{
-    const real_t one = cf_one();
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], params->alpha2, q[1], params->alpha3, q[2], q[2], q[2] };
-    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
-    real_t rare_real[1];
-    delta_determinant_common_kernel(1, one, params, q, sines, cosines, det, rare_real);
-    for (size_t i = 0; i < 1; ++i)
-        rare[i] = (uint8_t)rare_real[i];
+    const real_t t37 = s_alpha1 * t1;
+    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t22));
+    const real_t t38 = h * w_y;
+    const real_t t39 = t24 * t30 - t16 * CLOSEDFORM_C(0.5);
+    const real_t t40 = t38 + t39;
+    const real_t w_z = cf_rarely(single, in_line, -t25, a_x * t24 + t16 * t22);
+    const real_t t41 = h * w_z;
+    const real_t t42 = n_z * t30 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t43 = t41 + t42;
+    const real_t t44 = c_alpha2 * t3;
+    const real_t t45 = s_alpha2 * t3;
+    const real_t t46 = t44 * (t7 + t36) + t45 * (t9 + t40) + t6 * (u_z + t43);
+    const real_t t47 = c_alpha3 * t10;
+    const real_t t48 = s_alpha3 * t10;
+    const real_t t49 = t47 * (t12 + t36) + t48 * (t13 + t40) + t11 * (v_z + t43);
+    const real_t t50 = (t2 * t36 + t37 * t40 + t4 * t43) * t46 * t49;
+    const real_t Delta = t27 * h;
+    const int t51 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t53 = t52 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t54 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t55 = cf_rarely(single, in_line, -t29, CLOSEDFORM_C(0.0));
+    const int t56 = cf_abs(t55) <= t14 * CLOSEDFORM_FEASIBILITY;
+    const int t57 = t56 & (-(CLOSEDFORM_FEASIBILITY * t33) <= t32);
+    const real_t t58 = cf_poison(single, (!(t53 & t54)) | (!t57));
+    const real_t A_11_above = t34 + t35;
+    const real_t A_12_above = t38 - t39;
+    const real_t t59 = t41 - t42;
+    const real_t t60 = t2 * A_11_above + t37 * A_12_above + t4 * t59;
+    const real_t t61 = t44 * (t7 - A_11_above) + t45 * (t9 - A_12_above);
+    const real_t t62 = t47 * (t12 - A_11_above) + t48 * (t13 - A_12_above);
+    const real_t t63 = t60 * (t61 + t6 * (u_z - t59)) * (t62 + t11 * (v_z - t59));
+    det[0] = -cf_quotient(single, t50, Delta) + t58;
+    det[1] = -cf_quotient(single, t63, Delta) + t58;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2589,9 +2029,10 @@ void delta_determinant(const delta_params *params, const real_t q[3],
         params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
         params = &params_scaled;
     }
-    uint8_t rare[1];
-    delta_determinant_common(params, q, det, rare);
-    if (CF_UNLIKELY(rare[0])) delta_determinant_whole(params, q, det);
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    delta_determinant_kernel(1, params, q, sines, cosines, det);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(2, det_degrees, exponent, det, det);
     }
@@ -2616,6 +2057,7 @@ void delta_determinant_batch(size_t n, const delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *det, size_t det_stride)
 {
+    const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
     if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         delta_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
@@ -2623,168 +2065,38 @@ void delta_determinant_batch(size_t n, const delta_params *params,
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        uint8_t rare[CLOSEDFORM_BLOCK];
-        delta_determinant_common_batch(length, params, q + start, q_stride, det + start, det_stride, rare, CLOSEDFORM_BLOCK);
-        for (size_t i = start; i < start + length; ++i) {
-            if (!CF_UNLIKELY(rare[i - start])) continue;
-            real_t q_i[3];
-            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = params->alpha1;
+        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
+        cf_sincos_block(length, q + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + q_stride + start, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = params->alpha2;
+        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_5[i] = params->alpha3;
+        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
             real_t det_i[2];
-            delta_determinant_whole(params, q_i, det_i);
-            for (size_t k = 0; k < 2; ++k) det[k * det_stride + i] = det_i[k];
-
+            delta_determinant_kernel(0, &local, q_i, sines_i, cosines_i, det_i);
+            det[start + i] = det_i[0];
+            det[det_stride + start + i] = det_i[1];
         }
     }
 }
 
-/* Every case. */
-CF_INLINE void delta_singularities_whole_kernel(const int single, const delta_params *params,
+CF_INLINE void delta_singularities_kernel(const int single, const delta_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t factors[8])
-{
-    const real_t f = params->f;
-    const real_t e = params->e;
-    const real_t L = params->L;
-    const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
-    const real_t theta1 = q[0];
-    const real_t theta2 = q[1];
-    const real_t theta3 = q[2];
-    const real_t s1 = sines[0];
-    const real_t c1 = cosines[0];
-    const real_t s2 = sines[1];
-    const real_t c2 = cosines[1];
-    const real_t s_alpha1 = sines[2];
-    const real_t c_alpha1 = cosines[2];
-    const real_t s_alpha2 = sines[3];
-    const real_t c_alpha2 = cosines[3];
-    const real_t s3 = sines[4];
-    const real_t c3 = cosines[4];
-    const real_t s_alpha3 = sines[5];
-    const real_t c_alpha3 = cosines[5];
-    const real_t t1 = L * c1;
-    const real_t t2 = L * s1;
-    const real_t t3 = L * s2;
-    const real_t u_z = t2 - t3;
-    const real_t t4 = f - e;
-    const real_t t5 = t1 + t4;
-    const real_t c1_x = c_alpha1 * t5;
-    const real_t t6 = L * c2;
-    const real_t t7 = t6 + t4;
-    const real_t t8 = c1_x - c_alpha2 * t7;
-    const real_t c1_y = s_alpha1 * t5;
-    const real_t t9 = c1_y - s_alpha2 * t7;
-    const real_t u_u = u_z * u_z + t8 * t8 + t9 * t9;
-    const real_t t10 = L * s3;
-    const real_t v_z = t2 - t10;
-    const real_t t11 = L * c3;
-    const real_t t12 = t11 + t4;
-    const real_t t13 = c1_x - c_alpha3 * t12;
-    const real_t t14 = c1_y - s_alpha3 * t12;
-    const real_t v_v = v_z * v_z + t13 * t13 + t14 * t14;
-    const real_t size = f + e + L + l;
-    const real_t t15 = size * size;
-    const real_t t16 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t17 = t15 * t16;
-    const int all_same = u_u + v_v <= t17;
-    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t17;
-    const real_t t18 = cf_rarely(single, same, t13, t8);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t18);
-    const real_t t19 = cf_rarely(single, same, u_z, v_z);
-    const real_t t20 = cf_rarely(single, same, t8, t13);
-    const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t21 = a_x * t19 + t20 * d_z;
-    const real_t t22 = cf_rarely(single, same, t14, t9);
-    const real_t t23 = cf_rarely(single, same, t9, t14);
-    const real_t t24 = t22 * t19 - t23 * d_z;
-    const real_t n_z = a_x * t21 + t22 * t24;
-    const real_t t25 = a_x * t23 + t22 * t20;
-    const real_t product_2 = t24 * t24 + t21 * t21 + t25 * t25;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t26 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t27 = product_2 - t26 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t27 <= CLOSEDFORM_VANISHING * t26;
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t28 = t22 * t25 + d_z * t21;
-    const real_t t29 = a_x * t25 - d_z * t24;
-    const real_t m_m = cf_rarely(single, slim, over * (t28 * t28 + t29 * t29 + n_z * n_z), product_2);
-    const int in_line = m_m <= t16 * (t15 * mu);
-    const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(-(t22 * a_x));
-    const real_t t30 = whole * (t22 - a_x * s_w);
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t30 * t30, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t31 = t20 * (t18 - t20) + t23 * (t22 - t23) + t19 * (d_z - t19);
-    const real_t t32 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t31 * CLOSEDFORM_C(0.5));
-    const real_t t33 = n_z * t32 - d_z * CLOSEDFORM_C(0.5);
-    const real_t t34 = mu * (CLOSEDFORM_C(0.25) + w_w * (t32 * t32));
-    const real_t t35 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t34);
-    const real_t t36 = l * l - t35;
-    const real_t slack = cf_max(t36, CLOSEDFORM_C(0.0));
-    const real_t t37 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t37, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t38 = cf_rarely(single, slim, over * (a_x * t29 + t22 * t28), t25);
-    const real_t t39 = h * cf_rarely(single, in_line, t30, -t38);
-    const real_t t40 = t33 + t39;
-    const real_t t41 = c_alpha1 * t2;
-    const real_t t42 = t28 * t32 - t18 * CLOSEDFORM_C(0.5);
-    const real_t t43 = cf_rarely(single, slim, over * (t22 * n_z - d_z * t29), t24);
-    const real_t t44 = cf_rarely(single, in_line, g_1 * s_w, -t43) * h;
-    const real_t A_11 = t42 - t44;
-    const real_t t45 = s_alpha1 * t2;
-    const real_t t46 = t29 * t32 - t22 * CLOSEDFORM_C(0.5);
-    const real_t t47 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t28), t21);
-    const real_t t48 = h * cf_rarely(single, in_line, g_1, -t47);
-    const real_t A_12 = t46 - t48;
-    const int t49 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t50 = t49 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t51 = t50 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t52 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t53 = cf_rarely(single, in_line, -t31, CLOSEDFORM_C(0.0));
-    const int t54 = cf_abs(t53) <= t15 * CLOSEDFORM_FEASIBILITY;
-    const int t55 = t54 & (-(CLOSEDFORM_FEASIBILITY * t37) <= t36);
-    const real_t t56 = cf_poison(single, (!(t51 & t52)) | (!t55));
-    const real_t t57 = c_alpha2 * t3;
-    const real_t t58 = s_alpha2 * t3;
-    const real_t B_22 = t6 * (u_z + t40) - (t57 * (t8 + A_11) + t58 * (t9 + A_12));
-    const real_t t59 = c_alpha3 * t10;
-    const real_t t60 = s_alpha3 * t10;
-    const real_t B_33 = t11 * (v_z + t40) - (t59 * (t13 + A_11) + t60 * (t14 + A_12));
-    const real_t Delta = w_w * h;
-    const real_t t61 = t33 - t39;
-    const real_t A_11_above = t42 + t44;
-    const real_t A_12_above = t46 + t48;
-    const real_t B_11_above = t1 * t61 - (t41 * A_11_above + t45 * A_12_above);
-    const real_t t62 = t57 * (t8 + A_11_above) + t58 * (t9 + A_12_above);
-    const real_t t63 = t59 * (t13 + A_11_above) + t60 * (t14 + A_12_above);
-    factors[0] = t1 * t40 - (t41 * A_11 + t45 * A_12) + t56;
-    factors[1] = B_22 + t56;
-    factors[2] = B_33 + t56;
-    factors[3] = -Delta + t56;
-    factors[4] = B_11_above + t56;
-    factors[5] = t6 * (u_z + t61) - t62 + t56;
-    factors[6] = t11 * (v_z + t61) - t63 + t56;
-    factors[7] = Delta + t56;
-}
-
-CLOSEDFORM_DISPATCHED
-CF_OUT_OF_LINE void delta_singularities_whole(const delta_params *params, const real_t q[3],
-    real_t factors[8])
-{
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    delta_singularities_whole_kernel(1, params, q, sines, cosines, factors);
-}
-
-/* Where nothing vanishes; rare is whether something does. */
-CF_INLINE void delta_singularities_common_kernel(const int single, const real_t one,
-    const delta_params *params, const real_t q[3],
-    const real_t *sines, const real_t *cosines,
-    real_t factors[8], real_t rare[1])
 {
     const real_t f = params->f;
     const real_t e = params->e;
@@ -2800,162 +2112,110 @@ CF_INLINE void delta_singularities_common_kernel(const int single, const real_t 
     const real_t c_alpha1 = cosines[0];
     const real_t s1 = sines[1];
     const real_t c1 = cosines[1];
-    const real_t s_alpha2 = sines[2];
-    const real_t c_alpha2 = cosines[2];
-    const real_t s2 = sines[3];
-    const real_t c2 = cosines[3];
-    const real_t s_alpha3 = sines[4];
-    const real_t c_alpha3 = cosines[4];
-    const real_t s3 = sines[5];
-    const real_t c3 = cosines[5];
-    const real_t t1 = cf_rounded(single, one, L * s1);
+    const real_t s2 = sines[2];
+    const real_t c2 = cosines[2];
+    const real_t s_alpha2 = sines[3];
+    const real_t c_alpha2 = cosines[3];
+    const real_t s3 = sines[4];
+    const real_t c3 = cosines[4];
+    const real_t s_alpha3 = sines[5];
+    const real_t c_alpha3 = cosines[5];
+    const real_t t1 = L * s1;
     const real_t t2 = c_alpha1 * t1;
-    const real_t t3 = cf_rounded(single, one, L * c1);
-    const real_t t4 = f - e;
-    const real_t t5 = t3 + t4;
-    const real_t c1_y = cf_rounded(single, one, s_alpha1 * t5);
-    const real_t t6 = cf_rounded(single, one, L * c2);
-    const real_t t7 = t6 + t4;
-    const real_t t8 = c1_y - cf_rounded(single, one, s_alpha2 * t7);
-    const real_t c1_x = cf_rounded(single, one, c_alpha1 * t5);
-    const real_t t9 = c1_x - cf_rounded(single, one, c_alpha2 * t7);
-    const real_t t10 = cf_rounded(single, one, L * c3);
-    const real_t t11 = t10 + t4;
-    const real_t t12 = c1_y - cf_rounded(single, one, s_alpha3 * t11);
-    const real_t t13 = c1_x - cf_rounded(single, one, c_alpha3 * t11);
-    const real_t m_z = cf_rounded(single, one, t9 * t12) - cf_rounded(single, one, t8 * t13);
-    const real_t t14 = cf_rounded(single, one, L * s2);
-    const real_t u_z = t1 - t14;
-    const real_t t15 = cf_rounded(single, one, L * s3);
-    const real_t v_z = t1 - t15;
-    const real_t m_y = cf_rounded(single, one, v_z * t9) - cf_rounded(single, one, u_z * t13);
-    const real_t t16 = cf_rounded(single, one, v_z * t8) - cf_rounded(single, one, u_z * t12);
-    const real_t t17 = cf_rounded(single, one, t16 * t16) + cf_rounded(single, one, m_y * m_y);
-    const real_t product_2 = t17 + cf_rounded(single, one, m_z * m_z);
-    const real_t t18 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t9 * t9);
-    const real_t u_u = t18 + cf_rounded(single, one, t8 * t8);
+    const real_t t3 = L * s2;
+    const real_t u_z = t1 - t3;
+    const real_t t4 = L * c1;
+    const real_t t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4;
+    const real_t t6 = L * c2;
+    const real_t t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6);
+    const real_t t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4;
+    const real_t t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6);
+    const real_t u_u = u_z * u_z + t7 * t7 + t9 * t9;
+    const real_t t10 = L * s3;
+    const real_t v_z = t1 - t10;
+    const real_t t11 = L * c3;
+    const real_t t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11);
+    const real_t t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11);
+    const real_t v_v = v_z * v_z + t12 * t12 + t13 * t13;
     const real_t size = f + e + L + l;
-    const real_t t19 = size * size;
-    const real_t t20 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t21 = t19 * t20;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t21) | (product_2 <= t20 * (t19 * u_u)), product_2);
-    const real_t t22 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t13 * (t9 - t13));
-    const real_t t23 = t22 + cf_rounded(single, one, t12 * (t8 - t12));
-    const real_t t24 = part * t23 * CLOSEDFORM_C(0.5);
-    const real_t t25 = (t8 * m_z + u_z * m_y) * t24 + t9 * CLOSEDFORM_C(0.5);
-    const real_t t26 = cf_rounded(single, one, product_2 * (t24 * t24));
-    const real_t t27 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t26));
-    const real_t t28 = cf_rounded(single, one, l * l) - t27;
-    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
-    const real_t h = cf_sqrt(part * slack);
-    const real_t t29 = t16 * h;
-    const real_t t30 = t25 - t29;
-    const real_t t31 = s_alpha1 * t1;
-    const real_t t32 = t24 * (t9 * m_z - u_z * t16) - t8 * CLOSEDFORM_C(0.5);
-    const real_t t33 = m_y * h;
-    const real_t A_12 = t32 - t33;
-    const real_t t34 = u_z * CLOSEDFORM_C(0.5) - t24 * (t9 * m_y + t8 * t16);
-    const real_t t35 = m_z * h;
+    const real_t t14 = size * size;
+    const real_t t15 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t14;
+    const int all_same = u_u + v_v <= t15;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
+    const int same = u_u <= t15;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t16 = cf_rarely(single, same, t13, t9);
+    const real_t d_x = cf_rarely(single, same, t12, t7);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t17 = cf_rarely(single, same, t9, t13);
+    const real_t t18 = cf_rarely(single, same, t7, t12);
+    const real_t t19 = a_x * t17 - t16 * t18;
+    const real_t d_z = cf_rarely(single, same, v_z, u_z);
+    const real_t t20 = cf_rarely(single, same, u_z, v_z);
+    const real_t t21 = a_x * t20 - t18 * d_z;
+    const real_t t22 = over * (t16 * t19 + d_z * t21);
+    const real_t t23 = t16 * t20 - t17 * d_z;
+    const real_t t24 = over * (a_x * t19 - d_z * t23);
+    const real_t n_z = over * (a_x * t21 + t16 * t23);
+    const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
+    const int in_line = nu <= t15;
+    const real_t g_1 = whole * d_z;
+    const real_t s_w = cf_sign(t16 * a_x);
+    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t16 * n_z - d_z * t24);
+    const real_t t25 = whole * (t16 + a_x * s_w);
+    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25);
+    const real_t t27 = mu * nu;
+    const real_t t28 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t27);
+    const real_t part = cf_rarely(single, in_line, t26, t28);
+    const real_t t29 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
+    const real_t t30 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t29 * CLOSEDFORM_C(0.5));
+    const real_t t31 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t30 * t30) + mu * CLOSEDFORM_C(0.25));
+    const real_t t32 = l * l - t31;
+    const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
+    const real_t t33 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t33, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t34 = w_x * h;
+    const real_t t35 = t22 * t30 + d_x * CLOSEDFORM_C(0.5);
     const real_t t36 = t34 - t35;
-    const int t37 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t39 = t38 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t40 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int t41 = cf_abs(CLOSEDFORM_C(0.0)) <= t19 * CLOSEDFORM_FEASIBILITY;
-    const real_t t42 = CLOSEDFORM_C(0.9375) * (l * size);
-    const int t43 = t41 & (-(CLOSEDFORM_FEASIBILITY * t42) <= t28);
-    const real_t t44 = cf_poison(single, (!(t39 & t40)) | (!t43));
-    const real_t t45 = c_alpha2 * t14;
-    const real_t t46 = s_alpha2 * t14;
-    const real_t B_22 = t6 * (u_z - t36) - (t45 * (t9 - t30) + t46 * (t8 + A_12));
-    const real_t t47 = c_alpha3 * t15;
-    const real_t t48 = s_alpha3 * t15;
-    const real_t B_33 = t10 * (v_z - t36) - (t47 * (t13 - t30) + t48 * (t12 + A_12));
-    const real_t Delta = product_2 * h;
-    const real_t t49 = t25 + t29;
-    const real_t A_12_above = t32 + t33;
-    const real_t t50 = t34 + t35;
-    const real_t B_22_above = t6 * (u_z - t50) - (t45 * (t9 - t49) + t46 * (t8 + A_12_above));
-    const real_t B_33_above = t10 * (v_z - t50) - (t47 * (t13 - t49) + t48 * (t12 + A_12_above));
-    const real_t t51 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t13 * t13);
-    const real_t v_v = t51 + cf_rounded(single, one, t12 * t12);
-    const real_t t52 = u_u * v_v;
-    const real_t t53 = product_2 - t52 * CLOSEDFORM_C(0.000244140625);
-    const int t54 = (u_u <= t21) | (u_u + v_v <= t21) | (t53 <= CLOSEDFORM_VANISHING * t52);
-    const int t55 = t54 | (product_2 <= t20 * (t19 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t42);
-    factors[0] = t2 * t30 - t31 * A_12 - t3 * t36 + t44;
-    factors[1] = B_22 + t44;
-    factors[2] = B_33 + t44;
-    factors[3] = -Delta + t44;
-    factors[4] = t2 * t49 - t31 * A_12_above - t3 * t50 + t44;
-    factors[5] = B_22_above + t44;
-    factors[6] = B_33_above + t44;
-    factors[7] = Delta + t44;
-    rare[0] = (t55) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
-}
-
-CF_INLINE void delta_singularities_common_batch(size_t n, const delta_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *factors, size_t factors_stride,
-    uint8_t *rare, size_t rare_stride)
-{
-    (void)rare_stride;
-    const delta_params local = *params;
-    const real_t one = cf_one();
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_4, sines[4], cosines[4]);
-        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[5], cosines[5]);
-        real_t rare_real[1][CLOSEDFORM_BLOCK];
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
-            real_t factors_i[8];
-            real_t rare_i[1];
-            delta_singularities_common_kernel(0, one, &local, q_i, sines_i, cosines_i, factors_i, rare_i);
-            factors[start + i] = factors_i[0];
-            factors[factors_stride + start + i] = factors_i[1];
-            factors[2 * factors_stride + start + i] = factors_i[2];
-            factors[3 * factors_stride + start + i] = factors_i[3];
-            factors[4 * factors_stride + start + i] = factors_i[4];
-            factors[5 * factors_stride + start + i] = factors_i[5];
-            factors[6 * factors_stride + start + i] = factors_i[6];
-            factors[7 * factors_stride + start + i] = factors_i[7];
-            rare_real[0][i] = rare_i[0];
-        }
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i)
-            rare[start + i] = (uint8_t)rare_real[0][i];
-    }
-}
-
-CF_INLINE void delta_singularities_common(const delta_params *params, const real_t q[3],
-    real_t factors[8], uint8_t rare[1])
-{
-    const real_t one = cf_one();
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], params->alpha2, q[1], params->alpha3, q[2], q[2], q[2] };
-    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
-    real_t rare_real[1];
-    delta_singularities_common_kernel(1, one, params, q, sines, cosines, factors, rare_real);
-    for (size_t i = 0; i < 1; ++i)
-        rare[i] = (uint8_t)rare_real[i];
+    const real_t t37 = s_alpha1 * t1;
+    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t22));
+    const real_t t38 = h * w_y;
+    const real_t t39 = t24 * t30 - t16 * CLOSEDFORM_C(0.5);
+    const real_t t40 = t38 + t39;
+    const real_t w_z = cf_rarely(single, in_line, -t25, a_x * t24 + t16 * t22);
+    const real_t t41 = h * w_z;
+    const real_t t42 = n_z * t30 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t43 = t41 + t42;
+    const int t44 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t45 = t44 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t46 = t45 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t47 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t48 = cf_rarely(single, in_line, -t29, CLOSEDFORM_C(0.0));
+    const int t49 = cf_abs(t48) <= t14 * CLOSEDFORM_FEASIBILITY;
+    const int t50 = t49 & (-(CLOSEDFORM_FEASIBILITY * t33) <= t32);
+    const real_t t51 = cf_poison(single, (!(t46 & t47)) | (!t50));
+    const real_t t52 = c_alpha2 * t3;
+    const real_t t53 = s_alpha2 * t3;
+    const real_t B_22 = t52 * (t7 + t36) + t53 * (t9 + t40) + t6 * (u_z + t43);
+    const real_t t54 = c_alpha3 * t10;
+    const real_t t55 = s_alpha3 * t10;
+    const real_t B_33 = t54 * (t12 + t36) + t55 * (t13 + t40) + t11 * (v_z + t43);
+    const real_t Delta = t27 * h;
+    const real_t A_11_above = t34 + t35;
+    const real_t A_12_above = t38 - t39;
+    const real_t t56 = t41 - t42;
+    const real_t t57 = t2 * A_11_above + t37 * A_12_above + t4 * t56;
+    const real_t t58 = t52 * (t7 - A_11_above) + t53 * (t9 - A_12_above);
+    const real_t t59 = t54 * (t12 - A_11_above) + t55 * (t13 - A_12_above);
+    factors[0] = t2 * t36 + t37 * t40 + t4 * t43 + t51;
+    factors[1] = B_22 + t51;
+    factors[2] = B_33 + t51;
+    factors[3] = -Delta + t51;
+    factors[4] = -t57 + t51;
+    factors[5] = t58 + t6 * (u_z - t56) + t51;
+    factors[6] = t59 + t11 * (v_z - t56) + t51;
+    factors[7] = Delta + t51;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2966,7 +2226,7 @@ void delta_singularities(const delta_params *params, const real_t q[3],
     delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -2975,9 +2235,10 @@ void delta_singularities(const delta_params *params, const real_t q[3],
         params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
         params = &params_scaled;
     }
-    uint8_t rare[1];
-    delta_singularities_common(params, q, factors, rare);
-    if (CF_UNLIKELY(rare[0])) delta_singularities_whole(params, q, factors);
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    delta_singularities_kernel(1, params, q, sines, cosines, factors);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(8, factors_degrees, exponent, factors, factors);
     }
@@ -3002,29 +2263,50 @@ void delta_singularities_batch(size_t n, const delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *factors, size_t factors_stride)
 {
+    const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
         delta_singularities_other_sizes(n, params, q, q_stride, factors, factors_stride);
         return;
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        uint8_t rare[CLOSEDFORM_BLOCK];
-        delta_singularities_common_batch(length, params, q + start, q_stride, factors + start, factors_stride, rare, CLOSEDFORM_BLOCK);
-        for (size_t i = start; i < start + length; ++i) {
-            if (!CF_UNLIKELY(rare[i - start])) continue;
-            real_t q_i[3];
-            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = params->alpha1;
+        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
+        cf_sincos_block(length, q + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + q_stride + start, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = params->alpha2;
+        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_5[i] = params->alpha3;
+        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
             real_t factors_i[8];
-            delta_singularities_whole(params, q_i, factors_i);
-            for (size_t k = 0; k < 8; ++k) factors[k * factors_stride + i] = factors_i[k];
-
+            delta_singularities_kernel(0, &local, q_i, sines_i, cosines_i, factors_i);
+            factors[start + i] = factors_i[0];
+            factors[factors_stride + start + i] = factors_i[1];
+            factors[2 * factors_stride + start + i] = factors_i[2];
+            factors[3 * factors_stride + start + i] = factors_i[3];
+            factors[4 * factors_stride + start + i] = factors_i[4];
+            factors[5 * factors_stride + start + i] = factors_i[5];
+            factors[6 * factors_stride + start + i] = factors_i[6];
+            factors[7 * factors_stride + start + i] = factors_i[7];
         }
     }
 }
 
-/* Every case. */
-CF_INLINE void delta_condition_number_whole_kernel(const int single, const delta_params *params,
+CF_INLINE void delta_condition_number_kernel(const int single, const delta_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t kappa[2])
 {
@@ -3046,337 +2328,126 @@ CF_INLINE void delta_condition_number_whole_kernel(const int single, const delta
     const real_t c_alpha1 = cosines[2];
     const real_t s_alpha2 = sines[3];
     const real_t c_alpha2 = cosines[3];
-    const real_t s_alpha3 = sines[4];
-    const real_t c_alpha3 = cosines[4];
-    const real_t s3 = sines[5];
-    const real_t c3 = cosines[5];
+    const real_t s3 = sines[4];
+    const real_t c3 = cosines[4];
+    const real_t s_alpha3 = sines[5];
+    const real_t c_alpha3 = cosines[5];
     const real_t t1 = L * s1;
     const real_t u_z = t1 - L * s2;
-    const real_t t2 = f - e;
-    const real_t t3 = L * c1 + t2;
-    const real_t c1_x = c_alpha1 * t3;
-    const real_t t4 = L * c2 + t2;
-    const real_t t5 = c1_x - c_alpha2 * t4;
-    const real_t c1_y = s_alpha1 * t3;
-    const real_t t6 = c1_y - s_alpha2 * t4;
-    const real_t u_u = u_z * u_z + t5 * t5 + t6 * t6;
-    const real_t size = f + e + L + l;
-    const real_t t7 = size * size;
-    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t9 = t7 * t8;
-    const int same = u_u <= t9;
-    const real_t t10 = L * c3 + t2;
-    const real_t t11 = c1_y - s_alpha3 * t10;
-    const real_t t12 = cf_rarely(single, same, t11, t6);
+    const real_t t2 = L * c1;
+    const real_t t3 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t2;
+    const real_t t4 = L * c2;
+    const real_t t5 = t3 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t4);
+    const real_t t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t2;
+    const real_t t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4);
+    const real_t u_u = u_z * u_z + t5 * t5 + t7 * t7;
     const real_t v_z = t1 - L * s3;
-    const real_t t13 = c1_x - c_alpha3 * t10;
-    const real_t v_v = v_z * v_z + t13 * t13 + t11 * t11;
-    const int all_same = u_u + v_v <= t9;
-    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t t14 = cf_rarely(single, same, t13, t5);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t14);
-    const real_t t15 = cf_rarely(single, same, t6, t11);
-    const real_t t16 = cf_rarely(single, same, t5, t13);
-    const real_t t17 = a_x * t15 + t12 * t16;
-    const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t18 = cf_rarely(single, same, u_z, v_z);
-    const real_t t19 = a_x * t18 + t16 * d_z;
-    const real_t t20 = t12 * t17 + d_z * t19;
-    const real_t t21 = t12 * t18 - t15 * d_z;
-    const real_t product_2 = t21 * t21 + t19 * t19 + t17 * t17;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t22 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t23 = product_2 - t22 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t23 <= CLOSEDFORM_VANISHING * t22;
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t24 = a_x * t17 - d_z * t21;
-    const real_t n_z = a_x * t19 + t12 * t21;
-    const real_t m_m = cf_rarely(single, slim, over * (t20 * t20 + t24 * t24 + n_z * n_z), product_2);
-    const int in_line = m_m <= t8 * (t7 * mu);
-    const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(-(t12 * a_x));
-    const real_t t25 = whole * (t12 - a_x * s_w);
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t26 = t16 * (t14 - t16) + t15 * (t12 - t15) + t18 * (d_z - t18);
-    const real_t t27 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t26 * CLOSEDFORM_C(0.5));
-    const real_t t28 = t20 * t27 - t14 * CLOSEDFORM_C(0.5);
-    const real_t t29 = cf_rarely(single, slim, over * (t12 * n_z - d_z * t24), t21);
-    const real_t t30 = mu * (CLOSEDFORM_C(0.25) + w_w * (t27 * t27));
-    const real_t t31 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t30);
-    const real_t t32 = l * l - t31;
-    const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
-    const real_t t33 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t33, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t34 = cf_rarely(single, in_line, g_1 * s_w, -t29) * h;
-    const real_t A_11 = t28 - t34;
-    const real_t t35 = t24 * t27 - t12 * CLOSEDFORM_C(0.5);
-    const real_t t36 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t20), t19);
-    const real_t t37 = h * cf_rarely(single, in_line, g_1, -t36);
-    const real_t A_12 = t35 - t37;
-    const real_t t38 = n_z * t27 - d_z * CLOSEDFORM_C(0.5);
-    const real_t t39 = cf_rarely(single, slim, over * (a_x * t24 + t12 * t20), t17);
-    const real_t t40 = h * cf_rarely(single, in_line, t25, -t39);
-    const real_t t41 = t38 + t40;
-    const real_t A_21 = t5 + A_11;
-    const real_t A_22 = t6 + A_12;
-    const real_t t42 = u_z + t41;
-    const real_t t43 = A_11 * A_11 + A_12 * A_12 + t41 * t41 + (A_21 * A_21 + A_22 * A_22 + t42 * t42);
-    const real_t A_31 = t13 + A_11;
-    const real_t A_32 = t11 + A_12;
-    const real_t t44 = v_z + t41;
-    const real_t t45 = t43 + (A_31 * A_31 + A_32 * A_32 + t44 * t44);
-    const real_t t46 = A_11 * A_22 - A_12 * A_21;
-    const real_t t47 = A_11 * t42 - t41 * A_21;
-    const real_t t48 = A_11 * A_32 - A_12 * A_31;
-    const real_t t49 = A_11 * t44 - t41 * A_31;
-    const real_t t50 = t46 * t46 + t47 * t47 + t48 * t48 + t49 * t49;
-    const real_t t51 = A_12 * t42 - t41 * A_22;
-    const real_t t52 = A_12 * t44 - t41 * A_32;
-    const real_t t53 = A_21 * A_32 - A_22 * A_31;
-    const real_t t54 = A_21 * t44 - t42 * A_31;
-    const real_t t55 = t50 + t51 * t51 + t52 * t52 + t53 * t53 + t54 * t54;
-    const real_t t56 = A_22 * t44 - t42 * A_32;
-    const real_t t57 = CLOSEDFORM_C(3.0) * (w_w * h);
-    const real_t t58 = cf_quotient(single, cf_sqrt(t45 * (t55 + t56 * t56)), t57);
-    const int t59 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t60 = t59 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t61 = t60 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t62 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t63 = cf_rarely(single, in_line, -t26, CLOSEDFORM_C(0.0));
-    const int t64 = cf_abs(t63) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t65 = t64 & (-(CLOSEDFORM_FEASIBILITY * t33) <= t32);
-    const real_t t66 = cf_poison(single, (!(t61 & t62)) | (!t65));
-    const real_t A_11_above = t28 + t34;
-    const real_t A_12_above = t35 + t37;
-    const real_t t67 = A_11_above * A_11_above + A_12_above * A_12_above;
-    const real_t t68 = t38 - t40;
-    const real_t A_21_above = t5 + A_11_above;
-    const real_t A_22_above = t6 + A_12_above;
-    const real_t t69 = A_21_above * A_21_above + A_22_above * A_22_above;
-    const real_t t70 = u_z + t68;
-    const real_t A_31_above = t13 + A_11_above;
-    const real_t A_32_above = t11 + A_12_above;
-    const real_t t71 = A_31_above * A_31_above + A_32_above * A_32_above;
-    const real_t t72 = v_z + t68;
-    const real_t t73 = t67 + t68 * t68 + (t69 + t70 * t70) + (t71 + t72 * t72);
-    const real_t t74 = A_11_above * A_22_above - A_12_above * A_21_above;
-    const real_t t75 = A_11_above * t70 - t68 * A_21_above;
-    const real_t t76 = A_11_above * A_32_above - A_12_above * A_31_above;
-    const real_t t77 = A_11_above * t72 - t68 * A_31_above;
-    const real_t t78 = t74 * t74 + t75 * t75 + t76 * t76 + t77 * t77;
-    const real_t t79 = A_12_above * t70 - t68 * A_22_above;
-    const real_t t80 = A_12_above * t72 - t68 * A_32_above;
-    const real_t t81 = A_21_above * A_32_above - A_22_above * A_31_above;
-    const real_t t82 = A_21_above * t72 - t70 * A_31_above;
-    const real_t t83 = t78 + t79 * t79 + t80 * t80 + t81 * t81 + t82 * t82;
-    const real_t t84 = A_22_above * t72 - t70 * A_32_above;
-    const real_t t85 = cf_quotient(single, cf_sqrt(t73 * (t83 + t84 * t84)), t57);
-    kappa[0] = t58 + t66;
-    kappa[1] = t85 + t66;
-}
-
-CLOSEDFORM_DISPATCHED
-CF_OUT_OF_LINE void delta_condition_number_whole(const delta_params *params, const real_t q[3],
-    real_t kappa[2])
-{
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, params->alpha3, q[2], q[2], q[2] };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    delta_condition_number_whole_kernel(1, params, q, sines, cosines, kappa);
-}
-
-/* Where nothing vanishes; rare is whether something does. */
-CF_INLINE void delta_condition_number_common_kernel(const int single, const real_t one,
-    const delta_params *params, const real_t q[3],
-    const real_t *sines, const real_t *cosines,
-    real_t kappa[2], real_t rare[1])
-{
-    const real_t f = params->f;
-    const real_t e = params->e;
-    const real_t L = params->L;
-    const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
-    const real_t theta1 = q[0];
-    const real_t theta2 = q[1];
-    const real_t theta3 = q[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s1 = sines[1];
-    const real_t c1 = cosines[1];
-    const real_t s_alpha2 = sines[2];
-    const real_t c_alpha2 = cosines[2];
-    const real_t s2 = sines[3];
-    const real_t c2 = cosines[3];
-    const real_t s_alpha3 = sines[4];
-    const real_t c_alpha3 = cosines[4];
-    const real_t s3 = sines[5];
-    const real_t c3 = cosines[5];
-    const real_t t1 = f - e;
-    const real_t t2 = cf_rounded(single, one, L * c1) + t1;
-    const real_t c1_y = cf_rounded(single, one, s_alpha1 * t2);
-    const real_t t3 = cf_rounded(single, one, L * c2) + t1;
-    const real_t t4 = c1_y - cf_rounded(single, one, s_alpha2 * t3);
-    const real_t c1_x = cf_rounded(single, one, c_alpha1 * t2);
-    const real_t t5 = c1_x - cf_rounded(single, one, c_alpha2 * t3);
-    const real_t t6 = cf_rounded(single, one, L * c3) + t1;
-    const real_t t7 = c1_y - cf_rounded(single, one, s_alpha3 * t6);
-    const real_t t8 = c1_x - cf_rounded(single, one, c_alpha3 * t6);
-    const real_t m_z = cf_rounded(single, one, t5 * t7) - cf_rounded(single, one, t4 * t8);
-    const real_t t9 = cf_rounded(single, one, L * s1);
-    const real_t u_z = t9 - cf_rounded(single, one, L * s2);
-    const real_t v_z = t9 - cf_rounded(single, one, L * s3);
-    const real_t m_y = cf_rounded(single, one, v_z * t5) - cf_rounded(single, one, u_z * t8);
-    const real_t t10 = cf_rounded(single, one, v_z * t4) - cf_rounded(single, one, u_z * t7);
-    const real_t t11 = cf_rounded(single, one, t10 * t10) + cf_rounded(single, one, m_y * m_y);
-    const real_t product_2 = t11 + cf_rounded(single, one, m_z * m_z);
-    const real_t t12 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t5 * t5);
-    const real_t u_u = t12 + cf_rounded(single, one, t4 * t4);
+    const real_t t8 = L * c3;
+    const real_t t9 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8);
+    const real_t t10 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8);
+    const real_t v_v = v_z * v_z + t9 * t9 + t10 * t10;
     const real_t size = f + e + L + l;
-    const real_t t13 = size * size;
-    const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t15 = t13 * t14;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t15) | (product_2 <= t14 * (t13 * u_u)), product_2);
-    const real_t t16 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t8 * (t5 - t8));
-    const real_t t17 = t16 + cf_rounded(single, one, t7 * (t4 - t7));
-    const real_t t18 = part * t17 * CLOSEDFORM_C(0.5);
-    const real_t t19 = (t4 * m_z + u_z * m_y) * t18 + t5 * CLOSEDFORM_C(0.5);
-    const real_t t20 = cf_rounded(single, one, product_2 * (t18 * t18));
-    const real_t t21 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t20));
-    const real_t t22 = cf_rounded(single, one, l * l) - t21;
-    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
-    const real_t h = cf_sqrt(part * slack);
-    const real_t t23 = t10 * h;
-    const real_t t24 = t19 - t23;
-    const real_t t25 = t18 * (t5 * m_z - u_z * t10) - t4 * CLOSEDFORM_C(0.5);
-    const real_t t26 = m_y * h;
-    const real_t A_12 = t25 - t26;
-    const real_t t27 = u_z * CLOSEDFORM_C(0.5) - t18 * (t5 * m_y + t4 * t10);
-    const real_t t28 = m_z * h;
-    const real_t t29 = t27 - t28;
-    const real_t A_21 = t5 - t24;
-    const real_t A_22 = t4 + A_12;
-    const real_t t30 = u_z - t29;
-    const real_t t31 = t24 * t24 + A_12 * A_12 + t29 * t29 + (A_21 * A_21 + A_22 * A_22 + t30 * t30);
-    const real_t A_31 = t8 - t24;
-    const real_t A_32 = t7 + A_12;
-    const real_t t32 = v_z - t29;
-    const real_t t33 = t31 + (A_31 * A_31 + A_32 * A_32 + t32 * t32);
-    const real_t t34 = t24 * A_22 + A_12 * A_21;
-    const real_t t35 = t24 * t30 - t29 * A_21;
-    const real_t t36 = t24 * A_32 + A_12 * A_31;
-    const real_t t37 = t24 * t32 - t29 * A_31;
-    const real_t t38 = t34 * t34 + t35 * t35 + t36 * t36 + t37 * t37;
-    const real_t t39 = A_12 * t30 + t29 * A_22;
-    const real_t t40 = A_12 * t32 + t29 * A_32;
-    const real_t t41 = A_21 * A_32 - A_22 * A_31;
-    const real_t t42 = A_21 * t32 - t30 * A_31;
-    const real_t t43 = t38 + t39 * t39 + t40 * t40 + t41 * t41 + t42 * t42;
-    const real_t t44 = A_22 * t32 - t30 * A_32;
-    const real_t t45 = CLOSEDFORM_C(3.0) * (product_2 * h);
-    const real_t t46 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t t47 = cf_sqrt(t33 * (t43 + t44 * t44)) / cf_divisor(single, (u_u <= t15) | (product_2 <= t14 * (t13 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t46), t45);
-    const int t48 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t50 = t49 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t51 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int t52 = cf_abs(CLOSEDFORM_C(0.0)) <= t13 * CLOSEDFORM_FEASIBILITY;
-    const int t53 = t52 & (-(CLOSEDFORM_FEASIBILITY * t46) <= t22);
-    const real_t t54 = cf_poison(single, (!(t50 & t51)) | (!t53));
-    const real_t t55 = t19 + t23;
-    const real_t A_12_above = t25 + t26;
-    const real_t t56 = t27 + t28;
-    const real_t square1_above = t55 * t55 + A_12_above * A_12_above + t56 * t56;
-    const real_t A_21_above = t5 - t55;
-    const real_t A_22_above = t4 + A_12_above;
-    const real_t t57 = A_21_above * A_21_above + A_22_above * A_22_above;
-    const real_t t58 = u_z - t56;
-    const real_t A_31_above = t8 - t55;
-    const real_t A_32_above = t7 + A_12_above;
-    const real_t t59 = A_31_above * A_31_above + A_32_above * A_32_above;
-    const real_t t60 = v_z - t56;
-    const real_t t61 = square1_above + (t57 + t58 * t58) + (t59 + t60 * t60);
-    const real_t t62 = t55 * A_22_above + A_12_above * A_21_above;
-    const real_t t63 = t55 * t58 - t56 * A_21_above;
-    const real_t t64 = t55 * A_32_above + A_12_above * A_31_above;
-    const real_t t65 = t55 * t60 - t56 * A_31_above;
-    const real_t t66 = t62 * t62 + t63 * t63 + t64 * t64 + t65 * t65;
-    const real_t t67 = A_12_above * t58 + t56 * A_22_above;
-    const real_t t68 = A_12_above * t60 + t56 * A_32_above;
-    const real_t t69 = A_21_above * A_32_above - A_22_above * A_31_above;
-    const real_t t70 = A_21_above * t60 - t58 * A_31_above;
-    const real_t t71 = t66 + t67 * t67 + t68 * t68 + t69 * t69 + t70 * t70;
-    const real_t t72 = A_22_above * t60 - t58 * A_32_above;
-    const real_t t73 = cf_sqrt(t61 * (t71 + t72 * t72)) / cf_divisor(single, (u_u <= t15) | (product_2 <= t14 * (t13 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t46), t45);
-    const real_t t74 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t8 * t8);
-    const real_t v_v = t74 + cf_rounded(single, one, t7 * t7);
-    const real_t t75 = u_u * v_v;
-    const real_t t76 = product_2 - t75 * CLOSEDFORM_C(0.000244140625);
-    const int t77 = (u_u <= t15) | (u_u + v_v <= t15) | (t76 <= CLOSEDFORM_VANISHING * t75);
-    const int t78 = t77 | (product_2 <= t14 * (t13 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t46);
-    kappa[0] = t47 + t54;
-    kappa[1] = t73 + t54;
-    rare[0] = (t78) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
-}
-
-CF_INLINE void delta_condition_number_common_batch(size_t n, const delta_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *kappa, size_t kappa_stride,
-    uint8_t *rare, size_t rare_stride)
-{
-    (void)rare_stride;
-    const delta_params local = *params;
-    const real_t one = cf_one();
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_4, sines[4], cosines[4]);
-        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[5], cosines[5]);
-        real_t rare_real[1][CLOSEDFORM_BLOCK];
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
-            real_t kappa_i[2];
-            real_t rare_i[1];
-            delta_condition_number_common_kernel(0, one, &local, q_i, sines_i, cosines_i, kappa_i, rare_i);
-            kappa[start + i] = kappa_i[0];
-            kappa[kappa_stride + start + i] = kappa_i[1];
-            rare_real[0][i] = rare_i[0];
-        }
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i)
-            rare[start + i] = (uint8_t)rare_real[0][i];
-    }
-}
-
-CF_INLINE void delta_condition_number_common(const delta_params *params, const real_t q[3],
-    real_t kappa[2], uint8_t rare[1])
-{
-    const real_t one = cf_one();
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], params->alpha2, q[1], params->alpha3, q[2], q[2], q[2] };
-    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
-    real_t rare_real[1];
-    delta_condition_number_common_kernel(1, one, params, q, sines, cosines, kappa, rare_real);
-    for (size_t i = 0; i < 1; ++i)
-        rare[i] = (uint8_t)rare_real[i];
+    const real_t t11 = size * size;
+    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t11;
+    const int all_same = u_u + v_v <= t12;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
+    const int same = u_u <= t12;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t13 = cf_rarely(single, same, t10, t7);
+    const real_t d_x = cf_rarely(single, same, t9, t5);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t14 = cf_rarely(single, same, t7, t10);
+    const real_t t15 = cf_rarely(single, same, t5, t9);
+    const real_t t16 = a_x * t14 - t13 * t15;
+    const real_t d_z = cf_rarely(single, same, v_z, u_z);
+    const real_t t17 = cf_rarely(single, same, u_z, v_z);
+    const real_t t18 = a_x * t17 - t15 * d_z;
+    const real_t t19 = over * (t13 * t16 + d_z * t18);
+    const real_t t20 = t13 * t17 - t14 * d_z;
+    const real_t t21 = over * (a_x * t16 - d_z * t20);
+    const real_t n_z = over * (a_x * t18 + t13 * t20);
+    const real_t nu = t19 * t19 + t21 * t21 + n_z * n_z;
+    const int in_line = nu <= t12;
+    const real_t g_1 = whole * d_z;
+    const real_t s_w = cf_sign(t13 * a_x);
+    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t13 * n_z - d_z * t21);
+    const real_t t22 = whole * (t13 + a_x * s_w);
+    const real_t t23 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t22 * t22);
+    const real_t t24 = mu * nu;
+    const real_t t25 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t24);
+    const real_t part = cf_rarely(single, in_line, t23, t25);
+    const real_t t26 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17);
+    const real_t t27 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t26 * CLOSEDFORM_C(0.5));
+    const real_t t28 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t27 * t27) + mu * CLOSEDFORM_C(0.25));
+    const real_t t29 = l * l - t28;
+    const real_t slack = cf_max(t29, CLOSEDFORM_C(0.0));
+    const real_t t30 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t30, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t31 = w_x * h;
+    const real_t t32 = t19 * t27 + d_x * CLOSEDFORM_C(0.5);
+    const real_t t33 = t31 - t32;
+    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t19));
+    const real_t t34 = h * w_y;
+    const real_t t35 = t21 * t27 - t13 * CLOSEDFORM_C(0.5);
+    const real_t t36 = t34 + t35;
+    const real_t w_z = cf_rarely(single, in_line, -t22, a_x * t21 + t13 * t19);
+    const real_t t37 = h * w_z;
+    const real_t t38 = n_z * t27 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t39 = t37 + t38;
+    const real_t t40 = t5 + t33;
+    const real_t t41 = t7 + t36;
+    const real_t t42 = u_z + t39;
+    const real_t t43 = t33 * t33 + t36 * t36 + t39 * t39 + (t40 * t40 + t41 * t41 + t42 * t42);
+    const real_t t44 = t9 + t33;
+    const real_t t45 = t10 + t36;
+    const real_t t46 = v_z + t39;
+    const real_t t47 = t33 * t41 - t36 * t40;
+    const real_t t48 = t33 * t42 - t39 * t40;
+    const real_t t49 = t33 * t45 - t36 * t44;
+    const real_t t50 = t33 * t46 - t39 * t44;
+    const real_t t51 = t47 * t47 + t48 * t48 + t49 * t49 + t50 * t50;
+    const real_t t52 = t36 * t42 - t39 * t41;
+    const real_t t53 = t36 * t46 - t39 * t45;
+    const real_t t54 = t40 * t45 - t41 * t44;
+    const real_t t55 = t40 * t46 - t42 * t44;
+    const real_t t56 = t51 + t52 * t52 + t53 * t53 + t54 * t54 + t55 * t55;
+    const real_t t57 = t41 * t46 - t42 * t45;
+    const real_t t58 = (t43 + (t44 * t44 + t45 * t45 + t46 * t46)) * (t56 + t57 * t57);
+    const real_t t59 = CLOSEDFORM_C(3.0) * (t24 * h);
+    const int t60 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t61 = t60 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t62 = t61 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t63 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t64 = cf_rarely(single, in_line, -t26, CLOSEDFORM_C(0.0));
+    const int t65 = cf_abs(t64) <= t11 * CLOSEDFORM_FEASIBILITY;
+    const int t66 = t65 & (-(CLOSEDFORM_FEASIBILITY * t30) <= t29);
+    const real_t t67 = cf_poison(single, (!(t62 & t63)) | (!t66));
+    const real_t A_11_above = t31 + t32;
+    const real_t A_12_above = t34 - t35;
+    const real_t t68 = A_11_above * A_11_above + A_12_above * A_12_above;
+    const real_t t69 = t37 - t38;
+    const real_t t70 = t5 - A_11_above;
+    const real_t t71 = t7 - A_12_above;
+    const real_t t72 = u_z - t69;
+    const real_t t73 = t68 + t69 * t69 + (t70 * t70 + t71 * t71 + t72 * t72);
+    const real_t t74 = t9 - A_11_above;
+    const real_t t75 = t10 - A_12_above;
+    const real_t t76 = v_z - t69;
+    const real_t t77 = A_11_above * t71 - A_12_above * t70;
+    const real_t t78 = A_11_above * t72 - t69 * t70;
+    const real_t t79 = A_11_above * t75 - A_12_above * t74;
+    const real_t t80 = A_11_above * t76 - t69 * t74;
+    const real_t t81 = t77 * t77 + t78 * t78 + t79 * t79 + t80 * t80;
+    const real_t t82 = A_12_above * t72 - t69 * t71;
+    const real_t t83 = A_12_above * t76 - t69 * t75;
+    const real_t t84 = t70 * t75 - t71 * t74;
+    const real_t t85 = t70 * t76 - t72 * t74;
+    const real_t t86 = t81 + t82 * t82 + t83 * t83 + t84 * t84 + t85 * t85;
+    const real_t t87 = t71 * t76 - t72 * t75;
+    const real_t t88 = (t73 + (t74 * t74 + t75 * t75 + t76 * t76)) * (t86 + t87 * t87);
+    kappa[0] = cf_quotient(single, cf_sqrt(t58), t59) + t67;
+    kappa[1] = cf_quotient(single, cf_sqrt(t88), t59) + t67;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -3395,9 +2466,10 @@ void delta_condition_number(const delta_params *params, const real_t q[3],
         params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
         params = &params_scaled;
     }
-    uint8_t rare[1];
-    delta_condition_number_common(params, q, kappa, rare);
-    if (CF_UNLIKELY(rare[0])) delta_condition_number_whole(params, q, kappa);
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    delta_condition_number_kernel(1, params, q, sines, cosines, kappa);
 }
 
 CF_RARE void delta_condition_number_other_sizes(size_t n, const delta_params *params,
@@ -3419,6 +2491,7 @@ void delta_condition_number_batch(size_t n, const delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *kappa, size_t kappa_stride)
 {
+    const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
     if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         delta_condition_number_other_sizes(n, params, q, q_stride, kappa, kappa_stride);
@@ -3426,22 +2499,36 @@ void delta_condition_number_batch(size_t n, const delta_params *params,
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        uint8_t rare[CLOSEDFORM_BLOCK];
-        delta_condition_number_common_batch(length, params, q + start, q_stride, kappa + start, kappa_stride, rare, CLOSEDFORM_BLOCK);
-        for (size_t i = start; i < start + length; ++i) {
-            if (!CF_UNLIKELY(rare[i - start])) continue;
-            real_t q_i[3];
-            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        real_t angle_2[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_2[i] = params->alpha1;
+        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = params->alpha2;
+        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_5[i] = params->alpha3;
+        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
             real_t kappa_i[2];
-            delta_condition_number_whole(params, q_i, kappa_i);
-            for (size_t k = 0; k < 2; ++k) kappa[k * kappa_stride + i] = kappa_i[k];
-
+            delta_condition_number_kernel(0, &local, q_i, sines_i, cosines_i, kappa_i);
+            kappa[start + i] = kappa_i[0];
+            kappa[kappa_stride + start + i] = kappa_i[1];
         }
     }
 }
 
-/* Every case. */
-CF_INLINE void delta_constraint_whole_kernel(const int single, const delta_params *params,
+CF_INLINE void delta_constraint_kernel(const int single, const delta_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t factors[2])
 {
@@ -3455,12 +2542,12 @@ CF_INLINE void delta_constraint_whole_kernel(const int single, const delta_param
     const real_t theta1 = q[0];
     const real_t theta2 = q[1];
     const real_t theta3 = q[2];
-    const real_t s_alpha3 = sines[0];
-    const real_t c_alpha3 = cosines[0];
-    const real_t s_alpha1 = sines[1];
-    const real_t c_alpha1 = cosines[1];
-    const real_t s_alpha2 = sines[2];
-    const real_t c_alpha2 = cosines[2];
+    const real_t s_alpha1 = sines[0];
+    const real_t c_alpha1 = cosines[0];
+    const real_t s_alpha2 = sines[1];
+    const real_t c_alpha2 = cosines[1];
+    const real_t s_alpha3 = sines[2];
+    const real_t c_alpha3 = cosines[2];
     const real_t s1 = sines[3];
     const real_t c1 = cosines[3];
     const real_t s2 = sines[4];
@@ -3468,322 +2555,120 @@ CF_INLINE void delta_constraint_whole_kernel(const int single, const delta_param
     const real_t s3 = sines[5];
     const real_t c3 = cosines[5];
     const real_t t1 = c_alpha1 * s_alpha2;
-    const real_t t2 = c_alpha3 * t1;
-    const real_t t3 = L * s1;
-    const real_t u_z = t3 - L * s2;
-    const real_t t4 = f - e;
-    const real_t t5 = L * c1 + t4;
-    const real_t c1_x = c_alpha1 * t5;
-    const real_t t6 = L * c2 + t4;
-    const real_t t7 = c1_x - c_alpha2 * t6;
-    const real_t c1_y = s_alpha1 * t5;
-    const real_t t8 = c1_y - s_alpha2 * t6;
-    const real_t u_u = u_z * u_z + t7 * t7 + t8 * t8;
+    const real_t t2 = L * s1;
+    const real_t u_z = t2 - L * s2;
+    const real_t t3 = L * c1;
+    const real_t t4 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t3;
+    const real_t t5 = L * c2;
+    const real_t t6 = t4 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t5);
+    const real_t t7 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t3;
+    const real_t t8 = t7 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t5);
+    const real_t u_u = u_z * u_z + t6 * t6 + t8 * t8;
+    const real_t v_z = t2 - L * s3;
+    const real_t t9 = L * c3;
+    const real_t t10 = t4 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t9);
+    const real_t t11 = t7 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t9);
+    const real_t v_v = v_z * v_z + t10 * t10 + t11 * t11;
     const real_t size = f + e + L + l;
-    const real_t t9 = size * size;
-    const real_t t10 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t11 = t9 * t10;
-    const int same = u_u <= t11;
-    const real_t t12 = L * c3 + t4;
-    const real_t t13 = c1_y - s_alpha3 * t12;
-    const real_t t14 = cf_rarely(single, same, t13, t8);
-    const real_t v_z = t3 - L * s3;
-    const real_t t15 = c1_x - c_alpha3 * t12;
-    const real_t v_v = v_z * v_z + t15 * t15 + t13 * t13;
-    const int all_same = u_u + v_v <= t11;
+    const real_t t12 = size * size;
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t12;
+    const int all_same = u_u + v_v <= t13;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t t16 = cf_rarely(single, same, t15, t7);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t16);
-    const real_t t17 = cf_rarely(single, same, t8, t13);
-    const real_t t18 = cf_rarely(single, same, t7, t15);
-    const real_t t19 = a_x * t17 + t14 * t18;
-    const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t20 = cf_rarely(single, same, u_z, v_z);
-    const real_t t21 = a_x * t20 + t18 * d_z;
-    const real_t t22 = t14 * t19 + d_z * t21;
-    const real_t t23 = t14 * t20 - t17 * d_z;
-    const real_t product_2 = t23 * t23 + t21 * t21 + t19 * t19;
+    const int same = u_u <= t13;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t24 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t25 = product_2 - t24 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t25 <= CLOSEDFORM_VANISHING * t24;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t26 = a_x * t19 - d_z * t23;
-    const real_t n_z = a_x * t21 + t14 * t23;
-    const real_t m_m = cf_rarely(single, slim, over * (t22 * t22 + t26 * t26 + n_z * n_z), product_2);
-    const int in_line = m_m <= t10 * (t9 * mu);
+    const real_t t14 = cf_rarely(single, same, t11, t8);
+    const real_t d_x = cf_rarely(single, same, t10, t6);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t15 = cf_rarely(single, same, t8, t11);
+    const real_t t16 = cf_rarely(single, same, t6, t10);
+    const real_t t17 = a_x * t15 - t14 * t16;
+    const real_t d_z = cf_rarely(single, same, v_z, u_z);
+    const real_t t18 = cf_rarely(single, same, u_z, v_z);
+    const real_t t19 = a_x * t18 - t16 * d_z;
+    const real_t t20 = over * (t14 * t17 + d_z * t19);
+    const real_t t21 = t14 * t18 - t15 * d_z;
+    const real_t t22 = over * (a_x * t17 - d_z * t21);
+    const real_t n_z = over * (a_x * t19 + t14 * t21);
+    const real_t nu = t20 * t20 + t22 * t22 + n_z * n_z;
+    const int in_line = nu <= t13;
     const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(-(t14 * a_x));
-    const real_t t27 = whole * (t14 - a_x * s_w);
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t27 * t27, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t28 = t18 * (t16 - t18) + t17 * (t14 - t17) + t20 * (d_z - t20);
-    const real_t t29 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t28 * CLOSEDFORM_C(0.5));
-    const real_t t30 = t22 * t29 - t16 * CLOSEDFORM_C(0.5);
-    const real_t t31 = cf_rarely(single, slim, over * (t14 * n_z - d_z * t26), t23);
-    const real_t t32 = mu * (CLOSEDFORM_C(0.25) + w_w * (t29 * t29));
-    const real_t t33 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t32);
-    const real_t t34 = l * l - t33;
-    const real_t slack = cf_max(t34, CLOSEDFORM_C(0.0));
-    const real_t t35 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t35, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t36 = cf_rarely(single, in_line, g_1 * s_w, -t31) * h;
-    const real_t A_11 = t30 - t36;
-    const real_t t37 = n_z * t29 - d_z * CLOSEDFORM_C(0.5);
-    const real_t t38 = cf_rarely(single, slim, over * (a_x * t26 + t14 * t22), t19);
-    const real_t t39 = h * cf_rarely(single, in_line, t27, -t38);
-    const real_t t40 = t37 + t39;
-    const real_t t41 = u_z + t40;
-    const real_t t42 = v_z + t40;
-    const real_t t43 = t41 * t42;
-    const real_t t44 = A_11 * t43;
-    const real_t t45 = c_alpha1 * c_alpha2;
-    const real_t t46 = s_alpha3 * t45;
-    const real_t t47 = s_alpha1 * s_alpha2;
-    const real_t t48 = c_alpha3 * t47;
-    const real_t t49 = t26 * t29 - t14 * CLOSEDFORM_C(0.5);
-    const real_t t50 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t22), t21);
-    const real_t t51 = h * cf_rarely(single, in_line, g_1, -t50);
-    const real_t A_12 = t49 - t51;
-    const real_t t52 = t43 * A_12;
+    const real_t s_w = cf_sign(t14 * a_x);
+    const real_t t23 = whole * (t14 + a_x * s_w);
+    const real_t t24 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t23 * t23);
+    const real_t t25 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, t24, t25);
+    const real_t t26 = t16 * (d_x - t16) + t15 * (t14 - t15) + t18 * (d_z - t18);
+    const real_t t27 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t26 * CLOSEDFORM_C(0.5));
+    const real_t t28 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t27 * t27) + mu * CLOSEDFORM_C(0.25));
+    const real_t t29 = l * l - t28;
+    const real_t slack = cf_max(t29, CLOSEDFORM_C(0.0));
+    const real_t t30 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t30, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t w_z = cf_rarely(single, in_line, -t23, a_x * t22 + t14 * t20);
+    const real_t t31 = h * w_z;
+    const real_t t32 = n_z * t27 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t33 = t31 + t32;
+    const real_t t34 = s_alpha3 * t33;
+    const real_t t35 = t1 * t34;
+    const real_t t36 = u_z + t33;
+    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t20));
+    const real_t t37 = h * w_y;
+    const real_t t38 = t22 * t27 - t14 * CLOSEDFORM_C(0.5);
+    const real_t t39 = t37 + t38;
+    const real_t t40 = t36 * (t11 + t39);
+    const real_t t41 = c_alpha3 * t1;
+    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t14 * n_z - d_z * t22);
+    const real_t t42 = w_x * h;
+    const real_t t43 = t20 * t27 + d_x * CLOSEDFORM_C(0.5);
+    const real_t t44 = t42 - t43;
+    const real_t t45 = v_z + t33;
+    const real_t t46 = t36 * t45;
+    const real_t t47 = t44 * t46;
+    const real_t t48 = c_alpha1 * c_alpha2;
+    const real_t t49 = s_alpha3 * t48;
+    const real_t t50 = s_alpha1 * s_alpha2;
+    const real_t t51 = c_alpha3 * t50;
+    const real_t t52 = t46 * t39;
     const real_t t53 = s_alpha1 * c_alpha2;
     const real_t t54 = s_alpha3 * t53;
-    const real_t t55 = c_alpha3 * t40;
-    const real_t t56 = t53 * t55;
-    const real_t t57 = t42 * (t7 + A_11);
-    const real_t t58 = t2 * t44 - t46 * t44 + t48 * t52 - t54 * t52 - t56 * t57;
-    const real_t t59 = s_alpha3 * t40;
-    const real_t t60 = t42 * (t8 + A_12);
-    const real_t t61 = t1 * t59;
-    const real_t t62 = t58 + t45 * t57 * t59 - t47 * t55 * t60 + t60 * t61;
-    const real_t t63 = t41 * (t15 + A_11);
-    const real_t t64 = t41 * (t13 + A_12);
-    const real_t t65 = t62 + t56 * t63 - t1 * t55 * t63 + t53 * t59 * t64;
-    const int t66 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t67 = t66 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t68 = t67 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t69 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t70 = cf_rarely(single, in_line, -t28, CLOSEDFORM_C(0.0));
-    const int t71 = cf_abs(t70) <= t9 * CLOSEDFORM_FEASIBILITY;
-    const int t72 = t71 & (-(CLOSEDFORM_FEASIBILITY * t35) <= t34);
-    const real_t t73 = cf_poison(single, (!(t68 & t69)) | (!t72));
-    const real_t A_11_above = t30 + t36;
-    const real_t t74 = t37 - t39;
-    const real_t t75 = u_z + t74;
-    const real_t t76 = v_z + t74;
-    const real_t t77 = t75 * t76;
-    const real_t t78 = A_11_above * t77;
-    const real_t A_12_above = t49 + t51;
-    const real_t t79 = t77 * A_12_above;
-    const real_t t80 = c_alpha3 * t74;
-    const real_t t81 = t53 * t80;
-    const real_t t82 = t76 * (t7 + A_11_above);
-    const real_t t83 = t2 * t78 - t46 * t78 + t48 * t79 - t54 * t79 - t81 * t82;
-    const real_t t84 = s_alpha3 * t74;
-    const real_t t85 = t76 * (t8 + A_12_above);
-    const real_t t86 = t1 * t84;
-    const real_t t87 = t83 + t45 * t82 * t84 - t47 * t80 * t85 + t85 * t86;
-    const real_t t88 = t75 * (t15 + A_11_above);
-    const real_t t89 = t75 * (t13 + A_12_above);
-    const real_t t90 = t87 + t81 * t88 - t1 * t80 * t88 + t53 * t84 * t89;
-    factors[0] = t65 - t61 * t64 + t73;
-    factors[1] = t90 - t86 * t89 + t73;
-}
-
-CLOSEDFORM_DISPATCHED
-CF_OUT_OF_LINE void delta_constraint_whole(const delta_params *params, const real_t q[3],
-    real_t factors[2])
-{
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha3, params->alpha1, params->alpha2, q[0], q[1], q[2], q[2], q[2] };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    delta_constraint_whole_kernel(1, params, q, sines, cosines, factors);
-}
-
-/* Where nothing vanishes; rare is whether something does. */
-CF_INLINE void delta_constraint_common_kernel(const int single, const real_t one,
-    const delta_params *params, const real_t q[3],
-    const real_t *sines, const real_t *cosines,
-    real_t factors[2], real_t rare[1])
-{
-    const real_t f = params->f;
-    const real_t e = params->e;
-    const real_t L = params->L;
-    const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
-    const real_t theta1 = q[0];
-    const real_t theta2 = q[1];
-    const real_t theta3 = q[2];
-    const real_t s_alpha3 = sines[0];
-    const real_t c_alpha3 = cosines[0];
-    const real_t s_alpha1 = sines[1];
-    const real_t c_alpha1 = cosines[1];
-    const real_t s_alpha2 = sines[2];
-    const real_t c_alpha2 = cosines[2];
-    const real_t s1 = sines[3];
-    const real_t c1 = cosines[3];
-    const real_t s2 = sines[4];
-    const real_t c2 = cosines[4];
-    const real_t s3 = sines[5];
-    const real_t c3 = cosines[5];
-    const real_t t1 = c_alpha1 * s_alpha2;
-    const real_t t2 = s_alpha3 * t1;
-    const real_t t3 = cf_rounded(single, one, L * s1);
-    const real_t u_z = t3 - cf_rounded(single, one, L * s2);
-    const real_t v_z = t3 - cf_rounded(single, one, L * s3);
-    const real_t t4 = f - e;
-    const real_t t5 = cf_rounded(single, one, L * c1) + t4;
-    const real_t c1_y = cf_rounded(single, one, s_alpha1 * t5);
-    const real_t t6 = cf_rounded(single, one, L * c2) + t4;
-    const real_t t7 = c1_y - cf_rounded(single, one, s_alpha2 * t6);
-    const real_t t8 = cf_rounded(single, one, L * c3) + t4;
-    const real_t t9 = c1_y - cf_rounded(single, one, s_alpha3 * t8);
-    const real_t t10 = cf_rounded(single, one, v_z * t7) - cf_rounded(single, one, u_z * t9);
-    const real_t c1_x = cf_rounded(single, one, c_alpha1 * t5);
-    const real_t t11 = c1_x - cf_rounded(single, one, c_alpha2 * t6);
-    const real_t t12 = c1_x - cf_rounded(single, one, c_alpha3 * t8);
-    const real_t m_y = cf_rounded(single, one, v_z * t11) - cf_rounded(single, one, u_z * t12);
-    const real_t t13 = cf_rounded(single, one, t10 * t10) + cf_rounded(single, one, m_y * m_y);
-    const real_t m_z = cf_rounded(single, one, t11 * t9) - cf_rounded(single, one, t7 * t12);
-    const real_t product_2 = t13 + cf_rounded(single, one, m_z * m_z);
-    const real_t t14 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t11 * t11);
-    const real_t u_u = t14 + cf_rounded(single, one, t7 * t7);
-    const real_t size = f + e + L + l;
-    const real_t t15 = size * size;
-    const real_t t16 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t17 = t15 * t16;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t17) | (product_2 <= t16 * (t15 * u_u)), product_2);
-    const real_t t18 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t12 * (t11 - t12));
-    const real_t t19 = t18 + cf_rounded(single, one, t9 * (t7 - t9));
-    const real_t t20 = part * t19 * CLOSEDFORM_C(0.5);
-    const real_t t21 = u_z * CLOSEDFORM_C(0.5) - t20 * (t11 * m_y + t7 * t10);
-    const real_t t22 = cf_rounded(single, one, product_2 * (t20 * t20));
-    const real_t t23 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t22));
-    const real_t t24 = cf_rounded(single, one, l * l) - t23;
-    const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
-    const real_t h = cf_sqrt(part * slack);
-    const real_t t25 = m_z * h;
-    const real_t t26 = t21 - t25;
-    const real_t t27 = u_z - t26;
-    const real_t t28 = t26 * t27;
-    const real_t t29 = t20 * (t11 * m_z - u_z * t10) - t7 * CLOSEDFORM_C(0.5);
-    const real_t t30 = m_y * h;
-    const real_t A_12 = t29 - t30;
-    const real_t t31 = t28 * (t9 + A_12);
-    const real_t t32 = c_alpha3 * t1;
-    const real_t t33 = (t7 * m_z + u_z * m_y) * t20 + t11 * CLOSEDFORM_C(0.5);
-    const real_t t34 = t10 * h;
-    const real_t t35 = t33 - t34;
-    const real_t t36 = v_z - t26;
-    const real_t t37 = t27 * t36;
-    const real_t t38 = t35 * t37;
-    const real_t t39 = s_alpha3 * (c_alpha1 * c_alpha2);
-    const real_t t40 = c_alpha3 * (s_alpha1 * s_alpha2);
-    const real_t t41 = t37 * A_12;
-    const real_t t42 = s_alpha1 * c_alpha2;
-    const real_t t43 = s_alpha3 * t42;
-    const real_t t44 = t32 * t38 - t39 * t38 - t40 * t41 + t43 * t41;
-    const real_t t45 = c_alpha3 * t42;
-    const real_t t46 = t26 * t36;
-    const real_t t47 = (t11 - t35) * t46;
-    const real_t t48 = t46 * (t7 + A_12);
-    const real_t t49 = t44 - t45 * t47 + t39 * t47 - t40 * t48 + t2 * t48;
-    const real_t t50 = (t12 - t35) * t28;
-    const real_t t51 = t2 * t31 - (t49 + t45 * t50 - t32 * t50 + t43 * t31);
-    const int t52 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t53 = t52 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t54 = t53 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t55 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int t56 = cf_abs(CLOSEDFORM_C(0.0)) <= t15 * CLOSEDFORM_FEASIBILITY;
-    const real_t t57 = CLOSEDFORM_C(0.9375) * (l * size);
-    const int t58 = t56 & (-(CLOSEDFORM_FEASIBILITY * t57) <= t24);
-    const real_t t59 = cf_poison(single, (!(t54 & t55)) | (!t58));
-    const real_t t60 = t21 + t25;
-    const real_t t61 = u_z - t60;
-    const real_t t62 = t60 * t61;
-    const real_t A_12_above = t29 + t30;
-    const real_t t63 = t62 * (t9 + A_12_above);
-    const real_t t64 = t33 + t34;
-    const real_t t65 = v_z - t60;
-    const real_t t66 = t61 * t65;
-    const real_t t67 = t64 * t66;
-    const real_t t68 = t66 * A_12_above;
-    const real_t t69 = t32 * t67 - t39 * t67 - t40 * t68 + t43 * t68;
-    const real_t t70 = t60 * t65;
-    const real_t t71 = (t11 - t64) * t70;
-    const real_t t72 = t70 * (t7 + A_12_above);
-    const real_t t73 = t69 - t45 * t71 + t39 * t71 - t40 * t72 + t2 * t72;
-    const real_t t74 = (t12 - t64) * t62;
-    const real_t t75 = t2 * t63 - (t73 + t45 * t74 - t32 * t74 + t43 * t63);
-    const real_t t76 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t12 * t12);
-    const real_t v_v = t76 + cf_rounded(single, one, t9 * t9);
-    const real_t t77 = u_u * v_v;
-    const real_t t78 = product_2 - t77 * CLOSEDFORM_C(0.000244140625);
-    const int t79 = (u_u <= t17) | (u_u + v_v <= t17) | (t78 <= CLOSEDFORM_VANISHING * t77);
-    const int t80 = t79 | (product_2 <= t16 * (t15 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t57);
-    factors[0] = t51 + t59;
-    factors[1] = t75 + t59;
-    rare[0] = (t80) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
-}
-
-CF_INLINE void delta_constraint_common_batch(size_t n, const delta_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *factors, size_t factors_stride,
-    uint8_t *rare, size_t rare_stride)
-{
-    (void)rare_stride;
-    const delta_params local = *params;
-    const real_t one = cf_one();
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        cf_sincos_block_rounded(length, one, q + start, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
-        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[5], cosines[5]);
-        real_t rare_real[1][CLOSEDFORM_BLOCK];
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
-            real_t factors_i[2];
-            real_t rare_i[1];
-            delta_constraint_common_kernel(0, one, &local, q_i, sines_i, cosines_i, factors_i, rare_i);
-            factors[start + i] = factors_i[0];
-            factors[factors_stride + start + i] = factors_i[1];
-            rare_real[0][i] = rare_i[0];
-        }
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i)
-            rare[start + i] = (uint8_t)rare_real[0][i];
-    }
-}
-
-CF_INLINE void delta_constraint_common(const delta_params *params, const real_t q[3],
-    real_t factors[2], uint8_t rare[1])
-{
-    const real_t one = cf_one();
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha3, params->alpha1, params->alpha2, q[0], q[1], q[2], q[2], q[2] };
-    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
-    real_t rare_real[1];
-    delta_constraint_common_kernel(1, one, params, q, sines, cosines, factors, rare_real);
-    for (size_t i = 0; i < 1; ++i)
-        rare[i] = (uint8_t)rare_real[i];
+    const real_t t55 = t41 * t47 - t49 * t47 + t51 * t52 - t54 * t52;
+    const real_t t56 = c_alpha3 * t33;
+    const real_t t57 = t53 * t56;
+    const real_t t58 = t45 * (t6 + t44);
+    const real_t t59 = t45 * (t8 + t39);
+    const real_t t60 = t55 - t57 * t58 + t48 * t58 * t34 - t50 * t56 * t59;
+    const real_t t61 = t36 * (t10 + t44);
+    const real_t t62 = t60 + t59 * t35 + t57 * t61 - t1 * t56 * t61 + t53 * t34 * t40;
+    const int t63 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t64 = t63 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t65 = t64 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t66 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t67 = cf_rarely(single, in_line, -t26, CLOSEDFORM_C(0.0));
+    const int t68 = cf_abs(t67) <= t12 * CLOSEDFORM_FEASIBILITY;
+    const int t69 = t68 & (-(CLOSEDFORM_FEASIBILITY * t30) <= t29);
+    const real_t t70 = cf_poison(single, (!(t65 & t66)) | (!t69));
+    const real_t A_11_above = t42 + t43;
+    const real_t t71 = t31 - t32;
+    const real_t t72 = u_z - t71;
+    const real_t t73 = v_z - t71;
+    const real_t t74 = t72 * t73;
+    const real_t t75 = A_11_above * t74;
+    const real_t A_12_above = t37 - t38;
+    const real_t t76 = t74 * A_12_above;
+    const real_t t77 = t41 * t75 - t49 * t75 + t51 * t76 - t54 * t76;
+    const real_t t78 = c_alpha3 * t71;
+    const real_t t79 = t53 * t78;
+    const real_t t80 = t73 * (t6 - A_11_above);
+    const real_t t81 = s_alpha3 * t71;
+    const real_t t82 = t73 * (t8 - A_12_above);
+    const real_t t83 = t77 - t79 * t80 + t48 * t80 * t81 - t50 * t78 * t82;
+    const real_t t84 = t1 * t81;
+    const real_t t85 = t72 * (t10 - A_11_above);
+    const real_t t86 = t72 * (t11 - A_12_above);
+    const real_t t87 = t83 + t82 * t84 + t79 * t85 - t1 * t78 * t85 + t53 * t81 * t86;
+    factors[0] = t35 * t40 - t62 + t70;
+    factors[1] = t87 - t84 * t86 + t70;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -3794,7 +2679,7 @@ void delta_constraint(const delta_params *params, const real_t q[3],
     delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -3803,9 +2688,10 @@ void delta_constraint(const delta_params *params, const real_t q[3],
         params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
         params = &params_scaled;
     }
-    uint8_t rare[1];
-    delta_constraint_common(params, q, factors, rare);
-    if (CF_UNLIKELY(rare[0])) delta_constraint_whole(params, q, factors);
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, params->alpha2, params->alpha3, q[0], q[1], q[2], q[2], q[2] };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    delta_constraint_kernel(1, params, q, sines, cosines, factors);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(2, factors_degrees, exponent, factors, factors);
     }
@@ -3830,23 +2716,39 @@ void delta_constraint_batch(size_t n, const delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *factors, size_t factors_stride)
 {
+    const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
         delta_constraint_other_sizes(n, params, q, q_stride, factors, factors_stride);
         return;
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        uint8_t rare[CLOSEDFORM_BLOCK];
-        delta_constraint_common_batch(length, params, q + start, q_stride, factors + start, factors_stride, rare, CLOSEDFORM_BLOCK);
-        for (size_t i = start; i < start + length; ++i) {
-            if (!CF_UNLIKELY(rare[i - start])) continue;
-            real_t q_i[3];
-            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = params->alpha1;
+        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
+        real_t angle_1[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_1[i] = params->alpha2;
+        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
+        real_t angle_2[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_2[i] = params->alpha3;
+        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
+        cf_sincos_block(length, q + start, sines[3], cosines[3]);
+        cf_sincos_block(length, q + q_stride + start, sines[4], cosines[4]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[5], cosines[5]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
             real_t factors_i[2];
-            delta_constraint_whole(params, q_i, factors_i);
-            for (size_t k = 0; k < 2; ++k) factors[k * factors_stride + i] = factors_i[k];
-
+            delta_constraint_kernel(0, &local, q_i, sines_i, cosines_i, factors_i);
+            factors[start + i] = factors_i[0];
+            factors[factors_stride + start + i] = factors_i[1];
         }
     }
 }

@@ -3,29 +3,17 @@
  * derivations/delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 51 compare and select, 59 add, 7 divide, 81 multiply, 6 sincos, 2 sqrt
- *   fk where nothing vanishes: 52 add, 29 compare and select, 6 divide, 59 multiply, 6 sincos, 1
+ *   fk: 45 compare and select, 64 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
+ *   fk where nothing vanishes: 62 add, 27 compare and select, 7 divide, 77 multiply, 6 sincos, 1
  *     sqrt
- *   skeleton: 50 compare and select, 180 add, 13 divide, 99 multiply, 6 sincos, 2 sqrt
- *   jacobian_parallel: 50 compare and select, 80 add, 7 divide, 81 multiply, 6 sincos, 2 sqrt
- *   jacobian_parallel where nothing vanishes: 73 add, 28 compare and select, 6 divide, 59
- *     multiply, 6 sincos, 1 sqrt
- *   jacobian_serial: 50 compare and select, 80 add, 7 divide, 105 multiply, 6 sincos, 2 sqrt
- *   jacobian_serial where nothing vanishes: 73 add, 28 compare and select, 6 divide, 83 multiply,
- *     6 sincos, 1 sqrt
- *   jacobian: 50 compare and select, 110 add, 25 divide, 160 multiply, 6 sincos, 2 sqrt
- *   determinant: 50 compare and select, 76 add, 9 divide, 110 multiply, 6 sincos, 2 sqrt
- *   determinant where nothing vanishes: 69 add, 28 compare and select, 8 divide, 88 multiply, 6
- *     sincos, 1 sqrt
- *   singularities: 50 compare and select, 82 add, 7 divide, 106 multiply, 6 sincos, 2 sqrt
- *   singularities where nothing vanishes: 75 add, 28 compare and select, 6 divide, 84 multiply, 6
- *     sincos, 1 sqrt
- *   condition_number: 50 compare and select, 114 add, 9 divide, 157 multiply, 6 sincos, 4 sqrt
- *   condition_number where nothing vanishes: 107 add, 28 compare and select, 8 divide, 135
- *     multiply, 6 sincos, 3 sqrt
- *   constraint: 50 compare and select, 86 add, 7 divide, 143 multiply, 6 sincos, 2 sqrt
- *   constraint where nothing vanishes: 79 add, 28 compare and select, 6 divide, 111 multiply, 6
- *     sincos, 1 sqrt
+ *   skeleton: 44 compare and select, 179 add, 14 divide, 86 multiply, 6 sincos, 1 sqrt
+ *   jacobian_parallel: 44 compare and select, 85 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
+ *   jacobian_serial: 44 compare and select, 85 add, 8 divide, 110 multiply, 6 sincos, 1 sqrt
+ *   jacobian: 44 compare and select, 115 add, 26 divide, 165 multiply, 6 sincos, 1 sqrt
+ *   determinant: 44 compare and select, 81 add, 10 divide, 115 multiply, 6 sincos, 1 sqrt
+ *   singularities: 44 compare and select, 87 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
+ *   condition_number: 44 compare and select, 119 add, 10 divide, 162 multiply, 6 sincos, 3 sqrt
+ *   constraint: 44 compare and select, 91 add, 8 divide, 148 multiply, 6 sincos, 1 sqrt
  *   ik: 139 compare and select, 130 add, 6 atan2, 13 divide, 151 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
  *

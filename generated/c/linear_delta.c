@@ -3,31 +3,24 @@
  * derivations/linear_delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 50 compare and select, 51 add, 9 divide, 67 multiply, 2 sqrt
- *   fk where nothing vanishes: 30 compare and select, 44 add, 8 divide, 44 multiply, 1 sqrt
- *   skeleton: 49 compare and select, 125 add, 15 divide, 69 multiply, 2 sqrt
- *   skeleton where nothing vanishes: 29 compare and select, 118 add, 14 divide, 46 multiply, 1
- *     sqrt
- *   jacobian_parallel: 49 compare and select, 69 add, 9 divide, 67 multiply, 2 sqrt
- *   jacobian_parallel where nothing vanishes: 29 compare and select, 62 add, 8 divide, 44
+ *   fk: 44 compare and select, 50 add, 12 divide, 61 multiply, 1 sqrt
+ *   fk where nothing vanishes: 28 compare and select, 48 add, 11 divide, 51 multiply, 1 sqrt
+ *   skeleton: 43 compare and select, 124 add, 14 divide, 61 multiply, 1 sqrt
+ *   jacobian_parallel: 43 compare and select, 68 add, 12 divide, 61 multiply, 1 sqrt
+ *   jacobian_parallel where nothing vanishes: 27 compare and select, 66 add, 11 divide, 51
  *     multiply, 1 sqrt
- *   jacobian_serial: 45 compare and select, 45 add, 7 divide, 56 multiply, 2 sqrt
- *   jacobian_serial where nothing vanishes: 29 compare and select, 38 add, 6 divide, 36 multiply,
+ *   jacobian_serial: 41 compare and select, 44 add, 10 divide, 52 multiply, 1 sqrt
+ *   jacobian_serial where nothing vanishes: 27 compare and select, 42 add, 9 divide, 43 multiply,
  *     1 sqrt
- *   jacobian: 49 compare and select, 89 add, 27 divide, 118 multiply, 2 sqrt
- *   jacobian where nothing vanishes: 29 compare and select, 82 add, 26 divide, 95 multiply, 1 sqrt
- *   determinant: 45 compare and select, 41 add, 9 divide, 61 multiply, 2 sqrt
- *   determinant where nothing vanishes: 29 compare and select, 34 add, 8 divide, 41 multiply, 1
+ *   jacobian: 43 compare and select, 88 add, 30 divide, 112 multiply, 1 sqrt
+ *   determinant: 41 compare and select, 40 add, 12 divide, 57 multiply, 1 sqrt
+ *   determinant where nothing vanishes: 27 compare and select, 38 add, 11 divide, 48 multiply, 1
  *     sqrt
- *   singularities: 45 compare and select, 47 add, 7 divide, 57 multiply, 2 sqrt
- *   singularities where nothing vanishes: 29 compare and select, 40 add, 6 divide, 37 multiply, 1
+ *   singularities: 41 compare and select, 46 add, 10 divide, 53 multiply, 1 sqrt
+ *   singularities where nothing vanishes: 27 compare and select, 44 add, 9 divide, 44 multiply, 1
  *     sqrt
- *   condition_number: 49 compare and select, 105 add, 11 divide, 137 multiply, 4 sqrt
- *   condition_number where nothing vanishes: 29 compare and select, 98 add, 10 divide, 114
- *     multiply, 3 sqrt
- *   constraint: 49 compare and select, 63 add, 15 divide, 91 multiply, 2 sqrt
- *   constraint where nothing vanishes: 29 compare and select, 56 add, 14 divide, 68 multiply, 1
- *     sqrt
+ *   condition_number: 43 compare and select, 104 add, 14 divide, 131 multiply, 3 sqrt
+ *   constraint: 43 compare and select, 62 add, 18 divide, 85 multiply, 1 sqrt
  *   ik: 60 compare and select, 63 add, 5 divide, 44 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  */
@@ -44,81 +37,79 @@ CF_INLINE void linear_delta_fk_whole_kernel(const int single, const real_t one,
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
+    const real_t t1 = rho1 - rho2;
     const real_t c1_x = f - e;
-    const real_t t1 = c1_x + c1_x * CLOSEDFORM_C(0.5);
-    const real_t t2 = rho1 - rho2;
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t3 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c2_y * c2_y);
-    const real_t u_u = cf_rounded(single, one, t2 * t2) + t3;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = c1_x - c2_x;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = cf_rounded(single, one, t2 * t2) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t1 * t1) + t5;
+    const real_t t6 = rho1 - rho3;
+    const real_t v_v = cf_rounded(single, one, t6 * t6) + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t4 = size * size;
-    const real_t t5 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t6 = t4 * t5;
-    const int same = u_u <= t6;
-    const real_t d_y = cf_rarely(single, same, -c2_y, c2_y);
-    const real_t t7 = rho1 - rho3;
-    const real_t v_v = cf_rounded(single, one, t7 * t7) + t3;
-    const int all_same = u_u + v_v <= t6;
+    const real_t t7 = size * size;
+    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
+    const int all_same = u_u + v_v <= t8;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t1);
-    const real_t t8 = cf_rarely(single, same, c2_y, -c2_y);
-    const real_t product_z = cf_rounded(single, one, a_x * t8) + cf_rounded(single, one, t1 * d_y);
-    const real_t t9 = cf_rarely(single, same, t7, t2);
-    const real_t t10 = cf_rarely(single, same, t2, t7);
-    const real_t product_y = cf_rounded(single, one, a_x * t10) + cf_rounded(single, one, t1 * t9);
-    const real_t t11 = cf_rounded(single, one, d_y * product_z) + cf_rounded(single, one, t9 * product_y);
-    const real_t t12 = cf_rounded(single, one, d_y * t10) - cf_rounded(single, one, t8 * t9);
-    const real_t t13 = cf_rounded(single, one, product_y * product_y);
-    const real_t t14 = cf_rounded(single, one, product_z * product_z);
-    const real_t product_2 = cf_rounded(single, one, t12 * t12) + t13 + t14;
+    const int same = u_u <= t8;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t15 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t16 = product_2 - t15 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t16 <= CLOSEDFORM_VANISHING * t15;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t n_y = cf_rounded(single, one, a_x * product_z) - cf_rounded(single, one, t9 * t12);
-    const real_t t17 = cf_rounded(single, one, t11 * t11) + cf_rounded(single, one, n_y * n_y);
-    const real_t t18 = cf_rounded(single, one, a_x * product_y) + cf_rounded(single, one, d_y * t12);
-    const real_t t19 = over * (t17 + cf_rounded(single, one, t18 * t18));
-    const real_t m_m = cf_rarely(single, slim, t19, product_2);
-    const int in_line = m_m <= t5 * (t4 * mu);
-    const real_t t20 = whole * t9;
+    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t2);
+    const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t m_z = cf_rounded(single, one, a_x * t9) + cf_rounded(single, one, t2 * d_y);
+    const real_t t10 = cf_rarely(single, same, t6, t1);
+    const real_t t11 = cf_rarely(single, same, t1, t6);
+    const real_t m_y = cf_rounded(single, one, a_x * t11) + cf_rounded(single, one, t2 * t10);
+    const real_t t12 = cf_rounded(single, one, d_y * m_z) + cf_rounded(single, one, t10 * m_y);
+    const real_t t13 = over * t12;
+    const real_t t14 = cf_rounded(single, one, d_y * t11) - cf_rounded(single, one, t9 * t10);
+    const real_t t15 = cf_rounded(single, one, a_x * m_z) - cf_rounded(single, one, t10 * t14);
+    const real_t n_y = over * t15;
+    const real_t t16 = cf_rounded(single, one, t13 * t13) + cf_rounded(single, one, n_y * n_y);
+    const real_t t17 = cf_rounded(single, one, a_x * m_y) + cf_rounded(single, one, d_y * t14);
+    const real_t t18 = over * t17;
+    const real_t nu = t16 + cf_rounded(single, one, t18 * t18);
+    const int in_line = nu <= t8;
+    const real_t t19 = whole * t10;
     const real_t s_w = cf_sign(d_y * a_x);
+    const real_t t20 = cf_rarely(single, in_line, t19 * s_w, d_y * t18 - t10 * n_y);
     const real_t g_2 = whole * (d_y + a_x * s_w);
-    const real_t t21 = CLOSEDFORM_C(2.0) * (t20 * t20) + cf_rounded(single, one, g_2 * g_2);
-    const real_t w_w = cf_rarely(single, in_line, t21, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t22 = cf_rounded(single, one, t8 * (d_y - t8)) + cf_rounded(single, one, t10 * (t9 - t10));
-    const real_t t23 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t22 * CLOSEDFORM_C(0.5));
-    const real_t t24 = c1_x - t1 * CLOSEDFORM_C(0.5) + t11 * t23;
-    const real_t t25 = cf_rarely(single, slim, over * (d_y * t18 - t9 * n_y), t12);
-    const real_t t26 = CLOSEDFORM_C(0.25) + cf_rounded(single, one, w_w * (t23 * t23));
-    const real_t t27 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), mu * t26);
-    const real_t t28 = cf_rounded(single, one, l * l) - t27;
-    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
-    const real_t t29 = l * size * CLOSEDFORM_C(0.1875);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t29, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t30 = cf_rarely(single, in_line, t20 * s_w, t25) * h;
+    const real_t t21 = CLOSEDFORM_C(2.0) * (t19 * t19) + cf_rounded(single, one, g_2 * g_2);
+    const real_t t22 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t21), t22);
+    const real_t t23 = cf_rounded(single, one, t9 * (d_y - t9)) + cf_rounded(single, one, t11 * (t10 - t11));
+    const real_t t24 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t23 * CLOSEDFORM_C(0.5));
+    const real_t t25 = cf_rounded(single, one, nu * (t24 * t24)) + mu * CLOSEDFORM_C(0.25);
+    const real_t t26 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t25);
+    const real_t t27 = cf_rounded(single, one, l * l) - t26;
+    const real_t slack = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t t28 = l * size * CLOSEDFORM_C(0.1875);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t28, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t29 = t20 * h;
+    const real_t t30 = t2 * CLOSEDFORM_C(0.5) - (c1_x + t13 * t24);
     const int t31 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
     const int t32 = t31 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
     const int t33 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
     const int invalid = !(t32 & (CLOSEDFORM_C(0.0) <= l) & t33);
-    const real_t t34 = cf_rarely(single, in_line, -t22, CLOSEDFORM_C(0.0));
-    const int t35 = cf_abs(t34) <= t4 * CLOSEDFORM_FEASIBILITY;
-    const int t36 = t35 & (-(CLOSEDFORM_FEASIBILITY * t29) <= t28);
+    const real_t t34 = cf_rarely(single, in_line, -t23, CLOSEDFORM_C(0.0));
+    const int t35 = cf_abs(t34) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t36 = t35 & (-(CLOSEDFORM_FEASIBILITY * t28) <= t27);
     const int unreachable = !t36;
     const real_t t37 = cf_poison(single, invalid | unreachable);
-    const real_t t38 = n_y * t23 - d_y * CLOSEDFORM_C(0.5);
-    const real_t m_y = cf_rarely(single, slim, over * (a_x * t18 + t9 * t11), product_y);
-    const real_t t39 = h * cf_rarely(single, in_line, -t20, m_y);
-    const real_t t40 = t9 * CLOSEDFORM_C(0.5) - (rho1 + t18 * t23);
-    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t11), product_z);
-    const real_t t41 = h * cf_rarely(single, in_line, -g_2, m_z);
+    const real_t t38 = n_y * t24 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_y = cf_rarely(single, in_line, -t19, a_x * t18 + t10 * t13);
+    const real_t t39 = h * w_y;
+    const real_t t40 = t10 * CLOSEDFORM_C(0.5) - (rho1 + t18 * t24);
+    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t13);
+    const real_t t41 = h * w_z;
     const real_t t42 = cf_status(single, invalid, unreachable, in_line);
-    p[0] = t24 + t30 + t37;
+    p[0] = t29 - t30 + t37;
     p[1] = -(t38 + t39) + t37;
     p[2] = -(t40 + t41) + t37;
-    p[3] = t24 - t30 + t37;
+    p[3] = -(t30 + t29) + t37;
     p[4] = t39 - t38 + t37;
     p[5] = t41 - t40 + t37;
     status[0] = t42;
@@ -149,62 +140,66 @@ CF_INLINE void linear_delta_fk_common_kernel(const int single, const real_t one,
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t c1_x = f - e;
-    const real_t t1 = c1_x + c1_x * CLOSEDFORM_C(0.5);
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t2 = cf_rounded(single, one, c2_y * t1);
-    const real_t product_z = t2 + t2;
-    const real_t t3 = rho1 - rho2;
-    const real_t t4 = rho1 - rho3;
-    const real_t t5 = cf_rounded(single, one, t1 * t4) - cf_rounded(single, one, t1 * t3);
-    const real_t t6 = cf_rounded(single, one, c2_y * t4) + cf_rounded(single, one, c2_y * t3);
-    const real_t t7 = cf_rounded(single, one, t6 * t6) + cf_rounded(single, one, t5 * t5);
-    const real_t t8 = cf_rounded(single, one, product_z * product_z);
-    const real_t product_2 = t7 + t8;
-    const real_t t9 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c2_y * c2_y);
-    const real_t u_u = cf_rounded(single, one, t3 * t3) + t9;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t1 = c1_x - c2_x;
+    const real_t t2 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t3 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t2 - t3;
+    const real_t t4 = cf_rounded(single, one, c3_y * t1);
+    const real_t t5 = t4 + t4;
+    const real_t t6 = rho1 - rho2;
+    const real_t t7 = rho1 - rho3;
+    const real_t t8 = cf_rounded(single, one, t1 * t7) - cf_rounded(single, one, t1 * t6);
+    const real_t t9 = cf_rounded(single, one, c3_y * t5) - cf_rounded(single, one, t6 * t8);
+    const real_t t10 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t6 * t6) + t10;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t10 = size * size;
-    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t12 = t10 * t11;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)), product_2);
-    const real_t t13 = cf_rounded(single, one, c2_y * (c2_y + c2_y));
-    const real_t t14 = t13 - cf_rounded(single, one, t4 * (t3 - t4));
-    const real_t t15 = part * t14 * CLOSEDFORM_C(0.5);
-    const real_t t16 = c1_x - t1 * CLOSEDFORM_C(0.5) - (c2_y * product_z - t3 * t5) * t15;
-    const real_t t17 = cf_rounded(single, one, product_2 * (t15 * t15));
-    const real_t t18 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t17));
-    const real_t t19 = cf_rounded(single, one, l * l) - t18;
-    const real_t slack = cf_max(t19, CLOSEDFORM_C(0.0));
+    const real_t t11 = size * size;
+    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t11;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t12, u_u);
+    const real_t t13 = t9 * over;
+    const real_t t14 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t15 = t14 - cf_rounded(single, one, t7 * (t6 - t7));
+    const real_t t16 = cf_rounded(single, one, c3_y * t7) + cf_rounded(single, one, c3_y * t6);
+    const real_t t17 = cf_rounded(single, one, t1 * t5) + cf_rounded(single, one, t6 * t16);
+    const real_t n_y = t17 * over;
+    const real_t t18 = cf_rounded(single, one, t13 * t13) + cf_rounded(single, one, n_y * n_y);
+    const real_t t19 = cf_rounded(single, one, t1 * t8) + cf_rounded(single, one, c3_y * t16);
+    const real_t t20 = t19 * over;
+    const real_t nu = t18 + cf_rounded(single, one, t20 * t20);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t12) | (nu <= t12), u_u * nu);
+    const real_t t21 = u_u * t15 * part * CLOSEDFORM_C(0.5);
+    const real_t t22 = c1_x - t1 * CLOSEDFORM_C(0.5) - t13 * t21;
+    const real_t t23 = cf_rounded(single, one, nu * (t21 * t21)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t24 = cf_rounded(single, one, l * l) - t23;
+    const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t20 = t6 * h;
-    const int t21 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t22 = t21 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t23 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int invalid = !(t22 & (CLOSEDFORM_C(0.0) <= l) & t23);
-    const int t24 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
-    const real_t t25 = l * size * CLOSEDFORM_C(0.1875);
-    const int t26 = t24 & (-(CLOSEDFORM_FEASIBILITY * t25) <= t19);
-    const int unreachable = !t26;
-    const real_t t27 = cf_poison(single, invalid | unreachable);
-    const real_t t28 = t5 * h;
-    const real_t t29 = t15 * (t1 * product_z + t3 * t6) - c2_y * CLOSEDFORM_C(0.5);
-    const real_t t30 = t3 * CLOSEDFORM_C(0.5) - (rho1 - t15 * (t1 * t5 + c2_y * t6));
-    const real_t t31 = product_z * h;
-    const real_t t32 = cf_status(single, invalid, unreachable, 0);
-    const real_t v_v = cf_rounded(single, one, t4 * t4) + t9;
-    const real_t t33 = u_u * v_v;
-    const real_t t34 = product_2 - t33 * CLOSEDFORM_C(0.000244140625);
-    const int t35 = (u_u <= t12) | (u_u + v_v <= t12) | (t34 <= CLOSEDFORM_VANISHING * t33);
-    const int t36 = t35 | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t25);
-    p[0] = t16 + t20 + t27;
-    p[1] = t28 - t29 + t27;
-    p[2] = -(t30 + t31) + t27;
-    p[3] = t16 - t20 + t27;
-    p[4] = -(t29 + t28) + t27;
-    p[5] = t31 - t30 + t27;
-    status[0] = t32;
-    status[1] = t32;
-    rare[0] = (t36) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t25 = (c3_y * t20 + t6 * n_y) * h;
+    const int t26 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t27 = t26 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t28 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int invalid = !(t27 & (CLOSEDFORM_C(0.0) <= l) & t28);
+    const int t29 = cf_abs(CLOSEDFORM_C(0.0)) <= t11 * CLOSEDFORM_FEASIBILITY;
+    const real_t t30 = l * size * CLOSEDFORM_C(0.1875);
+    const int t31 = t29 & (-(CLOSEDFORM_FEASIBILITY * t30) <= t24);
+    const int unreachable = !t31;
+    const real_t t32 = cf_poison(single, invalid | unreachable);
+    const real_t t33 = h * (t1 * t20 - t6 * t13);
+    const real_t t34 = c3_y * CLOSEDFORM_C(0.5) - n_y * t21;
+    const real_t t35 = h * (t1 * n_y + c3_y * t13);
+    const real_t t36 = t6 * CLOSEDFORM_C(0.5) - (rho1 - t20 * t21);
+    const real_t t37 = cf_status(single, invalid, unreachable, 0);
+    const real_t t38 = u_u + (cf_rounded(single, one, t7 * t7) + t10);
+    const int t39 = (u_u <= t12) | (t38 <= t12) | (nu <= t12) | (slack <= CLOSEDFORM_VANISHING * t30);
+    p[0] = t22 - t25 + t32;
+    p[1] = t33 - t34 + t32;
+    p[2] = t35 - t36 + t32;
+    p[3] = t22 + t25 + t32;
+    p[4] = -(t34 + t33) + t32;
+    p[5] = -(t36 + t35) + t32;
+    status[0] = t37;
+    status[1] = t37;
+    rare[0] = (t39) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void linear_delta_fk_common_batch(size_t n, const linear_delta_params *params,
@@ -273,7 +268,7 @@ void linear_delta_fk(const linear_delta_params *params,
     linear_delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -295,7 +290,7 @@ void linear_delta_fk(const linear_delta_params *params,
 CF_INLINE cf_word linear_delta_fk_excess(const real_t dimensions,
     const real_t *q, size_t q_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
 }
 
 CF_RARE void linear_delta_fk_other_sizes(size_t n, const real_t dimensions,
@@ -347,8 +342,7 @@ void linear_delta_fk_batch(size_t n, const linear_delta_params *params,
     }
 }
 
-/* Every case. */
-CF_INLINE void linear_delta_skeleton_whole_kernel(const int single, const linear_delta_params *params,
+CF_INLINE void linear_delta_skeleton_kernel(const int single, const linear_delta_params *params,
     const real_t q[3], real_t points[132])
 {
     const real_t f = params->f;
@@ -362,510 +356,304 @@ CF_INLINE void linear_delta_skeleton_whole_kernel(const int single, const linear
     const int t3 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
     const real_t t4 = rho1 - rho2;
     const real_t c1_x = f - e;
-    const real_t t5 = c1_x + c1_x * CLOSEDFORM_C(0.5);
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t6 = t5 * t5 + c2_y * c2_y;
-    const real_t u_u = t4 * t4 + t6;
+    const real_t t5 = e * CLOSEDFORM_C(0.5);
+    const real_t t6 = f * CLOSEDFORM_C(0.5);
+    const real_t t7 = c1_x - (t5 - t6);
+    const real_t t8 = e * CLOSEDFORM_C(1.7320508075688772);
+    const real_t t9 = t8 * CLOSEDFORM_C(0.5);
+    const real_t t10 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t9 - t10;
+    const real_t t11 = t7 * t7 + c3_y * c3_y;
+    const real_t u_u = t4 * t4 + t11;
+    const real_t t12 = rho1 - rho3;
+    const real_t v_v = t12 * t12 + t11;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t7 = size * size;
-    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t9 = t7 * t8;
-    const int same = u_u <= t9;
-    const real_t d_y = cf_rarely(single, same, -c2_y, c2_y);
-    const real_t t10 = rho1 - rho3;
-    const real_t t11 = cf_rarely(single, same, t4, t10);
-    const real_t t12 = cf_rarely(single, same, t10, t4);
-    const real_t t13 = cf_rarely(single, same, c2_y, -c2_y);
-    const real_t t14 = d_y * t11 - t12 * t13;
-    const real_t v_v = t10 * t10 + t6;
-    const int all_same = u_u + v_v <= t9;
+    const real_t t13 = size * size;
+    const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t13;
+    const int all_same = u_u + v_v <= t14;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t5);
-    const real_t product_y = t11 * a_x + t5 * t12;
-    const real_t product_z = t13 * a_x + t5 * d_y;
-    const real_t product_2 = t14 * t14 + product_y * product_y + product_z * product_z;
+    const int same = u_u <= t14;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t15 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t16 = product_2 - t15 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t16 <= CLOSEDFORM_VANISHING * t15;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t17 = d_y * product_z + t12 * product_y;
-    const real_t n_y = a_x * product_z - t12 * t14;
-    const real_t t18 = a_x * product_y + d_y * t14;
-    const real_t m_m = cf_rarely(single, slim, over * (t17 * t17 + n_y * n_y + t18 * t18), product_2);
-    const int in_line = m_m <= t8 * (t7 * mu);
-    const real_t t19 = t13 * (d_y - t13) - t11 * (t11 - t12);
-    const real_t t20 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
-    const int t21 = cf_abs(t20) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const real_t t22 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t t23 = whole * t12;
+    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t7);
+    const real_t t15 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t m_z = a_x * t15 + t7 * d_y;
+    const real_t t16 = cf_rarely(single, same, t12, t4);
+    const real_t t17 = cf_rarely(single, same, t4, t12);
+    const real_t m_y = a_x * t17 + t7 * t16;
+    const real_t t18 = over * (d_y * m_z + t16 * m_y);
+    const real_t t19 = d_y * t17 - t15 * t16;
+    const real_t n_y = over * (a_x * m_z - t16 * t19);
+    const real_t t20 = over * (a_x * m_y + d_y * t19);
+    const real_t nu = t18 * t18 + n_y * n_y + t20 * t20;
+    const int in_line = nu <= t14;
+    const real_t t21 = t15 * (d_y - t15) + t17 * (t16 - t17);
+    const real_t t22 = cf_rarely(single, in_line, -t21, CLOSEDFORM_C(0.0));
+    const int t23 = cf_abs(t22) <= t13 * CLOSEDFORM_FEASIBILITY;
+    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t t25 = whole * t16;
     const real_t s_w = cf_sign(d_y * a_x);
     const real_t g_2 = whole * (d_y + a_x * s_w);
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t23 * t23) + g_2 * g_2, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t24 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), t19 * part * CLOSEDFORM_C(0.5));
-    const real_t t25 = mu * (CLOSEDFORM_C(0.25) + w_w * (t24 * t24));
-    const real_t t26 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t25);
-    const real_t t27 = l * l - t26;
-    const int t28 = t21 & (-(CLOSEDFORM_FEASIBILITY * t22) <= t27);
-    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= l) & t3)) | (!t28);
-    const real_t t29 = cf_poison(single, failed);
-    const real_t t30 = f + t29;
-    const real_t t31 = CLOSEDFORM_C(0.0) + t29;
-    const real_t t32 = rho1 + t29;
-    const real_t t33 = e + c1_x;
-    const real_t t34 = t5 * CLOSEDFORM_C(0.5) - t17 * t24;
-    const real_t t35 = cf_rarely(single, slim, over * (d_y * t18 - t12 * n_y), t14);
-    const real_t slack = cf_max(t27, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t22, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t36 = cf_rarely(single, in_line, t23 * s_w, t35) * h;
-    const real_t t37 = t34 - t36;
-    const real_t t38 = t33 - t37 + t29;
-    const real_t t39 = n_y * t24 - d_y * CLOSEDFORM_C(0.5);
-    const real_t m_y = cf_rarely(single, slim, over * (a_x * t18 + t12 * t17), product_y);
-    const real_t t40 = h * cf_rarely(single, in_line, -t23, m_y);
-    const real_t t41 = t39 + t40;
-    const real_t t42 = -t41 + t29;
-    const real_t t43 = t18 * t24 - t12 * CLOSEDFORM_C(0.5);
-    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t17), product_z);
-    const real_t t44 = h * cf_rarely(single, in_line, -g_2, m_z);
-    const real_t t45 = rho1 + (t43 - t44) + t29;
-    const real_t t46 = e * CLOSEDFORM_C(0.5);
-    const real_t t47 = t46 + t29;
-    const real_t t48 = -t46 + t29;
-    const real_t t49 = f * CLOSEDFORM_C(0.5);
-    const real_t t50 = -t49 + t29;
-    const real_t t51 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t52 = t51 + t29;
-    const real_t t53 = rho2 + t29;
-    const real_t t54 = c1_x - t46;
-    const real_t t55 = t54 - t37;
-    const real_t t56 = t55 + t29;
-    const real_t t57 = e * CLOSEDFORM_C(1.7320508075688772);
-    const real_t t58 = t57 * CLOSEDFORM_C(0.5);
-    const real_t t59 = t57 * CLOSEDFORM_C(0.25);
-    const real_t t60 = -(t49 + t59) + t29;
-    const real_t t61 = e * CLOSEDFORM_C(0.25);
-    const real_t t62 = t51 - t61;
-    const real_t t63 = t62 + t29;
-    const real_t t64 = t59 - t49 + t29;
-    const real_t t65 = t51 + t61;
-    const real_t t66 = t65 + t29;
-    const real_t t67 = t55 - t59 + t29;
-    const real_t t68 = t58 - t61;
-    const real_t t69 = t59 + t55 + t29;
-    const real_t t70 = t58 + t61;
-    const real_t t71 = -t51 + t29;
-    const real_t t72 = rho3 + t29;
-    const real_t t73 = -t65 + t29;
-    const real_t t74 = -t62 + t29;
-    const real_t t75 = t34 + t36;
-    const real_t t76 = t33 - t75 + t29;
-    const real_t t77 = t39 - t40;
-    const real_t t78 = -t77 + t29;
-    const real_t t79 = rho1 + (t43 + t44) + t29;
-    const real_t t80 = t54 - t75;
-    const real_t t81 = t80 + t29;
-    const real_t t82 = t80 - t59 + t29;
-    const real_t t83 = t59 + t80 + t29;
-    points[0] = t30;
-    points[1] = t31;
-    points[2] = t31;
-    points[3] = t30;
-    points[4] = t31;
-    points[5] = t32;
-    points[6] = t38;
-    points[7] = t42;
-    points[8] = t45;
-    points[9] = t30;
-    points[10] = t47;
-    points[11] = t32;
-    points[12] = t30;
-    points[13] = t48;
-    points[14] = t32;
-    points[15] = t38;
-    points[16] = t46 - t41 + t29;
-    points[17] = t45;
-    points[18] = t38;
-    points[19] = -(t46 + t41) + t29;
-    points[20] = t45;
-    points[21] = t50;
+    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t25 * t25) + g_2 * g_2);
+    const real_t t27 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, t26, t27);
+    const real_t t28 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * t21 * part * CLOSEDFORM_C(0.5));
+    const real_t t29 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t28 * t28) + mu * CLOSEDFORM_C(0.25));
+    const real_t t30 = l * l - t29;
+    const int t31 = t23 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t30);
+    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= l) & t3)) | (!t31);
+    const real_t t32 = cf_poison(single, failed);
+    const real_t t33 = f + t32;
+    const real_t t34 = CLOSEDFORM_C(0.0) + t32;
+    const real_t t35 = rho1 + t32;
+    const real_t t36 = e + c1_x;
+    const real_t t37 = t7 * CLOSEDFORM_C(0.5) - t18 * t28;
+    const real_t t38 = cf_rarely(single, in_line, t25 * s_w, d_y * t20 - t16 * n_y);
+    const real_t slack = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t39 = t38 * h;
+    const real_t t40 = t37 - t39;
+    const real_t t41 = t36 - t40 + t32;
+    const real_t t42 = n_y * t28 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_y = cf_rarely(single, in_line, -t25, a_x * t20 + t16 * t18);
+    const real_t t43 = h * w_y;
+    const real_t t44 = t42 + t43;
+    const real_t t45 = -t44 + t32;
+    const real_t t46 = t20 * t28 - t16 * CLOSEDFORM_C(0.5);
+    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t18);
+    const real_t t47 = h * w_z;
+    const real_t t48 = rho1 + (t46 - t47) + t32;
+    const real_t t49 = t5 + t32;
+    const real_t t50 = -t5 + t32;
+    const real_t t51 = -t6 + t32;
+    const real_t t52 = t10 + t32;
+    const real_t t53 = rho2 + t32;
+    const real_t t54 = c1_x - t5;
+    const real_t t55 = t54 - t40;
+    const real_t t56 = t55 + t32;
+    const real_t t57 = t8 * CLOSEDFORM_C(0.25);
+    const real_t t58 = -(t6 + t57) + t32;
+    const real_t t59 = e * CLOSEDFORM_C(0.25);
+    const real_t t60 = t10 - t59;
+    const real_t t61 = t60 + t32;
+    const real_t t62 = t57 - t6 + t32;
+    const real_t t63 = t10 + t59;
+    const real_t t64 = t63 + t32;
+    const real_t t65 = t55 - t57 + t32;
+    const real_t t66 = t9 - t59;
+    const real_t t67 = t57 + t55 + t32;
+    const real_t t68 = t9 + t59;
+    const real_t t69 = -t10 + t32;
+    const real_t t70 = rho3 + t32;
+    const real_t t71 = -t63 + t32;
+    const real_t t72 = -t60 + t32;
+    const real_t t73 = t37 + t39;
+    const real_t t74 = t36 - t73 + t32;
+    const real_t t75 = t42 - t43;
+    const real_t t76 = -t75 + t32;
+    const real_t t77 = rho1 + (t46 + t47) + t32;
+    const real_t t78 = t54 - t73;
+    const real_t t79 = t78 + t32;
+    const real_t t80 = t78 - t57 + t32;
+    const real_t t81 = t57 + t78 + t32;
+    points[0] = t33;
+    points[1] = t34;
+    points[2] = t34;
+    points[3] = t33;
+    points[4] = t34;
+    points[5] = t35;
+    points[6] = t41;
+    points[7] = t45;
+    points[8] = t48;
+    points[9] = t33;
+    points[10] = t49;
+    points[11] = t35;
+    points[12] = t33;
+    points[13] = t50;
+    points[14] = t35;
+    points[15] = t41;
+    points[16] = t5 - t44 + t32;
+    points[17] = t48;
+    points[18] = t41;
+    points[19] = -(t5 + t44) + t32;
+    points[20] = t48;
+    points[21] = t51;
     points[22] = t52;
-    points[23] = t31;
-    points[24] = t50;
+    points[23] = t34;
+    points[24] = t51;
     points[25] = t52;
     points[26] = t53;
     points[27] = t56;
-    points[28] = t58 - t41 + t29;
-    points[29] = t45;
-    points[30] = t60;
-    points[31] = t63;
+    points[28] = t9 - t44 + t32;
+    points[29] = t48;
+    points[30] = t58;
+    points[31] = t61;
     points[32] = t53;
-    points[33] = t64;
-    points[34] = t66;
+    points[33] = t62;
+    points[34] = t64;
     points[35] = t53;
-    points[36] = t67;
-    points[37] = t68 - t41 + t29;
-    points[38] = t45;
-    points[39] = t69;
-    points[40] = t70 - t41 + t29;
-    points[41] = t45;
-    points[42] = t50;
-    points[43] = t71;
-    points[44] = t31;
-    points[45] = t50;
-    points[46] = t71;
-    points[47] = t72;
+    points[36] = t65;
+    points[37] = t66 - t44 + t32;
+    points[38] = t48;
+    points[39] = t67;
+    points[40] = t68 - t44 + t32;
+    points[41] = t48;
+    points[42] = t51;
+    points[43] = t69;
+    points[44] = t34;
+    points[45] = t51;
+    points[46] = t69;
+    points[47] = t70;
     points[48] = t56;
-    points[49] = -(t58 + t41) + t29;
-    points[50] = t45;
-    points[51] = t64;
-    points[52] = t73;
-    points[53] = t72;
-    points[54] = t60;
-    points[55] = t74;
-    points[56] = t72;
-    points[57] = t69;
-    points[58] = -(t70 + t41) + t29;
-    points[59] = t45;
-    points[60] = t67;
-    points[61] = -(t68 + t41) + t29;
-    points[62] = t45;
-    points[63] = c1_x - t37 + t29;
-    points[64] = t42;
-    points[65] = t45;
-    points[66] = t30;
-    points[67] = t31;
-    points[68] = t31;
-    points[69] = t30;
-    points[70] = t31;
-    points[71] = t32;
-    points[72] = t76;
-    points[73] = t78;
-    points[74] = t79;
-    points[75] = t30;
-    points[76] = t47;
-    points[77] = t32;
-    points[78] = t30;
-    points[79] = t48;
-    points[80] = t32;
-    points[81] = t76;
-    points[82] = t46 - t77 + t29;
-    points[83] = t79;
-    points[84] = t76;
-    points[85] = -(t46 + t77) + t29;
-    points[86] = t79;
-    points[87] = t50;
+    points[49] = -(t9 + t44) + t32;
+    points[50] = t48;
+    points[51] = t62;
+    points[52] = t71;
+    points[53] = t70;
+    points[54] = t58;
+    points[55] = t72;
+    points[56] = t70;
+    points[57] = t67;
+    points[58] = -(t68 + t44) + t32;
+    points[59] = t48;
+    points[60] = t65;
+    points[61] = -(t66 + t44) + t32;
+    points[62] = t48;
+    points[63] = c1_x - t40 + t32;
+    points[64] = t45;
+    points[65] = t48;
+    points[66] = t33;
+    points[67] = t34;
+    points[68] = t34;
+    points[69] = t33;
+    points[70] = t34;
+    points[71] = t35;
+    points[72] = t74;
+    points[73] = t76;
+    points[74] = t77;
+    points[75] = t33;
+    points[76] = t49;
+    points[77] = t35;
+    points[78] = t33;
+    points[79] = t50;
+    points[80] = t35;
+    points[81] = t74;
+    points[82] = t5 - t75 + t32;
+    points[83] = t77;
+    points[84] = t74;
+    points[85] = -(t5 + t75) + t32;
+    points[86] = t77;
+    points[87] = t51;
     points[88] = t52;
-    points[89] = t31;
-    points[90] = t50;
+    points[89] = t34;
+    points[90] = t51;
     points[91] = t52;
     points[92] = t53;
-    points[93] = t81;
-    points[94] = t58 - t77 + t29;
-    points[95] = t79;
-    points[96] = t60;
-    points[97] = t63;
+    points[93] = t79;
+    points[94] = t9 - t75 + t32;
+    points[95] = t77;
+    points[96] = t58;
+    points[97] = t61;
     points[98] = t53;
-    points[99] = t64;
-    points[100] = t66;
+    points[99] = t62;
+    points[100] = t64;
     points[101] = t53;
-    points[102] = t82;
-    points[103] = t68 - t77 + t29;
-    points[104] = t79;
-    points[105] = t83;
-    points[106] = t70 - t77 + t29;
-    points[107] = t79;
-    points[108] = t50;
-    points[109] = t71;
-    points[110] = t31;
-    points[111] = t50;
-    points[112] = t71;
-    points[113] = t72;
-    points[114] = t81;
-    points[115] = -(t58 + t77) + t29;
-    points[116] = t79;
-    points[117] = t64;
-    points[118] = t73;
-    points[119] = t72;
-    points[120] = t60;
-    points[121] = t74;
-    points[122] = t72;
-    points[123] = t83;
-    points[124] = -(t70 + t77) + t29;
-    points[125] = t79;
-    points[126] = t82;
-    points[127] = -(t68 + t77) + t29;
-    points[128] = t79;
-    points[129] = c1_x - t75 + t29;
-    points[130] = t78;
-    points[131] = t79;
+    points[102] = t80;
+    points[103] = t66 - t75 + t32;
+    points[104] = t77;
+    points[105] = t81;
+    points[106] = t68 - t75 + t32;
+    points[107] = t77;
+    points[108] = t51;
+    points[109] = t69;
+    points[110] = t34;
+    points[111] = t51;
+    points[112] = t69;
+    points[113] = t70;
+    points[114] = t79;
+    points[115] = -(t9 + t75) + t32;
+    points[116] = t77;
+    points[117] = t62;
+    points[118] = t71;
+    points[119] = t70;
+    points[120] = t58;
+    points[121] = t72;
+    points[122] = t70;
+    points[123] = t81;
+    points[124] = -(t68 + t75) + t32;
+    points[125] = t77;
+    points[126] = t80;
+    points[127] = -(t66 + t75) + t32;
+    points[128] = t77;
+    points[129] = c1_x - t73 + t32;
+    points[130] = t76;
+    points[131] = t77;
 }
 
 CLOSEDFORM_DISPATCHED
-CF_OUT_OF_LINE void linear_delta_skeleton_whole(const linear_delta_params *params,
+void linear_delta_skeleton(const linear_delta_params *params,
     const real_t q[3], real_t points[132])
 {
-    linear_delta_skeleton_whole_kernel(1, params, q, points);
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char points_degrees[132] = { 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    real_t q_scaled[3];
+    linear_delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
+    linear_delta_skeleton_kernel(1, params, q, points);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(132, points_degrees, exponent, points, points);
+    }
 }
 
-/* Where nothing vanishes; rare is whether something does. */
-CF_INLINE void linear_delta_skeleton_common_kernel(const int single, const real_t one,
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word linear_delta_skeleton_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+}
+
+CF_RARE void linear_delta_skeleton_other_sizes(size_t n, const real_t dimensions,
     const linear_delta_params *params,
-    const real_t q[3], real_t points[132],
-    real_t rare[1])
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
 {
-    const real_t f = params->f;
-    const real_t e = params->e;
-    const real_t l = params->l;
-    const real_t rho1 = q[0];
-    const real_t rho2 = q[1];
-    const real_t rho3 = q[2];
-    const int t1 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t3 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t4 = size * size;
-    const int t5 = cf_abs(CLOSEDFORM_C(0.0)) <= t4 * CLOSEDFORM_FEASIBILITY;
-    const real_t t6 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t t7 = rho1 - rho2;
-    const real_t c1_x = f - e;
-    const real_t t8 = c1_x + c1_x * CLOSEDFORM_C(0.5);
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t9 = cf_rounded(single, one, t8 * t8) + cf_rounded(single, one, c2_y * c2_y);
-    const real_t u_u = cf_rounded(single, one, t7 * t7) + t9;
-    const real_t t10 = rho1 - rho3;
-    const real_t t11 = cf_rounded(single, one, c2_y * t10) + cf_rounded(single, one, c2_y * t7);
-    const real_t t12 = cf_rounded(single, one, t8 * t10) - cf_rounded(single, one, t8 * t7);
-    const real_t t13 = cf_rounded(single, one, t11 * t11) + cf_rounded(single, one, t12 * t12);
-    const real_t t14 = cf_rounded(single, one, c2_y * t8);
-    const real_t product_z = t14 + t14;
-    const real_t t15 = cf_rounded(single, one, product_z * product_z);
-    const real_t product_2 = t13 + t15;
-    const real_t t16 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t17 = t4 * t16;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t17) | (product_2 <= t16 * (t4 * u_u)), product_2);
-    const real_t t18 = cf_rounded(single, one, c2_y * (c2_y + c2_y));
-    const real_t t19 = t18 - cf_rounded(single, one, t10 * (t7 - t10));
-    const real_t t20 = part * t19 * CLOSEDFORM_C(0.5);
-    const real_t t21 = cf_rounded(single, one, product_2 * (t20 * t20));
-    const real_t t22 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t21));
-    const real_t t23 = cf_rounded(single, one, l * l) - t22;
-    const int unreachable = !(t5 & (-(CLOSEDFORM_FEASIBILITY * t6) <= t23));
-    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= l) & t3)) | unreachable;
-    const real_t t24 = cf_poison(single, failed);
-    const real_t t25 = f + t24;
-    const real_t t26 = CLOSEDFORM_C(0.0) + t24;
-    const real_t t27 = rho1 + t24;
-    const real_t t28 = e + c1_x;
-    const real_t t29 = t8 * CLOSEDFORM_C(0.5) + t20 * (c2_y * product_z - t7 * t12);
-    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t h = cf_sqrt(part * slack);
-    const real_t t30 = t11 * h;
-    const real_t t31 = t29 - t30;
-    const real_t t32 = t28 - t31 + t24;
-    const real_t t33 = t20 * (t8 * product_z + t7 * t11) - c2_y * CLOSEDFORM_C(0.5);
-    const real_t t34 = t12 * h;
-    const real_t t35 = t33 - t34;
-    const real_t t36 = -t35 + t24;
-    const real_t t37 = t20 * (t8 * t12 + c2_y * t11) + t7 * CLOSEDFORM_C(0.5);
-    const real_t t38 = product_z * h;
-    const real_t t39 = rho1 - (t37 + t38) + t24;
-    const real_t t40 = e * CLOSEDFORM_C(0.5);
-    const real_t t41 = t40 + t24;
-    const real_t t42 = -t40 + t24;
-    const real_t t43 = f * CLOSEDFORM_C(0.5);
-    const real_t t44 = -t43 + t24;
-    const real_t t45 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t46 = t45 + t24;
-    const real_t t47 = rho2 + t24;
-    const real_t t48 = c1_x - t40;
-    const real_t t49 = t48 - t31;
-    const real_t t50 = t49 + t24;
-    const real_t t51 = e * CLOSEDFORM_C(1.7320508075688772);
-    const real_t t52 = t51 * CLOSEDFORM_C(0.5);
-    const real_t t53 = t51 * CLOSEDFORM_C(0.25);
-    const real_t t54 = -(t43 + t53) + t24;
-    const real_t t55 = e * CLOSEDFORM_C(0.25);
-    const real_t t56 = t45 - t55;
-    const real_t t57 = t56 + t24;
-    const real_t t58 = t53 - t43 + t24;
-    const real_t t59 = t45 + t55;
-    const real_t t60 = t59 + t24;
-    const real_t t61 = t49 - t53 + t24;
-    const real_t t62 = t52 - t55;
-    const real_t t63 = t53 + t49 + t24;
-    const real_t t64 = t52 + t55;
-    const real_t t65 = -t45 + t24;
-    const real_t t66 = rho3 + t24;
-    const real_t t67 = -t59 + t24;
-    const real_t t68 = -t56 + t24;
-    const real_t t69 = t29 + t30;
-    const real_t t70 = t28 - t69 + t24;
-    const real_t t71 = t33 + t34;
-    const real_t t72 = -t71 + t24;
-    const real_t t73 = rho1 - (t37 - t38) + t24;
-    const real_t t74 = t48 - t69;
-    const real_t t75 = t74 + t24;
-    const real_t t76 = t74 - t53 + t24;
-    const real_t t77 = t53 + t74 + t24;
-    const real_t v_v = cf_rounded(single, one, t10 * t10) + t9;
-    const real_t t78 = u_u * v_v;
-    const real_t t79 = product_2 - t78 * CLOSEDFORM_C(0.000244140625);
-    const int t80 = (u_u <= t17) | (u_u + v_v <= t17) | (t79 <= CLOSEDFORM_VANISHING * t78);
-    const int t81 = t80 | (product_2 <= t16 * (t4 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t6);
-    points[0] = t25;
-    points[1] = t26;
-    points[2] = t26;
-    points[3] = t25;
-    points[4] = t26;
-    points[5] = t27;
-    points[6] = t32;
-    points[7] = t36;
-    points[8] = t39;
-    points[9] = t25;
-    points[10] = t41;
-    points[11] = t27;
-    points[12] = t25;
-    points[13] = t42;
-    points[14] = t27;
-    points[15] = t32;
-    points[16] = t40 - t35 + t24;
-    points[17] = t39;
-    points[18] = t32;
-    points[19] = -(t40 + t35) + t24;
-    points[20] = t39;
-    points[21] = t44;
-    points[22] = t46;
-    points[23] = t26;
-    points[24] = t44;
-    points[25] = t46;
-    points[26] = t47;
-    points[27] = t50;
-    points[28] = t52 - t35 + t24;
-    points[29] = t39;
-    points[30] = t54;
-    points[31] = t57;
-    points[32] = t47;
-    points[33] = t58;
-    points[34] = t60;
-    points[35] = t47;
-    points[36] = t61;
-    points[37] = t62 - t35 + t24;
-    points[38] = t39;
-    points[39] = t63;
-    points[40] = t64 - t35 + t24;
-    points[41] = t39;
-    points[42] = t44;
-    points[43] = t65;
-    points[44] = t26;
-    points[45] = t44;
-    points[46] = t65;
-    points[47] = t66;
-    points[48] = t50;
-    points[49] = -(t52 + t35) + t24;
-    points[50] = t39;
-    points[51] = t58;
-    points[52] = t67;
-    points[53] = t66;
-    points[54] = t54;
-    points[55] = t68;
-    points[56] = t66;
-    points[57] = t63;
-    points[58] = -(t64 + t35) + t24;
-    points[59] = t39;
-    points[60] = t61;
-    points[61] = -(t62 + t35) + t24;
-    points[62] = t39;
-    points[63] = c1_x - t31 + t24;
-    points[64] = t36;
-    points[65] = t39;
-    points[66] = t25;
-    points[67] = t26;
-    points[68] = t26;
-    points[69] = t25;
-    points[70] = t26;
-    points[71] = t27;
-    points[72] = t70;
-    points[73] = t72;
-    points[74] = t73;
-    points[75] = t25;
-    points[76] = t41;
-    points[77] = t27;
-    points[78] = t25;
-    points[79] = t42;
-    points[80] = t27;
-    points[81] = t70;
-    points[82] = t40 - t71 + t24;
-    points[83] = t73;
-    points[84] = t70;
-    points[85] = -(t40 + t71) + t24;
-    points[86] = t73;
-    points[87] = t44;
-    points[88] = t46;
-    points[89] = t26;
-    points[90] = t44;
-    points[91] = t46;
-    points[92] = t47;
-    points[93] = t75;
-    points[94] = t52 - t71 + t24;
-    points[95] = t73;
-    points[96] = t54;
-    points[97] = t57;
-    points[98] = t47;
-    points[99] = t58;
-    points[100] = t60;
-    points[101] = t47;
-    points[102] = t76;
-    points[103] = t62 - t71 + t24;
-    points[104] = t73;
-    points[105] = t77;
-    points[106] = t64 - t71 + t24;
-    points[107] = t73;
-    points[108] = t44;
-    points[109] = t65;
-    points[110] = t26;
-    points[111] = t44;
-    points[112] = t65;
-    points[113] = t66;
-    points[114] = t75;
-    points[115] = -(t52 + t71) + t24;
-    points[116] = t73;
-    points[117] = t58;
-    points[118] = t67;
-    points[119] = t66;
-    points[120] = t54;
-    points[121] = t68;
-    points[122] = t66;
-    points[123] = t77;
-    points[124] = -(t64 + t71) + t24;
-    points[125] = t73;
-    points[126] = t76;
-    points[127] = -(t62 + t71) + t24;
-    points[128] = t73;
-    points[129] = c1_x - t69 + t24;
-    points[130] = t72;
-    points[131] = t73;
-    rare[0] = (t81) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    for (size_t i = 0; i < n; ++i) {
+        if (!(linear_delta_skeleton_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t points_i[132];
+        linear_delta_skeleton(params, q_i, points_i);
+        for (size_t k = 0; k < 132; ++k) points[k * points_stride + i] = points_i[k];
+
+    }
 }
 
-CF_INLINE void linear_delta_skeleton_common_batch(size_t n, const linear_delta_params *params,
+CLOSEDFORM_DISPATCHED
+void linear_delta_skeleton_batch(size_t n, const linear_delta_params *params,
     const real_t *q, size_t q_stride,
-    real_t *points, size_t points_stride,
-    uint8_t *rare, size_t rare_stride)
+    real_t *points, size_t points_stride)
 {
-    (void)rare_stride;
     const linear_delta_params local = *params;
-    const real_t one = cf_one();
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             real_t points_i[132];
-            real_t rare_i[1];
-            linear_delta_skeleton_common_kernel(0, one, &local, q_i, points_i, rare_i);
+            linear_delta_skeleton_kernel(0, &local, q_i, points_i);
             points[start + i] = points_i[0];
             points[points_stride + start + i] = points_i[1];
             points[2 * points_stride + start + i] = points_i[2];
@@ -998,94 +786,6 @@ CF_INLINE void linear_delta_skeleton_common_batch(size_t n, const linear_delta_p
             points[129 * points_stride + start + i] = points_i[129];
             points[130 * points_stride + start + i] = points_i[130];
             points[131 * points_stride + start + i] = points_i[131];
-            rare_real[0][i] = rare_i[0];
-        }
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i)
-            rare[start + i] = (uint8_t)rare_real[0][i];
-    }
-}
-
-CF_INLINE void linear_delta_skeleton_common(const linear_delta_params *params,
-    const real_t q[3], real_t points[132],
-    uint8_t rare[1])
-{
-    const real_t one = cf_one();
-    real_t rare_real[1];
-    linear_delta_skeleton_common_kernel(1, one, params, q, points, rare_real);
-    for (size_t i = 0; i < 1; ++i)
-        rare[i] = (uint8_t)rare_real[i];
-}
-
-CLOSEDFORM_DISPATCHED
-void linear_delta_skeleton(const linear_delta_params *params,
-    const real_t q[3], real_t points[132])
-{
-    static const signed char q_degrees[3] = { 1, 1, 1 };
-    static const signed char points_degrees[132] = { 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
-    real_t q_scaled[3];
-    linear_delta_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
-        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
-        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
-        params = &params_scaled;
-        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
-        q = q_scaled;
-    }
-    uint8_t rare[1];
-    linear_delta_skeleton_common(params, q, points, rare);
-    if (CF_UNLIKELY(rare[0])) linear_delta_skeleton_whole(params, q, points);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(132, points_degrees, exponent, points, points);
-    }
-}
-
-/* Has its sign bit set where powers of the size of a posture may leave the range. */
-CF_INLINE cf_word linear_delta_skeleton_excess(const real_t dimensions,
-    const real_t *q, size_t q_stride, size_t i)
-{
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
-}
-
-CF_RARE void linear_delta_skeleton_other_sizes(size_t n, const real_t dimensions,
-    const linear_delta_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *points, size_t points_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        if (!(linear_delta_skeleton_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
-        real_t q_i[3];
-        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-        real_t points_i[132];
-        linear_delta_skeleton(params, q_i, points_i);
-        for (size_t k = 0; k < 132; ++k) points[k * points_stride + i] = points_i[k];
-
-    }
-}
-
-CLOSEDFORM_DISPATCHED
-void linear_delta_skeleton_batch(size_t n, const linear_delta_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *points, size_t points_stride)
-{
-    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        uint8_t rare[CLOSEDFORM_BLOCK];
-        linear_delta_skeleton_common_batch(length, params, q + start, q_stride, points + start, points_stride, rare, CLOSEDFORM_BLOCK);
-        for (size_t i = start; i < start + length; ++i) {
-            if (!CF_UNLIKELY(rare[i - start])) continue;
-            real_t q_i[3];
-            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-            real_t points_i[132];
-            linear_delta_skeleton_whole(params, q_i, points_i);
-            for (size_t k = 0; k < 132; ++k) points[k * points_stride + i] = points_i[k];
-
         }
         cf_word excess = 0;
         for (size_t i = 0; i < length; ++i)
@@ -1105,75 +805,72 @@ CF_INLINE void linear_delta_jacobian_parallel_whole_kernel(const int single, con
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t c1_x = f - e;
-    const real_t t1 = c1_x + c1_x * CLOSEDFORM_C(0.5);
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t1 = f - e - c2_x;
     const real_t t2 = rho1 - rho2;
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t3 = t1 * t1 + c2_y * c2_y;
-    const real_t u_u = t2 * t2 + t3;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = t1 * t1 + c3_y * c3_y;
+    const real_t u_u = t2 * t2 + t5;
+    const real_t t6 = rho1 - rho3;
+    const real_t v_v = t6 * t6 + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t4 = size * size;
-    const real_t t5 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t6 = t4 * t5;
-    const int same = u_u <= t6;
-    const real_t d_y = cf_rarely(single, same, -c2_y, c2_y);
-    const real_t t7 = rho1 - rho3;
-    const real_t v_v = t7 * t7 + t3;
-    const int all_same = u_u + v_v <= t6;
+    const real_t t7 = size * size;
+    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
+    const int all_same = u_u + v_v <= t8;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t1);
-    const real_t t8 = cf_rarely(single, same, c2_y, -c2_y);
-    const real_t product_z = a_x * t8 + t1 * d_y;
-    const real_t t9 = cf_rarely(single, same, t7, t2);
-    const real_t t10 = cf_rarely(single, same, t2, t7);
-    const real_t product_y = a_x * t10 + t1 * t9;
-    const real_t t11 = d_y * product_z + t9 * product_y;
-    const real_t t12 = d_y * t10 - t8 * t9;
-    const real_t product_2 = t12 * t12 + product_y * product_y + product_z * product_z;
+    const int same = u_u <= t8;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t13 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t14 = product_2 - t13 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t14 <= CLOSEDFORM_VANISHING * t13;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t n_y = a_x * product_z - t9 * t12;
-    const real_t t15 = a_x * product_y + d_y * t12;
-    const real_t m_m = cf_rarely(single, slim, over * (t11 * t11 + n_y * n_y + t15 * t15), product_2);
-    const int in_line = m_m <= t5 * (t4 * mu);
-    const real_t t16 = whole * t9;
+    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t1);
+    const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t m_z = a_x * t9 + t1 * d_y;
+    const real_t t10 = cf_rarely(single, same, t6, t2);
+    const real_t t11 = cf_rarely(single, same, t2, t6);
+    const real_t m_y = a_x * t11 + t1 * t10;
+    const real_t t12 = over * (d_y * m_z + t10 * m_y);
+    const real_t t13 = d_y * t11 - t9 * t10;
+    const real_t n_y = over * (a_x * m_z - t10 * t13);
+    const real_t t14 = over * (a_x * m_y + d_y * t13);
+    const real_t nu = t12 * t12 + n_y * n_y + t14 * t14;
+    const int in_line = nu <= t8;
+    const real_t t15 = whole * t10;
     const real_t s_w = cf_sign(d_y * a_x);
     const real_t g_2 = whole * (d_y + a_x * s_w);
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t16 * t16) + g_2 * g_2, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t17 = t8 * (d_y - t8) + t10 * (t9 - t10);
-    const real_t t18 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t17 * CLOSEDFORM_C(0.5));
-    const real_t t19 = t1 * CLOSEDFORM_C(0.5) - t11 * t18;
-    const real_t t20 = cf_rarely(single, slim, over * (d_y * t15 - t9 * n_y), t12);
-    const real_t t21 = mu * (CLOSEDFORM_C(0.25) + w_w * (t18 * t18));
-    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t21);
+    const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
+    const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, t16, t17);
+    const real_t t18 = t9 * (d_y - t9) + t11 * (t10 - t11);
+    const real_t t19 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
+    const real_t t20 = t1 * CLOSEDFORM_C(0.5) - t12 * t19;
+    const real_t t21 = cf_rarely(single, in_line, t15 * s_w, d_y * t14 - t10 * n_y);
+    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
     const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t25 = cf_rarely(single, in_line, t16 * s_w, t20) * h;
-    const real_t t26 = t19 - t25;
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t25 = t21 * h;
+    const real_t t26 = t20 - t25;
     const int t27 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
     const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
     const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t30 = cf_rarely(single, in_line, -t17, CLOSEDFORM_C(0.0));
-    const int t31 = cf_abs(t30) <= t4 * CLOSEDFORM_FEASIBILITY;
+    const real_t t30 = cf_rarely(single, in_line, -t18, CLOSEDFORM_C(0.0));
+    const int t31 = cf_abs(t30) <= t7 * CLOSEDFORM_FEASIBILITY;
     const int t32 = t31 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
     const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
     const real_t t33 = cf_poison(single, failed);
-    const real_t t34 = n_y * t18 - d_y * CLOSEDFORM_C(0.5);
-    const real_t m_y = cf_rarely(single, slim, over * (a_x * t15 + t9 * t11), product_y);
-    const real_t t35 = h * cf_rarely(single, in_line, -t16, m_y);
+    const real_t t34 = n_y * t19 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t14 + t10 * t12);
+    const real_t t35 = h * w_y;
     const real_t t36 = t34 + t35;
-    const real_t t37 = t15 * t18 - t9 * CLOSEDFORM_C(0.5);
-    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t11), product_z);
-    const real_t t38 = h * cf_rarely(single, in_line, -g_2, m_z);
+    const real_t t37 = t14 * t19 - t10 * CLOSEDFORM_C(0.5);
+    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t12);
+    const real_t t38 = h * w_z;
     const real_t A_13 = t37 - t38;
     const real_t t39 = t1 - t26 + t33;
-    const real_t t40 = t19 + t25;
+    const real_t t40 = t20 + t25;
     const real_t t41 = t34 - t35;
     const real_t A_13_above = t37 + t38;
     const real_t t42 = t1 - t40 + t33;
@@ -1181,20 +878,20 @@ CF_INLINE void linear_delta_jacobian_parallel_whole_kernel(const int single, con
     A[1] = -t36 + t33;
     A[2] = A_13 + t33;
     A[3] = t39;
-    A[4] = -(c2_y + t36) + t33;
+    A[4] = c3_y - t36 + t33;
     A[5] = t2 + A_13 + t33;
     A[6] = t39;
-    A[7] = c2_y - t36 + t33;
-    A[8] = t7 + A_13 + t33;
+    A[7] = -(c3_y + t36) + t33;
+    A[8] = t6 + A_13 + t33;
     A[9] = -t40 + t33;
     A[10] = -t41 + t33;
     A[11] = A_13_above + t33;
     A[12] = t42;
-    A[13] = -(c2_y + t41) + t33;
+    A[13] = c3_y - t41 + t33;
     A[14] = t2 + A_13_above + t33;
     A[15] = t42;
-    A[16] = c2_y - t41 + t33;
-    A[17] = t7 + A_13_above + t33;
+    A[16] = -(c3_y + t41) + t33;
+    A[17] = t6 + A_13_above + t33;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1215,79 +912,82 @@ CF_INLINE void linear_delta_jacobian_parallel_common_kernel(const int single, co
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t c1_x = f - e;
-    const real_t t1 = c1_x + c1_x * CLOSEDFORM_C(0.5);
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t2 = cf_rounded(single, one, c2_y * t1);
-    const real_t product_z = t2 + t2;
-    const real_t t3 = rho1 - rho2;
-    const real_t t4 = rho1 - rho3;
-    const real_t t5 = cf_rounded(single, one, t1 * t4) - cf_rounded(single, one, t1 * t3);
-    const real_t t6 = cf_rounded(single, one, c2_y * t4) + cf_rounded(single, one, c2_y * t3);
-    const real_t t7 = cf_rounded(single, one, t6 * t6) + cf_rounded(single, one, t5 * t5);
-    const real_t t8 = cf_rounded(single, one, product_z * product_z);
-    const real_t product_2 = t7 + t8;
-    const real_t t9 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c2_y * c2_y);
-    const real_t u_u = cf_rounded(single, one, t3 * t3) + t9;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t1 = f - e - c2_x;
+    const real_t t2 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t3 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t2 - t3;
+    const real_t t4 = cf_rounded(single, one, c3_y * t1);
+    const real_t t5 = t4 + t4;
+    const real_t t6 = rho1 - rho2;
+    const real_t t7 = rho1 - rho3;
+    const real_t t8 = cf_rounded(single, one, t1 * t7) - cf_rounded(single, one, t1 * t6);
+    const real_t t9 = cf_rounded(single, one, c3_y * t5) - cf_rounded(single, one, t6 * t8);
+    const real_t t10 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t6 * t6) + t10;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t10 = size * size;
-    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t12 = t10 * t11;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)), product_2);
-    const real_t t13 = cf_rounded(single, one, c2_y * (c2_y + c2_y));
-    const real_t t14 = t13 - cf_rounded(single, one, t4 * (t3 - t4));
-    const real_t t15 = part * t14 * CLOSEDFORM_C(0.5);
-    const real_t t16 = t1 * CLOSEDFORM_C(0.5) + (c2_y * product_z - t3 * t5) * t15;
-    const real_t t17 = cf_rounded(single, one, product_2 * (t15 * t15));
-    const real_t t18 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t17));
-    const real_t t19 = cf_rounded(single, one, l * l) - t18;
-    const real_t slack = cf_max(t19, CLOSEDFORM_C(0.0));
+    const real_t t11 = size * size;
+    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t11;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t12, u_u);
+    const real_t t13 = t9 * over;
+    const real_t t14 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t15 = t14 - cf_rounded(single, one, t7 * (t6 - t7));
+    const real_t t16 = cf_rounded(single, one, c3_y * t7) + cf_rounded(single, one, c3_y * t6);
+    const real_t t17 = cf_rounded(single, one, t1 * t5) + cf_rounded(single, one, t6 * t16);
+    const real_t n_y = t17 * over;
+    const real_t t18 = cf_rounded(single, one, t13 * t13) + cf_rounded(single, one, n_y * n_y);
+    const real_t t19 = cf_rounded(single, one, t1 * t8) + cf_rounded(single, one, c3_y * t16);
+    const real_t t20 = t19 * over;
+    const real_t nu = t18 + cf_rounded(single, one, t20 * t20);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t12) | (nu <= t12), u_u * nu);
+    const real_t t21 = u_u * t15 * part * CLOSEDFORM_C(0.5);
+    const real_t t22 = t1 * CLOSEDFORM_C(0.5) + t13 * t21;
+    const real_t t23 = cf_rounded(single, one, nu * (t21 * t21)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t24 = cf_rounded(single, one, l * l) - t23;
+    const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t20 = t6 * h;
-    const real_t t21 = t16 - t20;
-    const int t22 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t23 = t22 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t24 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t25 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
-    const real_t t26 = CLOSEDFORM_C(0.234375) * (l * size);
-    const int t27 = t25 & (-(CLOSEDFORM_FEASIBILITY * t26) <= t19);
-    const int failed = (!(t23 & (CLOSEDFORM_C(0.0) <= l) & t24)) | (!t27);
-    const real_t t28 = cf_poison(single, failed);
-    const real_t t29 = t15 * (t1 * product_z + t3 * t6) - c2_y * CLOSEDFORM_C(0.5);
-    const real_t t30 = t5 * h;
-    const real_t t31 = t29 - t30;
-    const real_t t32 = t15 * (t1 * t5 + c2_y * t6) + t3 * CLOSEDFORM_C(0.5);
-    const real_t t33 = product_z * h;
-    const real_t t34 = t32 + t33;
-    const real_t t35 = t1 - t21 + t28;
-    const real_t t36 = t16 + t20;
-    const real_t t37 = t29 + t30;
-    const real_t t38 = t32 - t33;
-    const real_t t39 = t1 - t36 + t28;
-    const real_t v_v = cf_rounded(single, one, t4 * t4) + t9;
-    const real_t t40 = u_u * v_v;
-    const real_t t41 = product_2 - t40 * CLOSEDFORM_C(0.000244140625);
-    const int t42 = (u_u <= t12) | (u_u + v_v <= t12) | (t41 <= CLOSEDFORM_VANISHING * t40);
-    const int t43 = t42 | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26);
-    A[0] = -t21 + t28;
-    A[1] = -t31 + t28;
-    A[2] = -t34 + t28;
-    A[3] = t35;
-    A[4] = -(c2_y + t31) + t28;
-    A[5] = t3 - t34 + t28;
-    A[6] = t35;
-    A[7] = c2_y - t31 + t28;
-    A[8] = t4 - t34 + t28;
-    A[9] = -t36 + t28;
-    A[10] = -t37 + t28;
-    A[11] = -t38 + t28;
-    A[12] = t39;
-    A[13] = -(c2_y + t37) + t28;
-    A[14] = t3 - t38 + t28;
-    A[15] = t39;
-    A[16] = c2_y - t37 + t28;
-    A[17] = t4 - t38 + t28;
-    rare[0] = (t43) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t25 = (c3_y * t20 + t6 * n_y) * h;
+    const real_t t26 = t22 + t25;
+    const int t27 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t30 = cf_abs(CLOSEDFORM_C(0.0)) <= t11 * CLOSEDFORM_FEASIBILITY;
+    const real_t t31 = CLOSEDFORM_C(0.234375) * (l * size);
+    const int t32 = t30 & (-(CLOSEDFORM_FEASIBILITY * t31) <= t24);
+    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
+    const real_t t33 = cf_poison(single, failed);
+    const real_t t34 = c3_y * CLOSEDFORM_C(0.5) - n_y * t21;
+    const real_t t35 = h * (t1 * t20 - t6 * t13);
+    const real_t t36 = t34 - t35;
+    const real_t t37 = t6 * CLOSEDFORM_C(0.5) + t20 * t21;
+    const real_t t38 = h * (t1 * n_y + c3_y * t13);
+    const real_t t39 = t37 - t38;
+    const real_t t40 = t1 - t26 + t33;
+    const real_t t41 = t22 - t25;
+    const real_t t42 = t34 + t35;
+    const real_t t43 = t37 + t38;
+    const real_t t44 = t1 - t41 + t33;
+    const real_t t45 = u_u + (cf_rounded(single, one, t7 * t7) + t10);
+    const int t46 = (u_u <= t12) | (t45 <= t12) | (nu <= t12) | (slack <= CLOSEDFORM_VANISHING * t31);
+    A[0] = -t26 + t33;
+    A[1] = -t36 + t33;
+    A[2] = -t39 + t33;
+    A[3] = t40;
+    A[4] = c3_y - t36 + t33;
+    A[5] = t6 - t39 + t33;
+    A[6] = t40;
+    A[7] = -(c3_y + t36) + t33;
+    A[8] = t7 - t39 + t33;
+    A[9] = -t41 + t33;
+    A[10] = -t42 + t33;
+    A[11] = -t43 + t33;
+    A[12] = t44;
+    A[13] = c3_y - t42 + t33;
+    A[14] = t6 - t43 + t33;
+    A[15] = t44;
+    A[16] = -(c3_y + t42) + t33;
+    A[17] = t7 - t43 + t33;
+    rare[0] = (t46) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void linear_delta_jacobian_parallel_common_batch(size_t n, const linear_delta_params *params,
@@ -1353,7 +1053,7 @@ void linear_delta_jacobian_parallel(const linear_delta_params *params,
     linear_delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -1375,7 +1075,7 @@ void linear_delta_jacobian_parallel(const linear_delta_params *params,
 CF_INLINE cf_word linear_delta_jacobian_parallel_excess(const real_t dimensions,
     const real_t *q, size_t q_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
 }
 
 CF_RARE void linear_delta_jacobian_parallel_other_sizes(size_t n, const real_t dimensions,
@@ -1432,70 +1132,67 @@ CF_INLINE void linear_delta_jacobian_serial_whole_kernel(const int single, const
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = rho1 - rho2;
-    const real_t c1_x = f - e;
-    const real_t t2 = c1_x + c1_x * CLOSEDFORM_C(0.5);
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t3 = t2 * t2 + c2_y * c2_y;
-    const real_t u_u = t1 * t1 + t3;
-    const real_t t4 = rho1 - rho3;
-    const real_t v_v = t4 * t4 + t3;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = t2 * t2 + c3_y * c3_y;
+    const real_t u_u = t1 * t1 + t5;
+    const real_t t6 = rho1 - rho3;
+    const real_t v_v = t6 * t6 + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t5 = size * size;
-    const real_t t6 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t7 = t5 * t6;
-    const int all_same = u_u + v_v <= t7;
+    const real_t t7 = size * size;
+    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
+    const int all_same = u_u + v_v <= t8;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t2);
-    const int same = u_u <= t7;
-    const real_t t8 = cf_rarely(single, same, t1, t4);
-    const real_t t9 = cf_rarely(single, same, t4, t1);
-    const real_t product_y = a_x * t8 + t2 * t9;
-    const real_t d_y = cf_rarely(single, same, -c2_y, c2_y);
-    const real_t t10 = cf_rarely(single, same, c2_y, -c2_y);
-    const real_t t11 = t8 * d_y - t9 * t10;
-    const real_t t12 = a_x * product_y + d_y * t11;
-    const real_t product_z = a_x * t10 + t2 * d_y;
-    const real_t product_2 = t11 * t11 + product_y * product_y + product_z * product_z;
+    const int same = u_u <= t8;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t13 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t14 = product_2 - t13 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t14 <= CLOSEDFORM_VANISHING * t13;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t15 = d_y * product_z + t9 * product_y;
-    const real_t n_y = a_x * product_z - t9 * t11;
-    const real_t m_m = cf_rarely(single, slim, over * (t15 * t15 + n_y * n_y + t12 * t12), product_2);
-    const int in_line = m_m <= t6 * (t5 * mu);
-    const real_t t16 = whole * t9;
+    const real_t a_x = cf_rarely(single, all_same, whole, -t2);
+    const real_t t9 = cf_rarely(single, same, t1, t6);
+    const real_t t10 = cf_rarely(single, same, t6, t1);
+    const real_t m_y = a_x * t9 + t2 * t10;
+    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t t11 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t12 = t9 * d_y - t10 * t11;
+    const real_t t13 = over * (a_x * m_y + d_y * t12);
+    const real_t m_z = a_x * t11 + t2 * d_y;
+    const real_t t14 = over * (d_y * m_z + t10 * m_y);
+    const real_t n_y = over * (a_x * m_z - t10 * t12);
+    const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
+    const int in_line = nu <= t8;
+    const real_t t15 = whole * t10;
     const real_t g_2 = whole * (d_y + a_x * cf_sign(a_x * d_y));
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t16 * t16) + g_2 * g_2, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t17 = t10 * (d_y - t10) - t8 * (t8 - t9);
-    const real_t t18 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t17 * CLOSEDFORM_C(0.5));
-    const real_t t19 = t12 * t18 - t9 * CLOSEDFORM_C(0.5);
-    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t15), product_z);
-    const real_t t20 = mu * (CLOSEDFORM_C(0.25) + w_w * (t18 * t18));
-    const real_t t21 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t20);
+    const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
+    const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, t16, t17);
+    const real_t t18 = t11 * (d_y - t11) - t9 * (t9 - t10);
+    const real_t t19 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
+    const real_t t20 = t13 * t19 - t10 * CLOSEDFORM_C(0.5);
+    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t14);
+    const real_t t21 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
     const real_t t22 = l * l - t21;
     const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
     const real_t t23 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t23, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t24 = cf_rarely(single, in_line, -g_2, m_z) * h;
-    const real_t A_13 = t19 - t24;
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t23, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t24 = w_z * h;
+    const real_t A_13 = t20 - t24;
     const int t25 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
     const int t26 = t25 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
     const int t27 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t28 = cf_rarely(single, in_line, -t17, CLOSEDFORM_C(0.0));
-    const int t29 = cf_abs(t28) <= t5 * CLOSEDFORM_FEASIBILITY;
+    const real_t t28 = cf_rarely(single, in_line, -t18, CLOSEDFORM_C(0.0));
+    const int t29 = cf_abs(t28) <= t7 * CLOSEDFORM_FEASIBILITY;
     const int t30 = t29 & (-(CLOSEDFORM_FEASIBILITY * t23) <= t22);
     const int failed = (!(t26 & (CLOSEDFORM_C(0.0) <= l) & t27)) | (!t30);
     const real_t t31 = cf_poison(single, failed);
-    const real_t A_13_above = t19 + t24;
+    const real_t A_13_above = t20 + t24;
     B[0] = A_13 + t31;
     B[1] = t1 + A_13 + t31;
-    B[2] = t4 + A_13 + t31;
+    B[2] = t6 + A_13 + t31;
     B[3] = A_13_above + t31;
     B[4] = t1 + A_13_above + t31;
-    B[5] = t4 + A_13_above + t31;
+    B[5] = t6 + A_13_above + t31;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1516,56 +1213,59 @@ CF_INLINE void linear_delta_jacobian_serial_common_kernel(const int single, cons
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t c1_x = f - e;
-    const real_t t1 = c1_x + c1_x * CLOSEDFORM_C(0.5);
-    const real_t t2 = rho1 - rho3;
-    const real_t t3 = rho1 - rho2;
-    const real_t t4 = cf_rounded(single, one, t1 * t2) - cf_rounded(single, one, t1 * t3);
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t5 = cf_rounded(single, one, c2_y * t2) + cf_rounded(single, one, c2_y * t3);
-    const real_t t6 = cf_rounded(single, one, t5 * t5) + cf_rounded(single, one, t4 * t4);
-    const real_t t7 = cf_rounded(single, one, c2_y * t1);
-    const real_t product_z = t7 + t7;
-    const real_t t8 = cf_rounded(single, one, product_z * product_z);
-    const real_t product_2 = t6 + t8;
-    const real_t t9 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c2_y * c2_y);
-    const real_t u_u = cf_rounded(single, one, t3 * t3) + t9;
+    const real_t t1 = rho1 - rho2;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = rho1 - rho3;
+    const real_t t4 = cf_rounded(single, one, t2 * t3) - cf_rounded(single, one, t2 * t1);
+    const real_t t5 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t6 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t5 - t6;
+    const real_t t7 = cf_rounded(single, one, c3_y * t3) + cf_rounded(single, one, c3_y * t1);
+    const real_t t8 = cf_rounded(single, one, t2 * t4) + cf_rounded(single, one, c3_y * t7);
+    const real_t t9 = cf_rounded(single, one, t2 * t2) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t1 * t1) + t9;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
     const real_t t10 = size * size;
-    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t12 = t10 * t11;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)), product_2);
-    const real_t t13 = cf_rounded(single, one, c2_y * (c2_y + c2_y));
-    const real_t t14 = t13 - cf_rounded(single, one, t2 * (t3 - t2));
-    const real_t t15 = part * t14 * CLOSEDFORM_C(0.5);
-    const real_t t16 = (t1 * t4 + c2_y * t5) * t15 + t3 * CLOSEDFORM_C(0.5);
-    const real_t t17 = cf_rounded(single, one, product_2 * (t15 * t15));
-    const real_t t18 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t17));
-    const real_t t19 = cf_rounded(single, one, l * l) - t18;
-    const real_t slack = cf_max(t19, CLOSEDFORM_C(0.0));
-    const real_t t20 = product_z * cf_sqrt(part * slack);
-    const real_t t21 = t16 + t20;
-    const int t22 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t23 = t22 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t24 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t25 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
-    const real_t t26 = CLOSEDFORM_C(0.234375) * (l * size);
-    const int t27 = t25 & (-(CLOSEDFORM_FEASIBILITY * t26) <= t19);
-    const int failed = (!(t23 & (CLOSEDFORM_C(0.0) <= l) & t24)) | (!t27);
-    const real_t t28 = cf_poison(single, failed);
-    const real_t t29 = t16 - t20;
-    const real_t v_v = cf_rounded(single, one, t2 * t2) + t9;
-    const real_t t30 = u_u * v_v;
-    const real_t t31 = product_2 - t30 * CLOSEDFORM_C(0.000244140625);
-    const int t32 = (u_u + v_v <= t12) | (u_u <= t12) | (t31 <= CLOSEDFORM_VANISHING * t30);
-    const int t33 = t32 | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26);
-    B[0] = -t21 + t28;
-    B[1] = t3 - t21 + t28;
-    B[2] = t2 - t21 + t28;
-    B[3] = -t29 + t28;
-    B[4] = t3 - t29 + t28;
-    B[5] = t2 - t29 + t28;
-    rare[0] = (t33) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t10;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t11, u_u);
+    const real_t t12 = t8 * over;
+    const real_t t13 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t14 = t13 - cf_rounded(single, one, t3 * (t1 - t3));
+    const real_t t15 = cf_rounded(single, one, c3_y * t2);
+    const real_t t16 = t15 + t15;
+    const real_t t17 = cf_rounded(single, one, c3_y * t16) - cf_rounded(single, one, t1 * t4);
+    const real_t t18 = t17 * over;
+    const real_t t19 = cf_rounded(single, one, t2 * t16) + cf_rounded(single, one, t1 * t7);
+    const real_t n_y = t19 * over;
+    const real_t t20 = cf_rounded(single, one, t18 * t18) + cf_rounded(single, one, n_y * n_y);
+    const real_t nu = t20 + cf_rounded(single, one, t12 * t12);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t11) | (nu <= t11), u_u * nu);
+    const real_t t21 = u_u * t14 * part * CLOSEDFORM_C(0.5);
+    const real_t t22 = t1 * CLOSEDFORM_C(0.5) + t12 * t21;
+    const real_t t23 = cf_rounded(single, one, nu * (t21 * t21)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t24 = cf_rounded(single, one, l * l) - t23;
+    const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
+    const real_t t25 = (t2 * n_y + c3_y * t18) * cf_sqrt(part * slack);
+    const real_t t26 = t22 - t25;
+    const int t27 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t30 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
+    const real_t t31 = CLOSEDFORM_C(0.234375) * (l * size);
+    const int t32 = t30 & (-(CLOSEDFORM_FEASIBILITY * t31) <= t24);
+    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
+    const real_t t33 = cf_poison(single, failed);
+    const real_t t34 = t22 + t25;
+    const real_t t35 = u_u + (cf_rounded(single, one, t3 * t3) + t9);
+    const int t36 = (u_u <= t11) | (t35 <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t31);
+    B[0] = -t26 + t33;
+    B[1] = t1 - t26 + t33;
+    B[2] = t3 - t26 + t33;
+    B[3] = -t34 + t33;
+    B[4] = t1 - t34 + t33;
+    B[5] = t3 - t34 + t33;
+    rare[0] = (t36) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void linear_delta_jacobian_serial_common_batch(size_t n, const linear_delta_params *params,
@@ -1619,7 +1319,7 @@ void linear_delta_jacobian_serial(const linear_delta_params *params,
     linear_delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -1641,7 +1341,7 @@ void linear_delta_jacobian_serial(const linear_delta_params *params,
 CF_INLINE cf_word linear_delta_jacobian_serial_excess(const real_t dimensions,
     const real_t *q, size_t q_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
 }
 
 CF_RARE void linear_delta_jacobian_serial_other_sizes(size_t n, const real_t dimensions,
@@ -1687,8 +1387,7 @@ void linear_delta_jacobian_serial_batch(size_t n, const linear_delta_params *par
     }
 }
 
-/* Every case. */
-CF_INLINE void linear_delta_jacobian_whole_kernel(const int single, const linear_delta_params *params,
+CF_INLINE void linear_delta_jacobian_kernel(const int single, const linear_delta_params *params,
     const real_t q[3], real_t J[18])
 {
     const real_t f = params->f;
@@ -1698,302 +1397,121 @@ CF_INLINE void linear_delta_jacobian_whole_kernel(const int single, const linear
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = rho1 - rho2;
-    const real_t c1_x = f - e;
-    const real_t t2 = c1_x + c1_x * CLOSEDFORM_C(0.5);
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t3 = t2 * t2 + c2_y * c2_y;
-    const real_t u_u = t1 * t1 + t3;
-    const real_t t4 = rho1 - rho3;
-    const real_t v_v = t4 * t4 + t3;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = t2 * t2 + c3_y * c3_y;
+    const real_t u_u = t1 * t1 + t5;
+    const real_t t6 = rho1 - rho3;
+    const real_t v_v = t6 * t6 + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t5 = size * size;
-    const real_t t6 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t7 = t5 * t6;
-    const int all_same = u_u + v_v <= t7;
+    const real_t t7 = size * size;
+    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
+    const int all_same = u_u + v_v <= t8;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t2);
-    const int same = u_u <= t7;
-    const real_t t8 = cf_rarely(single, same, t1, t4);
-    const real_t t9 = cf_rarely(single, same, t4, t1);
-    const real_t product_y = a_x * t8 + t2 * t9;
-    const real_t d_y = cf_rarely(single, same, -c2_y, c2_y);
-    const real_t t10 = cf_rarely(single, same, c2_y, -c2_y);
-    const real_t t11 = t8 * d_y - t9 * t10;
-    const real_t t12 = a_x * product_y + d_y * t11;
-    const real_t product_z = a_x * t10 + t2 * d_y;
-    const real_t product_2 = t11 * t11 + product_y * product_y + product_z * product_z;
+    const int same = u_u <= t8;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t13 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t14 = product_2 - t13 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t14 <= CLOSEDFORM_VANISHING * t13;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t15 = d_y * product_z + t9 * product_y;
-    const real_t n_y = a_x * product_z - t9 * t11;
-    const real_t m_m = cf_rarely(single, slim, over * (t15 * t15 + n_y * n_y + t12 * t12), product_2);
-    const int in_line = m_m <= t6 * (t5 * mu);
-    const real_t t16 = whole * t9;
+    const real_t a_x = cf_rarely(single, all_same, whole, -t2);
+    const real_t t9 = cf_rarely(single, same, t1, t6);
+    const real_t t10 = cf_rarely(single, same, t6, t1);
+    const real_t m_y = a_x * t9 + t2 * t10;
+    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t t11 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t12 = t9 * d_y - t10 * t11;
+    const real_t t13 = over * (a_x * m_y + d_y * t12);
+    const real_t m_z = a_x * t11 + t2 * d_y;
+    const real_t t14 = over * (d_y * m_z + t10 * m_y);
+    const real_t n_y = over * (a_x * m_z - t10 * t12);
+    const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
+    const int in_line = nu <= t8;
+    const real_t t15 = whole * t10;
     const real_t s_w = cf_sign(a_x * d_y);
     const real_t g_2 = whole * (d_y + a_x * s_w);
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t16 * t16) + g_2 * g_2, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t17 = t10 * (d_y - t10) - t8 * (t8 - t9);
-    const real_t t18 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t17 * CLOSEDFORM_C(0.5));
-    const real_t t19 = t12 * t18 - t9 * CLOSEDFORM_C(0.5);
-    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t15), product_z);
-    const real_t t20 = mu * (CLOSEDFORM_C(0.25) + w_w * (t18 * t18));
-    const real_t t21 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t20);
-    const real_t t22 = l * l - t21;
-    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
-    const real_t t23 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t23, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t24 = cf_rarely(single, in_line, -g_2, m_z) * h;
-    const real_t A_13 = t19 - t24;
-    const real_t t25 = n_y * t18 - d_y * CLOSEDFORM_C(0.5);
-    const real_t m_y = cf_rarely(single, slim, over * (a_x * t12 + t9 * t15), product_y);
-    const real_t t26 = h * cf_rarely(single, in_line, -t16, m_y);
-    const real_t t27 = t25 + t26;
-    const real_t t28 = c2_y + t27;
-    const real_t A_33 = t4 + A_13;
+    const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
+    const real_t t17 = mu * nu;
+    const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
+    const real_t part = cf_rarely(single, in_line, t16, t18);
+    const real_t t19 = t11 * (d_y - t11) - t9 * (t9 - t10);
+    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t21 = t13 * t20 - t10 * CLOSEDFORM_C(0.5);
+    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t14);
+    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
+    const real_t t23 = l * l - t22;
+    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
+    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t25 = w_z * h;
+    const real_t A_13 = t21 - t25;
+    const real_t t26 = n_y * t20 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t13 + t10 * t14);
+    const real_t t27 = h * w_y;
+    const real_t t28 = t26 + t27;
+    const real_t A_22 = c3_y - t28;
+    const real_t A_33 = t6 + A_13;
     const real_t A_23 = t1 + A_13;
-    const real_t A_32 = c2_y - t27;
-    const real_t Delta = w_w * h;
-    const real_t t29 = cf_nonzero(single, Delta);
-    const int t30 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t31 = t30 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t32 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t33 = cf_rarely(single, in_line, -t17, CLOSEDFORM_C(0.0));
-    const int t34 = cf_abs(t33) <= t5 * CLOSEDFORM_FEASIBILITY;
-    const int t35 = t34 & (-(CLOSEDFORM_FEASIBILITY * t23) <= t22);
-    const int failed = (!(t31 & (CLOSEDFORM_C(0.0) <= l) & t32)) | (!t35);
-    const real_t t36 = cf_poison(single, failed);
-    const real_t t37 = A_13 * (t28 * A_33 + A_23 * A_32) / t29 + t36;
-    const real_t t38 = -(A_23 * (t27 * A_33 + A_13 * A_32) / t29) + t36;
-    const real_t t39 = t2 * CLOSEDFORM_C(0.5) - t15 * t18;
-    const real_t t40 = cf_rarely(single, slim, over * (d_y * t12 - t9 * n_y), t11);
-    const real_t t41 = h * cf_rarely(single, in_line, t16 * s_w, t40);
-    const real_t t42 = t39 - t41;
-    const real_t A_21 = t2 - t42;
-    const real_t t43 = A_13 * (A_33 * A_21 - A_23 * A_21) / t29 + t36;
-    const real_t t44 = A_13 * A_21;
-    const real_t t45 = -(A_13 * (A_32 * A_21 + t28 * A_21) / t29) + t36;
-    const real_t t46 = t27 * A_21;
-    const real_t A_13_above = t19 + t24;
-    const real_t t47 = t25 - t26;
-    const real_t t48 = c2_y + t47;
-    const real_t A_33_above = t4 + A_13_above;
+    const real_t t29 = c3_y + t28;
+    const real_t Delta = t17 * h;
+    const real_t t30 = cf_nonzero(single, Delta);
+    const int t31 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t32 = t31 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t33 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t34 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t35 = cf_abs(t34) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t36 = t35 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
+    const int failed = (!(t32 & (CLOSEDFORM_C(0.0) <= l) & t33)) | (!t36);
+    const real_t t37 = cf_poison(single, failed);
+    const real_t t38 = -(A_13 * (A_22 * A_33 + A_23 * t29) / t30) + t37;
+    const real_t t39 = -(A_23 * (t28 * A_33 - A_13 * t29) / t30) + t37;
+    const real_t t40 = A_33 * (t28 * A_23 + A_13 * A_22) / t30 + t37;
+    const real_t t41 = t2 * CLOSEDFORM_C(0.5) - t14 * t20;
+    const real_t t42 = cf_rarely(single, in_line, t15 * s_w, d_y * t13 - t10 * n_y);
+    const real_t t43 = h * t42;
+    const real_t t44 = t41 - t43;
+    const real_t A_21 = t2 - t44;
+    const real_t t45 = A_13 * (A_33 * A_21 - A_23 * A_21) / t30 + t37;
+    const real_t t46 = A_13 * A_21;
+    const real_t t47 = A_13 * (t29 * A_21 + A_22 * A_21) / t30 + t37;
+    const real_t t48 = t28 * A_21;
+    const real_t A_13_above = t21 + t25;
+    const real_t t49 = t26 - t27;
+    const real_t A_22_above = c3_y - t49;
+    const real_t A_33_above = t6 + A_13_above;
     const real_t A_23_above = t1 + A_13_above;
-    const real_t A_32_above = c2_y - t47;
-    const real_t t49 = A_13_above * (t48 * A_33_above + A_23_above * A_32_above);
-    const real_t t50 = A_23_above * (t47 * A_33_above + A_13_above * A_32_above);
-    const real_t t51 = A_33_above * (t47 * A_23_above - A_13_above * t48);
-    const real_t t52 = t39 + t41;
-    const real_t A_21_above = t2 - t52;
-    const real_t t53 = A_33_above * A_21_above - A_23_above * A_21_above;
-    const real_t t54 = A_13_above * A_21_above;
-    const real_t t55 = -(A_23_above * (A_33_above * t52 + t54) / t29);
-    const real_t t56 = A_33_above * (t54 + A_23_above * t52) / t29 + t36;
-    const real_t t57 = A_13_above * (A_32_above * A_21_above + t48 * A_21_above);
-    const real_t t58 = t47 * A_21_above;
-    const real_t t59 = A_23_above * (A_32_above * t52 - t58) / t29 + t36;
-    J[0] = t37;
-    J[1] = t38;
-    J[2] = A_33 * (t27 * A_23 - A_13 * t28) / t29 + t36;
-    J[3] = t43;
-    J[4] = A_23 * (A_33 * t42 + t44) / t29 + t36;
-    J[5] = -(A_33 * (t44 + A_23 * t42) / t29) + t36;
-    J[6] = t45;
-    J[7] = -(A_23 * (A_32 * t42 - t46) / t29) + t36;
-    J[8] = -(A_33 * (t46 + t28 * t42) / t29) + t36;
-    J[9] = -(t49 / t29) + t36;
-    J[10] = t50 / t29 + t36;
-    J[11] = -(t51 / t29) + t36;
-    J[12] = -(A_13_above * t53 / t29) + t36;
-    J[13] = t55 + t36;
-    J[14] = t56;
-    J[15] = t57 / t29 + t36;
-    J[16] = t59;
-    J[17] = A_33_above * (t58 + t48 * t52) / t29 + t36;
-}
-
-CLOSEDFORM_DISPATCHED
-CF_OUT_OF_LINE void linear_delta_jacobian_whole(const linear_delta_params *params,
-    const real_t q[3], real_t J[18])
-{
-    linear_delta_jacobian_whole_kernel(1, params, q, J);
-}
-
-/* Where nothing vanishes; rare is whether something does. */
-CF_INLINE void linear_delta_jacobian_common_kernel(const int single, const real_t one,
-    const linear_delta_params *params,
-    const real_t q[3], real_t J[18], real_t rare[1])
-{
-    const real_t f = params->f;
-    const real_t e = params->e;
-    const real_t l = params->l;
-    const real_t rho1 = q[0];
-    const real_t rho2 = q[1];
-    const real_t rho3 = q[2];
-    const real_t c1_x = f - e;
-    const real_t t1 = c1_x + c1_x * CLOSEDFORM_C(0.5);
-    const real_t t2 = rho1 - rho3;
-    const real_t t3 = rho1 - rho2;
-    const real_t t4 = cf_rounded(single, one, t1 * t2) - cf_rounded(single, one, t1 * t3);
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t5 = cf_rounded(single, one, c2_y * t2) + cf_rounded(single, one, c2_y * t3);
-    const real_t t6 = cf_rounded(single, one, t5 * t5) + cf_rounded(single, one, t4 * t4);
-    const real_t t7 = cf_rounded(single, one, c2_y * t1);
-    const real_t product_z = t7 + t7;
-    const real_t t8 = cf_rounded(single, one, product_z * product_z);
-    const real_t product_2 = t6 + t8;
-    const real_t t9 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c2_y * c2_y);
-    const real_t u_u = cf_rounded(single, one, t3 * t3) + t9;
-    const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t10 = size * size;
-    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t12 = t10 * t11;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)), product_2);
-    const real_t t13 = cf_rounded(single, one, c2_y * (c2_y + c2_y));
-    const real_t t14 = t13 - cf_rounded(single, one, t2 * (t3 - t2));
-    const real_t t15 = part * t14 * CLOSEDFORM_C(0.5);
-    const real_t t16 = (t1 * t4 + c2_y * t5) * t15 + t3 * CLOSEDFORM_C(0.5);
-    const real_t t17 = cf_rounded(single, one, product_2 * (t15 * t15));
-    const real_t t18 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t17));
-    const real_t t19 = cf_rounded(single, one, l * l) - t18;
-    const real_t slack = cf_max(t19, CLOSEDFORM_C(0.0));
-    const real_t h = cf_sqrt(part * slack);
-    const real_t t20 = product_z * h;
-    const real_t t21 = t16 + t20;
-    const real_t t22 = t15 * (t1 * product_z + t3 * t5) - c2_y * CLOSEDFORM_C(0.5);
-    const real_t t23 = t4 * h;
-    const real_t t24 = t22 - t23;
-    const real_t t25 = c2_y + t24;
-    const real_t A_33 = t2 - t21;
-    const real_t A_23 = t3 - t21;
-    const real_t A_32 = c2_y - t24;
-    const real_t Delta = product_2 * h;
-    const real_t t26 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t t27 = t21 * (t25 * A_33 + A_23 * A_32) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const int t28 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t29 = t28 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t30 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t31 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
-    const int t32 = t31 & (-(CLOSEDFORM_FEASIBILITY * t26) <= t19);
-    const int failed = (!(t29 & (CLOSEDFORM_C(0.0) <= l) & t30)) | (!t32);
-    const real_t t33 = cf_poison(single, failed);
-    const real_t t34 = A_23 * (t24 * A_33 - t21 * A_32) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t35 = A_33 * (t24 * A_23 + t21 * t25) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t36 = t1 * CLOSEDFORM_C(0.5) + t15 * (c2_y * product_z - t3 * t4);
-    const real_t t37 = t5 * h;
-    const real_t t38 = t36 - t37;
-    const real_t A_21 = t1 - t38;
-    const real_t t39 = t21 * (A_33 * A_21 - A_23 * A_21) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t40 = t21 * A_21;
-    const real_t t41 = A_23 * (A_33 * t38 - t40) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t42 = A_33 * (t40 - A_23 * t38) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t43 = t21 * (A_32 * A_21 + t25 * A_21) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t44 = t24 * A_21;
-    const real_t t45 = A_23 * (A_32 * t38 - t44) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t46 = A_33 * (t44 + t25 * t38) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t47 = t16 - t20;
-    const real_t t48 = t22 + t23;
-    const real_t t49 = c2_y + t48;
-    const real_t A_33_above = t2 - t47;
-    const real_t A_23_above = t3 - t47;
-    const real_t A_32_above = c2_y - t48;
-    const real_t t50 = t47 * (t49 * A_33_above + A_23_above * A_32_above);
-    const real_t t51 = t50 / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t52 = A_23_above * (t48 * A_33_above - t47 * A_32_above);
-    const real_t t53 = t52 / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t54 = A_33_above * (t48 * A_23_above + t47 * t49) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t55 = t36 + t37;
-    const real_t A_21_above = t1 - t55;
-    const real_t t56 = A_33_above * A_21_above - A_23_above * A_21_above;
-    const real_t t57 = t47 * t56 / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t58 = t47 * A_21_above;
-    const real_t t59 = A_23_above * (A_33_above * t55 - t58) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t60 = A_33_above * (t58 - A_23_above * t55) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t61 = t47 * (A_32_above * A_21_above + t49 * A_21_above);
-    const real_t t62 = t61 / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t63 = t48 * A_21_above;
-    const real_t t64 = A_23_above * (A_32_above * t55 - t63) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t t65 = A_33_above * (t63 + t49 * t55) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
-    const real_t v_v = cf_rounded(single, one, t2 * t2) + t9;
-    const real_t t66 = u_u * v_v;
-    const real_t t67 = product_2 - t66 * CLOSEDFORM_C(0.000244140625);
-    const int t68 = (u_u + v_v <= t12) | (u_u <= t12) | (t67 <= CLOSEDFORM_VANISHING * t66);
-    const int t69 = t68 | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26);
-    J[0] = -t27 + t33;
-    J[1] = -t34 + t33;
-    J[2] = t35 + t33;
-    J[3] = -t39 + t33;
-    J[4] = t41 + t33;
-    J[5] = t42 + t33;
-    J[6] = t43 + t33;
-    J[7] = -t45 + t33;
-    J[8] = -t46 + t33;
-    J[9] = t51 + t33;
-    J[10] = t53 + t33;
-    J[11] = -t54 + t33;
-    J[12] = t57 + t33;
-    J[13] = -t59 + t33;
-    J[14] = -t60 + t33;
-    J[15] = -t62 + t33;
-    J[16] = t64 + t33;
-    J[17] = t65 + t33;
-    rare[0] = (t69) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
-}
-
-CF_INLINE void linear_delta_jacobian_common_batch(size_t n, const linear_delta_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *J, size_t J_stride,
-    uint8_t *rare, size_t rare_stride)
-{
-    (void)rare_stride;
-    const linear_delta_params local = *params;
-    const real_t one = cf_one();
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t rare_real[1][CLOSEDFORM_BLOCK];
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            real_t J_i[18];
-            real_t rare_i[1];
-            linear_delta_jacobian_common_kernel(0, one, &local, q_i, J_i, rare_i);
-            J[start + i] = J_i[0];
-            J[J_stride + start + i] = J_i[1];
-            J[2 * J_stride + start + i] = J_i[2];
-            J[3 * J_stride + start + i] = J_i[3];
-            J[4 * J_stride + start + i] = J_i[4];
-            J[5 * J_stride + start + i] = J_i[5];
-            J[6 * J_stride + start + i] = J_i[6];
-            J[7 * J_stride + start + i] = J_i[7];
-            J[8 * J_stride + start + i] = J_i[8];
-            J[9 * J_stride + start + i] = J_i[9];
-            J[10 * J_stride + start + i] = J_i[10];
-            J[11 * J_stride + start + i] = J_i[11];
-            J[12 * J_stride + start + i] = J_i[12];
-            J[13 * J_stride + start + i] = J_i[13];
-            J[14 * J_stride + start + i] = J_i[14];
-            J[15 * J_stride + start + i] = J_i[15];
-            J[16 * J_stride + start + i] = J_i[16];
-            J[17 * J_stride + start + i] = J_i[17];
-            rare_real[0][i] = rare_i[0];
-        }
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i)
-            rare[start + i] = (uint8_t)rare_real[0][i];
-    }
-}
-
-CF_INLINE void linear_delta_jacobian_common(const linear_delta_params *params,
-    const real_t q[3], real_t J[18], uint8_t rare[1])
-{
-    const real_t one = cf_one();
-    real_t rare_real[1];
-    linear_delta_jacobian_common_kernel(1, one, params, q, J, rare_real);
-    for (size_t i = 0; i < 1; ++i)
-        rare[i] = (uint8_t)rare_real[i];
+    const real_t t50 = c3_y + t49;
+    const real_t t51 = A_13_above * (A_22_above * A_33_above + A_23_above * t50);
+    const real_t t52 = A_23_above * (t49 * A_33_above - A_13_above * t50);
+    const real_t t53 = A_33_above * (t49 * A_23_above + A_13_above * A_22_above);
+    const real_t t54 = t41 + t43;
+    const real_t A_21_above = t2 - t54;
+    const real_t t55 = A_33_above * A_21_above - A_23_above * A_21_above;
+    const real_t t56 = A_13_above * A_21_above;
+    const real_t t57 = -(A_23_above * (A_33_above * t54 + t56) / t30);
+    const real_t t58 = A_33_above * (t56 + A_23_above * t54) / t30 + t37;
+    const real_t t59 = A_13_above * (t50 * A_21_above + A_22_above * A_21_above);
+    const real_t t60 = t49 * A_21_above;
+    const real_t t61 = -(A_23_above * (t50 * t54 + t60) / t30) + t37;
+    const real_t t62 = A_33_above * (t60 - A_22_above * t54) / t30 + t37;
+    J[0] = t38;
+    J[1] = t39;
+    J[2] = t40;
+    J[3] = t45;
+    J[4] = A_23 * (A_33 * t44 + t46) / t30 + t37;
+    J[5] = -(A_33 * (t46 + A_23 * t44) / t30) + t37;
+    J[6] = t47;
+    J[7] = A_23 * (t29 * t44 + t48) / t30 + t37;
+    J[8] = -(A_33 * (t48 - A_22 * t44) / t30) + t37;
+    J[9] = t51 / t30 + t37;
+    J[10] = t52 / t30 + t37;
+    J[11] = -(t53 / t30) + t37;
+    J[12] = -(A_13_above * t55 / t30) + t37;
+    J[13] = t57 + t37;
+    J[14] = t58;
+    J[15] = -(t59 / t30) + t37;
+    J[16] = t61;
+    J[17] = t62;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2005,7 +1523,7 @@ void linear_delta_jacobian(const linear_delta_params *params,
     linear_delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -2015,16 +1533,14 @@ void linear_delta_jacobian(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    uint8_t rare[1];
-    linear_delta_jacobian_common(params, q, J, rare);
-    if (CF_UNLIKELY(rare[0])) linear_delta_jacobian_whole(params, q, J);
+    linear_delta_jacobian_kernel(1, params, q, J);
 }
 
 /* Has its sign bit set where powers of the size of a posture may leave the range. */
 CF_INLINE cf_word linear_delta_jacobian_excess(const real_t dimensions,
     const real_t *q, size_t q_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
 }
 
 CF_RARE void linear_delta_jacobian_other_sizes(size_t n, const real_t dimensions,
@@ -2048,19 +1564,33 @@ void linear_delta_jacobian_batch(size_t n, const linear_delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *J, size_t J_stride)
 {
+    const linear_delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        uint8_t rare[CLOSEDFORM_BLOCK];
-        linear_delta_jacobian_common_batch(length, params, q + start, q_stride, J + start, J_stride, rare, CLOSEDFORM_BLOCK);
-        for (size_t i = start; i < start + length; ++i) {
-            if (!CF_UNLIKELY(rare[i - start])) continue;
-            real_t q_i[3];
-            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             real_t J_i[18];
-            linear_delta_jacobian_whole(params, q_i, J_i);
-            for (size_t k = 0; k < 18; ++k) J[k * J_stride + i] = J_i[k];
-
+            linear_delta_jacobian_kernel(0, &local, q_i, J_i);
+            J[start + i] = J_i[0];
+            J[J_stride + start + i] = J_i[1];
+            J[2 * J_stride + start + i] = J_i[2];
+            J[3 * J_stride + start + i] = J_i[3];
+            J[4 * J_stride + start + i] = J_i[4];
+            J[5 * J_stride + start + i] = J_i[5];
+            J[6 * J_stride + start + i] = J_i[6];
+            J[7 * J_stride + start + i] = J_i[7];
+            J[8 * J_stride + start + i] = J_i[8];
+            J[9 * J_stride + start + i] = J_i[9];
+            J[10 * J_stride + start + i] = J_i[10];
+            J[11 * J_stride + start + i] = J_i[11];
+            J[12 * J_stride + start + i] = J_i[12];
+            J[13 * J_stride + start + i] = J_i[13];
+            J[14 * J_stride + start + i] = J_i[14];
+            J[15 * J_stride + start + i] = J_i[15];
+            J[16 * J_stride + start + i] = J_i[16];
+            J[17 * J_stride + start + i] = J_i[17];
         }
         cf_word excess = 0;
         for (size_t i = 0; i < length; ++i)
@@ -2081,69 +1611,67 @@ CF_INLINE void linear_delta_determinant_whole_kernel(const int single, const lin
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = rho1 - rho2;
-    const real_t c1_x = f - e;
-    const real_t t2 = c1_x + c1_x * CLOSEDFORM_C(0.5);
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t3 = t2 * t2 + c2_y * c2_y;
-    const real_t u_u = t1 * t1 + t3;
-    const real_t t4 = rho1 - rho3;
-    const real_t v_v = t4 * t4 + t3;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = t2 * t2 + c3_y * c3_y;
+    const real_t u_u = t1 * t1 + t5;
+    const real_t t6 = rho1 - rho3;
+    const real_t v_v = t6 * t6 + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t5 = size * size;
-    const real_t t6 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t7 = t5 * t6;
-    const int all_same = u_u + v_v <= t7;
+    const real_t t7 = size * size;
+    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
+    const int all_same = u_u + v_v <= t8;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t2);
-    const int same = u_u <= t7;
-    const real_t t8 = cf_rarely(single, same, t1, t4);
-    const real_t t9 = cf_rarely(single, same, t4, t1);
-    const real_t product_y = a_x * t8 + t2 * t9;
-    const real_t d_y = cf_rarely(single, same, -c2_y, c2_y);
-    const real_t t10 = cf_rarely(single, same, c2_y, -c2_y);
-    const real_t t11 = t8 * d_y - t9 * t10;
-    const real_t t12 = a_x * product_y + d_y * t11;
-    const real_t product_z = a_x * t10 + t2 * d_y;
-    const real_t product_2 = t11 * t11 + product_y * product_y + product_z * product_z;
+    const int same = u_u <= t8;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t13 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t14 = product_2 - t13 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t14 <= CLOSEDFORM_VANISHING * t13;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t15 = d_y * product_z + t9 * product_y;
-    const real_t n_y = a_x * product_z - t9 * t11;
-    const real_t m_m = cf_rarely(single, slim, over * (t15 * t15 + n_y * n_y + t12 * t12), product_2);
-    const int in_line = m_m <= t6 * (t5 * mu);
-    const real_t t16 = whole * t9;
+    const real_t a_x = cf_rarely(single, all_same, whole, -t2);
+    const real_t t9 = cf_rarely(single, same, t1, t6);
+    const real_t t10 = cf_rarely(single, same, t6, t1);
+    const real_t m_y = a_x * t9 + t2 * t10;
+    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t t11 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t12 = t9 * d_y - t10 * t11;
+    const real_t t13 = over * (a_x * m_y + d_y * t12);
+    const real_t m_z = a_x * t11 + t2 * d_y;
+    const real_t t14 = over * (d_y * m_z + t10 * m_y);
+    const real_t n_y = over * (a_x * m_z - t10 * t12);
+    const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
+    const int in_line = nu <= t8;
+    const real_t t15 = whole * t10;
     const real_t g_2 = whole * (d_y + a_x * cf_sign(a_x * d_y));
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t16 * t16) + g_2 * g_2, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t17 = t10 * (d_y - t10) - t8 * (t8 - t9);
-    const real_t t18 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t17 * CLOSEDFORM_C(0.5));
-    const real_t t19 = t12 * t18 - t9 * CLOSEDFORM_C(0.5);
-    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t15), product_z);
-    const real_t t20 = mu * (CLOSEDFORM_C(0.25) + w_w * (t18 * t18));
-    const real_t t21 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t20);
-    const real_t t22 = l * l - t21;
-    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
-    const real_t t23 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t23, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t24 = cf_rarely(single, in_line, -g_2, m_z) * h;
-    const real_t A_13 = t19 - t24;
-    const real_t Delta = w_w * h;
-    const real_t t25 = cf_quotient(single, A_13 * (t1 + A_13) * (t4 + A_13), Delta);
-    const int t26 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t27 = t26 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t28 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t29 = cf_rarely(single, in_line, -t17, CLOSEDFORM_C(0.0));
-    const int t30 = cf_abs(t29) <= t5 * CLOSEDFORM_FEASIBILITY;
-    const int t31 = t30 & (-(CLOSEDFORM_FEASIBILITY * t23) <= t22);
-    const int failed = (!(t27 & (CLOSEDFORM_C(0.0) <= l) & t28)) | (!t31);
-    const real_t t32 = cf_poison(single, failed);
-    const real_t A_13_above = t19 + t24;
-    const real_t t33 = A_13_above * (t1 + A_13_above) * (t4 + A_13_above);
-    det[0] = -t25 + t32;
-    det[1] = cf_quotient(single, t33, Delta) + t32;
+    const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
+    const real_t t17 = mu * nu;
+    const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
+    const real_t part = cf_rarely(single, in_line, t16, t18);
+    const real_t t19 = t11 * (d_y - t11) - t9 * (t9 - t10);
+    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t21 = t13 * t20 - t10 * CLOSEDFORM_C(0.5);
+    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t14);
+    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
+    const real_t t23 = l * l - t22;
+    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
+    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t25 = w_z * h;
+    const real_t A_13 = t21 - t25;
+    const real_t Delta = t17 * h;
+    const real_t t26 = cf_quotient(single, A_13 * (t1 + A_13) * (t6 + A_13), Delta);
+    const int t27 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t30 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t31 = cf_abs(t30) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t32 = t31 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
+    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
+    const real_t t33 = cf_poison(single, failed);
+    const real_t A_13_above = t21 + t25;
+    const real_t t34 = A_13_above * (t1 + A_13_above) * (t6 + A_13_above);
+    det[0] = -t26 + t33;
+    det[1] = cf_quotient(single, t34, Delta) + t33;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2164,56 +1692,60 @@ CF_INLINE void linear_delta_determinant_common_kernel(const int single, const re
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t c1_x = f - e;
-    const real_t t1 = c1_x + c1_x * CLOSEDFORM_C(0.5);
-    const real_t t2 = rho1 - rho3;
-    const real_t t3 = rho1 - rho2;
-    const real_t t4 = cf_rounded(single, one, t1 * t2) - cf_rounded(single, one, t1 * t3);
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t5 = cf_rounded(single, one, c2_y * t2) + cf_rounded(single, one, c2_y * t3);
-    const real_t t6 = cf_rounded(single, one, t5 * t5) + cf_rounded(single, one, t4 * t4);
-    const real_t t7 = cf_rounded(single, one, c2_y * t1);
-    const real_t product_z = t7 + t7;
-    const real_t t8 = cf_rounded(single, one, product_z * product_z);
-    const real_t product_2 = t6 + t8;
-    const real_t t9 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c2_y * c2_y);
-    const real_t u_u = cf_rounded(single, one, t3 * t3) + t9;
+    const real_t t1 = rho1 - rho2;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = rho1 - rho3;
+    const real_t t4 = cf_rounded(single, one, t2 * t3) - cf_rounded(single, one, t2 * t1);
+    const real_t t5 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t6 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t5 - t6;
+    const real_t t7 = cf_rounded(single, one, c3_y * t3) + cf_rounded(single, one, c3_y * t1);
+    const real_t t8 = cf_rounded(single, one, t2 * t4) + cf_rounded(single, one, c3_y * t7);
+    const real_t t9 = cf_rounded(single, one, t2 * t2) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t1 * t1) + t9;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
     const real_t t10 = size * size;
-    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t12 = t10 * t11;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)), product_2);
-    const real_t t13 = cf_rounded(single, one, c2_y * (c2_y + c2_y));
-    const real_t t14 = t13 - cf_rounded(single, one, t2 * (t3 - t2));
-    const real_t t15 = part * t14 * CLOSEDFORM_C(0.5);
-    const real_t t16 = (t1 * t4 + c2_y * t5) * t15 + t3 * CLOSEDFORM_C(0.5);
-    const real_t t17 = cf_rounded(single, one, product_2 * (t15 * t15));
-    const real_t t18 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t17));
-    const real_t t19 = cf_rounded(single, one, l * l) - t18;
-    const real_t slack = cf_max(t19, CLOSEDFORM_C(0.0));
+    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t10;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t11, u_u);
+    const real_t t12 = t8 * over;
+    const real_t t13 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t14 = t13 - cf_rounded(single, one, t3 * (t1 - t3));
+    const real_t t15 = cf_rounded(single, one, c3_y * t2);
+    const real_t t16 = t15 + t15;
+    const real_t t17 = cf_rounded(single, one, c3_y * t16) - cf_rounded(single, one, t1 * t4);
+    const real_t t18 = t17 * over;
+    const real_t t19 = cf_rounded(single, one, t2 * t16) + cf_rounded(single, one, t1 * t7);
+    const real_t n_y = t19 * over;
+    const real_t t20 = cf_rounded(single, one, t18 * t18) + cf_rounded(single, one, n_y * n_y);
+    const real_t nu = t20 + cf_rounded(single, one, t12 * t12);
+    const real_t t21 = u_u * nu;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t11) | (nu <= t11), t21);
+    const real_t t22 = u_u * t14 * part * CLOSEDFORM_C(0.5);
+    const real_t t23 = t1 * CLOSEDFORM_C(0.5) + t12 * t22;
+    const real_t t24 = cf_rounded(single, one, nu * (t22 * t22)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t25 = cf_rounded(single, one, l * l) - t24;
+    const real_t slack = cf_max(t25, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t20 = product_z * h;
-    const real_t t21 = t16 + t20;
-    const real_t Delta = product_2 * h;
-    const real_t t22 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t t23 = t21 * (t3 - t21) * (t2 - t21) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t22), Delta);
-    const int t24 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t25 = t24 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t26 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t27 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
-    const int t28 = t27 & (-(CLOSEDFORM_FEASIBILITY * t22) <= t19);
-    const int failed = (!(t25 & (CLOSEDFORM_C(0.0) <= l) & t26)) | (!t28);
-    const real_t t29 = cf_poison(single, failed);
-    const real_t t30 = t16 - t20;
-    const real_t t31 = t30 * (t3 - t30) * (t2 - t30) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t22), Delta);
-    const real_t v_v = cf_rounded(single, one, t2 * t2) + t9;
-    const real_t t32 = u_u * v_v;
-    const real_t t33 = product_2 - t32 * CLOSEDFORM_C(0.000244140625);
-    const int t34 = (u_u + v_v <= t12) | (u_u <= t12) | (t33 <= CLOSEDFORM_VANISHING * t32);
-    const int t35 = t34 | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t22);
-    det[0] = t23 + t29;
-    det[1] = -t31 + t29;
-    rare[0] = (t35) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t26 = (t2 * n_y + c3_y * t18) * h;
+    const real_t t27 = t23 - t26;
+    const real_t Delta = t21 * h;
+    const real_t t28 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t t29 = t27 * (t1 - t27) * (t3 - t27) / cf_divisor(single, (u_u <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t28), Delta);
+    const int t30 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t31 = t30 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t32 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t33 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
+    const int t34 = t33 & (-(CLOSEDFORM_FEASIBILITY * t28) <= t25);
+    const int failed = (!(t31 & (CLOSEDFORM_C(0.0) <= l) & t32)) | (!t34);
+    const real_t t35 = cf_poison(single, failed);
+    const real_t t36 = t23 + t26;
+    const real_t t37 = t36 * (t1 - t36) * (t3 - t36) / cf_divisor(single, (u_u <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t28), Delta);
+    const real_t t38 = u_u + (cf_rounded(single, one, t3 * t3) + t9);
+    const int t39 = (u_u <= t11) | (t38 <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t28);
+    det[0] = t29 + t35;
+    det[1] = -t37 + t35;
+    rare[0] = (t39) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void linear_delta_determinant_common_batch(size_t n, const linear_delta_params *params,
@@ -2262,7 +1794,7 @@ void linear_delta_determinant(const linear_delta_params *params,
     linear_delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -2281,7 +1813,7 @@ void linear_delta_determinant(const linear_delta_params *params,
 CF_INLINE cf_word linear_delta_determinant_excess(const real_t dimensions,
     const real_t *q, size_t q_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
 }
 
 CF_RARE void linear_delta_determinant_other_sizes(size_t n, const real_t dimensions,
@@ -2338,73 +1870,71 @@ CF_INLINE void linear_delta_singularities_whole_kernel(const int single, const l
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
     const real_t t1 = rho1 - rho2;
-    const real_t c1_x = f - e;
-    const real_t t2 = c1_x + c1_x * CLOSEDFORM_C(0.5);
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t3 = t2 * t2 + c2_y * c2_y;
-    const real_t u_u = t1 * t1 + t3;
-    const real_t t4 = rho1 - rho3;
-    const real_t v_v = t4 * t4 + t3;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = t2 * t2 + c3_y * c3_y;
+    const real_t u_u = t1 * t1 + t5;
+    const real_t t6 = rho1 - rho3;
+    const real_t v_v = t6 * t6 + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t5 = size * size;
-    const real_t t6 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t7 = t5 * t6;
-    const int all_same = u_u + v_v <= t7;
+    const real_t t7 = size * size;
+    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
+    const int all_same = u_u + v_v <= t8;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t2);
-    const int same = u_u <= t7;
-    const real_t t8 = cf_rarely(single, same, t1, t4);
-    const real_t t9 = cf_rarely(single, same, t4, t1);
-    const real_t product_y = a_x * t8 + t2 * t9;
-    const real_t d_y = cf_rarely(single, same, -c2_y, c2_y);
-    const real_t t10 = cf_rarely(single, same, c2_y, -c2_y);
-    const real_t t11 = t8 * d_y - t9 * t10;
-    const real_t t12 = a_x * product_y + d_y * t11;
-    const real_t product_z = a_x * t10 + t2 * d_y;
-    const real_t product_2 = t11 * t11 + product_y * product_y + product_z * product_z;
+    const int same = u_u <= t8;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t13 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t14 = product_2 - t13 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t14 <= CLOSEDFORM_VANISHING * t13;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t15 = d_y * product_z + t9 * product_y;
-    const real_t n_y = a_x * product_z - t9 * t11;
-    const real_t m_m = cf_rarely(single, slim, over * (t15 * t15 + n_y * n_y + t12 * t12), product_2);
-    const int in_line = m_m <= t6 * (t5 * mu);
-    const real_t t16 = whole * t9;
+    const real_t a_x = cf_rarely(single, all_same, whole, -t2);
+    const real_t t9 = cf_rarely(single, same, t1, t6);
+    const real_t t10 = cf_rarely(single, same, t6, t1);
+    const real_t m_y = a_x * t9 + t2 * t10;
+    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t t11 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t12 = t9 * d_y - t10 * t11;
+    const real_t t13 = over * (a_x * m_y + d_y * t12);
+    const real_t m_z = a_x * t11 + t2 * d_y;
+    const real_t t14 = over * (d_y * m_z + t10 * m_y);
+    const real_t n_y = over * (a_x * m_z - t10 * t12);
+    const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
+    const int in_line = nu <= t8;
+    const real_t t15 = whole * t10;
     const real_t g_2 = whole * (d_y + a_x * cf_sign(a_x * d_y));
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t16 * t16) + g_2 * g_2, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t17 = t10 * (d_y - t10) - t8 * (t8 - t9);
-    const real_t t18 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t17 * CLOSEDFORM_C(0.5));
-    const real_t t19 = t12 * t18 - t9 * CLOSEDFORM_C(0.5);
-    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t15), product_z);
-    const real_t t20 = mu * (CLOSEDFORM_C(0.25) + w_w * (t18 * t18));
-    const real_t t21 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t20);
-    const real_t t22 = l * l - t21;
-    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
-    const real_t t23 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t23, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t24 = cf_rarely(single, in_line, -g_2, m_z) * h;
-    const real_t A_13 = t19 - t24;
-    const int t25 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t26 = t25 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t27 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t28 = cf_rarely(single, in_line, -t17, CLOSEDFORM_C(0.0));
-    const int t29 = cf_abs(t28) <= t5 * CLOSEDFORM_FEASIBILITY;
-    const int t30 = t29 & (-(CLOSEDFORM_FEASIBILITY * t23) <= t22);
-    const int failed = (!(t26 & (CLOSEDFORM_C(0.0) <= l) & t27)) | (!t30);
-    const real_t t31 = cf_poison(single, failed);
-    const real_t Delta = w_w * h;
-    const real_t A_13_above = t19 + t24;
-    factors[0] = A_13 + t31;
-    factors[1] = t1 + A_13 + t31;
-    factors[2] = t4 + A_13 + t31;
-    factors[3] = -Delta + t31;
-    factors[4] = A_13_above + t31;
-    factors[5] = t1 + A_13_above + t31;
-    factors[6] = t4 + A_13_above + t31;
-    factors[7] = Delta + t31;
+    const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
+    const real_t t17 = mu * nu;
+    const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
+    const real_t part = cf_rarely(single, in_line, t16, t18);
+    const real_t t19 = t11 * (d_y - t11) - t9 * (t9 - t10);
+    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t21 = t13 * t20 - t10 * CLOSEDFORM_C(0.5);
+    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t14);
+    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
+    const real_t t23 = l * l - t22;
+    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
+    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t25 = w_z * h;
+    const real_t A_13 = t21 - t25;
+    const int t26 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t27 = t26 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t28 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t29 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t30 = cf_abs(t29) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t31 = t30 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
+    const int failed = (!(t27 & (CLOSEDFORM_C(0.0) <= l) & t28)) | (!t31);
+    const real_t t32 = cf_poison(single, failed);
+    const real_t Delta = t17 * h;
+    const real_t A_13_above = t21 + t25;
+    factors[0] = A_13 + t32;
+    factors[1] = t1 + A_13 + t32;
+    factors[2] = t6 + A_13 + t32;
+    factors[3] = -Delta + t32;
+    factors[4] = A_13_above + t32;
+    factors[5] = t1 + A_13_above + t32;
+    factors[6] = t6 + A_13_above + t32;
+    factors[7] = Delta + t32;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2425,60 +1955,64 @@ CF_INLINE void linear_delta_singularities_common_kernel(const int single, const 
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t c1_x = f - e;
-    const real_t t1 = c1_x + c1_x * CLOSEDFORM_C(0.5);
-    const real_t t2 = rho1 - rho3;
-    const real_t t3 = rho1 - rho2;
-    const real_t t4 = cf_rounded(single, one, t1 * t2) - cf_rounded(single, one, t1 * t3);
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t5 = cf_rounded(single, one, c2_y * t2) + cf_rounded(single, one, c2_y * t3);
-    const real_t t6 = cf_rounded(single, one, t5 * t5) + cf_rounded(single, one, t4 * t4);
-    const real_t t7 = cf_rounded(single, one, c2_y * t1);
-    const real_t product_z = t7 + t7;
-    const real_t t8 = cf_rounded(single, one, product_z * product_z);
-    const real_t product_2 = t6 + t8;
-    const real_t t9 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c2_y * c2_y);
-    const real_t u_u = cf_rounded(single, one, t3 * t3) + t9;
+    const real_t t1 = rho1 - rho2;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = rho1 - rho3;
+    const real_t t4 = cf_rounded(single, one, t2 * t3) - cf_rounded(single, one, t2 * t1);
+    const real_t t5 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t6 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t5 - t6;
+    const real_t t7 = cf_rounded(single, one, c3_y * t3) + cf_rounded(single, one, c3_y * t1);
+    const real_t t8 = cf_rounded(single, one, t2 * t4) + cf_rounded(single, one, c3_y * t7);
+    const real_t t9 = cf_rounded(single, one, t2 * t2) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t1 * t1) + t9;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
     const real_t t10 = size * size;
-    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t12 = t10 * t11;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)), product_2);
-    const real_t t13 = cf_rounded(single, one, c2_y * (c2_y + c2_y));
-    const real_t t14 = t13 - cf_rounded(single, one, t2 * (t3 - t2));
-    const real_t t15 = part * t14 * CLOSEDFORM_C(0.5);
-    const real_t t16 = (t1 * t4 + c2_y * t5) * t15 + t3 * CLOSEDFORM_C(0.5);
-    const real_t t17 = cf_rounded(single, one, product_2 * (t15 * t15));
-    const real_t t18 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t17));
-    const real_t t19 = cf_rounded(single, one, l * l) - t18;
-    const real_t slack = cf_max(t19, CLOSEDFORM_C(0.0));
+    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t10;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t11, u_u);
+    const real_t t12 = t8 * over;
+    const real_t t13 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t14 = t13 - cf_rounded(single, one, t3 * (t1 - t3));
+    const real_t t15 = cf_rounded(single, one, c3_y * t2);
+    const real_t t16 = t15 + t15;
+    const real_t t17 = cf_rounded(single, one, c3_y * t16) - cf_rounded(single, one, t1 * t4);
+    const real_t t18 = t17 * over;
+    const real_t t19 = cf_rounded(single, one, t2 * t16) + cf_rounded(single, one, t1 * t7);
+    const real_t n_y = t19 * over;
+    const real_t t20 = cf_rounded(single, one, t18 * t18) + cf_rounded(single, one, n_y * n_y);
+    const real_t nu = t20 + cf_rounded(single, one, t12 * t12);
+    const real_t t21 = u_u * nu;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t11) | (nu <= t11), t21);
+    const real_t t22 = u_u * t14 * part * CLOSEDFORM_C(0.5);
+    const real_t t23 = t1 * CLOSEDFORM_C(0.5) + t12 * t22;
+    const real_t t24 = cf_rounded(single, one, nu * (t22 * t22)) + u_u * CLOSEDFORM_C(0.25);
+    const real_t t25 = cf_rounded(single, one, l * l) - t24;
+    const real_t slack = cf_max(t25, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t20 = product_z * h;
-    const real_t t21 = t16 + t20;
-    const int t22 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t23 = t22 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t24 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t25 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
-    const real_t t26 = CLOSEDFORM_C(0.234375) * (l * size);
-    const int t27 = t25 & (-(CLOSEDFORM_FEASIBILITY * t26) <= t19);
-    const int failed = (!(t23 & (CLOSEDFORM_C(0.0) <= l) & t24)) | (!t27);
-    const real_t t28 = cf_poison(single, failed);
-    const real_t Delta = product_2 * h;
-    const real_t t29 = t16 - t20;
-    const real_t v_v = cf_rounded(single, one, t2 * t2) + t9;
-    const real_t t30 = u_u * v_v;
-    const real_t t31 = product_2 - t30 * CLOSEDFORM_C(0.000244140625);
-    const int t32 = (u_u + v_v <= t12) | (u_u <= t12) | (t31 <= CLOSEDFORM_VANISHING * t30);
-    const int t33 = t32 | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26);
-    factors[0] = -t21 + t28;
-    factors[1] = t3 - t21 + t28;
-    factors[2] = t2 - t21 + t28;
-    factors[3] = -Delta + t28;
-    factors[4] = -t29 + t28;
-    factors[5] = t3 - t29 + t28;
-    factors[6] = t2 - t29 + t28;
-    factors[7] = Delta + t28;
-    rare[0] = (t33) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t26 = (t2 * n_y + c3_y * t18) * h;
+    const real_t t27 = t23 - t26;
+    const int t28 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t29 = t28 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t30 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t31 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
+    const real_t t32 = CLOSEDFORM_C(0.234375) * (l * size);
+    const int t33 = t31 & (-(CLOSEDFORM_FEASIBILITY * t32) <= t25);
+    const int failed = (!(t29 & (CLOSEDFORM_C(0.0) <= l) & t30)) | (!t33);
+    const real_t t34 = cf_poison(single, failed);
+    const real_t Delta = t21 * h;
+    const real_t t35 = t23 + t26;
+    const real_t t36 = u_u + (cf_rounded(single, one, t3 * t3) + t9);
+    const int t37 = (u_u <= t11) | (t36 <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t32);
+    factors[0] = -t27 + t34;
+    factors[1] = t1 - t27 + t34;
+    factors[2] = t3 - t27 + t34;
+    factors[3] = -Delta + t34;
+    factors[4] = -t35 + t34;
+    factors[5] = t1 - t35 + t34;
+    factors[6] = t3 - t35 + t34;
+    factors[7] = Delta + t34;
+    rare[0] = (t37) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void linear_delta_singularities_common_batch(size_t n, const linear_delta_params *params,
@@ -2535,7 +2069,7 @@ void linear_delta_singularities(const linear_delta_params *params,
     linear_delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -2557,7 +2091,7 @@ void linear_delta_singularities(const linear_delta_params *params,
 CF_INLINE cf_word linear_delta_singularities_excess(const real_t dimensions,
     const real_t *q, size_t q_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
 }
 
 CF_RARE void linear_delta_singularities_other_sizes(size_t n, const real_t dimensions,
@@ -2603,8 +2137,7 @@ void linear_delta_singularities_batch(size_t n, const linear_delta_params *param
     }
 }
 
-/* Every case. */
-CF_INLINE void linear_delta_condition_number_whole_kernel(const int single, const linear_delta_params *params,
+CF_INLINE void linear_delta_condition_number_kernel(const int single, const linear_delta_params *params,
     const real_t q[3], real_t kappa[2])
 {
     const real_t f = params->f;
@@ -2613,281 +2146,121 @@ CF_INLINE void linear_delta_condition_number_whole_kernel(const int single, cons
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t c1_x = f - e;
-    const real_t t1 = c1_x + c1_x * CLOSEDFORM_C(0.5);
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t1 = f - e - c2_x;
     const real_t t2 = rho1 - rho2;
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t3 = t1 * t1 + c2_y * c2_y;
-    const real_t u_u = t2 * t2 + t3;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = t1 * t1 + c3_y * c3_y;
+    const real_t u_u = t2 * t2 + t5;
+    const real_t t6 = rho1 - rho3;
+    const real_t v_v = t6 * t6 + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t4 = size * size;
-    const real_t t5 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t6 = t4 * t5;
-    const int same = u_u <= t6;
-    const real_t d_y = cf_rarely(single, same, -c2_y, c2_y);
-    const real_t t7 = rho1 - rho3;
-    const real_t v_v = t7 * t7 + t3;
-    const int all_same = u_u + v_v <= t6;
+    const real_t t7 = size * size;
+    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
+    const int all_same = u_u + v_v <= t8;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t1);
-    const real_t t8 = cf_rarely(single, same, c2_y, -c2_y);
-    const real_t product_z = a_x * t8 + t1 * d_y;
-    const real_t t9 = cf_rarely(single, same, t7, t2);
-    const real_t t10 = cf_rarely(single, same, t2, t7);
-    const real_t product_y = a_x * t10 + t1 * t9;
-    const real_t t11 = d_y * product_z + t9 * product_y;
-    const real_t t12 = d_y * t10 - t8 * t9;
-    const real_t product_2 = t12 * t12 + product_y * product_y + product_z * product_z;
+    const int same = u_u <= t8;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t13 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t14 = product_2 - t13 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t14 <= CLOSEDFORM_VANISHING * t13;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t n_y = a_x * product_z - t9 * t12;
-    const real_t t15 = a_x * product_y + d_y * t12;
-    const real_t m_m = cf_rarely(single, slim, over * (t11 * t11 + n_y * n_y + t15 * t15), product_2);
-    const int in_line = m_m <= t5 * (t4 * mu);
-    const real_t t16 = whole * t9;
+    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t1);
+    const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t m_z = a_x * t9 + t1 * d_y;
+    const real_t t10 = cf_rarely(single, same, t6, t2);
+    const real_t t11 = cf_rarely(single, same, t2, t6);
+    const real_t m_y = a_x * t11 + t1 * t10;
+    const real_t t12 = over * (d_y * m_z + t10 * m_y);
+    const real_t t13 = d_y * t11 - t9 * t10;
+    const real_t n_y = over * (a_x * m_z - t10 * t13);
+    const real_t t14 = over * (a_x * m_y + d_y * t13);
+    const real_t nu = t12 * t12 + n_y * n_y + t14 * t14;
+    const int in_line = nu <= t8;
+    const real_t t15 = whole * t10;
     const real_t s_w = cf_sign(d_y * a_x);
     const real_t g_2 = whole * (d_y + a_x * s_w);
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t16 * t16) + g_2 * g_2, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t17 = t8 * (d_y - t8) + t10 * (t9 - t10);
-    const real_t t18 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t17 * CLOSEDFORM_C(0.5));
-    const real_t t19 = t1 * CLOSEDFORM_C(0.5) - t11 * t18;
-    const real_t t20 = cf_rarely(single, slim, over * (d_y * t15 - t9 * n_y), t12);
-    const real_t t21 = mu * (CLOSEDFORM_C(0.25) + w_w * (t18 * t18));
-    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t21);
-    const real_t t23 = l * l - t22;
-    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t25 = cf_rarely(single, in_line, t16 * s_w, t20) * h;
-    const real_t t26 = t19 - t25;
-    const real_t t27 = n_y * t18 - d_y * CLOSEDFORM_C(0.5);
-    const real_t m_y = cf_rarely(single, slim, over * (a_x * t15 + t9 * t11), product_y);
-    const real_t t28 = h * cf_rarely(single, in_line, -t16, m_y);
-    const real_t t29 = t27 + t28;
-    const real_t t30 = t15 * t18 - t9 * CLOSEDFORM_C(0.5);
-    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t11), product_z);
-    const real_t t31 = h * cf_rarely(single, in_line, -g_2, m_z);
-    const real_t A_13 = t30 - t31;
-    const real_t A_21 = t1 - t26;
-    const real_t t32 = A_21 * A_21;
-    const real_t t33 = c2_y + t29;
+    const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
+    const real_t t17 = mu * nu;
+    const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
+    const real_t part = cf_rarely(single, in_line, t16, t18);
+    const real_t t19 = t9 * (d_y - t9) + t11 * (t10 - t11);
+    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t21 = t1 * CLOSEDFORM_C(0.5) - t12 * t20;
+    const real_t t22 = cf_rarely(single, in_line, t15 * s_w, d_y * t14 - t10 * n_y);
+    const real_t t23 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
+    const real_t t24 = l * l - t23;
+    const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
+    const real_t t25 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t25, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t26 = t22 * h;
+    const real_t t27 = t21 - t26;
+    const real_t t28 = n_y * t20 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t14 + t10 * t12);
+    const real_t t29 = h * w_y;
+    const real_t t30 = t28 + t29;
+    const real_t t31 = t14 * t20 - t10 * CLOSEDFORM_C(0.5);
+    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t12);
+    const real_t t32 = h * w_z;
+    const real_t A_13 = t31 - t32;
+    const real_t A_21 = t1 - t27;
+    const real_t t33 = A_21 * A_21;
+    const real_t A_22 = c3_y - t30;
     const real_t A_23 = t2 + A_13;
-    const real_t t34 = t26 * t26 + t29 * t29 + A_13 * A_13 + (t32 + t33 * t33 + A_23 * A_23);
-    const real_t A_32 = c2_y - t29;
-    const real_t A_33 = t7 + A_13;
-    const real_t t35 = t29 * A_21;
-    const real_t t36 = t26 * t33 + t35;
-    const real_t t37 = A_13 * A_21;
-    const real_t t38 = t26 * A_23 + t37;
-    const real_t t39 = t35 - t26 * A_32;
-    const real_t t40 = t37 + t26 * A_33;
-    const real_t t41 = t36 * t36 + t38 * t38 + t39 * t39 + t40 * t40;
-    const real_t t42 = t29 * A_23 - A_13 * t33;
-    const real_t t43 = t29 * A_33 + A_13 * A_32;
-    const real_t t44 = A_21 * A_32 + A_21 * t33;
-    const real_t t45 = A_21 * A_33 - A_21 * A_23;
-    const real_t t46 = t41 + t42 * t42 + t43 * t43 + t44 * t44 + t45 * t45;
-    const real_t t47 = t33 * A_33 + A_23 * A_32;
-    const real_t t48 = (t34 + (t32 + A_32 * A_32 + A_33 * A_33)) * (t46 + t47 * t47);
-    const real_t t49 = CLOSEDFORM_C(3.0) * (w_w * h);
-    const int t50 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t51 = t50 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t52 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t53 = cf_rarely(single, in_line, -t17, CLOSEDFORM_C(0.0));
-    const int t54 = cf_abs(t53) <= t4 * CLOSEDFORM_FEASIBILITY;
-    const int t55 = t54 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
-    const int failed = (!(t51 & (CLOSEDFORM_C(0.0) <= l) & t52)) | (!t55);
-    const real_t t56 = cf_poison(single, failed);
-    const real_t t57 = t19 + t25;
-    const real_t t58 = t27 - t28;
-    const real_t A_13_above = t30 + t31;
-    const real_t square1_above = t57 * t57 + t58 * t58 + A_13_above * A_13_above;
-    const real_t A_21_above = t1 - t57;
-    const real_t t59 = A_21_above * A_21_above;
-    const real_t t60 = c2_y + t58;
+    const real_t t34 = t27 * t27 + t30 * t30 + A_13 * A_13 + (t33 + A_22 * A_22 + A_23 * A_23);
+    const real_t t35 = c3_y + t30;
+    const real_t A_33 = t6 + A_13;
+    const real_t t36 = t30 * A_21;
+    const real_t t37 = t27 * A_22 - t36;
+    const real_t t38 = A_13 * A_21;
+    const real_t t39 = t27 * A_23 + t38;
+    const real_t t40 = t36 + t27 * t35;
+    const real_t t41 = t38 + t27 * A_33;
+    const real_t t42 = t37 * t37 + t39 * t39 + t40 * t40 + t41 * t41;
+    const real_t t43 = t30 * A_23 + A_13 * A_22;
+    const real_t t44 = t30 * A_33 - A_13 * t35;
+    const real_t t45 = A_21 * t35 + A_21 * A_22;
+    const real_t t46 = A_21 * A_33 - A_21 * A_23;
+    const real_t t47 = t42 + t43 * t43 + t44 * t44 + t45 * t45 + t46 * t46;
+    const real_t t48 = A_22 * A_33 + A_23 * t35;
+    const real_t t49 = (t34 + (t33 + t35 * t35 + A_33 * A_33)) * (t47 + t48 * t48);
+    const real_t t50 = CLOSEDFORM_C(3.0) * (t17 * h);
+    const int t51 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t53 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t54 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t55 = cf_abs(t54) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t56 = t55 & (-(CLOSEDFORM_FEASIBILITY * t25) <= t24);
+    const int failed = (!(t52 & (CLOSEDFORM_C(0.0) <= l) & t53)) | (!t56);
+    const real_t t57 = cf_poison(single, failed);
+    const real_t t58 = t21 + t26;
+    const real_t t59 = t28 - t29;
+    const real_t A_13_above = t31 + t32;
+    const real_t square1_above = t58 * t58 + t59 * t59 + A_13_above * A_13_above;
+    const real_t A_21_above = t1 - t58;
+    const real_t t60 = A_21_above * A_21_above;
+    const real_t A_22_above = c3_y - t59;
     const real_t A_23_above = t2 + A_13_above;
-    const real_t t61 = square1_above + (t59 + t60 * t60 + A_23_above * A_23_above);
-    const real_t A_32_above = c2_y - t58;
-    const real_t A_33_above = t7 + A_13_above;
-    const real_t square3_above = t59 + A_32_above * A_32_above + A_33_above * A_33_above;
-    const real_t t62 = t58 * A_21_above;
-    const real_t t63 = t57 * t60 + t62;
-    const real_t t64 = A_13_above * A_21_above;
-    const real_t t65 = t57 * A_23_above + t64;
-    const real_t t66 = t62 - t57 * A_32_above;
-    const real_t t67 = t64 + t57 * A_33_above;
-    const real_t t68 = t63 * t63 + t65 * t65 + t66 * t66 + t67 * t67;
-    const real_t t69 = t58 * A_23_above - A_13_above * t60;
-    const real_t t70 = t58 * A_33_above + A_13_above * A_32_above;
-    const real_t t71 = A_21_above * A_32_above + A_21_above * t60;
-    const real_t t72 = A_21_above * A_33_above - A_21_above * A_23_above;
-    const real_t t73 = t68 + t69 * t69 + t70 * t70 + t71 * t71 + t72 * t72;
-    const real_t t74 = t60 * A_33_above + A_23_above * A_32_above;
-    const real_t t75 = cf_sqrt((t61 + square3_above) * (t73 + t74 * t74));
-    kappa[0] = cf_quotient(single, cf_sqrt(t48), t49) + t56;
-    kappa[1] = cf_quotient(single, t75, t49) + t56;
-}
-
-CLOSEDFORM_DISPATCHED
-CF_OUT_OF_LINE void linear_delta_condition_number_whole(const linear_delta_params *params,
-    const real_t q[3], real_t kappa[2])
-{
-    linear_delta_condition_number_whole_kernel(1, params, q, kappa);
-}
-
-/* Where nothing vanishes; rare is whether something does. */
-CF_INLINE void linear_delta_condition_number_common_kernel(const int single, const real_t one,
-    const linear_delta_params *params,
-    const real_t q[3], real_t kappa[2], real_t rare[1])
-{
-    const real_t f = params->f;
-    const real_t e = params->e;
-    const real_t l = params->l;
-    const real_t rho1 = q[0];
-    const real_t rho2 = q[1];
-    const real_t rho3 = q[2];
-    const real_t c1_x = f - e;
-    const real_t t1 = c1_x + c1_x * CLOSEDFORM_C(0.5);
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t2 = cf_rounded(single, one, c2_y * t1);
-    const real_t product_z = t2 + t2;
-    const real_t t3 = rho1 - rho2;
-    const real_t t4 = rho1 - rho3;
-    const real_t t5 = cf_rounded(single, one, t1 * t4) - cf_rounded(single, one, t1 * t3);
-    const real_t t6 = cf_rounded(single, one, c2_y * t4) + cf_rounded(single, one, c2_y * t3);
-    const real_t t7 = cf_rounded(single, one, t6 * t6) + cf_rounded(single, one, t5 * t5);
-    const real_t t8 = cf_rounded(single, one, product_z * product_z);
-    const real_t product_2 = t7 + t8;
-    const real_t t9 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c2_y * c2_y);
-    const real_t u_u = cf_rounded(single, one, t3 * t3) + t9;
-    const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t10 = size * size;
-    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t12 = t10 * t11;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)), product_2);
-    const real_t t13 = cf_rounded(single, one, c2_y * (c2_y + c2_y));
-    const real_t t14 = t13 - cf_rounded(single, one, t4 * (t3 - t4));
-    const real_t t15 = part * t14 * CLOSEDFORM_C(0.5);
-    const real_t t16 = t1 * CLOSEDFORM_C(0.5) + (c2_y * product_z - t3 * t5) * t15;
-    const real_t t17 = cf_rounded(single, one, product_2 * (t15 * t15));
-    const real_t t18 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t17));
-    const real_t t19 = cf_rounded(single, one, l * l) - t18;
-    const real_t slack = cf_max(t19, CLOSEDFORM_C(0.0));
-    const real_t h = cf_sqrt(part * slack);
-    const real_t t20 = t6 * h;
-    const real_t t21 = t16 - t20;
-    const real_t t22 = t15 * (t1 * product_z + t3 * t6) - c2_y * CLOSEDFORM_C(0.5);
-    const real_t t23 = t5 * h;
-    const real_t t24 = t22 - t23;
-    const real_t t25 = t15 * (t1 * t5 + c2_y * t6) + t3 * CLOSEDFORM_C(0.5);
-    const real_t t26 = product_z * h;
-    const real_t t27 = t25 + t26;
-    const real_t A_21 = t1 - t21;
-    const real_t t28 = A_21 * A_21;
-    const real_t t29 = c2_y + t24;
-    const real_t A_23 = t3 - t27;
-    const real_t t30 = t21 * t21 + t24 * t24 + t27 * t27 + (t28 + t29 * t29 + A_23 * A_23);
-    const real_t A_32 = c2_y - t24;
-    const real_t A_33 = t4 - t27;
-    const real_t t31 = t24 * A_21;
-    const real_t t32 = t21 * t29 + t31;
-    const real_t t33 = t27 * A_21;
-    const real_t t34 = t21 * A_23 - t33;
-    const real_t t35 = t31 - t21 * A_32;
-    const real_t t36 = t33 - t21 * A_33;
-    const real_t t37 = t32 * t32 + t34 * t34 + t35 * t35 + t36 * t36;
-    const real_t t38 = t24 * A_23 + t27 * t29;
-    const real_t t39 = t24 * A_33 - t27 * A_32;
-    const real_t t40 = A_21 * A_32 + A_21 * t29;
-    const real_t t41 = A_21 * A_33 - A_21 * A_23;
-    const real_t t42 = t37 + t38 * t38 + t39 * t39 + t40 * t40 + t41 * t41;
-    const real_t t43 = t29 * A_33 + A_23 * A_32;
-    const real_t t44 = (t30 + (t28 + A_32 * A_32 + A_33 * A_33)) * (t42 + t43 * t43);
-    const real_t t45 = CLOSEDFORM_C(3.0) * (product_2 * h);
-    const real_t t46 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t t47 = cf_sqrt(t44) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t46), t45);
-    const int t48 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t50 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t51 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
-    const int t52 = t51 & (-(CLOSEDFORM_FEASIBILITY * t46) <= t19);
-    const int failed = (!(t49 & (CLOSEDFORM_C(0.0) <= l) & t50)) | (!t52);
-    const real_t t53 = cf_poison(single, failed);
-    const real_t t54 = t16 + t20;
-    const real_t t55 = t22 + t23;
-    const real_t t56 = t25 - t26;
-    const real_t A_21_above = t1 - t54;
-    const real_t t57 = A_21_above * A_21_above;
-    const real_t t58 = c2_y + t55;
-    const real_t A_23_above = t3 - t56;
-    const real_t t59 = t54 * t54 + t55 * t55 + t56 * t56 + (t57 + t58 * t58 + A_23_above * A_23_above);
-    const real_t A_32_above = c2_y - t55;
-    const real_t A_33_above = t4 - t56;
-    const real_t square3_above = t57 + A_32_above * A_32_above + A_33_above * A_33_above;
-    const real_t t60 = t55 * A_21_above;
-    const real_t t61 = t54 * t58 + t60;
-    const real_t t62 = t56 * A_21_above;
-    const real_t t63 = t54 * A_23_above - t62;
-    const real_t t64 = t60 - t54 * A_32_above;
-    const real_t t65 = t62 - t54 * A_33_above;
-    const real_t t66 = t61 * t61 + t63 * t63 + t64 * t64 + t65 * t65;
-    const real_t t67 = t55 * A_23_above + t56 * t58;
-    const real_t t68 = t55 * A_33_above - t56 * A_32_above;
-    const real_t t69 = A_21_above * A_32_above + A_21_above * t58;
-    const real_t t70 = A_21_above * A_33_above - A_21_above * A_23_above;
-    const real_t t71 = t66 + t67 * t67 + t68 * t68 + t69 * t69 + t70 * t70;
-    const real_t t72 = t58 * A_33_above + A_23_above * A_32_above;
-    const real_t t73 = cf_sqrt((t59 + square3_above) * (t71 + t72 * t72));
-    const real_t t74 = t73 / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t46), t45);
-    const real_t v_v = cf_rounded(single, one, t4 * t4) + t9;
-    const real_t t75 = u_u * v_v;
-    const real_t t76 = product_2 - t75 * CLOSEDFORM_C(0.000244140625);
-    const int t77 = (u_u <= t12) | (u_u + v_v <= t12) | (t76 <= CLOSEDFORM_VANISHING * t75);
-    const int t78 = t77 | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t46);
-    kappa[0] = t47 + t53;
-    kappa[1] = t74 + t53;
-    rare[0] = (t78) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
-}
-
-CF_INLINE void linear_delta_condition_number_common_batch(size_t n, const linear_delta_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *kappa, size_t kappa_stride,
-    uint8_t *rare, size_t rare_stride)
-{
-    (void)rare_stride;
-    const linear_delta_params local = *params;
-    const real_t one = cf_one();
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t rare_real[1][CLOSEDFORM_BLOCK];
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            real_t kappa_i[2];
-            real_t rare_i[1];
-            linear_delta_condition_number_common_kernel(0, one, &local, q_i, kappa_i, rare_i);
-            kappa[start + i] = kappa_i[0];
-            kappa[kappa_stride + start + i] = kappa_i[1];
-            rare_real[0][i] = rare_i[0];
-        }
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i)
-            rare[start + i] = (uint8_t)rare_real[0][i];
-    }
-}
-
-CF_INLINE void linear_delta_condition_number_common(const linear_delta_params *params,
-    const real_t q[3], real_t kappa[2], uint8_t rare[1])
-{
-    const real_t one = cf_one();
-    real_t rare_real[1];
-    linear_delta_condition_number_common_kernel(1, one, params, q, kappa, rare_real);
-    for (size_t i = 0; i < 1; ++i)
-        rare[i] = (uint8_t)rare_real[i];
+    const real_t square2_above = t60 + A_22_above * A_22_above + A_23_above * A_23_above;
+    const real_t t61 = c3_y + t59;
+    const real_t A_33_above = t6 + A_13_above;
+    const real_t t62 = square1_above + square2_above + (t60 + t61 * t61 + A_33_above * A_33_above);
+    const real_t t63 = t59 * A_21_above;
+    const real_t t64 = t58 * A_22_above - t63;
+    const real_t t65 = A_13_above * A_21_above;
+    const real_t t66 = t58 * A_23_above + t65;
+    const real_t t67 = t63 + t58 * t61;
+    const real_t t68 = t65 + t58 * A_33_above;
+    const real_t t69 = t64 * t64 + t66 * t66 + t67 * t67 + t68 * t68;
+    const real_t t70 = t59 * A_23_above + A_13_above * A_22_above;
+    const real_t t71 = t59 * A_33_above - A_13_above * t61;
+    const real_t t72 = A_21_above * t61 + A_21_above * A_22_above;
+    const real_t t73 = A_21_above * A_33_above - A_21_above * A_23_above;
+    const real_t t74 = t69 + t70 * t70 + t71 * t71 + t72 * t72 + t73 * t73;
+    const real_t t75 = A_22_above * A_33_above + A_23_above * t61;
+    const real_t t76 = cf_quotient(single, cf_sqrt(t62 * (t74 + t75 * t75)), t50);
+    kappa[0] = cf_quotient(single, cf_sqrt(t49), t50) + t57;
+    kappa[1] = t76 + t57;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2909,9 +2282,7 @@ void linear_delta_condition_number(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    uint8_t rare[1];
-    linear_delta_condition_number_common(params, q, kappa, rare);
-    if (CF_UNLIKELY(rare[0])) linear_delta_condition_number_whole(params, q, kappa);
+    linear_delta_condition_number_kernel(1, params, q, kappa);
 }
 
 /* Has its sign bit set where powers of the size of a posture may leave the range. */
@@ -2942,19 +2313,17 @@ void linear_delta_condition_number_batch(size_t n, const linear_delta_params *pa
     const real_t *q, size_t q_stride,
     real_t *kappa, size_t kappa_stride)
 {
+    const linear_delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        uint8_t rare[CLOSEDFORM_BLOCK];
-        linear_delta_condition_number_common_batch(length, params, q + start, q_stride, kappa + start, kappa_stride, rare, CLOSEDFORM_BLOCK);
-        for (size_t i = start; i < start + length; ++i) {
-            if (!CF_UNLIKELY(rare[i - start])) continue;
-            real_t q_i[3];
-            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             real_t kappa_i[2];
-            linear_delta_condition_number_whole(params, q_i, kappa_i);
-            for (size_t k = 0; k < 2; ++k) kappa[k * kappa_stride + i] = kappa_i[k];
-
+            linear_delta_condition_number_kernel(0, &local, q_i, kappa_i);
+            kappa[start + i] = kappa_i[0];
+            kappa[kappa_stride + start + i] = kappa_i[1];
         }
         cf_word excess = 0;
         for (size_t i = 0; i < length; ++i)
@@ -2964,8 +2333,7 @@ void linear_delta_condition_number_batch(size_t n, const linear_delta_params *pa
     }
 }
 
-/* Every case. */
-CF_INLINE void linear_delta_constraint_whole_kernel(const int single, const linear_delta_params *params,
+CF_INLINE void linear_delta_constraint_kernel(const int single, const linear_delta_params *params,
     const real_t q[3], real_t factors[2])
 {
     const real_t f = params->f;
@@ -2974,220 +2342,90 @@ CF_INLINE void linear_delta_constraint_whole_kernel(const int single, const line
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t c1_x = f - e;
-    const real_t t1 = c1_x + c1_x * CLOSEDFORM_C(0.5);
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t1 = f - e - c2_x;
     const real_t t2 = rho1 - rho2;
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t3 = t1 * t1 + c2_y * c2_y;
-    const real_t u_u = t2 * t2 + t3;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = t1 * t1 + c3_y * c3_y;
+    const real_t u_u = t2 * t2 + t5;
+    const real_t t6 = rho1 - rho3;
+    const real_t v_v = t6 * t6 + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t4 = size * size;
-    const real_t t5 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t6 = t4 * t5;
-    const int same = u_u <= t6;
-    const real_t d_y = cf_rarely(single, same, -c2_y, c2_y);
-    const real_t t7 = rho1 - rho3;
-    const real_t v_v = t7 * t7 + t3;
-    const int all_same = u_u + v_v <= t6;
+    const real_t t7 = size * size;
+    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
+    const int all_same = u_u + v_v <= t8;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t1);
-    const real_t t8 = cf_rarely(single, same, c2_y, -c2_y);
-    const real_t product_z = a_x * t8 + t1 * d_y;
-    const real_t t9 = cf_rarely(single, same, t7, t2);
-    const real_t t10 = cf_rarely(single, same, t2, t7);
-    const real_t product_y = a_x * t10 + t1 * t9;
-    const real_t t11 = d_y * product_z + t9 * product_y;
-    const real_t t12 = d_y * t10 - t8 * t9;
-    const real_t product_2 = t12 * t12 + product_y * product_y + product_z * product_z;
+    const int same = u_u <= t8;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t t13 = mu * cf_rarely(single, same, u_u, v_v);
-    const real_t t14 = product_2 - t13 * CLOSEDFORM_C(0.000244140625);
-    const int slim = t14 <= CLOSEDFORM_VANISHING * t13;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t n_y = a_x * product_z - t9 * t12;
-    const real_t t15 = a_x * product_y + d_y * t12;
-    const real_t m_m = cf_rarely(single, slim, over * (t11 * t11 + n_y * n_y + t15 * t15), product_2);
-    const int in_line = m_m <= t5 * (t4 * mu);
-    const real_t t16 = whole * t9;
+    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t1);
+    const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t m_z = a_x * t9 + t1 * d_y;
+    const real_t t10 = cf_rarely(single, same, t6, t2);
+    const real_t t11 = cf_rarely(single, same, t2, t6);
+    const real_t m_y = a_x * t11 + t1 * t10;
+    const real_t t12 = over * (d_y * m_z + t10 * m_y);
+    const real_t t13 = d_y * t11 - t9 * t10;
+    const real_t n_y = over * (a_x * m_z - t10 * t13);
+    const real_t t14 = over * (a_x * m_y + d_y * t13);
+    const real_t nu = t12 * t12 + n_y * n_y + t14 * t14;
+    const int in_line = nu <= t8;
+    const real_t t15 = whole * t10;
     const real_t s_w = cf_sign(d_y * a_x);
     const real_t g_2 = whole * (d_y + a_x * s_w);
-    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t16 * t16) + g_2 * g_2, m_m);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
-    const real_t t17 = t8 * (d_y - t8) + t10 * (t9 - t10);
-    const real_t t18 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t17 * CLOSEDFORM_C(0.5));
-    const real_t t19 = t1 * CLOSEDFORM_C(0.5) - t11 * t18;
-    const real_t t20 = cf_rarely(single, slim, over * (d_y * t15 - t9 * n_y), t12);
-    const real_t t21 = mu * (CLOSEDFORM_C(0.25) + w_w * (t18 * t18));
-    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t21);
+    const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
+    const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
+    const real_t part = cf_rarely(single, in_line, t16, t17);
+    const real_t t18 = t9 * (d_y - t9) + t11 * (t10 - t11);
+    const real_t t19 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
+    const real_t t20 = t1 * CLOSEDFORM_C(0.5) - t12 * t19;
+    const real_t t21 = cf_rarely(single, in_line, t15 * s_w, d_y * t14 - t10 * n_y);
+    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
     const real_t t23 = l * l - t22;
     const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
     const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part) * cf_sqrt(slack));
-    const real_t t25 = cf_rarely(single, in_line, t16 * s_w, t20) * h;
-    const real_t t26 = t19 - t25;
-    const real_t t27 = t15 * t18 - t9 * CLOSEDFORM_C(0.5);
-    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t11), product_z);
-    const real_t t28 = h * cf_rarely(single, in_line, -g_2, m_z);
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t25 = t21 * h;
+    const real_t t26 = t20 - t25;
+    const real_t t27 = t14 * t19 - t10 * CLOSEDFORM_C(0.5);
+    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t12);
+    const real_t t28 = h * w_z;
     const real_t A_13 = t27 - t28;
     const real_t A_23 = t2 + A_13;
     const real_t t29 = CLOSEDFORM_C(1.7320508075688772) * t26 * A_23;
-    const real_t A_33 = t7 + A_13;
+    const real_t A_33 = t6 + A_13;
     const real_t t30 = (t1 - t26) * (CLOSEDFORM_C(1.7320508075688772) * A_13);
     const real_t t31 = t29 * A_33 * CLOSEDFORM_C(0.5) + A_33 * t30 * CLOSEDFORM_C(0.25);
-    const real_t t32 = CLOSEDFORM_C(0.75) * A_13;
-    const real_t t33 = n_y * t18 - d_y * CLOSEDFORM_C(0.5);
-    const real_t m_y = cf_rarely(single, slim, over * (a_x * t15 + t9 * t11), product_y);
-    const real_t t34 = h * cf_rarely(single, in_line, -t16, m_y);
-    const real_t t35 = t33 + t34;
-    const real_t t36 = t31 + A_33 * t32 * (c2_y + t35) + A_23 * t30 * CLOSEDFORM_C(0.25);
+    const real_t t32 = n_y * t19 - d_y * CLOSEDFORM_C(0.5);
+    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t14 + t10 * t12);
+    const real_t t33 = h * w_y;
+    const real_t t34 = t32 + t33;
+    const real_t t35 = CLOSEDFORM_C(0.75) * A_13;
+    const real_t t36 = t31 - A_33 * (c3_y - t34) * t35 + A_23 * t30 * CLOSEDFORM_C(0.25);
     const int t37 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
     const int t38 = t37 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
     const int t39 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t40 = cf_rarely(single, in_line, -t17, CLOSEDFORM_C(0.0));
-    const int t41 = cf_abs(t40) <= t4 * CLOSEDFORM_FEASIBILITY;
+    const real_t t40 = cf_rarely(single, in_line, -t18, CLOSEDFORM_C(0.0));
+    const int t41 = cf_abs(t40) <= t7 * CLOSEDFORM_FEASIBILITY;
     const int t42 = t41 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
     const int failed = (!(t38 & (CLOSEDFORM_C(0.0) <= l) & t39)) | (!t42);
     const real_t t43 = cf_poison(single, failed);
-    const real_t t44 = t19 + t25;
+    const real_t t44 = t20 + t25;
     const real_t A_13_above = t27 + t28;
     const real_t A_23_above = t2 + A_13_above;
     const real_t t45 = CLOSEDFORM_C(1.7320508075688772) * t44 * A_23_above;
-    const real_t A_33_above = t7 + A_13_above;
+    const real_t A_33_above = t6 + A_13_above;
     const real_t t46 = CLOSEDFORM_C(1.7320508075688772) * A_13_above;
     const real_t t47 = (t1 - t44) * t46;
     const real_t t48 = t45 * A_33_above * CLOSEDFORM_C(0.5) + A_33_above * t47 * CLOSEDFORM_C(0.25);
-    const real_t t49 = CLOSEDFORM_C(0.75) * A_13_above;
-    const real_t t50 = t33 - t34;
-    const real_t t51 = t48 + A_33_above * t49 * (c2_y + t50) + A_23_above * t47 * CLOSEDFORM_C(0.25);
-    factors[0] = t36 + A_23 * t32 * (c2_y - t35) + t43;
-    factors[1] = t51 + A_23_above * t49 * (c2_y - t50) + t43;
-}
-
-CLOSEDFORM_DISPATCHED
-CF_OUT_OF_LINE void linear_delta_constraint_whole(const linear_delta_params *params,
-    const real_t q[3], real_t factors[2])
-{
-    linear_delta_constraint_whole_kernel(1, params, q, factors);
-}
-
-/* Where nothing vanishes; rare is whether something does. */
-CF_INLINE void linear_delta_constraint_common_kernel(const int single, const real_t one,
-    const linear_delta_params *params,
-    const real_t q[3], real_t factors[2], real_t rare[1])
-{
-    const real_t f = params->f;
-    const real_t e = params->e;
-    const real_t l = params->l;
-    const real_t rho1 = q[0];
-    const real_t rho2 = q[1];
-    const real_t rho3 = q[2];
-    const real_t c1_x = f - e;
-    const real_t t1 = c1_x + c1_x * CLOSEDFORM_C(0.5);
-    const real_t c2_y = c1_x * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t2 = cf_rounded(single, one, c2_y * t1);
-    const real_t product_z = t2 + t2;
-    const real_t t3 = rho1 - rho2;
-    const real_t t4 = rho1 - rho3;
-    const real_t t5 = cf_rounded(single, one, t1 * t4) - cf_rounded(single, one, t1 * t3);
-    const real_t t6 = cf_rounded(single, one, c2_y * t4) + cf_rounded(single, one, c2_y * t3);
-    const real_t t7 = cf_rounded(single, one, t6 * t6) + cf_rounded(single, one, t5 * t5);
-    const real_t t8 = cf_rounded(single, one, product_z * product_z);
-    const real_t product_2 = t7 + t8;
-    const real_t t9 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c2_y * c2_y);
-    const real_t u_u = cf_rounded(single, one, t3 * t3) + t9;
-    const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t10 = size * size;
-    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
-    const real_t t12 = t10 * t11;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t12) | (product_2 <= t11 * (t10 * u_u)), product_2);
-    const real_t t13 = cf_rounded(single, one, c2_y * (c2_y + c2_y));
-    const real_t t14 = t13 - cf_rounded(single, one, t4 * (t3 - t4));
-    const real_t t15 = part * t14 * CLOSEDFORM_C(0.5);
-    const real_t t16 = t1 * CLOSEDFORM_C(0.5) + (c2_y * product_z - t3 * t5) * t15;
-    const real_t t17 = cf_rounded(single, one, product_2 * (t15 * t15));
-    const real_t t18 = cf_rounded(single, one, u_u * (CLOSEDFORM_C(0.25) + t17));
-    const real_t t19 = cf_rounded(single, one, l * l) - t18;
-    const real_t slack = cf_max(t19, CLOSEDFORM_C(0.0));
-    const real_t h = cf_sqrt(part * slack);
-    const real_t t20 = t6 * h;
-    const real_t t21 = t16 - t20;
-    const real_t t22 = t15 * (t1 * t5 + c2_y * t6) + t3 * CLOSEDFORM_C(0.5);
-    const real_t t23 = product_z * h;
-    const real_t t24 = t22 + t23;
-    const real_t A_23 = t3 - t24;
-    const real_t t25 = CLOSEDFORM_C(1.7320508075688772) * t21 * A_23;
-    const real_t A_33 = t4 - t24;
-    const real_t t26 = (t1 - t21) * (CLOSEDFORM_C(1.7320508075688772) * t24);
-    const real_t t27 = t25 * A_33 * CLOSEDFORM_C(0.5) - A_33 * t26 * CLOSEDFORM_C(0.25);
-    const real_t t28 = t15 * (t1 * product_z + t3 * t6) - c2_y * CLOSEDFORM_C(0.5);
-    const real_t t29 = t5 * h;
-    const real_t t30 = t28 - t29;
-    const real_t t31 = CLOSEDFORM_C(0.75) * t24;
-    const real_t t32 = t27 - A_33 * (c2_y + t30) * t31 - A_23 * t26 * CLOSEDFORM_C(0.25);
-    const int t33 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t34 = t33 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t35 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t36 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
-    const real_t t37 = CLOSEDFORM_C(0.234375) * (l * size);
-    const int t38 = t36 & (-(CLOSEDFORM_FEASIBILITY * t37) <= t19);
-    const int failed = (!(t34 & (CLOSEDFORM_C(0.0) <= l) & t35)) | (!t38);
-    const real_t t39 = cf_poison(single, failed);
-    const real_t t40 = t16 + t20;
-    const real_t t41 = t22 - t23;
-    const real_t A_23_above = t3 - t41;
-    const real_t t42 = CLOSEDFORM_C(1.7320508075688772) * t40 * A_23_above;
-    const real_t A_33_above = t4 - t41;
-    const real_t t43 = (t1 - t40) * (CLOSEDFORM_C(1.7320508075688772) * t41);
-    const real_t t44 = t42 * A_33_above * CLOSEDFORM_C(0.5) - A_33_above * t43 * CLOSEDFORM_C(0.25);
-    const real_t t45 = t28 + t29;
-    const real_t t46 = CLOSEDFORM_C(0.75) * t41;
-    const real_t t47 = t44 - A_33_above * (c2_y + t45) * t46 - A_23_above * t43 * CLOSEDFORM_C(0.25);
-    const real_t v_v = cf_rounded(single, one, t4 * t4) + t9;
-    const real_t t48 = u_u * v_v;
-    const real_t t49 = product_2 - t48 * CLOSEDFORM_C(0.000244140625);
-    const int t50 = (u_u <= t12) | (u_u + v_v <= t12) | (t49 <= CLOSEDFORM_VANISHING * t48);
-    const int t51 = t50 | (product_2 <= t11 * (t10 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t37);
-    factors[0] = t32 - A_23 * t31 * (c2_y - t30) + t39;
-    factors[1] = t47 - A_23_above * t46 * (c2_y - t45) + t39;
-    rare[0] = (t51) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
-}
-
-CF_INLINE void linear_delta_constraint_common_batch(size_t n, const linear_delta_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *factors, size_t factors_stride,
-    uint8_t *rare, size_t rare_stride)
-{
-    (void)rare_stride;
-    const linear_delta_params local = *params;
-    const real_t one = cf_one();
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t rare_real[1][CLOSEDFORM_BLOCK];
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            real_t factors_i[2];
-            real_t rare_i[1];
-            linear_delta_constraint_common_kernel(0, one, &local, q_i, factors_i, rare_i);
-            factors[start + i] = factors_i[0];
-            factors[factors_stride + start + i] = factors_i[1];
-            rare_real[0][i] = rare_i[0];
-        }
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i)
-            rare[start + i] = (uint8_t)rare_real[0][i];
-    }
-}
-
-CF_INLINE void linear_delta_constraint_common(const linear_delta_params *params,
-    const real_t q[3], real_t factors[2],
-    uint8_t rare[1])
-{
-    const real_t one = cf_one();
-    real_t rare_real[1];
-    linear_delta_constraint_common_kernel(1, one, params, q, factors, rare_real);
-    for (size_t i = 0; i < 1; ++i)
-        rare[i] = (uint8_t)rare_real[i];
+    const real_t t49 = t32 - t33;
+    const real_t t50 = CLOSEDFORM_C(0.75) * A_13_above;
+    const real_t t51 = t48 - A_33_above * (c3_y - t49) * t50 + A_23_above * t47 * CLOSEDFORM_C(0.25);
+    factors[0] = t36 - A_23 * t35 * (c3_y + t34) + t43;
+    factors[1] = t51 - A_23_above * t50 * (c3_y + t49) + t43;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -3200,7 +2438,7 @@ void linear_delta_constraint(const linear_delta_params *params,
     linear_delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -3210,9 +2448,7 @@ void linear_delta_constraint(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    uint8_t rare[1];
-    linear_delta_constraint_common(params, q, factors, rare);
-    if (CF_UNLIKELY(rare[0])) linear_delta_constraint_whole(params, q, factors);
+    linear_delta_constraint_kernel(1, params, q, factors);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(2, factors_degrees, exponent, factors, factors);
     }
@@ -3222,7 +2458,7 @@ void linear_delta_constraint(const linear_delta_params *params,
 CF_INLINE cf_word linear_delta_constraint_excess(const real_t dimensions,
     const real_t *q, size_t q_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
 }
 
 CF_RARE void linear_delta_constraint_other_sizes(size_t n, const real_t dimensions,
@@ -3246,19 +2482,17 @@ void linear_delta_constraint_batch(size_t n, const linear_delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *factors, size_t factors_stride)
 {
+    const linear_delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        uint8_t rare[CLOSEDFORM_BLOCK];
-        linear_delta_constraint_common_batch(length, params, q + start, q_stride, factors + start, factors_stride, rare, CLOSEDFORM_BLOCK);
-        for (size_t i = start; i < start + length; ++i) {
-            if (!CF_UNLIKELY(rare[i - start])) continue;
-            real_t q_i[3];
-            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             real_t factors_i[2];
-            linear_delta_constraint_whole(params, q_i, factors_i);
-            for (size_t k = 0; k < 2; ++k) factors[k * factors_stride + i] = factors_i[k];
-
+            linear_delta_constraint_kernel(0, &local, q_i, factors_i);
+            factors[start + i] = factors_i[0];
+            factors[factors_stride + start + i] = factors_i[1];
         }
         cf_word excess = 0;
         for (size_t i = 0; i < length; ++i)

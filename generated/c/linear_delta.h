@@ -3,31 +3,24 @@
  * derivations/linear_delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 50 compare and select, 51 add, 9 divide, 67 multiply, 2 sqrt
- *   fk where nothing vanishes: 30 compare and select, 44 add, 8 divide, 44 multiply, 1 sqrt
- *   skeleton: 49 compare and select, 125 add, 15 divide, 69 multiply, 2 sqrt
- *   skeleton where nothing vanishes: 29 compare and select, 118 add, 14 divide, 46 multiply, 1
- *     sqrt
- *   jacobian_parallel: 49 compare and select, 69 add, 9 divide, 67 multiply, 2 sqrt
- *   jacobian_parallel where nothing vanishes: 29 compare and select, 62 add, 8 divide, 44
+ *   fk: 44 compare and select, 50 add, 12 divide, 61 multiply, 1 sqrt
+ *   fk where nothing vanishes: 28 compare and select, 48 add, 11 divide, 51 multiply, 1 sqrt
+ *   skeleton: 43 compare and select, 124 add, 14 divide, 61 multiply, 1 sqrt
+ *   jacobian_parallel: 43 compare and select, 68 add, 12 divide, 61 multiply, 1 sqrt
+ *   jacobian_parallel where nothing vanishes: 27 compare and select, 66 add, 11 divide, 51
  *     multiply, 1 sqrt
- *   jacobian_serial: 45 compare and select, 45 add, 7 divide, 56 multiply, 2 sqrt
- *   jacobian_serial where nothing vanishes: 29 compare and select, 38 add, 6 divide, 36 multiply,
+ *   jacobian_serial: 41 compare and select, 44 add, 10 divide, 52 multiply, 1 sqrt
+ *   jacobian_serial where nothing vanishes: 27 compare and select, 42 add, 9 divide, 43 multiply,
  *     1 sqrt
- *   jacobian: 49 compare and select, 89 add, 27 divide, 118 multiply, 2 sqrt
- *   jacobian where nothing vanishes: 29 compare and select, 82 add, 26 divide, 95 multiply, 1 sqrt
- *   determinant: 45 compare and select, 41 add, 9 divide, 61 multiply, 2 sqrt
- *   determinant where nothing vanishes: 29 compare and select, 34 add, 8 divide, 41 multiply, 1
+ *   jacobian: 43 compare and select, 88 add, 30 divide, 112 multiply, 1 sqrt
+ *   determinant: 41 compare and select, 40 add, 12 divide, 57 multiply, 1 sqrt
+ *   determinant where nothing vanishes: 27 compare and select, 38 add, 11 divide, 48 multiply, 1
  *     sqrt
- *   singularities: 45 compare and select, 47 add, 7 divide, 57 multiply, 2 sqrt
- *   singularities where nothing vanishes: 29 compare and select, 40 add, 6 divide, 37 multiply, 1
+ *   singularities: 41 compare and select, 46 add, 10 divide, 53 multiply, 1 sqrt
+ *   singularities where nothing vanishes: 27 compare and select, 44 add, 9 divide, 44 multiply, 1
  *     sqrt
- *   condition_number: 49 compare and select, 105 add, 11 divide, 137 multiply, 4 sqrt
- *   condition_number where nothing vanishes: 29 compare and select, 98 add, 10 divide, 114
- *     multiply, 3 sqrt
- *   constraint: 49 compare and select, 63 add, 15 divide, 91 multiply, 2 sqrt
- *   constraint where nothing vanishes: 29 compare and select, 56 add, 14 divide, 68 multiply, 1
- *     sqrt
+ *   condition_number: 43 compare and select, 104 add, 14 divide, 131 multiply, 3 sqrt
+ *   constraint: 43 compare and select, 62 add, 18 divide, 85 multiply, 1 sqrt
  *   ik: 60 compare and select, 63 add, 5 divide, 44 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  *

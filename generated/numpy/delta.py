@@ -2,29 +2,17 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 51 compare and select, 59 add, 7 divide, 81 multiply, 6 sincos, 2 sqrt
-#   fk where nothing vanishes: 52 add, 29 compare and select, 6 divide, 59 multiply, 6 sincos, 1
+#   fk: 45 compare and select, 64 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
+#   fk where nothing vanishes: 62 add, 27 compare and select, 7 divide, 77 multiply, 6 sincos, 1
 #     sqrt
-#   skeleton: 50 compare and select, 180 add, 13 divide, 99 multiply, 6 sincos, 2 sqrt
-#   jacobian_parallel: 50 compare and select, 80 add, 7 divide, 81 multiply, 6 sincos, 2 sqrt
-#   jacobian_parallel where nothing vanishes: 73 add, 28 compare and select, 6 divide, 59
-#     multiply, 6 sincos, 1 sqrt
-#   jacobian_serial: 50 compare and select, 80 add, 7 divide, 105 multiply, 6 sincos, 2 sqrt
-#   jacobian_serial where nothing vanishes: 73 add, 28 compare and select, 6 divide, 83 multiply,
-#     6 sincos, 1 sqrt
-#   jacobian: 50 compare and select, 110 add, 25 divide, 160 multiply, 6 sincos, 2 sqrt
-#   determinant: 50 compare and select, 76 add, 9 divide, 110 multiply, 6 sincos, 2 sqrt
-#   determinant where nothing vanishes: 69 add, 28 compare and select, 8 divide, 88 multiply, 6
-#     sincos, 1 sqrt
-#   singularities: 50 compare and select, 82 add, 7 divide, 106 multiply, 6 sincos, 2 sqrt
-#   singularities where nothing vanishes: 75 add, 28 compare and select, 6 divide, 84 multiply, 6
-#     sincos, 1 sqrt
-#   condition_number: 50 compare and select, 114 add, 9 divide, 157 multiply, 6 sincos, 4 sqrt
-#   condition_number where nothing vanishes: 107 add, 28 compare and select, 8 divide, 135
-#     multiply, 6 sincos, 3 sqrt
-#   constraint: 50 compare and select, 86 add, 7 divide, 143 multiply, 6 sincos, 2 sqrt
-#   constraint where nothing vanishes: 79 add, 28 compare and select, 6 divide, 111 multiply, 6
-#     sincos, 1 sqrt
+#   skeleton: 44 compare and select, 179 add, 14 divide, 86 multiply, 6 sincos, 1 sqrt
+#   jacobian_parallel: 44 compare and select, 85 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
+#   jacobian_serial: 44 compare and select, 85 add, 8 divide, 110 multiply, 6 sincos, 1 sqrt
+#   jacobian: 44 compare and select, 115 add, 26 divide, 165 multiply, 6 sincos, 1 sqrt
+#   determinant: 44 compare and select, 81 add, 10 divide, 115 multiply, 6 sincos, 1 sqrt
+#   singularities: 44 compare and select, 87 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
+#   condition_number: 44 compare and select, 119 add, 10 divide, 162 multiply, 6 sincos, 3 sqrt
+#   constraint: 44 compare and select, 91 add, 8 divide, 148 multiply, 6 sincos, 1 sqrt
 #   ik: 139 compare and select, 130 add, 6 atan2, 13 divide, 151 multiply, 3 sincos, 9 sqrt
 #   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -171,218 +159,212 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del s1
     u_z = t1 - L * s2
     del s2
-    t2 = f - e
-    t3 = L * c1 + t2
+    t2 = L * c1
     del c1
-    c1_x = c_alpha1 * t3
+    t3 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t2
     del c_alpha1
-    t4 = L * c2 + t2
+    t4 = L * c2
     del c2
-    t5 = c1_x - c_alpha2 * t4
+    t5 = t3 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t4)
     del c_alpha2
-    c1_y = s_alpha1 * t3
-    del s_alpha1, t3
-    t6 = c1_y - s_alpha2 * t4
+    t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t2
+    del s_alpha1, t2
+    t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4)
     del s_alpha2, t4
-    u_u = u_z * u_z + t5 * t5 + t6 * t6
+    u_u = u_z * u_z + t5 * t5 + t7 * t7
     size = f + e + L + l
-    t7 = size * size
-    t8 = _runtime.VANISHING * _runtime.VANISHING
-    t9 = t7 * t8
+    t8 = size * size
+    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
     same = u_u <= t9
-    t10 = L * c3 + t2
-    del c3, t2
-    t11 = c1_x - c_alpha3 * t10
+    t10 = L * c3
+    del c3
+    t11 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10)
     del c_alpha3
-    t12 = _runtime.select(same, t11, t5)
-    t13 = c1_y - s_alpha3 * t10
-    del s_alpha3, t10
-    t14 = _runtime.select(same, t13, t6)
+    d_x = _runtime.select(same, t11, t5)
     v_z = t1 - L * s3
     del s3
-    v_v = v_z * v_z + t11 * t11 + t13 * t13
+    t12 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10)
+    del s_alpha3, t10
+    v_v = v_z * v_z + t11 * t11 + t12 * t12
     all_same = u_u + v_v <= t9
-    del t9
     whole = _runtime.select(size == 0.0, 1.0, size)
-    a_x = _runtime.select(all_same, whole, -t12)
-    t15 = _runtime.select(same, t6, t13)
-    del t13, t6
-    t16 = _runtime.select(same, t5, t11)
-    del t11, t5
-    t17 = a_x * t15 + t14 * t16
-    d_z = _runtime.select(same, v_z, u_z)
-    t18 = _runtime.select(same, u_z, v_z)
-    del u_z, v_z
-    t19 = a_x * t18 + t16 * d_z
-    t20 = t14 * t17 + d_z * t19
-    t21 = t14 * t18 - t15 * d_z
-    product_2 = t21 * t21 + t19 * t19 + t17 * t17
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t22 = mu * _runtime.select(same, u_u, v_v)
-    del same, u_u, v_v
-    slim = product_2 - t22 * 0.000244140625 <= _runtime.VANISHING * t22
-    del t22
+    del u_u, v_v
     over = 1.0 / mu
-    t23 = a_x * t17 - d_z * t21
-    n_z = a_x * t19 + t14 * t21
-    m_m = _runtime.select(slim, over * (t20 * t20 + t23 * t23 + n_z * n_z), product_2)
-    del product_2
-    in_line = m_m <= t8 * (t7 * mu)
-    del t8
+    t13 = _runtime.select(same, t12, t7)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t14 = _runtime.select(same, t7, t12)
+    del t12, t7
+    t15 = _runtime.select(same, t5, t11)
+    del t11, t5
+    t16 = a_x * t14 - t13 * t15
+    d_z = _runtime.select(same, v_z, u_z)
+    t17 = _runtime.select(same, u_z, v_z)
+    del same, u_z, v_z
+    t18 = a_x * t17 - t15 * d_z
+    t19 = over * (t13 * t16 + d_z * t18)
+    t20 = t13 * t17 - t14 * d_z
+    t21 = over * (a_x * t16 - d_z * t20)
+    del t16
+    n_z = over * (a_x * t18 + t13 * t20)
+    del over, t18, t20
+    nu = t19 * t19 + t21 * t21 + n_z * n_z
+    in_line = nu <= t9
+    del t9
     g_1 = whole * d_z
-    s_w = _runtime.sign(-(t14 * a_x))
-    t24 = whole * (t14 - a_x * s_w)
+    s_w = _runtime.sign(t13 * a_x)
+    t22 = whole * (t13 + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t24 * t24, m_m)
-    del m_m
-    part = 1.0 / w_w
-    t25 = t16 * (t12 - t16) + t15 * (t14 - t15) + t18 * (d_z - t18)
-    del t15, t16, t18
-    t26 = _runtime.select(in_line, 0.0, part * t25 * 0.5)
-    t27 = t12 * 0.5 - (c1_x + t20 * t26)
-    del c1_x, t12
-    t28 = _runtime.select(slim, over * (t14 * n_z - d_z * t23), t21)
-    del t21
-    t29 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t26 * t26)))
-    del all_same, mu, w_w
-    t30 = l * l - t29
-    del t29
-    slack = np.maximum(t30, 0.0)
-    t31 = l * size * 0.75
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t22 * t22), 1.0 / (mu * nu))
+    t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
+    del t14, t15, t17
+    t24 = _runtime.select(in_line, 0.0, mu * part * t23 * 0.5)
+    t25 = d_x * 0.5 - (t3 - t19 * t24)
+    del d_x, t3
+    w_x = _runtime.select(in_line, g_1 * s_w, t13 * n_z - d_z * t21)
+    del s_w
+    t26 = _runtime.select(all_same, 0.0, nu * (t24 * t24) + mu * 0.25)
+    del all_same, mu, nu
+    t27 = l * l - t26
+    del t26
+    slack = np.maximum(t27, 0.0)
+    t28 = l * size * 0.75
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part) * np.sqrt(slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t28, 0.0, np.sqrt(part * slack))
     del part, slack
-    t32 = _runtime.select(in_line, g_1 * s_w, -t28) * h
-    del s_w, t28
-    t33 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t34 = t33 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t33
-    t35 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    invalid = np.logical_not(t34 & t35)
-    del t34, t35
-    t36 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t7 * _runtime.FEASIBILITY
-    del t25, t7
-    unreachable = np.logical_not(t36 & (-(_runtime.FEASIBILITY * t31) <= t30))
-    del t30, t31, t36
-    t37 = _runtime.poison(invalid | unreachable)
-    t38 = t14 * 0.5 - (c1_y + t23 * t26)
-    del c1_y
-    t39 = _runtime.select(slim, over * (a_x * n_z + d_z * t20), t19)
-    del t19
-    t40 = h * _runtime.select(in_line, g_1, -t39)
-    del g_1, t39
-    t41 = d_z * 0.5 - (t1 + n_z * t26)
-    del d_z, n_z, t1, t26
-    t42 = _runtime.select(slim, over * (a_x * t23 + t14 * t20), t17)
-    del a_x, over, slim, t14, t17, t20, t23
-    t43 = h * _runtime.select(in_line, t24, -t42)
-    del h, t24, t42
-    t44 = _runtime.status(invalid, unreachable, in_line)
+    t29 = w_x * h
+    del w_x
+    t30 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t31 = t30 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t30
+    t32 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    invalid = np.logical_not(t31 & t32)
+    del t31, t32
+    t33 = np.abs(_runtime.select(in_line, -t23, 0.0)) <= t8 * _runtime.FEASIBILITY
+    del t23, t8
+    unreachable = np.logical_not(t33 & (-(_runtime.FEASIBILITY * t28) <= t27))
+    del t27, t28, t33
+    t34 = _runtime.poison(invalid | unreachable)
+    t35 = t13 * 0.5 - (t6 + t21 * t24)
+    del t6
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t19))
+    del g_1
+    t36 = h * w_y
+    del w_y
+    t37 = d_z * 0.5 - (t1 + n_z * t24)
+    del d_z, n_z, t1, t24
+    w_z = _runtime.select(in_line, -t22, a_x * t21 + t13 * t19)
+    del a_x, t13, t19, t21, t22
+    t38 = h * w_z
+    del h, w_z
+    t39 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        -(t27 + t32) + t37,
-        -(t38 + t40) + t37,
-        t41 - t43 + t37,
-        t32 - t27 + t37,
-        t40 - t38 + t37,
-        t41 + t43 + t37,
-        t44,
-        t44,
+        t25 - t29 + t34,
+        t35 - t36 + t34,
+        t37 - t38 + t34,
+        t29 + t25 + t34,
+        t36 + t35 + t34,
+        t38 + t37 + t34,
+        t39,
+        t39,
     )
 
 
 def _fk_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     # Where nothing vanishes; last, whether something does.
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s3, c3 = _runtime.sincos_as_in_c(theta3)
     s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
     s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
     s2, c2 = _runtime.sincos_as_in_c(theta2)
     s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
-    t1 = L * s1
-    del s1
-    v_z = t1 - L * s3
-    del s3
-    t2 = f - e
-    t3 = L * c1 + t2
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
+    t1 = L * c1
     del c1
-    c1_y = s_alpha1 * t3
-    del s_alpha1
-    t4 = L * c2 + t2
+    t2 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t1
+    del c_alpha1
+    t3 = L * c2
     del c2
-    t5 = c1_y - s_alpha2 * t4
-    del s_alpha2
-    u_z = t1 - L * s2
+    t4 = t2 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t3)
+    del c_alpha2
+    t5 = L * s1
+    del s1
+    u_z = t5 - L * s2
     del s2
-    t6 = L * c3 + t2
-    del c3, t2
-    t7 = c1_y - s_alpha3 * t6
+    t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t1
+    del s_alpha1, t1
+    t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t3)
+    del s_alpha2, t3
+    u_u = u_z * u_z + t4 * t4 + t7 * t7
+    over = 1.0 / u_u
+    t8 = L * c3
+    del c3
+    t9 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8)
     del s_alpha3
-    t8 = v_z * t5 - u_z * t7
-    c1_x = c_alpha1 * t3
-    del c_alpha1, t3
-    t9 = c1_x - c_alpha2 * t4
-    del c_alpha2, t4
-    t10 = c1_x - c_alpha3 * t6
-    del c_alpha3, t6
-    m_y = v_z * t9 - u_z * t10
-    m_z = t9 * t7 - t5 * t10
-    product_2 = t8 * t8 + m_y * m_y + m_z * m_z
-    part = 1.0 / product_2
-    u_u = u_z * u_z + t9 * t9 + t5 * t5
-    t11 = v_z * (u_z - v_z) + t10 * (t9 - t10) + t7 * (t5 - t7)
-    t12 = part * t11 * 0.5
+    t10 = t2 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8)
+    del c_alpha3, t8
+    t11 = t4 * t9 - t7 * t10
+    v_z = t5 - L * s3
+    del s3
+    t12 = v_z * t4 - u_z * t10
+    t13 = over * (t7 * t11 + u_z * t12)
+    t14 = v_z * t7 - u_z * t9
+    t15 = over * (t4 * t11 - u_z * t14)
     del t11
-    t13 = l * l - u_u * (0.25 + product_2 * (t12 * t12))
-    slack = np.maximum(t13, 0.0)
+    n_z = over * (t4 * t12 + t7 * t14)
+    del over, t12, t14
+    nu = t13 * t13 + t15 * t15 + n_z * n_z
+    part = 1.0 / (u_u * nu)
+    t16 = v_z * (u_z - v_z) + t10 * (t4 - t10) + t9 * (t7 - t9)
+    t17 = u_u * part * t16 * 0.5
+    del t16
+    t18 = t4 * 0.5 - (t2 - t13 * t17)
+    del t2
+    t19 = l * l - (nu * (t17 * t17) + u_u * 0.25)
+    slack = np.maximum(t19, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t14 = t8 * h
-    t15 = t9 * 0.5 - (c1_x - (t5 * m_z + u_z * m_y) * t12)
-    del c1_x
-    t16 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t17 = t16 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t16
-    t18 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    invalid = np.logical_not(t17 & t18)
-    del t17, t18
-    size = f + e + L + l
-    t19 = size * size
-    t20 = l * size * 0.75
-    del size
-    t21 = (np.abs(0.0) <= t19 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t20) <= t13)
-    del t13
-    unreachable = np.logical_not(t21)
+    t20 = (t7 * n_z - u_z * t15) * h
+    t21 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t22 = t21 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     del t21
-    t22 = _runtime.poison(invalid | unreachable)
-    t23 = t5 * 0.5 - (c1_y + t12 * (t9 * m_z - u_z * t8))
-    del c1_y
-    t24 = m_y * h
-    t25 = u_z * 0.5 - (t1 + t12 * (t9 * m_y + t5 * t8))
-    del m_y, t1, t12, t5, t8, t9, u_z
-    t26 = m_z * h
-    del h, m_z
-    t27 = _runtime.status(invalid, unreachable, np.False_)
+    t23 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    invalid = np.logical_not(t22 & t23)
+    del t22, t23
+    size = f + e + L + l
+    t24 = size * size
+    t25 = l * size * 0.75
+    del size
+    t26 = (np.abs(0.0) <= t24 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t25) <= t19)
+    del t19
+    unreachable = np.logical_not(t26)
+    del t26
+    t27 = _runtime.poison(invalid | unreachable)
+    t28 = h * (t4 * n_z + u_z * t13)
+    t29 = t7 * 0.5 - (t6 + t15 * t17)
+    del t6
+    t30 = h * (t4 * t15 + t7 * t13)
+    del h, t13, t15, t4, t7
+    t31 = n_z * t17 + (t5 - u_z * 0.5)
+    del n_z, t17, t5, u_z
+    t32 = _runtime.status(invalid, unreachable, np.False_)
     del invalid, unreachable
-    t28 = _runtime.VANISHING * _runtime.VANISHING
-    t29 = t19 * t28
-    v_v = v_z * v_z + t10 * t10 + t7 * t7
-    del t10, t7, v_z
-    t30 = u_u * v_v
-    slim = product_2 - t30 * 0.000244140625 <= _runtime.VANISHING * t30
-    del t30
-    t31 = (u_u <= t29) | (u_u + v_v <= t29) | slim | (product_2 <= t28 * (t19 * u_u))
-    del product_2, slim, t19, t28, t29, u_u, v_v
+    t33 = _runtime.VANISHING * _runtime.VANISHING * t24
+    del t24
+    all_same = u_u + (v_z * v_z + t10 * t10 + t9 * t9) <= t33
+    del t10, t9, v_z
+    t34 = (u_u <= t33) | all_same | (nu <= t33) | (slack <= _runtime.VANISHING * t25)
+    del all_same, nu, slack, t25, t33, u_u
     return (
-        t14 - t15 + t22,
-        -(t23 + t24) + t22,
-        t25 - t26 + t22,
-        -(t15 + t14) + t22,
-        t24 - t23 + t22,
-        t25 + t26 + t22,
-        t27,
-        t27,
-        t31 | (slack <= _runtime.VANISHING * t20),
+        t18 - t20 + t27,
+        t28 + t29 + t27,
+        -(t30 + t31) + t27,
+        t20 + t18 + t27,
+        t29 - t28 + t27,
+        t30 - t31 + t27,
+        t32,
+        t32,
+        t34,
     )
 
 
@@ -394,7 +376,7 @@ _FK = _runtime.Kernel(
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
     common=_fk_common,
-    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -446,8 +428,8 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     s3, c3 = _runtime.sincos(theta3)
+    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     t1 = f * c_alpha1
     t2 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
     t3 = t2 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
@@ -458,342 +440,326 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t6 = L * s2
     del s2
     u_z = t5 - t6
-    t7 = L * c1
+    t7 = e * c_alpha1
+    t8 = L * c1
     del c1
-    t8 = f - e
-    t9 = t7 + t8
-    c1_x = c_alpha1 * t9
-    t10 = L * c2
+    t9 = t1 + c_alpha1 * t8
+    del c_alpha1
+    t10 = t7 - t9
+    t11 = e * c_alpha2
+    t12 = f * c_alpha2
+    t13 = L * c2
     del c2
-    t11 = t10 + t8
-    t12 = c1_x - c_alpha2 * t11
-    c1_y = s_alpha1 * t9
-    del t9
-    t13 = c1_y - s_alpha2 * t11
-    del t11
-    u_u = u_z * u_z + t12 * t12 + t13 * t13
-    size = f + e + L + l
-    t14 = size * size
-    t15 = _runtime.VANISHING * _runtime.VANISHING
-    t16 = t14 * t15
-    same = u_u <= t16
-    t17 = L * c3
-    del c3
-    t18 = t17 + t8
-    del t8
-    t19 = c1_y - s_alpha3 * t18
-    t20 = _runtime.select(same, t19, t13)
-    t21 = L * s3
+    t14 = t12 + c_alpha2 * t13
+    del c_alpha2
+    t15 = t10 - (t11 - t14)
+    t16 = e * s_alpha1
+    t17 = f * s_alpha1
+    t18 = t17 + s_alpha1 * t8
+    del s_alpha1, t8
+    t19 = t16 - t18
+    t20 = e * s_alpha2
+    t21 = f * s_alpha2
+    t22 = t21 + s_alpha2 * t13
+    del s_alpha2, t13
+    t23 = t19 - (t20 - t22)
+    u_u = u_z * u_z + t15 * t15 + t23 * t23
+    t24 = L * s3
     del s3
-    v_z = t5 - t21
-    t22 = _runtime.select(same, u_z, v_z)
-    d_z = _runtime.select(same, v_z, u_z)
-    del u_z
-    t23 = _runtime.select(same, t13, t19)
-    del t13
-    t24 = t20 * t22 - d_z * t23
-    t25 = c1_x - c_alpha3 * t18
-    del t18
-    v_v = v_z * v_z + t25 * t25 + t19 * t19
-    del t19, v_z
-    all_same = u_u + v_v <= t16
-    del t16
+    v_z = t5 - t24
+    t25 = e * c_alpha3
+    t26 = f * c_alpha3
+    t27 = L * c3
+    del c3
+    t28 = t26 + c_alpha3 * t27
+    del c_alpha3
+    t29 = t10 - (t25 - t28)
+    t30 = e * s_alpha3
+    t31 = f * s_alpha3
+    t32 = t31 + s_alpha3 * t27
+    del s_alpha3, t27
+    t33 = t19 - (t30 - t32)
+    v_v = v_z * v_z + t29 * t29 + t33 * t33
+    size = f + e + L + l
+    t34 = size * size
+    t35 = _runtime.VANISHING * _runtime.VANISHING * t34
+    all_same = u_u + v_v <= t35
     whole = _runtime.select(size == 0.0, 1.0, size)
-    t26 = _runtime.select(same, t25, t12)
-    a_x = _runtime.select(all_same, whole, -t26)
-    t27 = _runtime.select(same, t12, t25)
-    del t12, t25
-    t28 = t22 * a_x + d_z * t27
-    t29 = t23 * a_x + t20 * t27
-    product_2 = t24 * t24 + t28 * t28 + t29 * t29
+    same = u_u <= t35
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t30 = mu * _runtime.select(same, u_u, v_v)
-    del same, u_u, v_v
-    slim = product_2 - t30 * 0.000244140625 <= _runtime.VANISHING * t30
-    del t30
+    del u_u, v_v
     over = 1.0 / mu
-    t31 = t20 * t29 + d_z * t28
-    t32 = a_x * t29 - d_z * t24
-    n_z = a_x * t28 + t20 * t24
-    m_m = _runtime.select(slim, over * (t31 * t31 + t32 * t32 + n_z * n_z), product_2)
-    del product_2
-    in_line = m_m <= t15 * (t14 * mu)
-    del t15
-    t33 = t27 * (t26 - t27) + t23 * (t20 - t23) - t22 * (t22 - d_z)
-    del t22, t23, t27
-    t34 = np.abs(_runtime.select(in_line, -t33, 0.0)) <= t14 * _runtime.FEASIBILITY
-    del t14
-    t35 = 0.9375 * (l * size)
+    t36 = _runtime.select(same, t33, t23)
+    d_x = _runtime.select(same, t29, t15)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t37 = _runtime.select(same, t23, t33)
+    del t23, t33
+    t38 = _runtime.select(same, t15, t29)
+    del t15, t29
+    t39 = a_x * t37 - t36 * t38
+    d_z = _runtime.select(same, v_z, u_z)
+    t40 = _runtime.select(same, u_z, v_z)
+    del same, u_z, v_z
+    t41 = a_x * t40 - t38 * d_z
+    t42 = over * (t36 * t39 + d_z * t41)
+    t43 = t36 * t40 - t37 * d_z
+    t44 = over * (a_x * t39 - d_z * t43)
+    del t39
+    n_z = over * (a_x * t41 + t36 * t43)
+    del over, t41, t43
+    nu = t42 * t42 + t44 * t44 + n_z * n_z
+    in_line = nu <= t35
+    del t35
+    t45 = t38 * (d_x - t38) + t37 * (t36 - t37) + t40 * (d_z - t40)
+    del t37, t38, t40
+    t46 = np.abs(_runtime.select(in_line, -t45, 0.0)) <= t34 * _runtime.FEASIBILITY
+    del t34
+    t47 = 0.9375 * (l * size)
     del size
     g_1 = whole * d_z
-    s_w = _runtime.sign(-(t20 * a_x))
-    t36 = whole * (t20 - a_x * s_w)
+    s_w = _runtime.sign(t36 * a_x)
+    t48 = whole * (t36 + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t36 * t36, m_m)
-    del m_m
-    part = 1.0 / w_w
-    t37 = _runtime.select(in_line, 0.0, t33 * part * 0.5)
-    del t33
-    t38 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t37 * t37)))
-    del all_same, mu, w_w
-    t39 = l * l - t38
-    del t38
-    unreachable = np.logical_not(t34 & (-(_runtime.FEASIBILITY * t35) <= t39))
-    del t34
-    t40 = _runtime.poison(np.logical_not(t3 & t4) | unreachable)
-    del t3, t4, unreachable
-    t41 = t1 + t40
-    t42 = f * s_alpha1
-    t43 = t42 + t40
-    t44 = 0.0 + t40
-    t45 = t1 + t7 * c_alpha1
-    del t1
-    t46 = t45 + t40
-    t47 = t42 + t7 * s_alpha1
-    del t42, t7
-    t48 = t47 + t40
-    t49 = -t5 + t40
-    t50 = e * c_alpha1
-    del c_alpha1
-    t51 = t31 * t37 - t26 * 0.5
-    del t26
-    t52 = _runtime.select(slim, over * (t20 * n_z - d_z * t32), t24)
-    del t24
-    slack = np.maximum(t39, 0.0)
-    del t39
-    h = _runtime.select(slack <= _runtime.VANISHING * t35, 0.0, np.sqrt(part) * np.sqrt(slack))
-    del part, slack, t35
-    t53 = _runtime.select(in_line, g_1 * s_w, -t52) * h
-    del s_w, t52
-    t54 = c1_x + (t51 - t53)
-    t55 = t50 + t54
-    t56 = e * s_alpha1
-    del s_alpha1
-    t57 = t32 * t37 - t20 * 0.5
-    t58 = _runtime.select(slim, over * (a_x * n_z + d_z * t31), t28)
-    del t28
-    t59 = h * _runtime.select(in_line, g_1, -t58)
-    del g_1, t58
-    t60 = c1_y + (t57 - t59)
-    t61 = t56 + t60
-    t62 = n_z * t37 - d_z * 0.5
-    del d_z, n_z, t37
-    t63 = _runtime.select(slim, over * (a_x * t32 + t20 * t31), t29)
-    del a_x, over, slim, t20, t29, t31, t32
-    t64 = h * _runtime.select(in_line, t36, -t63)
-    del h, in_line, t36, t63
-    t65 = -(t5 + (t62 + t64)) + t40
-    t66 = t56 * 0.5
-    t67 = t45 - t66 + t40
-    t68 = t50 * 0.5
-    t69 = t68 + t47 + t40
-    t70 = t66 + t45 + t40
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t48 * t48), 1.0 / (mu * nu))
+    t49 = _runtime.select(in_line, 0.0, mu * t45 * part * 0.5)
     del t45
-    t71 = t47 - t68 + t40
-    del t47
-    t72 = f * c_alpha2
-    t73 = t72 + t40
-    t74 = f * s_alpha2
-    t75 = t74 + t40
-    t76 = t72 + t10 * c_alpha2
-    del t72
-    t77 = t76 + t40
-    t78 = t74 + t10 * s_alpha2
-    del t10, t74
-    t79 = t78 + t40
-    t80 = -t6 + t40
-    del t6
-    t81 = e * c_alpha2
-    del c_alpha2
-    t82 = t81 + t54
-    t83 = e * s_alpha2
-    del s_alpha2
-    t84 = t83 + t60
-    t85 = t83 * 0.5
-    t86 = t76 - t85 + t40
-    t87 = t81 * 0.5
-    t88 = t87 + t78 + t40
-    t89 = t85 + t76 + t40
-    del t76
-    t90 = t78 - t87 + t40
-    del t78
-    t91 = f * c_alpha3
-    t92 = t91 + t40
-    t93 = f * s_alpha3
-    t94 = t93 + t40
-    t95 = t91 + t17 * c_alpha3
-    del t91
-    t96 = t95 + t40
-    t97 = t93 + t17 * s_alpha3
-    del t17, t93
-    t98 = t97 + t40
-    t99 = -t21 + t40
-    del t21
-    t100 = e * c_alpha3
-    del c_alpha3
-    t101 = t100 + t54
-    t102 = e * s_alpha3
-    del s_alpha3
-    t103 = t102 + t60
-    t104 = t102 * 0.5
-    t105 = t95 - t104 + t40
-    t106 = t100 * 0.5
-    t107 = t106 + t97 + t40
-    t108 = t104 + t95 + t40
-    del t95
-    t109 = t97 - t106 + t40
-    del t97
-    t110 = c1_x + (t51 + t53)
-    del c1_x, t51, t53
-    t111 = t50 + t110
+    t50 = _runtime.select(all_same, 0.0, nu * (t49 * t49) + mu * 0.25)
+    del all_same, mu, nu
+    t51 = l * l - t50
     del t50
-    t112 = c1_y + (t57 + t59)
-    del c1_y, t57, t59
-    t113 = t56 + t112
-    del t56
-    t114 = -(t5 + (t62 - t64)) + t40
-    del t5, t62, t64
-    t115 = t81 + t110
-    del t81
-    t116 = t83 + t112
-    del t83
-    t117 = t100 + t110
-    del t100
-    t118 = t102 + t112
-    del t102
+    unreachable = np.logical_not(t46 & (-(_runtime.FEASIBILITY * t47) <= t51))
+    del t46
+    t52 = _runtime.poison(np.logical_not(t3 & t4) | unreachable)
+    del t3, t4, unreachable
+    t53 = t1 + t52
+    del t1
+    t54 = t17 + t52
+    del t17
+    t55 = 0.0 + t52
+    t56 = t9 + t52
+    t57 = t18 + t52
+    t58 = -t5 + t52
+    t59 = t42 * t49 + d_x * 0.5
+    del d_x
+    w_x = _runtime.select(in_line, g_1 * s_w, t36 * n_z - d_z * t44)
+    del s_w
+    slack = np.maximum(t51, 0.0)
+    del t51
+    h = _runtime.select(slack <= _runtime.VANISHING * t47, 0.0, np.sqrt(part * slack))
+    del part, slack, t47
+    t60 = w_x * h
+    del w_x
+    t61 = t10 - (t59 - t60)
+    t62 = t7 - t61
+    t63 = t44 * t49 - t36 * 0.5
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t42))
+    del g_1
+    t64 = h * w_y
+    del w_y
+    t65 = t19 + (t63 + t64)
+    t66 = t16 - t65
+    t67 = n_z * t49 - d_z * 0.5
+    del d_z, n_z, t49
+    w_z = _runtime.select(in_line, -t48, a_x * t44 + t36 * t42)
+    del a_x, in_line, t36, t42, t44, t48
+    t68 = h * w_z
+    del h, w_z
+    t69 = -(t5 + (t67 + t68)) + t52
+    t70 = t16 * 0.5
+    t71 = t9 - t70 + t52
+    t72 = t7 * 0.5
+    t73 = t72 + t18 + t52
+    t74 = t70 + t9 + t52
+    del t9
+    t75 = t18 - t72 + t52
+    del t18
+    t76 = t12 + t52
+    del t12
+    t77 = t21 + t52
+    del t21
+    t78 = t14 + t52
+    t79 = t22 + t52
+    t80 = -t6 + t52
+    del t6
+    t81 = t11 - t61
+    t82 = t20 - t65
+    t83 = t20 * 0.5
+    t84 = t14 - t83 + t52
+    t85 = t11 * 0.5
+    t86 = t85 + t22 + t52
+    t87 = t83 + t14 + t52
+    del t14
+    t88 = t22 - t85 + t52
+    del t22
+    t89 = t26 + t52
+    del t26
+    t90 = t31 + t52
+    del t31
+    t91 = t28 + t52
+    t92 = t32 + t52
+    t93 = -t24 + t52
+    del t24
+    t94 = t25 - t61
+    t95 = t30 - t65
+    t96 = t30 * 0.5
+    t97 = t28 - t96 + t52
+    t98 = t25 * 0.5
+    t99 = t98 + t32 + t52
+    t100 = t96 + t28 + t52
+    del t28
+    t101 = t32 - t98 + t52
+    del t32
+    t102 = t10 - (t59 + t60)
+    del t10, t59, t60
+    t103 = t7 - t102
+    del t7
+    t104 = t19 + (t63 - t64)
+    del t19, t63, t64
+    t105 = t16 - t104
+    del t16
+    t106 = -(t5 + (t67 - t68)) + t52
+    del t5, t67, t68
+    t107 = t11 - t102
+    del t11
+    t108 = t20 - t104
+    del t20
+    t109 = t25 - t102
+    del t25
+    t110 = t30 - t104
+    del t30
     return (
-        t41,
-        t43,
-        t44,
-        t46,
-        t48,
-        t49,
-        t55 + t40,
-        t61 + t40,
-        t65,
-        t67,
+        t53,
+        t54,
+        t55,
+        t56,
+        t57,
+        t58,
+        t62 + t52,
+        t66 + t52,
         t69,
-        t49,
-        t70,
         t71,
-        t49,
-        t55 - t66 + t40,
-        t68 + t61 + t40,
-        t65,
-        t66 + t55 + t40,
-        t61 - t68 + t40,
-        t65,
         t73,
+        t58,
+        t74,
         t75,
-        t44,
+        t58,
+        t62 - t70 + t52,
+        t72 + t66 + t52,
+        t69,
+        t70 + t62 + t52,
+        t66 - t72 + t52,
+        t69,
+        t76,
         t77,
+        t55,
+        t78,
         t79,
         t80,
-        t82 + t40,
-        t84 + t40,
-        t65,
+        t81 + t52,
+        t82 + t52,
+        t69,
+        t84,
         t86,
+        t80,
+        t87,
         t88,
         t80,
+        t81 - t83 + t52,
+        t85 + t82 + t52,
+        t69,
+        t83 + t81 + t52,
+        t82 - t85 + t52,
+        t69,
         t89,
         t90,
-        t80,
-        t82 - t85 + t40,
-        t87 + t84 + t40,
-        t65,
-        t85 + t82 + t40,
-        t84 - t87 + t40,
-        t65,
+        t55,
+        t91,
         t92,
-        t94,
-        t44,
-        t96,
-        t98,
-        t99,
-        t101 + t40,
-        t103 + t40,
-        t65,
-        t105,
-        t107,
-        t99,
-        t108,
-        t109,
-        t99,
-        t101 - t104 + t40,
-        t106 + t103 + t40,
-        t65,
-        t104 + t101 + t40,
-        t103 - t106 + t40,
-        t65,
-        t54 + t40,
-        t60 + t40,
-        t65,
-        t41,
-        t43,
-        t44,
-        t46,
-        t48,
-        t49,
-        t111 + t40,
-        t113 + t40,
-        t114,
-        t67,
+        t93,
+        t94 + t52,
+        t95 + t52,
         t69,
-        t49,
-        t70,
+        t97,
+        t99,
+        t93,
+        t100,
+        t101,
+        t93,
+        t94 - t96 + t52,
+        t98 + t95 + t52,
+        t69,
+        t96 + t94 + t52,
+        t95 - t98 + t52,
+        t69,
+        -t61 + t52,
+        -t65 + t52,
+        t69,
+        t53,
+        t54,
+        t55,
+        t56,
+        t57,
+        t58,
+        t103 + t52,
+        t105 + t52,
+        t106,
         t71,
-        t49,
-        t111 - t66 + t40,
-        t68 + t113 + t40,
-        t114,
-        t66 + t111 + t40,
-        t113 - t68 + t40,
-        t114,
         t73,
+        t58,
+        t74,
         t75,
-        t44,
+        t58,
+        t103 - t70 + t52,
+        t72 + t105 + t52,
+        t106,
+        t70 + t103 + t52,
+        t105 - t72 + t52,
+        t106,
+        t76,
         t77,
+        t55,
+        t78,
         t79,
         t80,
-        t115 + t40,
-        t116 + t40,
-        t114,
+        t107 + t52,
+        t108 + t52,
+        t106,
+        t84,
         t86,
+        t80,
+        t87,
         t88,
         t80,
+        t107 - t83 + t52,
+        t85 + t108 + t52,
+        t106,
+        t83 + t107 + t52,
+        t108 - t85 + t52,
+        t106,
         t89,
         t90,
-        t80,
-        t115 - t85 + t40,
-        t87 + t116 + t40,
-        t114,
-        t85 + t115 + t40,
-        t116 - t87 + t40,
-        t114,
+        t55,
+        t91,
         t92,
-        t94,
-        t44,
-        t96,
-        t98,
+        t93,
+        t109 + t52,
+        t110 + t52,
+        t106,
+        t97,
         t99,
-        t117 + t40,
-        t118 + t40,
-        t114,
-        t105,
-        t107,
-        t99,
-        t108,
-        t109,
-        t99,
-        t117 - t104 + t40,
-        t106 + t118 + t40,
-        t114,
-        t104 + t117 + t40,
-        t118 - t106 + t40,
-        t114,
-        t110 + t40,
-        t112 + t40,
-        t114,
+        t93,
+        t100,
+        t101,
+        t93,
+        t109 - t96 + t52,
+        t98 + t110 + t52,
+        t106,
+        t96 + t109 + t52,
+        t110 - t98 + t52,
+        t106,
+        -t102 + t52,
+        -t104 + t52,
+        t106,
     )
 
 
@@ -804,7 +770,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Array("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -848,249 +814,133 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     s2, c2 = _runtime.sincos(theta2)
     s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     s3, c3 = _runtime.sincos(theta3)
+    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     t1 = L * s1
     del s1
     u_z = t1 - L * s2
     del s2
-    t2 = f - e
-    t3 = L * c1 + t2
+    t2 = L * c1
     del c1
-    c1_x = c_alpha1 * t3
+    t3 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t2
     del c_alpha1
-    t4 = L * c2 + t2
+    t4 = L * c2
     del c2
-    t5 = c1_x - c_alpha2 * t4
+    t5 = t3 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t4)
     del c_alpha2
-    c1_y = s_alpha1 * t3
-    del s_alpha1, t3
-    t6 = c1_y - s_alpha2 * t4
+    t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t2
+    del s_alpha1, t2
+    t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4)
     del s_alpha2, t4
-    u_u = u_z * u_z + t5 * t5 + t6 * t6
-    size = f + e + L + l
-    t7 = size * size
-    t8 = _runtime.VANISHING * _runtime.VANISHING
-    t9 = t7 * t8
-    same = u_u <= t9
-    t10 = L * c3 + t2
-    del c3, t2
-    t11 = c1_y - s_alpha3 * t10
-    del c1_y, s_alpha3
-    t12 = _runtime.select(same, t11, t6)
+    u_u = u_z * u_z + t5 * t5 + t7 * t7
     v_z = t1 - L * s3
     del s3, t1
-    t13 = c1_x - c_alpha3 * t10
-    del c1_x, c_alpha3, t10
-    v_v = v_z * v_z + t13 * t13 + t11 * t11
-    all_same = u_u + v_v <= t9
-    del t9
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    t14 = _runtime.select(same, t13, t5)
-    a_x = _runtime.select(all_same, whole, -t14)
-    t15 = _runtime.select(same, t6, t11)
-    t16 = _runtime.select(same, t5, t13)
-    t17 = a_x * t15 + t12 * t16
-    d_z = _runtime.select(same, v_z, u_z)
-    t18 = _runtime.select(same, u_z, v_z)
-    t19 = a_x * t18 + t16 * d_z
-    t20 = t12 * t17 + d_z * t19
-    t21 = t12 * t18 - t15 * d_z
-    product_2 = t21 * t21 + t19 * t19 + t17 * t17
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t22 = mu * _runtime.select(same, u_u, v_v)
-    del same, u_u, v_v
-    slim = product_2 - t22 * 0.000244140625 <= _runtime.VANISHING * t22
-    del t22
-    over = 1.0 / mu
-    t23 = a_x * t17 - d_z * t21
-    n_z = a_x * t19 + t12 * t21
-    m_m = _runtime.select(slim, over * (t20 * t20 + t23 * t23 + n_z * n_z), product_2)
-    del product_2
-    in_line = m_m <= t8 * (t7 * mu)
-    del t8
-    g_1 = whole * d_z
-    s_w = _runtime.sign(-(t12 * a_x))
-    t24 = whole * (t12 - a_x * s_w)
-    del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t24 * t24, m_m)
-    del m_m
-    part = 1.0 / w_w
-    t25 = t16 * (t14 - t16) + t15 * (t12 - t15) + t18 * (d_z - t18)
-    del t15, t16, t18
-    t26 = _runtime.select(in_line, 0.0, part * t25 * 0.5)
-    t27 = t20 * t26 - t14 * 0.5
-    del t14
-    t28 = _runtime.select(slim, over * (t12 * n_z - d_z * t23), t21)
-    del t21
-    t29 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t26 * t26)))
-    del all_same, mu, w_w
-    t30 = l * l - t29
-    del t29
-    slack = np.maximum(t30, 0.0)
-    t31 = 0.9375 * (l * size)
-    del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part) * np.sqrt(slack))
-    del part, slack
-    t32 = _runtime.select(in_line, g_1 * s_w, -t28) * h
-    del s_w, t28
-    A_11 = t27 - t32
-    t33 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t34 = t33 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t33
-    t35 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t36 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t7 * _runtime.FEASIBILITY
-    del t25, t7
-    unreachable = np.logical_not(t36 & (-(_runtime.FEASIBILITY * t31) <= t30))
-    del t30, t31, t36
-    t37 = _runtime.poison(np.logical_not(t34 & t35) | unreachable)
-    del t34, t35, unreachable
-    t38 = t23 * t26 - t12 * 0.5
-    t39 = _runtime.select(slim, over * (a_x * n_z + d_z * t20), t19)
-    del t19
-    t40 = h * _runtime.select(in_line, g_1, -t39)
-    del g_1, t39
-    A_12 = t38 - t40
-    t41 = n_z * t26 - d_z * 0.5
-    del d_z, n_z, t26
-    t42 = _runtime.select(slim, over * (a_x * t23 + t12 * t20), t17)
-    del a_x, over, slim, t12, t17, t20, t23
-    t43 = h * _runtime.select(in_line, t24, -t42)
-    del h, in_line, t24, t42
-    t44 = t41 + t43
-    A_11_above = t27 + t32
-    del t27, t32
-    A_12_above = t38 + t40
-    del t38, t40
-    t45 = t41 - t43
-    del t41, t43
-    return (
-        A_11 + t37,
-        A_12 + t37,
-        -t44 + t37,
-        t5 + A_11 + t37,
-        t6 + A_12 + t37,
-        -(u_z + t44) + t37,
-        t13 + A_11 + t37,
-        t11 + A_12 + t37,
-        -(v_z + t44) + t37,
-        A_11_above + t37,
-        A_12_above + t37,
-        -t45 + t37,
-        t5 + A_11_above + t37,
-        t6 + A_12_above + t37,
-        -(u_z + t45) + t37,
-        t13 + A_11_above + t37,
-        t11 + A_12_above + t37,
-        -(v_z + t45) + t37,
-    )
-
-
-def _jacobian_parallel_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
-    # Where nothing vanishes; last, whether something does.
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s2, c2 = _runtime.sincos_as_in_c(theta2)
-    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
-    s3, c3 = _runtime.sincos_as_in_c(theta3)
-    t1 = f - e
-    t2 = L * c1 + t1
-    del c1
-    c1_y = s_alpha1 * t2
-    del s_alpha1
-    t3 = L * c2 + t1
-    del c2
-    t4 = c1_y - s_alpha2 * t3
-    del s_alpha2
-    c1_x = c_alpha1 * t2
-    del c_alpha1, t2
-    t5 = c1_x - c_alpha2 * t3
-    del c_alpha2, t3
-    t6 = L * c3 + t1
-    del c3, t1
-    t7 = c1_y - s_alpha3 * t6
-    del c1_y, s_alpha3
-    t8 = c1_x - c_alpha3 * t6
-    del c1_x, c_alpha3, t6
-    m_z = t5 * t7 - t4 * t8
-    t9 = L * s1
-    del s1
-    u_z = t9 - L * s2
-    del s2
-    v_z = t9 - L * s3
-    del s3, t9
-    m_y = v_z * t5 - u_z * t8
-    t10 = v_z * t4 - u_z * t7
-    product_2 = t10 * t10 + m_y * m_y + m_z * m_z
-    part = 1.0 / product_2
-    t11 = v_z * (u_z - v_z) + t8 * (t5 - t8) + t7 * (t4 - t7)
-    t12 = part * t11 * 0.5
-    del t11
-    t13 = (t4 * m_z + u_z * m_y) * t12 + t5 * 0.5
-    u_u = u_z * u_z + t5 * t5 + t4 * t4
-    t14 = l * l - u_u * (0.25 + product_2 * (t12 * t12))
-    slack = np.maximum(t14, 0.0)
-    h = np.sqrt(part * slack)
-    del part
-    t15 = t10 * h
-    t16 = t13 - t15
-    t17 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t18 = t17 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t17
-    t19 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t8 = L * c3
+    del c3
+    t9 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8)
+    del c_alpha3, t3
+    t10 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8)
+    del s_alpha3, t6, t8
+    v_v = v_z * v_z + t9 * t9 + t10 * t10
     size = f + e + L + l
-    t20 = size * size
-    t21 = 0.9375 * (l * size)
+    t11 = size * size
+    t12 = _runtime.VANISHING * _runtime.VANISHING * t11
+    all_same = u_u + v_v <= t12
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    same = u_u <= t12
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t13 = _runtime.select(same, t10, t7)
+    d_x = _runtime.select(same, t9, t5)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t14 = _runtime.select(same, t7, t10)
+    t15 = _runtime.select(same, t5, t9)
+    t16 = a_x * t14 - t13 * t15
+    d_z = _runtime.select(same, v_z, u_z)
+    t17 = _runtime.select(same, u_z, v_z)
+    del same
+    t18 = a_x * t17 - t15 * d_z
+    t19 = over * (t13 * t16 + d_z * t18)
+    t20 = t13 * t17 - t14 * d_z
+    t21 = over * (a_x * t16 - d_z * t20)
+    del t16
+    n_z = over * (a_x * t18 + t13 * t20)
+    del over, t18, t20
+    nu = t19 * t19 + t21 * t21 + n_z * n_z
+    in_line = nu <= t12
+    del t12
+    g_1 = whole * d_z
+    s_w = _runtime.sign(t13 * a_x)
+    w_x = _runtime.select(in_line, g_1 * s_w, t13 * n_z - d_z * t21)
+    t22 = whole * (t13 + a_x * s_w)
+    del s_w, whole
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t22 * t22), 1.0 / (mu * nu))
+    t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
+    del t14, t15, t17
+    t24 = _runtime.select(in_line, 0.0, mu * part * t23 * 0.5)
+    t25 = _runtime.select(all_same, 0.0, nu * (t24 * t24) + mu * 0.25)
+    del all_same, mu, nu
+    t26 = l * l - t25
+    del t25
+    slack = np.maximum(t26, 0.0)
+    t27 = 0.9375 * (l * size)
     del size
-    t22 = (np.abs(0.0) <= t20 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t21) <= t14)
-    del t14
-    failed = np.logical_not(t18 & t19) | np.logical_not(t22)
-    del t18, t19, t22
-    t23 = _runtime.poison(failed)
-    del failed
-    t24 = t12 * (t5 * m_z - u_z * t10) - t4 * 0.5
-    t25 = m_y * h
-    A_12 = t24 - t25
-    t26 = u_z * 0.5 - t12 * (t5 * m_y + t4 * t10)
-    del m_y, t10, t12
-    t27 = m_z * h
-    del h, m_z
-    A_13 = t26 - t27
-    t28 = t13 + t15
-    del t13, t15
-    A_12_above = t24 + t25
-    del t24, t25
-    A_13_above = t26 + t27
-    del t26, t27
-    t29 = _runtime.VANISHING * _runtime.VANISHING
-    t30 = t20 * t29
-    v_v = v_z * v_z + t8 * t8 + t7 * t7
-    t31 = u_u * v_v
-    slim = product_2 - t31 * 0.000244140625 <= _runtime.VANISHING * t31
+    h = _runtime.select(slack <= _runtime.VANISHING * t27, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t28 = w_x * h
+    del w_x
+    t29 = t19 * t24 + d_x * 0.5
+    del d_x
+    t30 = t28 - t29
+    t31 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t32 = t31 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     del t31
-    t32 = (u_u <= t30) | (u_u + v_v <= t30) | slim | (product_2 <= t29 * (t20 * u_u))
-    del product_2, slim, t20, t29, t30, u_u, v_v
+    t33 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t34 = np.abs(_runtime.select(in_line, -t23, 0.0)) <= t11 * _runtime.FEASIBILITY
+    del t11, t23
+    unreachable = np.logical_not(t34 & (-(_runtime.FEASIBILITY * t27) <= t26))
+    del t26, t27, t34
+    t35 = _runtime.poison(np.logical_not(t32 & t33) | unreachable)
+    del t32, t33, unreachable
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t19))
+    del g_1
+    t36 = h * w_y
+    del w_y
+    t37 = t21 * t24 - t13 * 0.5
+    t38 = t36 + t37
+    w_z = _runtime.select(in_line, -t22, a_x * t21 + t13 * t19)
+    del a_x, in_line, t13, t19, t21, t22
+    t39 = h * w_z
+    del h, w_z
+    t40 = n_z * t24 - d_z * 0.5
+    del d_z, n_z, t24
+    t41 = t39 + t40
+    A_11_above = t28 + t29
+    del t28, t29
+    A_12_above = t36 - t37
+    del t36, t37
+    A_13_above = t39 - t40
+    del t39, t40
     return (
-        -t16 + t23,
-        A_12 + t23,
-        A_13 + t23,
-        t5 - t16 + t23,
-        t4 + A_12 + t23,
-        A_13 - u_z + t23,
-        t8 - t16 + t23,
-        t7 + A_12 + t23,
-        A_13 - v_z + t23,
-        -t28 + t23,
-        A_12_above + t23,
-        A_13_above + t23,
-        t5 - t28 + t23,
-        t4 + A_12_above + t23,
-        A_13_above - u_z + t23,
-        t8 - t28 + t23,
-        t7 + A_12_above + t23,
-        A_13_above - v_z + t23,
-        t32 | (slack <= _runtime.VANISHING * t21),
+        -t30 + t35,
+        -t38 + t35,
+        -t41 + t35,
+        -(t5 + t30) + t35,
+        -(t7 + t38) + t35,
+        -(u_z + t41) + t35,
+        -(t9 + t30) + t35,
+        -(t10 + t38) + t35,
+        -(v_z + t41) + t35,
+        A_11_above + t35,
+        A_12_above + t35,
+        A_13_above + t35,
+        A_11_above - t5 + t35,
+        A_12_above - t7 + t35,
+        A_13_above - u_z + t35,
+        A_11_above - t9 + t35,
+        A_12_above - t10 + t35,
+        A_13_above - v_z + t35,
     )
 
 
@@ -1101,8 +951,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Array("A", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    common=_jacobian_parallel_common,
-    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1140,274 +989,142 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 
 
 def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
-    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
     s3, c3 = _runtime.sincos(theta3)
     s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
-    t1 = L * c1
-    del c1
-    t2 = L * s1
-    del s1
-    t3 = L * s2
-    del s2
-    u_z = t2 - t3
-    t4 = f - e
-    t5 = t1 + t4
-    c1_x = c_alpha1 * t5
-    t6 = L * c2
-    del c2
-    t7 = t6 + t4
-    t8 = c1_x - c_alpha2 * t7
-    c1_y = s_alpha1 * t5
-    del t5
-    t9 = c1_y - s_alpha2 * t7
-    del t7
-    u_u = u_z * u_z + t8 * t8 + t9 * t9
-    t10 = L * s3
-    del s3
-    v_z = t2 - t10
-    t11 = L * c3
-    del c3
-    t12 = t11 + t4
-    del t4
-    t13 = c1_x - c_alpha3 * t12
-    del c1_x
-    t14 = c1_y - s_alpha3 * t12
-    del c1_y, t12
-    v_v = v_z * v_z + t13 * t13 + t14 * t14
-    size = f + e + L + l
-    t15 = size * size
-    t16 = _runtime.VANISHING * _runtime.VANISHING
-    t17 = t15 * t16
-    all_same = u_u + v_v <= t17
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t17
-    del t17
-    t18 = _runtime.select(same, t13, t8)
-    a_x = _runtime.select(all_same, whole, -t18)
-    t19 = _runtime.select(same, u_z, v_z)
-    t20 = _runtime.select(same, t8, t13)
-    d_z = _runtime.select(same, v_z, u_z)
-    t21 = a_x * t19 + t20 * d_z
-    t22 = _runtime.select(same, t14, t9)
-    t23 = _runtime.select(same, t9, t14)
-    t24 = t22 * t19 - t23 * d_z
-    n_z = a_x * t21 + t22 * t24
-    t25 = a_x * t23 + t22 * t20
-    product_2 = t24 * t24 + t21 * t21 + t25 * t25
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t26 = mu * _runtime.select(same, u_u, v_v)
-    del same, u_u, v_v
-    slim = product_2 - t26 * 0.000244140625 <= _runtime.VANISHING * t26
-    del t26
-    over = 1.0 / mu
-    t27 = t22 * t25 + d_z * t21
-    t28 = a_x * t25 - d_z * t24
-    m_m = _runtime.select(slim, over * (t27 * t27 + t28 * t28 + n_z * n_z), product_2)
-    del product_2
-    in_line = m_m <= t16 * (t15 * mu)
-    del t16
-    g_1 = whole * d_z
-    s_w = _runtime.sign(-(t22 * a_x))
-    t29 = whole * (t22 - a_x * s_w)
-    del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t29 * t29, m_m)
-    del m_m
-    part = 1.0 / w_w
-    t30 = t20 * (t18 - t20) + t23 * (t22 - t23) + t19 * (d_z - t19)
-    del t19, t20, t23
-    t31 = _runtime.select(in_line, 0.0, part * t30 * 0.5)
-    t32 = n_z * t31 - d_z * 0.5
-    t33 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t31 * t31)))
-    del all_same, mu, w_w
-    t34 = l * l - t33
-    del t33
-    slack = np.maximum(t34, 0.0)
-    t35 = 0.9375 * (l * size)
-    del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t35, 0.0, np.sqrt(part) * np.sqrt(slack))
-    del part, slack
-    t36 = _runtime.select(slim, over * (a_x * t28 + t22 * t27), t25)
-    del t25
-    t37 = h * _runtime.select(in_line, t29, -t36)
-    del t29, t36
-    t38 = t32 + t37
-    t39 = c_alpha1 * t2
-    del c_alpha1
-    t40 = t27 * t31 - t18 * 0.5
-    del t18
-    t41 = _runtime.select(slim, over * (t22 * n_z - d_z * t28), t24)
-    del t24
-    t42 = _runtime.select(in_line, g_1 * s_w, -t41) * h
-    del s_w, t41
-    A_11 = t40 - t42
-    t43 = s_alpha1 * t2
-    del s_alpha1, t2
-    t44 = t28 * t31 - t22 * 0.5
-    del t22, t28, t31
-    t45 = _runtime.select(slim, over * (a_x * n_z + d_z * t27), t21)
-    del a_x, d_z, n_z, over, slim, t21, t27
-    t46 = h * _runtime.select(in_line, g_1, -t45)
-    del g_1, h, t45
-    A_12 = t44 - t46
-    t47 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t48 = t47 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t47
-    t49 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t50 = np.abs(_runtime.select(in_line, -t30, 0.0)) <= t15 * _runtime.FEASIBILITY
-    del in_line, t15, t30
-    unreachable = np.logical_not(t50 & (-(_runtime.FEASIBILITY * t35) <= t34))
-    del t34, t35, t50
-    t51 = _runtime.poison(np.logical_not(t48 & t49) | unreachable)
-    del t48, t49, unreachable
-    t52 = c_alpha2 * t3
-    del c_alpha2
-    t53 = s_alpha2 * t3
-    del s_alpha2, t3
-    B_22 = t6 * (u_z + t38) - (t52 * (t8 + A_11) + t53 * (t9 + A_12))
-    t54 = c_alpha3 * t10
-    del c_alpha3
-    t55 = s_alpha3 * t10
-    del s_alpha3, t10
-    B_33 = t11 * (v_z + t38) - (t54 * (t13 + A_11) + t55 * (t14 + A_12))
-    t56 = t32 - t37
-    del t32, t37
-    A_11_above = t40 + t42
-    del t40, t42
-    A_12_above = t44 + t46
-    del t44, t46
-    B_11_above = t1 * t56 - (t39 * A_11_above + t43 * A_12_above)
-    t57 = t52 * (t8 + A_11_above) + t53 * (t9 + A_12_above)
-    del t52, t53, t8, t9
-    t58 = t54 * (t13 + A_11_above) + t55 * (t14 + A_12_above)
-    del A_11_above, A_12_above, t13, t14, t54, t55
-    return (
-        t1 * t38 - (t39 * A_11 + t43 * A_12) + t51,
-        B_22 + t51,
-        B_33 + t51,
-        B_11_above + t51,
-        t6 * (u_z + t56) - t57 + t51,
-        t11 * (v_z + t56) - t58 + t51,
-    )
-
-
-def _jacobian_serial_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
-    # Where nothing vanishes; last, whether something does.
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s2, c2 = _runtime.sincos_as_in_c(theta2)
-    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
-    s3, c3 = _runtime.sincos_as_in_c(theta3)
     t1 = L * s1
     del s1
     t2 = c_alpha1 * t1
-    t3 = L * c1
+    t3 = L * s2
+    del s2
+    u_z = t1 - t3
+    t4 = L * c1
     del c1
-    t4 = f - e
-    t5 = t3 + t4
-    c1_y = s_alpha1 * t5
+    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
+    del c_alpha1
     t6 = L * c2
     del c2
-    t7 = t6 + t4
-    t8 = c1_y - s_alpha2 * t7
-    c1_x = c_alpha1 * t5
-    del c_alpha1, t5
-    t9 = c1_x - c_alpha2 * t7
-    del t7
-    t10 = L * c3
-    del c3
-    t11 = t10 + t4
-    del t4
-    t12 = c1_y - s_alpha3 * t11
-    del c1_y
-    t13 = c1_x - c_alpha3 * t11
-    del c1_x, t11
-    m_z = t9 * t12 - t8 * t13
-    t14 = L * s2
-    del s2
-    u_z = t1 - t14
-    t15 = L * s3
+    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
+    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
+    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
+    t10 = L * s3
     del s3
-    v_z = t1 - t15
-    m_y = v_z * t9 - u_z * t13
-    t16 = v_z * t8 - u_z * t12
-    product_2 = t16 * t16 + m_y * m_y + m_z * m_z
-    part = 1.0 / product_2
-    t17 = v_z * (u_z - v_z) + t13 * (t9 - t13) + t12 * (t8 - t12)
-    t18 = part * t17 * 0.5
-    del t17
-    t19 = (t8 * m_z + u_z * m_y) * t18 + t9 * 0.5
-    u_u = u_z * u_z + t9 * t9 + t8 * t8
-    t20 = l * l - u_u * (0.25 + product_2 * (t18 * t18))
-    slack = np.maximum(t20, 0.0)
-    h = np.sqrt(part * slack)
-    del part
-    t21 = t16 * h
-    t22 = t19 - t21
-    t23 = s_alpha1 * t1
-    del s_alpha1, t1
-    t24 = t18 * (t9 * m_z - u_z * t16) - t8 * 0.5
-    t25 = m_y * h
-    A_12 = t24 - t25
-    t26 = u_z * 0.5 - t18 * (t9 * m_y + t8 * t16)
-    del m_y, t16, t18
-    t27 = m_z * h
-    del h, m_z
-    t28 = t26 - t27
-    t29 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t30 = t29 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t29
-    t31 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    v_z = t1 - t10
+    t11 = L * c3
+    del c3
+    t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11)
+    del t5
+    t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
+    del t8
+    v_v = v_z * v_z + t12 * t12 + t13 * t13
     size = f + e + L + l
-    t32 = size * size
-    t33 = 0.9375 * (l * size)
+    t14 = size * size
+    t15 = _runtime.VANISHING * _runtime.VANISHING * t14
+    all_same = u_u + v_v <= t15
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    same = u_u <= t15
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t16 = _runtime.select(same, t13, t9)
+    d_x = _runtime.select(same, t12, t7)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t17 = _runtime.select(same, t9, t13)
+    t18 = _runtime.select(same, t7, t12)
+    t19 = a_x * t17 - t16 * t18
+    d_z = _runtime.select(same, v_z, u_z)
+    t20 = _runtime.select(same, u_z, v_z)
+    del same
+    t21 = a_x * t20 - t18 * d_z
+    t22 = over * (t16 * t19 + d_z * t21)
+    t23 = t16 * t20 - t17 * d_z
+    t24 = over * (a_x * t19 - d_z * t23)
+    del t19
+    n_z = over * (a_x * t21 + t16 * t23)
+    del over, t21, t23
+    nu = t22 * t22 + t24 * t24 + n_z * n_z
+    in_line = nu <= t15
+    del t15
+    g_1 = whole * d_z
+    s_w = _runtime.sign(t16 * a_x)
+    w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
+    t25 = whole * (t16 + a_x * s_w)
+    del s_w, whole
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / (mu * nu))
+    t26 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
+    del t17, t18, t20
+    t27 = _runtime.select(in_line, 0.0, mu * part * t26 * 0.5)
+    t28 = _runtime.select(all_same, 0.0, nu * (t27 * t27) + mu * 0.25)
+    del all_same, mu, nu
+    t29 = l * l - t28
+    del t28
+    slack = np.maximum(t29, 0.0)
+    t30 = 0.9375 * (l * size)
     del size
-    t34 = (np.abs(0.0) <= t32 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t33) <= t20)
-    del t20
-    failed = np.logical_not(t30 & t31) | np.logical_not(t34)
-    del t30, t31, t34
-    t35 = _runtime.poison(failed)
-    del failed
-    t36 = c_alpha2 * t14
+    h = _runtime.select(slack <= _runtime.VANISHING * t30, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t31 = w_x * h
+    del w_x
+    t32 = t22 * t27 + d_x * 0.5
+    del d_x
+    t33 = t31 - t32
+    t34 = s_alpha1 * t1
+    del s_alpha1, t1
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t22))
+    del g_1
+    t35 = h * w_y
+    del w_y
+    t36 = t24 * t27 - t16 * 0.5
+    t37 = t35 + t36
+    w_z = _runtime.select(in_line, -t25, a_x * t24 + t16 * t22)
+    del a_x, t16, t22, t24, t25
+    t38 = h * w_z
+    del h, w_z
+    t39 = n_z * t27 - d_z * 0.5
+    del d_z, n_z, t27
+    t40 = t38 + t39
+    t41 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t42 = t41 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t41
+    t43 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t44 = np.abs(_runtime.select(in_line, -t26, 0.0)) <= t14 * _runtime.FEASIBILITY
+    del in_line, t14, t26
+    unreachable = np.logical_not(t44 & (-(_runtime.FEASIBILITY * t30) <= t29))
+    del t29, t30, t44
+    t45 = _runtime.poison(np.logical_not(t42 & t43) | unreachable)
+    del t42, t43, unreachable
+    t46 = c_alpha2 * t3
     del c_alpha2
-    t37 = s_alpha2 * t14
-    del s_alpha2, t14
-    B_22 = t6 * (u_z - t28) - (t36 * (t9 - t22) + t37 * (t8 + A_12))
-    t38 = c_alpha3 * t15
+    t47 = s_alpha2 * t3
+    del s_alpha2, t3
+    B_22 = t46 * (t7 + t33) + t47 * (t9 + t37) + t6 * (u_z + t40)
+    t48 = c_alpha3 * t10
     del c_alpha3
-    t39 = s_alpha3 * t15
-    del s_alpha3, t15
-    B_33 = t10 * (v_z - t28) - (t38 * (t13 - t22) + t39 * (t12 + A_12))
-    t40 = t19 + t21
-    del t19, t21
-    A_12_above = t24 + t25
-    del t24, t25
-    t41 = t26 + t27
-    del t26, t27
-    B_22_above = t6 * (u_z - t41) - (t36 * (t9 - t40) + t37 * (t8 + A_12_above))
-    del t36, t37, t6, t8, t9, u_z
-    B_33_above = t10 * (v_z - t41) - (t38 * (t13 - t40) + t39 * (t12 + A_12_above))
-    del t10, t38, t39
-    t42 = _runtime.VANISHING * _runtime.VANISHING
-    t43 = t32 * t42
-    v_v = v_z * v_z + t13 * t13 + t12 * t12
-    del t12, t13, v_z
-    t44 = u_u * v_v
-    slim = product_2 - t44 * 0.000244140625 <= _runtime.VANISHING * t44
-    del t44
-    t45 = (u_u <= t43) | (u_u + v_v <= t43) | slim | (product_2 <= t42 * (t32 * u_u))
-    del product_2, slim, t32, t42, t43, u_u, v_v
+    t49 = s_alpha3 * t10
+    del s_alpha3, t10
+    B_33 = t48 * (t12 + t33) + t49 * (t13 + t37) + t11 * (v_z + t40)
+    A_11_above = t31 + t32
+    del t31, t32
+    A_12_above = t35 - t36
+    del t35, t36
+    t50 = t38 - t39
+    del t38, t39
+    t51 = t2 * A_11_above + t34 * A_12_above + t4 * t50
+    t52 = t46 * (t7 - A_11_above) + t47 * (t9 - A_12_above)
+    del t46, t47, t7, t9
+    t53 = t48 * (t12 - A_11_above) + t49 * (t13 - A_12_above)
+    del A_11_above, A_12_above, t12, t13, t48, t49
     return (
-        t2 * t22 - t23 * A_12 - t3 * t28 + t35,
-        B_22 + t35,
-        B_33 + t35,
-        t2 * t40 - t23 * A_12_above - t3 * t41 + t35,
-        B_22_above + t35,
-        B_33_above + t35,
-        t45 | (slack <= _runtime.VANISHING * t33),
+        t2 * t33 + t34 * t37 + t4 * t40 + t45,
+        B_22 + t45,
+        B_33 + t45,
+        -t51 + t45,
+        t52 + t6 * (u_z - t50) + t45,
+        t53 + t11 * (v_z - t50) + t45,
     )
 
 
@@ -1418,8 +1135,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Array("B", (2, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    common=_jacobian_serial_common,
-    size=_runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1461,8 +1177,8 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     s3, c3 = _runtime.sincos(theta3)
+    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     t1 = L * s1
     del s1
     t2 = c_alpha1 * t1
@@ -1471,203 +1187,180 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     u_z = t1 - t3
     t4 = L * c1
     del c1
-    t5 = f - e
-    t6 = t4 + t5
-    c1_x = c_alpha1 * t6
+    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
     del c_alpha1
-    t7 = L * c2
+    t6 = L * c2
     del c2
-    t8 = t7 + t5
-    t9 = c1_x - c_alpha2 * t8
-    c1_y = s_alpha1 * t6
-    del t6
-    t10 = c1_y - s_alpha2 * t8
-    del t8
-    u_u = u_z * u_z + t9 * t9 + t10 * t10
-    size = f + e + L + l
-    t11 = size * size
-    t12 = _runtime.VANISHING * _runtime.VANISHING
-    t13 = t11 * t12
-    same = u_u <= t13
-    t14 = L * c3
-    del c3
-    t15 = t14 + t5
-    del t5
-    t16 = c1_y - s_alpha3 * t15
-    del c1_y
-    t17 = _runtime.select(same, t16, t10)
-    t18 = L * s3
+    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
+    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
+    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
+    t10 = L * s3
     del s3
-    v_z = t1 - t18
-    t19 = c1_x - c_alpha3 * t15
-    del c1_x, t15
-    v_v = v_z * v_z + t19 * t19 + t16 * t16
-    all_same = u_u + v_v <= t13
-    del t13
+    v_z = t1 - t10
+    t11 = L * c3
+    del c3
+    t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11)
+    del t5
+    t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
+    del t8
+    v_v = v_z * v_z + t12 * t12 + t13 * t13
+    size = f + e + L + l
+    t14 = size * size
+    t15 = _runtime.VANISHING * _runtime.VANISHING * t14
+    all_same = u_u + v_v <= t15
     whole = _runtime.select(size == 0.0, 1.0, size)
-    t20 = _runtime.select(same, t19, t9)
-    a_x = _runtime.select(all_same, whole, -t20)
-    t21 = _runtime.select(same, t10, t16)
-    t22 = _runtime.select(same, t9, t19)
-    t23 = a_x * t21 + t17 * t22
-    d_z = _runtime.select(same, v_z, u_z)
-    t24 = _runtime.select(same, u_z, v_z)
-    t25 = a_x * t24 + t22 * d_z
-    t26 = t17 * t23 + d_z * t25
-    t27 = t17 * t24 - t21 * d_z
-    product_2 = t27 * t27 + t25 * t25 + t23 * t23
+    same = u_u <= t15
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t28 = mu * _runtime.select(same, u_u, v_v)
-    del same, u_u, v_v
-    slim = product_2 - t28 * 0.000244140625 <= _runtime.VANISHING * t28
-    del t28
+    del u_u, v_v
     over = 1.0 / mu
-    t29 = a_x * t23 - d_z * t27
-    n_z = a_x * t25 + t17 * t27
-    m_m = _runtime.select(slim, over * (t26 * t26 + t29 * t29 + n_z * n_z), product_2)
-    del product_2
-    in_line = m_m <= t12 * (t11 * mu)
-    del t12
-    g_1 = whole * d_z
-    s_w = _runtime.sign(-(t17 * a_x))
-    t30 = whole * (t17 - a_x * s_w)
-    del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t30 * t30, m_m)
-    del m_m
-    part = 1.0 / w_w
-    t31 = t22 * (t20 - t22) + t21 * (t17 - t21) + t24 * (d_z - t24)
-    del t21, t22, t24
-    t32 = _runtime.select(in_line, 0.0, part * t31 * 0.5)
-    t33 = t26 * t32 - t20 * 0.5
-    del t20
-    t34 = _runtime.select(slim, over * (t17 * n_z - d_z * t29), t27)
-    del t27
-    t35 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t32 * t32)))
-    del all_same, mu
-    t36 = l * l - t35
-    del t35
-    slack = np.maximum(t36, 0.0)
-    t37 = 0.9375 * (l * size)
-    del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t37, 0.0, np.sqrt(part) * np.sqrt(slack))
-    del part, slack
-    t38 = _runtime.select(in_line, g_1 * s_w, -t34) * h
-    del s_w, t34
-    A_11 = t33 - t38
-    t39 = s_alpha1 * t1
-    del s_alpha1, t1
-    t40 = t29 * t32 - t17 * 0.5
-    t41 = _runtime.select(slim, over * (a_x * n_z + d_z * t26), t25)
-    del t25
-    t42 = h * _runtime.select(in_line, g_1, -t41)
-    del g_1, t41
-    A_12 = t40 - t42
-    t43 = n_z * t32 - d_z * 0.5
-    del d_z, n_z, t32
-    t44 = _runtime.select(slim, over * (a_x * t29 + t17 * t26), t23)
-    del a_x, over, slim, t17, t23, t26, t29
-    t45 = h * _runtime.select(in_line, t30, -t44)
-    del t30, t44
-    t46 = t43 + t45
-    t47 = t2 * A_11 + t39 * A_12 - t4 * t46
-    A_22 = t10 + A_12
-    t48 = v_z + t46
-    t49 = u_z + t46
-    A_32 = t16 + A_12
-    Delta = w_w * h
-    del h, w_w
-    t50 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t51 = t50 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t50
-    t52 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t53 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= t11 * _runtime.FEASIBILITY
-    del in_line, t11, t31
-    unreachable = np.logical_not(t53 & (-(_runtime.FEASIBILITY * t37) <= t36))
-    del t36, t37, t53
-    t54 = _runtime.poison(np.logical_not(t51 & t52) | unreachable)
-    del t51, t52, unreachable
-    t55 = -(t47 * (A_22 * t48 - t49 * A_32) / Delta) + t54
-    t56 = c_alpha2 * t3
-    del c_alpha2
-    A_21 = t9 + A_11
-    t57 = s_alpha2 * t3
-    del s_alpha2, t3
-    t58 = t56 * A_21 + t57 * A_22 - t7 * t49
-    t59 = t58 * (A_12 * t48 - t46 * A_32) / Delta + t54
-    t60 = c_alpha3 * t18
-    del c_alpha3
-    A_31 = t19 + A_11
-    t61 = s_alpha3 * t18
-    del s_alpha3, t18
-    t62 = t60 * A_31 + t61 * A_32 - t14 * t48
-    t63 = -(t62 * (A_12 * t49 - t46 * A_22) / Delta) + t54
-    t64 = t47 * (t48 * A_21 - t49 * A_31) / Delta + t54
-    t65 = -(t58 * (A_11 * t48 - t46 * A_31) / Delta) + t54
-    del t48
-    t66 = t62 * (A_11 * t49 - t46 * A_21) / Delta + t54
-    del t46, t49
-    t67 = t47 * (A_32 * A_21 - A_22 * A_31) / Delta + t54
-    del t47
-    t68 = -(t58 * (A_11 * A_32 - A_12 * A_31) / Delta) + t54
-    del A_31, A_32, t58
-    t69 = t62 * (A_11 * A_22 - A_12 * A_21) / Delta + t54
-    del A_11, A_12, A_21, A_22, t62
-    A_11_above = t33 + t38
-    del t33, t38
-    A_12_above = t40 + t42
-    del t40, t42
-    t70 = t43 - t45
-    del t43, t45
-    t71 = t2 * A_11_above + t39 * A_12_above - t4 * t70
-    del t2, t39, t4
-    A_22_above = t10 + A_12_above
-    del t10
-    t72 = v_z + t70
-    del v_z
-    t73 = u_z + t70
-    del u_z
-    A_32_above = t16 + A_12_above
-    del t16
-    t74 = t71 * (A_22_above * t72 - t73 * A_32_above) / Delta
-    A_21_above = t9 + A_11_above
-    del t9
-    t75 = t56 * A_21_above + t57 * A_22_above - t7 * t73
-    del t56, t57, t7
-    t76 = t75 * (A_12_above * t72 - t70 * A_32_above) / Delta
-    A_31_above = t19 + A_11_above
+    t16 = _runtime.select(same, t13, t9)
+    d_x = _runtime.select(same, t12, t7)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t17 = _runtime.select(same, t9, t13)
+    t18 = _runtime.select(same, t7, t12)
+    t19 = a_x * t17 - t16 * t18
+    d_z = _runtime.select(same, v_z, u_z)
+    t20 = _runtime.select(same, u_z, v_z)
+    del same
+    t21 = a_x * t20 - t18 * d_z
+    t22 = over * (t16 * t19 + d_z * t21)
+    t23 = t16 * t20 - t17 * d_z
+    t24 = over * (a_x * t19 - d_z * t23)
     del t19
-    t77 = t60 * A_31_above + t61 * A_32_above - t14 * t72
-    del t14, t60, t61
-    t78 = t77 * (A_12_above * t73 - t70 * A_22_above) / Delta
-    t79 = t71 * (t72 * A_21_above - t73 * A_31_above) / Delta
-    t80 = t75 * (A_11_above * t72 - t70 * A_31_above) / Delta
-    del t72
-    t81 = t77 * (A_11_above * t73 - t70 * A_21_above) / Delta
+    n_z = over * (a_x * t21 + t16 * t23)
+    del over, t21, t23
+    nu = t22 * t22 + t24 * t24 + n_z * n_z
+    in_line = nu <= t15
+    del t15
+    g_1 = whole * d_z
+    s_w = _runtime.sign(t16 * a_x)
+    w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
+    t25 = whole * (t16 + a_x * s_w)
+    del s_w, whole
+    t26 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / t26)
+    t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
+    del t17, t18, t20
+    t28 = _runtime.select(in_line, 0.0, mu * part * t27 * 0.5)
+    t29 = _runtime.select(all_same, 0.0, nu * (t28 * t28) + mu * 0.25)
+    del all_same, mu, nu
+    t30 = l * l - t29
+    del t29
+    slack = np.maximum(t30, 0.0)
+    t31 = 0.9375 * (l * size)
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t32 = w_x * h
+    del w_x
+    t33 = t22 * t28 + d_x * 0.5
+    del d_x
+    t34 = t32 - t33
+    t35 = s_alpha1 * t1
+    del s_alpha1, t1
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t22))
+    del g_1
+    t36 = h * w_y
+    del w_y
+    t37 = t24 * t28 - t16 * 0.5
+    t38 = t36 + t37
+    w_z = _runtime.select(in_line, -t25, a_x * t24 + t16 * t22)
+    del a_x, t16, t22, t24, t25
+    t39 = h * w_z
+    del w_z
+    t40 = n_z * t28 - d_z * 0.5
+    del d_z, n_z, t28
+    t41 = t39 + t40
+    t42 = t2 * t34 + t35 * t38 + t4 * t41
+    t43 = t9 + t38
+    t44 = v_z + t41
+    t45 = u_z + t41
+    t46 = t13 + t38
+    Delta = t26 * h
+    del h, t26
+    t47 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t48 = t47 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t47
+    t49 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t50 = np.abs(_runtime.select(in_line, -t27, 0.0)) <= t14 * _runtime.FEASIBILITY
+    del in_line, t14, t27
+    unreachable = np.logical_not(t50 & (-(_runtime.FEASIBILITY * t31) <= t30))
+    del t30, t31, t50
+    t51 = _runtime.poison(np.logical_not(t48 & t49) | unreachable)
+    del t48, t49, unreachable
+    t52 = -(t42 * (t43 * t44 - t45 * t46) / Delta) + t51
+    t53 = c_alpha2 * t3
+    del c_alpha2
+    t54 = t7 + t34
+    t55 = s_alpha2 * t3
+    del s_alpha2, t3
+    t56 = t53 * t54 + t55 * t43 + t6 * t45
+    t57 = c_alpha3 * t10
+    del c_alpha3
+    t58 = t12 + t34
+    t59 = s_alpha3 * t10
+    del s_alpha3, t10
+    t60 = t57 * t58 + t59 * t46 + t11 * t44
+    t61 = -(t60 * (t38 * t45 - t41 * t43) / Delta) + t51
+    t62 = -(t56 * (t34 * t44 - t41 * t58) / Delta) + t51
+    t63 = -(t42 * (t46 * t54 - t43 * t58) / Delta) + t51
+    t64 = -(t60 * (t34 * t43 - t38 * t54) / Delta) + t51
+    del t43
+    A_11_above = t32 + t33
+    del t32, t33
+    A_12_above = t36 - t37
+    del t36, t37
+    t65 = t39 - t40
+    del t39, t40
+    t66 = t2 * A_11_above + t35 * A_12_above + t4 * t65
+    del t2, t35, t4
+    t67 = t9 - A_12_above
+    del t9
+    t68 = v_z - t65
+    del v_z
+    t69 = u_z - t65
+    del u_z
+    t70 = t13 - A_12_above
+    del t13
+    t71 = -(t66 * (t67 * t68 - t69 * t70) / Delta) + t51
+    t72 = t7 - A_11_above
+    del t7
+    t73 = t53 * t72 + t55 * t67 + t6 * t69
+    del t53, t55, t6
+    t74 = t73 * (A_12_above * t68 - t65 * t70) / Delta + t51
+    t75 = t12 - A_11_above
+    del t12
+    t76 = t57 * t75 + t59 * t70 + t11 * t68
+    del t11, t57, t59
+    t77 = -(t76 * (A_12_above * t69 - t65 * t67) / Delta)
+    t78 = -(t73 * (A_11_above * t68 - t65 * t75) / Delta)
+    t79 = t76 * (A_11_above * t69 - t65 * t72) / Delta + t51
+    del t65
+    t80 = -(t66 * (t70 * t72 - t67 * t75) / Delta) + t51
+    t81 = t73 * (A_11_above * t70 - A_12_above * t75) / Delta
     del t70, t73
-    t82 = A_32_above * A_21_above - A_22_above * A_31_above
-    t83 = A_11_above * A_32_above - A_12_above * A_31_above
-    del A_31_above, A_32_above
-    t84 = A_11_above * A_22_above - A_12_above * A_21_above
-    del A_11_above, A_12_above, A_21_above, A_22_above
+    t82 = t76 * (A_11_above * t67 - A_12_above * t72) / Delta
+    del A_11_above, A_12_above, t67, t76
     return (
-        t55,
-        t59,
+        t52,
+        t56 * (t38 * t44 - t41 * t46) / Delta + t51,
+        t61,
+        t42 * (t44 * t54 - t45 * t58) / Delta + t51,
+        t62,
+        t60 * (t34 * t45 - t41 * t54) / Delta + t51,
         t63,
+        t56 * (t34 * t46 - t38 * t58) / Delta + t51,
         t64,
-        t65,
-        t66,
-        t67,
-        t68,
-        t69,
-        t74 + t54,
-        -t76 + t54,
-        t78 + t54,
-        -t79 + t54,
-        t80 + t54,
-        -t81 + t54,
-        -(t71 * t82 / Delta) + t54,
-        t75 * t83 / Delta + t54,
-        -(t77 * t84 / Delta) + t54,
+        t71,
+        t74,
+        t77 + t51,
+        t66 * (t68 * t72 - t69 * t75) / Delta + t51,
+        t78 + t51,
+        t79,
+        t80,
+        t81 + t51,
+        -t82 + t51,
     )
 
 
@@ -1678,7 +1371,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1721,8 +1414,8 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     s3, c3 = _runtime.sincos(theta3)
+    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     t1 = L * s1
     del s1
     t2 = c_alpha1 * t1
@@ -1731,265 +1424,132 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     u_z = t1 - t3
     t4 = L * c1
     del c1
-    t5 = f - e
-    t6 = t4 + t5
-    c1_x = c_alpha1 * t6
+    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
     del c_alpha1
-    t7 = L * c2
-    del c2
-    t8 = t7 + t5
-    t9 = c1_x - c_alpha2 * t8
-    c1_y = s_alpha1 * t6
-    del t6
-    t10 = c1_y - s_alpha2 * t8
-    del t8
-    u_u = u_z * u_z + t9 * t9 + t10 * t10
-    size = f + e + L + l
-    t11 = size * size
-    t12 = _runtime.VANISHING * _runtime.VANISHING
-    t13 = t11 * t12
-    same = u_u <= t13
-    t14 = L * c3
-    del c3
-    t15 = t14 + t5
-    del t5
-    t16 = c1_y - s_alpha3 * t15
-    del c1_y
-    t17 = _runtime.select(same, t16, t10)
-    t18 = L * s3
-    del s3
-    v_z = t1 - t18
-    t19 = c1_x - c_alpha3 * t15
-    del c1_x, t15
-    v_v = v_z * v_z + t19 * t19 + t16 * t16
-    all_same = u_u + v_v <= t13
-    del t13
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    t20 = _runtime.select(same, t19, t9)
-    a_x = _runtime.select(all_same, whole, -t20)
-    t21 = _runtime.select(same, t10, t16)
-    t22 = _runtime.select(same, t9, t19)
-    t23 = a_x * t21 + t17 * t22
-    d_z = _runtime.select(same, v_z, u_z)
-    t24 = _runtime.select(same, u_z, v_z)
-    t25 = a_x * t24 + t22 * d_z
-    t26 = t17 * t23 + d_z * t25
-    t27 = t17 * t24 - t21 * d_z
-    product_2 = t27 * t27 + t25 * t25 + t23 * t23
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t28 = mu * _runtime.select(same, u_u, v_v)
-    del same, u_u, v_v
-    slim = product_2 - t28 * 0.000244140625 <= _runtime.VANISHING * t28
-    del t28
-    over = 1.0 / mu
-    t29 = a_x * t23 - d_z * t27
-    n_z = a_x * t25 + t17 * t27
-    m_m = _runtime.select(slim, over * (t26 * t26 + t29 * t29 + n_z * n_z), product_2)
-    del product_2
-    in_line = m_m <= t12 * (t11 * mu)
-    del t12
-    g_1 = whole * d_z
-    s_w = _runtime.sign(-(t17 * a_x))
-    t30 = whole * (t17 - a_x * s_w)
-    del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t30 * t30, m_m)
-    del m_m
-    part = 1.0 / w_w
-    t31 = t22 * (t20 - t22) + t21 * (t17 - t21) + t24 * (d_z - t24)
-    del t21, t22, t24
-    t32 = _runtime.select(in_line, 0.0, part * t31 * 0.5)
-    t33 = t26 * t32 - t20 * 0.5
-    del t20
-    t34 = _runtime.select(slim, over * (t17 * n_z - d_z * t29), t27)
-    del t27
-    t35 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t32 * t32)))
-    del all_same, mu
-    t36 = l * l - t35
-    del t35
-    slack = np.maximum(t36, 0.0)
-    t37 = 0.9375 * (l * size)
-    del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t37, 0.0, np.sqrt(part) * np.sqrt(slack))
-    del part, slack
-    t38 = _runtime.select(in_line, g_1 * s_w, -t34) * h
-    del s_w, t34
-    A_11 = t33 - t38
-    t39 = s_alpha1 * t1
-    del s_alpha1, t1
-    t40 = t29 * t32 - t17 * 0.5
-    t41 = _runtime.select(slim, over * (a_x * n_z + d_z * t26), t25)
-    del t25
-    t42 = h * _runtime.select(in_line, g_1, -t41)
-    del g_1, t41
-    A_12 = t40 - t42
-    t43 = n_z * t32 - d_z * 0.5
-    del d_z, n_z, t32
-    t44 = _runtime.select(slim, over * (a_x * t29 + t17 * t26), t23)
-    del a_x, over, slim, t17, t23, t26, t29
-    t45 = h * _runtime.select(in_line, t30, -t44)
-    del t30, t44
-    t46 = t43 + t45
-    t47 = c_alpha2 * t3
-    del c_alpha2
-    t48 = s_alpha2 * t3
-    del s_alpha2, t3
-    t49 = t47 * (t9 + A_11) + t48 * (t10 + A_12) - t7 * (u_z + t46)
-    t50 = c_alpha3 * t18
-    del c_alpha3
-    t51 = s_alpha3 * t18
-    del s_alpha3, t18
-    t52 = t50 * (t19 + A_11) + t51 * (t16 + A_12) - t14 * (v_z + t46)
-    t53 = (t2 * A_11 + t39 * A_12 - t4 * t46) * t49 * t52
-    del A_11, A_12, t46, t49, t52
-    Delta = w_w * h
-    del h, w_w
-    t54 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t55 = t54 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t54
-    t56 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t57 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= t11 * _runtime.FEASIBILITY
-    del in_line, t11, t31
-    unreachable = np.logical_not(t57 & (-(_runtime.FEASIBILITY * t37) <= t36))
-    del t36, t37, t57
-    t58 = _runtime.poison(np.logical_not(t55 & t56) | unreachable)
-    del t55, t56, unreachable
-    A_11_above = t33 + t38
-    del t33, t38
-    A_12_above = t40 + t42
-    del t40, t42
-    t59 = t43 - t45
-    del t43, t45
-    t60 = t2 * A_11_above + t39 * A_12_above - t4 * t59
-    del t2, t39, t4
-    t61 = t47 * (t9 + A_11_above) + t48 * (t10 + A_12_above)
-    del t10, t47, t48, t9
-    t62 = t50 * (t19 + A_11_above) + t51 * (t16 + A_12_above)
-    del A_11_above, A_12_above, t16, t19, t50, t51
-    t63 = t60 * (t61 - t7 * (u_z + t59)) * (t62 - t14 * (v_z + t59))
-    del t14, t59, t60, t61, t62, t7, u_z, v_z
-    return (
-        t53 / Delta + t58,
-        -(t63 / Delta) + t58,
-    )
-
-
-def _determinant_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
-    # Where nothing vanishes; last, whether something does.
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s2, c2 = _runtime.sincos_as_in_c(theta2)
-    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
-    s3, c3 = _runtime.sincos_as_in_c(theta3)
-    t1 = L * s1
-    del s1
-    t2 = c_alpha1 * t1
-    t3 = L * c1
-    del c1
-    t4 = f - e
-    t5 = t3 + t4
-    c1_y = s_alpha1 * t5
     t6 = L * c2
     del c2
-    t7 = t6 + t4
-    t8 = c1_y - s_alpha2 * t7
-    c1_x = c_alpha1 * t5
-    del c_alpha1, t5
-    t9 = c1_x - c_alpha2 * t7
-    del t7
-    t10 = L * c3
-    del c3
-    t11 = t10 + t4
-    del t4
-    t12 = c1_y - s_alpha3 * t11
-    del c1_y
-    t13 = c1_x - c_alpha3 * t11
-    del c1_x, t11
-    m_z = t9 * t12 - t8 * t13
-    t14 = L * s2
-    del s2
-    u_z = t1 - t14
-    t15 = L * s3
+    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
+    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
+    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
+    t10 = L * s3
     del s3
-    v_z = t1 - t15
-    m_y = v_z * t9 - u_z * t13
-    t16 = v_z * t8 - u_z * t12
-    product_2 = t16 * t16 + m_y * m_y + m_z * m_z
-    part = 1.0 / product_2
-    t17 = v_z * (u_z - v_z) + t13 * (t9 - t13) + t12 * (t8 - t12)
-    t18 = part * t17 * 0.5
-    del t17
-    t19 = (t8 * m_z + u_z * m_y) * t18 + t9 * 0.5
-    u_u = u_z * u_z + t9 * t9 + t8 * t8
-    t20 = l * l - u_u * (0.25 + product_2 * (t18 * t18))
-    slack = np.maximum(t20, 0.0)
-    h = np.sqrt(part * slack)
-    del part
-    t21 = t16 * h
-    t22 = t19 - t21
-    t23 = s_alpha1 * t1
-    del s_alpha1, t1
-    t24 = t18 * (t9 * m_z - u_z * t16) - t8 * 0.5
-    t25 = m_y * h
-    A_12 = t24 - t25
-    t26 = u_z * 0.5 - t18 * (t9 * m_y + t8 * t16)
-    del m_y, t16, t18
-    t27 = m_z * h
-    del m_z
-    t28 = t26 - t27
-    t29 = c_alpha2 * t14
-    del c_alpha2
-    t30 = s_alpha2 * t14
-    del s_alpha2, t14
-    t31 = t29 * (t9 - t22) + t30 * (t8 + A_12) - t6 * (u_z - t28)
-    t32 = c_alpha3 * t15
-    del c_alpha3
-    t33 = s_alpha3 * t15
-    del s_alpha3, t15
-    t34 = t32 * (t13 - t22) + t33 * (t12 + A_12) - t10 * (v_z - t28)
-    t35 = (t2 * t22 - t23 * A_12 - t3 * t28) * t31 * t34
-    del A_12, t22, t28, t31, t34
-    Delta = product_2 * h
-    del h
-    t36 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t37 = t36 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t36
-    t38 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    v_z = t1 - t10
+    t11 = L * c3
+    del c3
+    t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11)
+    del t5
+    t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
+    del t8
+    v_v = v_z * v_z + t12 * t12 + t13 * t13
     size = f + e + L + l
-    t39 = size * size
-    t40 = 0.9375 * (l * size)
+    t14 = size * size
+    t15 = _runtime.VANISHING * _runtime.VANISHING * t14
+    all_same = u_u + v_v <= t15
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    same = u_u <= t15
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t16 = _runtime.select(same, t13, t9)
+    d_x = _runtime.select(same, t12, t7)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t17 = _runtime.select(same, t9, t13)
+    t18 = _runtime.select(same, t7, t12)
+    t19 = a_x * t17 - t16 * t18
+    d_z = _runtime.select(same, v_z, u_z)
+    t20 = _runtime.select(same, u_z, v_z)
+    del same
+    t21 = a_x * t20 - t18 * d_z
+    t22 = over * (t16 * t19 + d_z * t21)
+    t23 = t16 * t20 - t17 * d_z
+    t24 = over * (a_x * t19 - d_z * t23)
+    del t19
+    n_z = over * (a_x * t21 + t16 * t23)
+    del over, t21, t23
+    nu = t22 * t22 + t24 * t24 + n_z * n_z
+    in_line = nu <= t15
+    del t15
+    g_1 = whole * d_z
+    s_w = _runtime.sign(t16 * a_x)
+    w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
+    t25 = whole * (t16 + a_x * s_w)
+    del s_w, whole
+    t26 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / t26)
+    t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
+    del t17, t18, t20
+    t28 = _runtime.select(in_line, 0.0, mu * part * t27 * 0.5)
+    t29 = _runtime.select(all_same, 0.0, nu * (t28 * t28) + mu * 0.25)
+    del all_same, mu, nu
+    t30 = l * l - t29
+    del t29
+    slack = np.maximum(t30, 0.0)
+    t31 = 0.9375 * (l * size)
     del size
-    t41 = (np.abs(0.0) <= t39 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t40) <= t20)
-    del t20
-    failed = np.logical_not(t37 & t38) | np.logical_not(t41)
-    del t37, t38, t41
-    t42 = _runtime.poison(failed)
-    del failed
-    t43 = t19 + t21
-    del t19, t21
-    A_12_above = t24 + t25
-    del t24, t25
-    t44 = t26 + t27
-    del t26, t27
-    t45 = t29 * (t9 - t43) + t30 * (t8 + A_12_above) - t6 * (u_z - t44)
-    del t29, t30, t6, t8, t9, u_z
-    t46 = (t2 * t43 - t23 * A_12_above - t3 * t44) * t45
-    del t2, t23, t3, t45
-    t47 = t32 * (t13 - t43) + t33 * (t12 + A_12_above) - t10 * (v_z - t44)
-    del A_12_above, t10, t32, t33, t43, t44
-    t48 = _runtime.VANISHING * _runtime.VANISHING
-    t49 = t39 * t48
-    v_v = v_z * v_z + t13 * t13 + t12 * t12
-    del t12, t13, v_z
-    t50 = u_u * v_v
-    slim = product_2 - t50 * 0.000244140625 <= _runtime.VANISHING * t50
-    del t50
-    t51 = (u_u <= t49) | (u_u + v_v <= t49) | slim | (product_2 <= t48 * (t39 * u_u))
-    del product_2, slim, t39, t48, t49, u_u, v_v
+    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t32 = w_x * h
+    del w_x
+    t33 = t22 * t28 + d_x * 0.5
+    del d_x
+    t34 = t32 - t33
+    t35 = s_alpha1 * t1
+    del s_alpha1, t1
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t22))
+    del g_1
+    t36 = h * w_y
+    del w_y
+    t37 = t24 * t28 - t16 * 0.5
+    t38 = t36 + t37
+    w_z = _runtime.select(in_line, -t25, a_x * t24 + t16 * t22)
+    del a_x, t16, t22, t24, t25
+    t39 = h * w_z
+    del w_z
+    t40 = n_z * t28 - d_z * 0.5
+    del d_z, n_z, t28
+    t41 = t39 + t40
+    t42 = c_alpha2 * t3
+    del c_alpha2
+    t43 = s_alpha2 * t3
+    del s_alpha2, t3
+    t44 = t42 * (t7 + t34) + t43 * (t9 + t38) + t6 * (u_z + t41)
+    t45 = c_alpha3 * t10
+    del c_alpha3
+    t46 = s_alpha3 * t10
+    del s_alpha3, t10
+    t47 = t45 * (t12 + t34) + t46 * (t13 + t38) + t11 * (v_z + t41)
+    t48 = (t2 * t34 + t35 * t38 + t4 * t41) * t44 * t47
+    del t34, t38, t41, t44, t47
+    Delta = t26 * h
+    del h, t26
+    t49 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t50 = t49 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t49
+    t51 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t52 = np.abs(_runtime.select(in_line, -t27, 0.0)) <= t14 * _runtime.FEASIBILITY
+    del in_line, t14, t27
+    unreachable = np.logical_not(t52 & (-(_runtime.FEASIBILITY * t31) <= t30))
+    del t30, t31, t52
+    t53 = _runtime.poison(np.logical_not(t50 & t51) | unreachable)
+    del t50, t51, unreachable
+    A_11_above = t32 + t33
+    del t32, t33
+    A_12_above = t36 - t37
+    del t36, t37
+    t54 = t39 - t40
+    del t39, t40
+    t55 = t2 * A_11_above + t35 * A_12_above + t4 * t54
+    del t2, t35, t4
+    t56 = t42 * (t7 - A_11_above) + t43 * (t9 - A_12_above)
+    del t42, t43, t7, t9
+    t57 = t45 * (t12 - A_11_above) + t46 * (t13 - A_12_above)
+    del A_11_above, A_12_above, t12, t13, t45, t46
+    t58 = t55 * (t56 + t6 * (u_z - t54)) * (t57 + t11 * (v_z - t54))
+    del t11, t54, t55, t56, t57, t6, u_z, v_z
     return (
-        -(t35 / Delta) + t42,
-        t46 * t47 / Delta + t42,
-        t51 | (slack <= _runtime.VANISHING * t40),
+        -(t48 / Delta) + t53,
+        -(t58 / Delta) + t53,
     )
 
 
@@ -2000,7 +1560,6 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", (2,)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    common=_determinant_common,
     size=_runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
@@ -2039,282 +1598,147 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 
 
 def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
-    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
     s3, c3 = _runtime.sincos(theta3)
     s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
-    t1 = L * c1
-    del c1
-    t2 = L * s1
-    del s1
-    t3 = L * s2
-    del s2
-    u_z = t2 - t3
-    t4 = f - e
-    t5 = t1 + t4
-    c1_x = c_alpha1 * t5
-    t6 = L * c2
-    del c2
-    t7 = t6 + t4
-    t8 = c1_x - c_alpha2 * t7
-    c1_y = s_alpha1 * t5
-    del t5
-    t9 = c1_y - s_alpha2 * t7
-    del t7
-    u_u = u_z * u_z + t8 * t8 + t9 * t9
-    t10 = L * s3
-    del s3
-    v_z = t2 - t10
-    t11 = L * c3
-    del c3
-    t12 = t11 + t4
-    del t4
-    t13 = c1_x - c_alpha3 * t12
-    del c1_x
-    t14 = c1_y - s_alpha3 * t12
-    del c1_y, t12
-    v_v = v_z * v_z + t13 * t13 + t14 * t14
-    size = f + e + L + l
-    t15 = size * size
-    t16 = _runtime.VANISHING * _runtime.VANISHING
-    t17 = t15 * t16
-    all_same = u_u + v_v <= t17
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t17
-    del t17
-    t18 = _runtime.select(same, t13, t8)
-    a_x = _runtime.select(all_same, whole, -t18)
-    t19 = _runtime.select(same, u_z, v_z)
-    t20 = _runtime.select(same, t8, t13)
-    d_z = _runtime.select(same, v_z, u_z)
-    t21 = a_x * t19 + t20 * d_z
-    t22 = _runtime.select(same, t14, t9)
-    t23 = _runtime.select(same, t9, t14)
-    t24 = t22 * t19 - t23 * d_z
-    n_z = a_x * t21 + t22 * t24
-    t25 = a_x * t23 + t22 * t20
-    product_2 = t24 * t24 + t21 * t21 + t25 * t25
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t26 = mu * _runtime.select(same, u_u, v_v)
-    del same, u_u, v_v
-    slim = product_2 - t26 * 0.000244140625 <= _runtime.VANISHING * t26
-    del t26
-    over = 1.0 / mu
-    t27 = t22 * t25 + d_z * t21
-    t28 = a_x * t25 - d_z * t24
-    m_m = _runtime.select(slim, over * (t27 * t27 + t28 * t28 + n_z * n_z), product_2)
-    del product_2
-    in_line = m_m <= t16 * (t15 * mu)
-    del t16
-    g_1 = whole * d_z
-    s_w = _runtime.sign(-(t22 * a_x))
-    t29 = whole * (t22 - a_x * s_w)
-    del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t29 * t29, m_m)
-    del m_m
-    part = 1.0 / w_w
-    t30 = t20 * (t18 - t20) + t23 * (t22 - t23) + t19 * (d_z - t19)
-    del t19, t20, t23
-    t31 = _runtime.select(in_line, 0.0, part * t30 * 0.5)
-    t32 = n_z * t31 - d_z * 0.5
-    t33 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t31 * t31)))
-    del all_same, mu
-    t34 = l * l - t33
-    del t33
-    slack = np.maximum(t34, 0.0)
-    t35 = 0.9375 * (l * size)
-    del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t35, 0.0, np.sqrt(part) * np.sqrt(slack))
-    del part, slack
-    t36 = _runtime.select(slim, over * (a_x * t28 + t22 * t27), t25)
-    del t25
-    t37 = h * _runtime.select(in_line, t29, -t36)
-    del t29, t36
-    t38 = t32 + t37
-    t39 = c_alpha1 * t2
-    del c_alpha1
-    t40 = t27 * t31 - t18 * 0.5
-    del t18
-    t41 = _runtime.select(slim, over * (t22 * n_z - d_z * t28), t24)
-    del t24
-    t42 = _runtime.select(in_line, g_1 * s_w, -t41) * h
-    del s_w, t41
-    A_11 = t40 - t42
-    t43 = s_alpha1 * t2
-    del s_alpha1, t2
-    t44 = t28 * t31 - t22 * 0.5
-    del t22, t28, t31
-    t45 = _runtime.select(slim, over * (a_x * n_z + d_z * t27), t21)
-    del a_x, d_z, n_z, over, slim, t21, t27
-    t46 = h * _runtime.select(in_line, g_1, -t45)
-    del g_1, t45
-    A_12 = t44 - t46
-    t47 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t48 = t47 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t47
-    t49 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t50 = np.abs(_runtime.select(in_line, -t30, 0.0)) <= t15 * _runtime.FEASIBILITY
-    del in_line, t15, t30
-    unreachable = np.logical_not(t50 & (-(_runtime.FEASIBILITY * t35) <= t34))
-    del t34, t35, t50
-    t51 = _runtime.poison(np.logical_not(t48 & t49) | unreachable)
-    del t48, t49, unreachable
-    t52 = c_alpha2 * t3
-    del c_alpha2
-    t53 = s_alpha2 * t3
-    del s_alpha2, t3
-    B_22 = t6 * (u_z + t38) - (t52 * (t8 + A_11) + t53 * (t9 + A_12))
-    t54 = c_alpha3 * t10
-    del c_alpha3
-    t55 = s_alpha3 * t10
-    del s_alpha3, t10
-    B_33 = t11 * (v_z + t38) - (t54 * (t13 + A_11) + t55 * (t14 + A_12))
-    Delta = w_w * h
-    del h, w_w
-    t56 = t32 - t37
-    del t32, t37
-    A_11_above = t40 + t42
-    del t40, t42
-    A_12_above = t44 + t46
-    del t44, t46
-    B_11_above = t1 * t56 - (t39 * A_11_above + t43 * A_12_above)
-    t57 = t52 * (t8 + A_11_above) + t53 * (t9 + A_12_above)
-    del t52, t53, t8, t9
-    t58 = t54 * (t13 + A_11_above) + t55 * (t14 + A_12_above)
-    del A_11_above, A_12_above, t13, t14, t54, t55
-    return (
-        t1 * t38 - (t39 * A_11 + t43 * A_12) + t51,
-        B_22 + t51,
-        B_33 + t51,
-        -Delta + t51,
-        B_11_above + t51,
-        t6 * (u_z + t56) - t57 + t51,
-        t11 * (v_z + t56) - t58 + t51,
-        Delta + t51,
-    )
-
-
-def _singularities_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
-    # Where nothing vanishes; last, whether something does.
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s2, c2 = _runtime.sincos_as_in_c(theta2)
-    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
-    s3, c3 = _runtime.sincos_as_in_c(theta3)
     t1 = L * s1
     del s1
     t2 = c_alpha1 * t1
-    t3 = L * c1
+    t3 = L * s2
+    del s2
+    u_z = t1 - t3
+    t4 = L * c1
     del c1
-    t4 = f - e
-    t5 = t3 + t4
-    c1_y = s_alpha1 * t5
+    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
+    del c_alpha1
     t6 = L * c2
     del c2
-    t7 = t6 + t4
-    t8 = c1_y - s_alpha2 * t7
-    c1_x = c_alpha1 * t5
-    del c_alpha1, t5
-    t9 = c1_x - c_alpha2 * t7
-    del t7
-    t10 = L * c3
-    del c3
-    t11 = t10 + t4
-    del t4
-    t12 = c1_y - s_alpha3 * t11
-    del c1_y
-    t13 = c1_x - c_alpha3 * t11
-    del c1_x, t11
-    m_z = t9 * t12 - t8 * t13
-    t14 = L * s2
-    del s2
-    u_z = t1 - t14
-    t15 = L * s3
+    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
+    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
+    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
+    u_u = u_z * u_z + t7 * t7 + t9 * t9
+    t10 = L * s3
     del s3
-    v_z = t1 - t15
-    m_y = v_z * t9 - u_z * t13
-    t16 = v_z * t8 - u_z * t12
-    product_2 = t16 * t16 + m_y * m_y + m_z * m_z
-    part = 1.0 / product_2
-    t17 = v_z * (u_z - v_z) + t13 * (t9 - t13) + t12 * (t8 - t12)
-    t18 = part * t17 * 0.5
-    del t17
-    t19 = (t8 * m_z + u_z * m_y) * t18 + t9 * 0.5
-    u_u = u_z * u_z + t9 * t9 + t8 * t8
-    t20 = l * l - u_u * (0.25 + product_2 * (t18 * t18))
-    slack = np.maximum(t20, 0.0)
-    h = np.sqrt(part * slack)
-    del part
-    t21 = t16 * h
-    t22 = t19 - t21
-    t23 = s_alpha1 * t1
-    del s_alpha1, t1
-    t24 = t18 * (t9 * m_z - u_z * t16) - t8 * 0.5
-    t25 = m_y * h
-    A_12 = t24 - t25
-    t26 = u_z * 0.5 - t18 * (t9 * m_y + t8 * t16)
-    del m_y, t16, t18
-    t27 = m_z * h
-    del m_z
-    t28 = t26 - t27
-    t29 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t30 = t29 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t29
-    t31 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    v_z = t1 - t10
+    t11 = L * c3
+    del c3
+    t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11)
+    del t5
+    t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
+    del t8
+    v_v = v_z * v_z + t12 * t12 + t13 * t13
     size = f + e + L + l
-    t32 = size * size
-    t33 = 0.9375 * (l * size)
+    t14 = size * size
+    t15 = _runtime.VANISHING * _runtime.VANISHING * t14
+    all_same = u_u + v_v <= t15
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    same = u_u <= t15
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t16 = _runtime.select(same, t13, t9)
+    d_x = _runtime.select(same, t12, t7)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t17 = _runtime.select(same, t9, t13)
+    t18 = _runtime.select(same, t7, t12)
+    t19 = a_x * t17 - t16 * t18
+    d_z = _runtime.select(same, v_z, u_z)
+    t20 = _runtime.select(same, u_z, v_z)
+    del same
+    t21 = a_x * t20 - t18 * d_z
+    t22 = over * (t16 * t19 + d_z * t21)
+    t23 = t16 * t20 - t17 * d_z
+    t24 = over * (a_x * t19 - d_z * t23)
+    del t19
+    n_z = over * (a_x * t21 + t16 * t23)
+    del over, t21, t23
+    nu = t22 * t22 + t24 * t24 + n_z * n_z
+    in_line = nu <= t15
+    del t15
+    g_1 = whole * d_z
+    s_w = _runtime.sign(t16 * a_x)
+    w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
+    t25 = whole * (t16 + a_x * s_w)
+    del s_w, whole
+    t26 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / t26)
+    t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
+    del t17, t18, t20
+    t28 = _runtime.select(in_line, 0.0, mu * part * t27 * 0.5)
+    t29 = _runtime.select(all_same, 0.0, nu * (t28 * t28) + mu * 0.25)
+    del all_same, mu, nu
+    t30 = l * l - t29
+    del t29
+    slack = np.maximum(t30, 0.0)
+    t31 = 0.9375 * (l * size)
     del size
-    t34 = (np.abs(0.0) <= t32 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t33) <= t20)
-    del t20
-    failed = np.logical_not(t30 & t31) | np.logical_not(t34)
-    del t30, t31, t34
-    t35 = _runtime.poison(failed)
-    del failed
-    t36 = c_alpha2 * t14
+    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t32 = w_x * h
+    del w_x
+    t33 = t22 * t28 + d_x * 0.5
+    del d_x
+    t34 = t32 - t33
+    t35 = s_alpha1 * t1
+    del s_alpha1, t1
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t22))
+    del g_1
+    t36 = h * w_y
+    del w_y
+    t37 = t24 * t28 - t16 * 0.5
+    t38 = t36 + t37
+    w_z = _runtime.select(in_line, -t25, a_x * t24 + t16 * t22)
+    del a_x, t16, t22, t24, t25
+    t39 = h * w_z
+    del w_z
+    t40 = n_z * t28 - d_z * 0.5
+    del d_z, n_z, t28
+    t41 = t39 + t40
+    t42 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t43 = t42 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t42
+    t44 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t45 = np.abs(_runtime.select(in_line, -t27, 0.0)) <= t14 * _runtime.FEASIBILITY
+    del in_line, t14, t27
+    unreachable = np.logical_not(t45 & (-(_runtime.FEASIBILITY * t31) <= t30))
+    del t30, t31, t45
+    t46 = _runtime.poison(np.logical_not(t43 & t44) | unreachable)
+    del t43, t44, unreachable
+    t47 = c_alpha2 * t3
     del c_alpha2
-    t37 = s_alpha2 * t14
-    del s_alpha2, t14
-    B_22 = t6 * (u_z - t28) - (t36 * (t9 - t22) + t37 * (t8 + A_12))
-    t38 = c_alpha3 * t15
+    t48 = s_alpha2 * t3
+    del s_alpha2, t3
+    B_22 = t47 * (t7 + t34) + t48 * (t9 + t38) + t6 * (u_z + t41)
+    t49 = c_alpha3 * t10
     del c_alpha3
-    t39 = s_alpha3 * t15
-    del s_alpha3, t15
-    B_33 = t10 * (v_z - t28) - (t38 * (t13 - t22) + t39 * (t12 + A_12))
-    Delta = product_2 * h
-    del h
-    t40 = t19 + t21
-    del t19, t21
-    A_12_above = t24 + t25
-    del t24, t25
-    t41 = t26 + t27
-    del t26, t27
-    B_22_above = t6 * (u_z - t41) - (t36 * (t9 - t40) + t37 * (t8 + A_12_above))
-    del t36, t37, t6, t8, t9, u_z
-    B_33_above = t10 * (v_z - t41) - (t38 * (t13 - t40) + t39 * (t12 + A_12_above))
-    del t10, t38, t39
-    t42 = _runtime.VANISHING * _runtime.VANISHING
-    t43 = t32 * t42
-    v_v = v_z * v_z + t13 * t13 + t12 * t12
-    del t12, t13, v_z
-    t44 = u_u * v_v
-    slim = product_2 - t44 * 0.000244140625 <= _runtime.VANISHING * t44
-    del t44
-    t45 = (u_u <= t43) | (u_u + v_v <= t43) | slim | (product_2 <= t42 * (t32 * u_u))
-    del product_2, slim, t32, t42, t43, u_u, v_v
+    t50 = s_alpha3 * t10
+    del s_alpha3, t10
+    B_33 = t49 * (t12 + t34) + t50 * (t13 + t38) + t11 * (v_z + t41)
+    Delta = t26 * h
+    del h, t26
+    A_11_above = t32 + t33
+    del t32, t33
+    A_12_above = t36 - t37
+    del t36, t37
+    t51 = t39 - t40
+    del t39, t40
+    t52 = t2 * A_11_above + t35 * A_12_above + t4 * t51
+    t53 = t47 * (t7 - A_11_above) + t48 * (t9 - A_12_above)
+    del t47, t48, t7, t9
+    t54 = t49 * (t12 - A_11_above) + t50 * (t13 - A_12_above)
+    del A_11_above, A_12_above, t12, t13, t49, t50
     return (
-        t2 * t22 - t23 * A_12 - t3 * t28 + t35,
-        B_22 + t35,
-        B_33 + t35,
-        -Delta + t35,
-        t2 * t40 - t23 * A_12_above - t3 * t41 + t35,
-        B_22_above + t35,
-        B_33_above + t35,
-        Delta + t35,
-        t45 | (slack <= _runtime.VANISHING * t33),
+        t2 * t34 + t35 * t38 + t4 * t41 + t46,
+        B_22 + t46,
+        B_33 + t46,
+        -Delta + t46,
+        -t52 + t46,
+        t53 + t6 * (u_z - t51) + t46,
+        t54 + t11 * (v_z - t51) + t46,
+        Delta + t46,
     )
 
 
@@ -2325,8 +1749,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 4)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    common=_singularities_common,
-    size=_runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 3), (4, 2), (5, 2), (6, 2), (7, 3)), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 3), (4, 2), (5, 2), (6, 2), (7, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -2368,339 +1791,180 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     s2, c2 = _runtime.sincos(theta2)
     s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     s3, c3 = _runtime.sincos(theta3)
+    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     t1 = L * s1
     del s1
     u_z = t1 - L * s2
     del s2
-    t2 = f - e
-    t3 = L * c1 + t2
+    t2 = L * c1
     del c1
-    c1_x = c_alpha1 * t3
+    t3 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t2
     del c_alpha1
-    t4 = L * c2 + t2
+    t4 = L * c2
     del c2
-    t5 = c1_x - c_alpha2 * t4
+    t5 = t3 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t4)
     del c_alpha2
-    c1_y = s_alpha1 * t3
-    del s_alpha1, t3
-    t6 = c1_y - s_alpha2 * t4
+    t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t2
+    del s_alpha1, t2
+    t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4)
     del s_alpha2, t4
-    u_u = u_z * u_z + t5 * t5 + t6 * t6
-    size = f + e + L + l
-    t7 = size * size
-    t8 = _runtime.VANISHING * _runtime.VANISHING
-    t9 = t7 * t8
-    same = u_u <= t9
-    t10 = L * c3 + t2
-    del c3, t2
-    t11 = c1_y - s_alpha3 * t10
-    del c1_y, s_alpha3
-    t12 = _runtime.select(same, t11, t6)
+    u_u = u_z * u_z + t5 * t5 + t7 * t7
     v_z = t1 - L * s3
     del s3, t1
-    t13 = c1_x - c_alpha3 * t10
-    del c1_x, c_alpha3, t10
-    v_v = v_z * v_z + t13 * t13 + t11 * t11
-    all_same = u_u + v_v <= t9
-    del t9
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    t14 = _runtime.select(same, t13, t5)
-    a_x = _runtime.select(all_same, whole, -t14)
-    t15 = _runtime.select(same, t6, t11)
-    t16 = _runtime.select(same, t5, t13)
-    t17 = a_x * t15 + t12 * t16
-    d_z = _runtime.select(same, v_z, u_z)
-    t18 = _runtime.select(same, u_z, v_z)
-    t19 = a_x * t18 + t16 * d_z
-    t20 = t12 * t17 + d_z * t19
-    t21 = t12 * t18 - t15 * d_z
-    product_2 = t21 * t21 + t19 * t19 + t17 * t17
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t22 = mu * _runtime.select(same, u_u, v_v)
-    del same, u_u, v_v
-    slim = product_2 - t22 * 0.000244140625 <= _runtime.VANISHING * t22
-    del t22
-    over = 1.0 / mu
-    t23 = a_x * t17 - d_z * t21
-    n_z = a_x * t19 + t12 * t21
-    m_m = _runtime.select(slim, over * (t20 * t20 + t23 * t23 + n_z * n_z), product_2)
-    del product_2
-    in_line = m_m <= t8 * (t7 * mu)
-    del t8
-    g_1 = whole * d_z
-    s_w = _runtime.sign(-(t12 * a_x))
-    t24 = whole * (t12 - a_x * s_w)
-    del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t24 * t24, m_m)
-    del m_m
-    part = 1.0 / w_w
-    t25 = t16 * (t14 - t16) + t15 * (t12 - t15) + t18 * (d_z - t18)
-    del t15, t16, t18
-    t26 = _runtime.select(in_line, 0.0, part * t25 * 0.5)
-    t27 = t20 * t26 - t14 * 0.5
-    del t14
-    t28 = _runtime.select(slim, over * (t12 * n_z - d_z * t23), t21)
-    del t21
-    t29 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t26 * t26)))
-    del all_same, mu
-    t30 = l * l - t29
-    del t29
-    slack = np.maximum(t30, 0.0)
-    t31 = 0.9375 * (l * size)
-    del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part) * np.sqrt(slack))
-    del part, slack
-    t32 = _runtime.select(in_line, g_1 * s_w, -t28) * h
-    del s_w, t28
-    A_11 = t27 - t32
-    t33 = t23 * t26 - t12 * 0.5
-    t34 = _runtime.select(slim, over * (a_x * n_z + d_z * t20), t19)
-    del t19
-    t35 = h * _runtime.select(in_line, g_1, -t34)
-    del g_1, t34
-    A_12 = t33 - t35
-    t36 = n_z * t26 - d_z * 0.5
-    del d_z, n_z, t26
-    t37 = _runtime.select(slim, over * (a_x * t23 + t12 * t20), t17)
-    del a_x, over, slim, t12, t17, t20, t23
-    t38 = h * _runtime.select(in_line, t24, -t37)
-    del t24, t37
-    t39 = t36 + t38
-    A_21 = t5 + A_11
-    A_22 = t6 + A_12
-    t40 = u_z + t39
-    t41 = A_11 * A_11 + A_12 * A_12 + t39 * t39 + (A_21 * A_21 + A_22 * A_22 + t40 * t40)
-    A_31 = t13 + A_11
-    A_32 = t11 + A_12
-    t42 = v_z + t39
-    t43 = t41 + (A_31 * A_31 + A_32 * A_32 + t42 * t42)
-    del t41
-    t44 = A_11 * A_22 - A_12 * A_21
-    t45 = A_11 * t40 - t39 * A_21
-    t46 = A_11 * A_32 - A_12 * A_31
-    t47 = A_11 * t42 - t39 * A_31
-    del A_11
-    t48 = t44 * t44 + t45 * t45 + t46 * t46 + t47 * t47
-    del t44, t45, t46, t47
-    t49 = A_12 * t40 - t39 * A_22
-    t50 = A_12 * t42 - t39 * A_32
-    del A_12, t39
-    t51 = A_21 * A_32 - A_22 * A_31
-    t52 = A_21 * t42 - t40 * A_31
-    del A_21, A_31
-    t53 = t48 + t49 * t49 + t50 * t50 + t51 * t51 + t52 * t52
-    del t48, t49, t50, t51, t52
-    t54 = A_22 * t42 - t40 * A_32
-    del A_22, A_32, t40, t42
-    t55 = 3.0 * (w_w * h)
-    del h, w_w
-    t56 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t57 = t56 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t56
-    t58 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t59 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t7 * _runtime.FEASIBILITY
-    del in_line, t25, t7
-    unreachable = np.logical_not(t59 & (-(_runtime.FEASIBILITY * t31) <= t30))
-    del t30, t31, t59
-    t60 = _runtime.poison(np.logical_not(t57 & t58) | unreachable)
-    del t57, t58, unreachable
-    A_11_above = t27 + t32
-    del t27, t32
-    A_12_above = t33 + t35
-    del t33, t35
-    t61 = A_11_above * A_11_above + A_12_above * A_12_above
-    t62 = t36 - t38
-    del t36, t38
-    A_21_above = t5 + A_11_above
-    del t5
-    A_22_above = t6 + A_12_above
-    del t6
-    t63 = A_21_above * A_21_above + A_22_above * A_22_above
-    t64 = u_z + t62
-    del u_z
-    A_31_above = t13 + A_11_above
-    del t13
-    A_32_above = t11 + A_12_above
-    del t11
-    t65 = A_31_above * A_31_above + A_32_above * A_32_above
-    t66 = v_z + t62
-    del v_z
-    t67 = t61 + t62 * t62 + (t63 + t64 * t64) + (t65 + t66 * t66)
-    del t61, t63, t65
-    t68 = A_11_above * A_22_above - A_12_above * A_21_above
-    t69 = A_11_above * t64 - t62 * A_21_above
-    t70 = A_11_above * A_32_above - A_12_above * A_31_above
-    t71 = A_11_above * t66 - t62 * A_31_above
-    del A_11_above
-    t72 = t68 * t68 + t69 * t69 + t70 * t70 + t71 * t71
-    del t68, t69, t70, t71
-    t73 = A_12_above * t64 - t62 * A_22_above
-    t74 = A_12_above * t66 - t62 * A_32_above
-    del A_12_above, t62
-    t75 = A_21_above * A_32_above - A_22_above * A_31_above
-    t76 = A_21_above * t66 - t64 * A_31_above
-    del A_21_above, A_31_above
-    t77 = t72 + t73 * t73 + t74 * t74 + t75 * t75 + t76 * t76
-    del t72, t73, t74, t75, t76
-    t78 = A_22_above * t66 - t64 * A_32_above
-    del A_22_above, A_32_above, t64, t66
-    return (
-        np.sqrt(t43 * (t53 + t54 * t54)) / t55 + t60,
-        np.sqrt(t67 * (t77 + t78 * t78)) / t55 + t60,
-    )
-
-
-def _condition_number_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
-    # Where nothing vanishes; last, whether something does.
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s2, c2 = _runtime.sincos_as_in_c(theta2)
-    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
-    s3, c3 = _runtime.sincos_as_in_c(theta3)
-    t1 = f - e
-    t2 = L * c1 + t1
-    del c1
-    c1_y = s_alpha1 * t2
-    del s_alpha1
-    t3 = L * c2 + t1
-    del c2
-    t4 = c1_y - s_alpha2 * t3
-    del s_alpha2
-    c1_x = c_alpha1 * t2
-    del c_alpha1, t2
-    t5 = c1_x - c_alpha2 * t3
-    del c_alpha2, t3
-    t6 = L * c3 + t1
-    del c3, t1
-    t7 = c1_y - s_alpha3 * t6
-    del c1_y, s_alpha3
-    t8 = c1_x - c_alpha3 * t6
-    del c1_x, c_alpha3, t6
-    m_z = t5 * t7 - t4 * t8
-    t9 = L * s1
-    del s1
-    u_z = t9 - L * s2
-    del s2
-    v_z = t9 - L * s3
-    del s3, t9
-    m_y = v_z * t5 - u_z * t8
-    t10 = v_z * t4 - u_z * t7
-    product_2 = t10 * t10 + m_y * m_y + m_z * m_z
-    part = 1.0 / product_2
-    t11 = v_z * (u_z - v_z) + t8 * (t5 - t8) + t7 * (t4 - t7)
-    t12 = part * t11 * 0.5
-    del t11
-    t13 = (t4 * m_z + u_z * m_y) * t12 + t5 * 0.5
-    u_u = u_z * u_z + t5 * t5 + t4 * t4
-    t14 = l * l - u_u * (0.25 + product_2 * (t12 * t12))
-    slack = np.maximum(t14, 0.0)
-    h = np.sqrt(part * slack)
-    del part
-    t15 = t10 * h
-    t16 = t13 - t15
-    t17 = t12 * (t5 * m_z - u_z * t10) - t4 * 0.5
-    t18 = m_y * h
-    A_12 = t17 - t18
-    t19 = u_z * 0.5 - t12 * (t5 * m_y + t4 * t10)
-    del m_y, t10, t12
-    t20 = m_z * h
-    del m_z
-    t21 = t19 - t20
-    A_21 = t5 - t16
-    A_22 = t4 + A_12
-    t22 = u_z - t21
-    t23 = t16 * t16 + A_12 * A_12 + t21 * t21 + (A_21 * A_21 + A_22 * A_22 + t22 * t22)
-    A_31 = t8 - t16
-    A_32 = t7 + A_12
-    t24 = v_z - t21
-    t25 = t23 + (A_31 * A_31 + A_32 * A_32 + t24 * t24)
-    del t23
-    t26 = t16 * A_22 + A_12 * A_21
-    t27 = t16 * t22 - t21 * A_21
-    t28 = t16 * A_32 + A_12 * A_31
-    t29 = t16 * t24 - t21 * A_31
-    del t16
-    t30 = t26 * t26 + t27 * t27 + t28 * t28 + t29 * t29
-    del t26, t27, t28, t29
-    t31 = A_12 * t22 + t21 * A_22
-    t32 = A_12 * t24 + t21 * A_32
-    del A_12, t21
-    t33 = A_21 * A_32 - A_22 * A_31
-    t34 = A_21 * t24 - t22 * A_31
-    del A_21, A_31
-    t35 = t30 + t31 * t31 + t32 * t32 + t33 * t33 + t34 * t34
-    del t30, t31, t32, t33, t34
-    t36 = A_22 * t24 - t22 * A_32
-    del A_22, A_32, t22, t24
-    t37 = 3.0 * (product_2 * h)
-    del h
-    t38 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t39 = t38 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t38
-    t40 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t8 = L * c3
+    del c3
+    t9 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8)
+    del c_alpha3, t3
+    t10 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8)
+    del s_alpha3, t6, t8
+    v_v = v_z * v_z + t9 * t9 + t10 * t10
     size = f + e + L + l
-    t41 = size * size
-    t42 = 0.9375 * (l * size)
+    t11 = size * size
+    t12 = _runtime.VANISHING * _runtime.VANISHING * t11
+    all_same = u_u + v_v <= t12
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    same = u_u <= t12
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
+    over = 1.0 / mu
+    t13 = _runtime.select(same, t10, t7)
+    d_x = _runtime.select(same, t9, t5)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t14 = _runtime.select(same, t7, t10)
+    t15 = _runtime.select(same, t5, t9)
+    t16 = a_x * t14 - t13 * t15
+    d_z = _runtime.select(same, v_z, u_z)
+    t17 = _runtime.select(same, u_z, v_z)
+    del same
+    t18 = a_x * t17 - t15 * d_z
+    t19 = over * (t13 * t16 + d_z * t18)
+    t20 = t13 * t17 - t14 * d_z
+    t21 = over * (a_x * t16 - d_z * t20)
+    del t16
+    n_z = over * (a_x * t18 + t13 * t20)
+    del over, t18, t20
+    nu = t19 * t19 + t21 * t21 + n_z * n_z
+    in_line = nu <= t12
+    del t12
+    g_1 = whole * d_z
+    s_w = _runtime.sign(t13 * a_x)
+    w_x = _runtime.select(in_line, g_1 * s_w, t13 * n_z - d_z * t21)
+    t22 = whole * (t13 + a_x * s_w)
+    del s_w, whole
+    t23 = mu * nu
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t22 * t22), 1.0 / t23)
+    t24 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
+    del t14, t15, t17
+    t25 = _runtime.select(in_line, 0.0, mu * part * t24 * 0.5)
+    t26 = _runtime.select(all_same, 0.0, nu * (t25 * t25) + mu * 0.25)
+    del all_same, mu, nu
+    t27 = l * l - t26
+    del t26
+    slack = np.maximum(t27, 0.0)
+    t28 = 0.9375 * (l * size)
     del size
-    t43 = (np.abs(0.0) <= t41 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t42) <= t14)
-    del t14
-    failed = np.logical_not(t39 & t40) | np.logical_not(t43)
-    del t39, t40, t43
-    t44 = _runtime.poison(failed)
-    del failed
-    t45 = t13 + t15
-    del t13, t15
-    A_12_above = t17 + t18
-    del t17, t18
-    t46 = t19 + t20
-    del t19, t20
-    square1_above = t45 * t45 + A_12_above * A_12_above + t46 * t46
-    A_21_above = t5 - t45
+    h = _runtime.select(slack <= _runtime.VANISHING * t28, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t29 = w_x * h
+    del w_x
+    t30 = t19 * t25 + d_x * 0.5
+    del d_x
+    t31 = t29 - t30
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t19))
+    del g_1
+    t32 = h * w_y
+    del w_y
+    t33 = t21 * t25 - t13 * 0.5
+    t34 = t32 + t33
+    w_z = _runtime.select(in_line, -t22, a_x * t21 + t13 * t19)
+    del a_x, t13, t19, t21, t22
+    t35 = h * w_z
+    del w_z
+    t36 = n_z * t25 - d_z * 0.5
+    del d_z, n_z, t25
+    t37 = t35 + t36
+    t38 = t5 + t31
+    t39 = t7 + t34
+    t40 = u_z + t37
+    t41 = t31 * t31 + t34 * t34 + t37 * t37 + (t38 * t38 + t39 * t39 + t40 * t40)
+    t42 = t9 + t31
+    t43 = t10 + t34
+    t44 = v_z + t37
+    t45 = t31 * t39 - t34 * t38
+    t46 = t31 * t40 - t37 * t38
+    t47 = t31 * t43 - t34 * t42
+    t48 = t31 * t44 - t37 * t42
+    del t31
+    t49 = t45 * t45 + t46 * t46 + t47 * t47 + t48 * t48
+    del t45, t46, t47, t48
+    t50 = t34 * t40 - t37 * t39
+    t51 = t34 * t44 - t37 * t43
+    del t34, t37
+    t52 = t38 * t43 - t39 * t42
+    t53 = t38 * t44 - t40 * t42
+    del t38
+    t54 = t49 + t50 * t50 + t51 * t51 + t52 * t52 + t53 * t53
+    del t49, t50, t51, t52, t53
+    t55 = t39 * t44 - t40 * t43
+    del t39, t40
+    t56 = (t41 + (t42 * t42 + t43 * t43 + t44 * t44)) * (t54 + t55 * t55)
+    del t41, t42, t43, t44, t54, t55
+    t57 = 3.0 * (t23 * h)
+    del h, t23
+    t58 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t59 = t58 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t58
+    t60 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t61 = np.abs(_runtime.select(in_line, -t24, 0.0)) <= t11 * _runtime.FEASIBILITY
+    del in_line, t11, t24
+    unreachable = np.logical_not(t61 & (-(_runtime.FEASIBILITY * t28) <= t27))
+    del t27, t28, t61
+    t62 = _runtime.poison(np.logical_not(t59 & t60) | unreachable)
+    del t59, t60, unreachable
+    A_11_above = t29 + t30
+    del t29, t30
+    A_12_above = t32 - t33
+    del t32, t33
+    t63 = A_11_above * A_11_above + A_12_above * A_12_above
+    t64 = t35 - t36
+    del t35, t36
+    t65 = t5 - A_11_above
     del t5
-    A_22_above = t4 + A_12_above
-    del t4
-    t47 = A_21_above * A_21_above + A_22_above * A_22_above
-    t48 = u_z - t46
+    t66 = t7 - A_12_above
+    del t7
+    t67 = u_z - t64
     del u_z
-    A_31_above = t8 - t45
-    A_32_above = t7 + A_12_above
-    t49 = A_31_above * A_31_above + A_32_above * A_32_above
-    t50 = v_z - t46
-    t51 = square1_above + (t47 + t48 * t48) + (t49 + t50 * t50)
-    del square1_above, t47, t49
-    t52 = t45 * A_22_above + A_12_above * A_21_above
-    t53 = t45 * t48 - t46 * A_21_above
-    t54 = t45 * A_32_above + A_12_above * A_31_above
-    t55 = t45 * t50 - t46 * A_31_above
-    del t45
-    t56 = t52 * t52 + t53 * t53 + t54 * t54 + t55 * t55
-    del t52, t53, t54, t55
-    t57 = A_12_above * t48 + t46 * A_22_above
-    t58 = A_12_above * t50 + t46 * A_32_above
-    del A_12_above, t46
-    t59 = A_21_above * A_32_above - A_22_above * A_31_above
-    t60 = A_21_above * t50 - t48 * A_31_above
-    del A_21_above, A_31_above
-    t61 = t56 + t57 * t57 + t58 * t58 + t59 * t59 + t60 * t60
-    del t56, t57, t58, t59, t60
-    t62 = A_22_above * t50 - t48 * A_32_above
-    del A_22_above, A_32_above, t48, t50
-    t63 = _runtime.VANISHING * _runtime.VANISHING
-    t64 = t41 * t63
-    v_v = v_z * v_z + t8 * t8 + t7 * t7
-    del t7, t8, v_z
-    t65 = u_u * v_v
-    slim = product_2 - t65 * 0.000244140625 <= _runtime.VANISHING * t65
+    t68 = t63 + t64 * t64 + (t65 * t65 + t66 * t66 + t67 * t67)
+    del t63
+    t69 = t9 - A_11_above
+    del t9
+    t70 = t10 - A_12_above
+    del t10
+    t71 = v_z - t64
+    del v_z
+    t72 = A_11_above * t66 - A_12_above * t65
+    t73 = A_11_above * t67 - t64 * t65
+    t74 = A_11_above * t70 - A_12_above * t69
+    t75 = A_11_above * t71 - t64 * t69
+    del A_11_above
+    t76 = t72 * t72 + t73 * t73 + t74 * t74 + t75 * t75
+    del t72, t73, t74, t75
+    t77 = A_12_above * t67 - t64 * t66
+    t78 = A_12_above * t71 - t64 * t70
+    del A_12_above, t64
+    t79 = t65 * t70 - t66 * t69
+    t80 = t65 * t71 - t67 * t69
     del t65
-    t66 = (u_u <= t64) | (u_u + v_v <= t64) | slim | (product_2 <= t63 * (t41 * u_u))
-    del product_2, slim, t41, t63, t64, u_u, v_v
+    t81 = t76 + t77 * t77 + t78 * t78 + t79 * t79 + t80 * t80
+    del t76, t77, t78, t79, t80
+    t82 = t66 * t71 - t67 * t70
+    del t66, t67
+    t83 = (t68 + (t69 * t69 + t70 * t70 + t71 * t71)) * (t81 + t82 * t82)
+    del t68, t69, t70, t71, t81, t82
     return (
-        np.sqrt(t25 * (t35 + t36 * t36)) / t37 + t44,
-        np.sqrt(t51 * (t61 + t62 * t62)) / t37 + t44,
-        t66 | (slack <= _runtime.VANISHING * t42),
+        np.sqrt(t56) / t57 + t62,
+        np.sqrt(t83) / t57 + t62,
     )
 
 
@@ -2711,7 +1975,6 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Array("kappa", (2,)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    common=_condition_number_common,
     size=_runtime.Size((3, 4, 5, 6), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
@@ -2751,341 +2014,181 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
 
 
 def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
+    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s3, c3 = _runtime.sincos(theta3)
     t1 = c_alpha1 * s_alpha2
-    t2 = c_alpha3 * t1
-    t3 = L * s1
+    t2 = L * s1
     del s1
-    u_z = t3 - L * s2
+    u_z = t2 - L * s2
     del s2
-    t4 = f - e
-    t5 = L * c1 + t4
+    t3 = L * c1
     del c1
-    c1_x = c_alpha1 * t5
-    t6 = L * c2 + t4
+    t4 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t3
+    t5 = L * c2
     del c2
-    t7 = c1_x - c_alpha2 * t6
-    c1_y = s_alpha1 * t5
+    t6 = t4 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t5)
+    t7 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t3
+    del t3
+    t8 = t7 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t5)
     del t5
-    t8 = c1_y - s_alpha2 * t6
-    del t6
-    u_u = u_z * u_z + t7 * t7 + t8 * t8
+    u_u = u_z * u_z + t6 * t6 + t8 * t8
+    v_z = t2 - L * s3
+    del s3, t2
+    t9 = L * c3
+    del c3
+    t10 = t4 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t9)
+    del t4
+    t11 = t7 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t9)
+    del t7, t9
+    v_v = v_z * v_z + t10 * t10 + t11 * t11
     size = f + e + L + l
-    t9 = size * size
-    t10 = _runtime.VANISHING * _runtime.VANISHING
-    t11 = t9 * t10
-    same = u_u <= t11
-    t12 = L * c3 + t4
-    del c3, t4
-    t13 = c1_y - s_alpha3 * t12
-    del c1_y
-    t14 = _runtime.select(same, t13, t8)
-    v_z = t3 - L * s3
-    del s3, t3
-    t15 = c1_x - c_alpha3 * t12
-    del c1_x, t12
-    v_v = v_z * v_z + t15 * t15 + t13 * t13
-    all_same = u_u + v_v <= t11
-    del t11
+    t12 = size * size
+    t13 = _runtime.VANISHING * _runtime.VANISHING * t12
+    all_same = u_u + v_v <= t13
     whole = _runtime.select(size == 0.0, 1.0, size)
-    t16 = _runtime.select(same, t15, t7)
-    a_x = _runtime.select(all_same, whole, -t16)
-    t17 = _runtime.select(same, t8, t13)
-    t18 = _runtime.select(same, t7, t15)
-    t19 = a_x * t17 + t14 * t18
-    d_z = _runtime.select(same, v_z, u_z)
-    t20 = _runtime.select(same, u_z, v_z)
-    t21 = a_x * t20 + t18 * d_z
-    t22 = t14 * t19 + d_z * t21
-    t23 = t14 * t20 - t17 * d_z
-    product_2 = t23 * t23 + t21 * t21 + t19 * t19
+    same = u_u <= t13
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t24 = mu * _runtime.select(same, u_u, v_v)
-    del same, u_u, v_v
-    slim = product_2 - t24 * 0.000244140625 <= _runtime.VANISHING * t24
-    del t24
+    del u_u, v_v
     over = 1.0 / mu
-    t25 = a_x * t19 - d_z * t23
-    n_z = a_x * t21 + t14 * t23
-    m_m = _runtime.select(slim, over * (t22 * t22 + t25 * t25 + n_z * n_z), product_2)
-    del product_2
-    in_line = m_m <= t10 * (t9 * mu)
-    del t10
+    t14 = _runtime.select(same, t11, t8)
+    d_x = _runtime.select(same, t10, t6)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t15 = _runtime.select(same, t8, t11)
+    t16 = _runtime.select(same, t6, t10)
+    t17 = a_x * t15 - t14 * t16
+    d_z = _runtime.select(same, v_z, u_z)
+    t18 = _runtime.select(same, u_z, v_z)
+    del same
+    t19 = a_x * t18 - t16 * d_z
+    t20 = over * (t14 * t17 + d_z * t19)
+    t21 = t14 * t18 - t15 * d_z
+    t22 = over * (a_x * t17 - d_z * t21)
+    del t17
+    n_z = over * (a_x * t19 + t14 * t21)
+    del over, t19, t21
+    nu = t20 * t20 + t22 * t22 + n_z * n_z
+    in_line = nu <= t13
+    del t13
     g_1 = whole * d_z
-    s_w = _runtime.sign(-(t14 * a_x))
-    t26 = whole * (t14 - a_x * s_w)
+    s_w = _runtime.sign(t14 * a_x)
+    t23 = whole * (t14 + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t26 * t26, m_m)
-    del m_m
-    part = 1.0 / w_w
-    t27 = t18 * (t16 - t18) + t17 * (t14 - t17) + t20 * (d_z - t20)
-    del t17, t18, t20
-    t28 = _runtime.select(in_line, 0.0, part * t27 * 0.5)
-    t29 = t22 * t28 - t16 * 0.5
-    del t16
-    t30 = _runtime.select(slim, over * (t14 * n_z - d_z * t25), t23)
-    del t23
-    t31 = _runtime.select(all_same, 0.0, mu * (0.25 + w_w * (t28 * t28)))
-    del all_same, mu, w_w
-    t32 = l * l - t31
-    del t31
-    slack = np.maximum(t32, 0.0)
-    t33 = 0.9375 * (l * size)
+    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t23 * t23), 1.0 / (mu * nu))
+    t24 = t16 * (d_x - t16) + t15 * (t14 - t15) + t18 * (d_z - t18)
+    del t15, t16, t18
+    t25 = _runtime.select(in_line, 0.0, mu * part * t24 * 0.5)
+    t26 = _runtime.select(all_same, 0.0, nu * (t25 * t25) + mu * 0.25)
+    del all_same, mu, nu
+    t27 = l * l - t26
+    del t26
+    slack = np.maximum(t27, 0.0)
+    t28 = 0.9375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t33, 0.0, np.sqrt(part) * np.sqrt(slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t28, 0.0, np.sqrt(part * slack))
     del part, slack
-    t34 = _runtime.select(in_line, g_1 * s_w, -t30) * h
-    del s_w, t30
-    A_11 = t29 - t34
-    t35 = n_z * t28 - d_z * 0.5
-    t36 = _runtime.select(slim, over * (a_x * t25 + t14 * t22), t19)
-    del t19
-    t37 = h * _runtime.select(in_line, t26, -t36)
-    del t26, t36
-    t38 = t35 + t37
-    t39 = u_z + t38
-    t40 = v_z + t38
-    t41 = t39 * t40
-    t42 = A_11 * t41
-    t43 = c_alpha1 * c_alpha2
+    w_z = _runtime.select(in_line, -t23, a_x * t22 + t14 * t20)
+    del t23
+    t29 = h * w_z
+    del w_z
+    t30 = n_z * t25 - d_z * 0.5
+    t31 = t29 + t30
+    t32 = s_alpha3 * t31
+    t33 = t1 * t32
+    t34 = u_z + t31
+    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t20))
+    del a_x
+    t35 = h * w_y
+    del w_y
+    t36 = t22 * t25 - t14 * 0.5
+    t37 = t35 + t36
+    t38 = t34 * (t11 + t37)
+    t39 = c_alpha3 * t1
+    w_x = _runtime.select(in_line, g_1 * s_w, t14 * n_z - d_z * t22)
+    del d_z, g_1, n_z, s_w, t14, t22
+    t40 = w_x * h
+    del h, w_x
+    t41 = t20 * t25 + d_x * 0.5
+    del d_x, t20, t25
+    t42 = t40 - t41
+    t43 = v_z + t31
+    t44 = t34 * t43
+    t45 = t42 * t44
+    t46 = c_alpha1 * c_alpha2
     del c_alpha1
-    t44 = s_alpha3 * t43
-    t45 = s_alpha1 * s_alpha2
+    t47 = s_alpha3 * t46
+    t48 = s_alpha1 * s_alpha2
     del s_alpha2
-    t46 = c_alpha3 * t45
-    t47 = t25 * t28 - t14 * 0.5
-    del t14, t25, t28
-    t48 = _runtime.select(slim, over * (a_x * n_z + d_z * t22), t21)
-    del a_x, d_z, n_z, over, slim, t21, t22
-    t49 = h * _runtime.select(in_line, g_1, -t48)
-    del g_1, h, t48
-    A_12 = t47 - t49
-    t50 = t41 * A_12
-    del t41
+    t49 = c_alpha3 * t48
+    t50 = t44 * t37
+    del t44
     t51 = s_alpha1 * c_alpha2
     del c_alpha2, s_alpha1
     t52 = s_alpha3 * t51
-    t53 = c_alpha3 * t38
-    t54 = t51 * t53
-    t55 = t40 * (t7 + A_11)
-    t56 = t2 * t42 - t44 * t42 + t46 * t50 - t52 * t50 - t54 * t55
-    del t42, t50
-    t57 = s_alpha3 * t38
-    del t38
-    t58 = t40 * (t8 + A_12)
-    del t40
-    t59 = t1 * t57
-    t60 = t56 + t43 * t55 * t57 - t45 * t53 * t58 + t58 * t59
-    del t55, t56, t58
-    t61 = t39 * (t15 + A_11)
-    del A_11
-    t62 = t39 * (t13 + A_12)
-    del A_12, t39
-    t63 = t60 + t54 * t61 - t1 * t53 * t61 + t51 * t57 * t62
-    del t53, t54, t57, t60, t61
-    t64 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t65 = t64 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t64
-    t66 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t67 = np.abs(_runtime.select(in_line, -t27, 0.0)) <= t9 * _runtime.FEASIBILITY
-    del in_line, t27, t9
-    unreachable = np.logical_not(t67 & (-(_runtime.FEASIBILITY * t33) <= t32))
-    del t32, t33, t67
-    t68 = _runtime.poison(np.logical_not(t65 & t66) | unreachable)
-    del t65, t66, unreachable
-    A_11_above = t29 + t34
-    del t29, t34
-    t69 = t35 - t37
-    del t35, t37
-    t70 = u_z + t69
+    t53 = t39 * t45 - t47 * t45 + t49 * t50 - t52 * t50
+    del t45, t50
+    t54 = c_alpha3 * t31
+    del t31
+    t55 = t51 * t54
+    t56 = t43 * (t6 + t42)
+    t57 = t43 * (t8 + t37)
+    del t37, t43
+    t58 = t53 - t55 * t56 + t46 * t56 * t32 - t48 * t54 * t57
+    del t53, t56
+    t59 = t34 * (t10 + t42)
+    del t34, t42
+    t60 = t58 + t57 * t33 + t55 * t59 - t1 * t54 * t59 + t51 * t32 * t38
+    del t32, t54, t55, t57, t58, t59
+    t61 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t62 = t61 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t61
+    t63 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t64 = np.abs(_runtime.select(in_line, -t24, 0.0)) <= t12 * _runtime.FEASIBILITY
+    del in_line, t12, t24
+    unreachable = np.logical_not(t64 & (-(_runtime.FEASIBILITY * t28) <= t27))
+    del t27, t28, t64
+    t65 = _runtime.poison(np.logical_not(t62 & t63) | unreachable)
+    del t62, t63, unreachable
+    A_11_above = t40 + t41
+    del t40, t41
+    t66 = t29 - t30
+    del t29, t30
+    t67 = u_z - t66
     del u_z
-    t71 = v_z + t69
+    t68 = v_z - t66
     del v_z
-    t72 = t70 * t71
-    t73 = A_11_above * t72
-    A_12_above = t47 + t49
-    del t47, t49
-    t74 = t72 * A_12_above
-    del t72
-    t75 = c_alpha3 * t69
-    del c_alpha3
-    t76 = t51 * t75
-    t77 = t71 * (t7 + A_11_above)
-    del t7
-    t78 = t2 * t73 - t44 * t73 + t46 * t74 - t52 * t74 - t76 * t77
-    del t2, t44, t46, t52, t73, t74
-    t79 = s_alpha3 * t69
-    del s_alpha3, t69
-    t80 = t71 * (t8 + A_12_above)
-    del t71, t8
-    t81 = t1 * t79
-    t82 = t78 + t43 * t77 * t79 - t45 * t75 * t80 + t80 * t81
-    del t43, t45, t77, t78, t80
-    t83 = t70 * (t15 + A_11_above)
-    del A_11_above, t15
-    t84 = t70 * (t13 + A_12_above)
-    del A_12_above, t13, t70
-    t85 = t82 + t76 * t83 - t1 * t75 * t83 + t51 * t79 * t84
-    del t1, t51, t75, t76, t79, t82, t83
-    return (
-        t63 - t59 * t62 + t68,
-        t85 - t81 * t84 + t68,
-    )
-
-
-def _constraint_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
-    # Where nothing vanishes; last, whether something does.
-    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s2, c2 = _runtime.sincos_as_in_c(theta2)
-    s3, c3 = _runtime.sincos_as_in_c(theta3)
-    t1 = c_alpha1 * s_alpha2
-    t2 = s_alpha3 * t1
-    t3 = L * s1
-    del s1
-    u_z = t3 - L * s2
-    del s2
-    v_z = t3 - L * s3
-    del s3, t3
-    t4 = f - e
-    t5 = L * c1 + t4
-    del c1
-    c1_y = s_alpha1 * t5
-    t6 = L * c2 + t4
-    del c2
-    t7 = c1_y - s_alpha2 * t6
-    t8 = L * c3 + t4
-    del c3, t4
-    t9 = c1_y - s_alpha3 * t8
-    del c1_y
-    t10 = v_z * t7 - u_z * t9
-    c1_x = c_alpha1 * t5
-    del t5
-    t11 = c1_x - c_alpha2 * t6
-    del t6
-    t12 = c1_x - c_alpha3 * t8
-    del c1_x, t8
-    m_y = v_z * t11 - u_z * t12
-    m_z = t11 * t9 - t7 * t12
-    product_2 = t10 * t10 + m_y * m_y + m_z * m_z
-    part = 1.0 / product_2
-    t13 = v_z * (u_z - v_z) + t12 * (t11 - t12) + t9 * (t7 - t9)
-    t14 = part * t13 * 0.5
-    del t13
-    t15 = u_z * 0.5 - t14 * (t11 * m_y + t7 * t10)
-    u_u = u_z * u_z + t11 * t11 + t7 * t7
-    t16 = l * l - u_u * (0.25 + product_2 * (t14 * t14))
-    slack = np.maximum(t16, 0.0)
-    h = np.sqrt(part * slack)
-    del part
-    t17 = m_z * h
-    t18 = t15 - t17
-    t19 = u_z - t18
-    t20 = t18 * t19
-    t21 = t14 * (t11 * m_z - u_z * t10) - t7 * 0.5
-    t22 = m_y * h
-    A_12 = t21 - t22
-    t23 = t20 * (t9 + A_12)
-    t24 = c_alpha3 * t1
-    del t1
-    t25 = (t7 * m_z + u_z * m_y) * t14 + t11 * 0.5
-    del m_y, m_z, t14
-    t26 = t10 * h
-    del h, t10
-    t27 = t25 - t26
-    t28 = v_z - t18
-    t29 = t19 * t28
-    del t19
-    t30 = t27 * t29
-    t31 = s_alpha3 * (c_alpha1 * c_alpha2)
-    del c_alpha1
-    t32 = c_alpha3 * (s_alpha1 * s_alpha2)
-    del s_alpha2
-    t33 = t29 * A_12
-    del t29
-    t34 = s_alpha1 * c_alpha2
-    del c_alpha2, s_alpha1
-    t35 = s_alpha3 * t34
-    del s_alpha3
-    t36 = t24 * t30 - t31 * t30 - t32 * t33 + t35 * t33
-    del t30, t33
-    t37 = c_alpha3 * t34
-    del c_alpha3, t34
-    t38 = t18 * t28
-    del t18, t28
-    t39 = (t11 - t27) * t38
-    t40 = t38 * (t7 + A_12)
-    del A_12, t38
-    t41 = t36 - t37 * t39 + t31 * t39 - t32 * t40 + t2 * t40
-    del t36, t39, t40
-    t42 = (t12 - t27) * t20
-    del t20, t27
-    t43 = t2 * t23 - (t41 + t37 * t42 - t24 * t42 + t35 * t23)
-    del t23, t41, t42
-    t44 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t45 = t44 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t44
-    t46 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    size = f + e + L + l
-    t47 = size * size
-    t48 = 0.9375 * (l * size)
-    del size
-    t49 = (np.abs(0.0) <= t47 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t48) <= t16)
-    del t16
-    failed = np.logical_not(t45 & t46) | np.logical_not(t49)
-    del t45, t46, t49
-    t50 = _runtime.poison(failed)
-    del failed
-    t51 = t15 + t17
-    del t15, t17
-    t52 = u_z - t51
-    del u_z
-    t53 = t51 * t52
-    A_12_above = t21 + t22
-    del t21, t22
-    t54 = t53 * (t9 + A_12_above)
-    t55 = t25 + t26
-    del t25, t26
-    t56 = v_z - t51
-    t57 = t52 * t56
-    del t52
-    t58 = t55 * t57
-    t59 = t57 * A_12_above
-    del t57
-    t60 = t24 * t58 - t31 * t58 - t32 * t59 + t35 * t59
-    del t58, t59
-    t61 = t51 * t56
-    del t51, t56
-    t62 = (t11 - t55) * t61
-    del t11
-    t63 = t61 * (t7 + A_12_above)
-    del A_12_above, t61, t7
-    t64 = t60 - t37 * t62 + t31 * t62 - t32 * t63 + t2 * t63
-    del t31, t32, t60, t62, t63
-    t65 = (t12 - t55) * t53
-    del t53, t55
-    t66 = t2 * t54 - (t64 + t37 * t65 - t24 * t65 + t35 * t54)
-    del t2, t24, t35, t37, t54, t64, t65
-    t67 = _runtime.VANISHING * _runtime.VANISHING
-    t68 = t47 * t67
-    v_v = v_z * v_z + t12 * t12 + t9 * t9
-    del t12, t9, v_z
-    t69 = u_u * v_v
-    slim = product_2 - t69 * 0.000244140625 <= _runtime.VANISHING * t69
+    t69 = t67 * t68
+    t70 = A_11_above * t69
+    A_12_above = t35 - t36
+    del t35, t36
+    t71 = t69 * A_12_above
     del t69
-    t70 = (u_u <= t68) | (u_u + v_v <= t68) | slim | (product_2 <= t67 * (t47 * u_u))
-    del product_2, slim, t47, t67, t68, u_u, v_v
+    t72 = t39 * t70 - t47 * t70 + t49 * t71 - t52 * t71
+    del t39, t47, t49, t52, t70, t71
+    t73 = c_alpha3 * t66
+    del c_alpha3
+    t74 = t51 * t73
+    t75 = t68 * (t6 - A_11_above)
+    del t6
+    t76 = s_alpha3 * t66
+    del s_alpha3, t66
+    t77 = t68 * (t8 - A_12_above)
+    del t68, t8
+    t78 = t72 - t74 * t75 + t46 * t75 * t76 - t48 * t73 * t77
+    del t46, t48, t72, t75
+    t79 = t1 * t76
+    t80 = t67 * (t10 - A_11_above)
+    del A_11_above, t10
+    t81 = t67 * (t11 - A_12_above)
+    del A_12_above, t11, t67
+    t82 = t78 + t77 * t79 + t74 * t80 - t1 * t73 * t80 + t51 * t76 * t81
+    del t1, t51, t73, t74, t76, t77, t78, t80
     return (
-        t43 + t50,
-        t66 + t50,
-        t70 | (slack <= _runtime.VANISHING * t48),
+        t33 * t38 - t60 + t65,
+        t82 - t79 * t81 + t65,
     )
 
 
@@ -3096,8 +2199,7 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Array("factors", (2, 1)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    common=_constraint_common,
-    size=_runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 

@@ -2,27 +2,15 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 74 compare and select, 65 add, 12 divide, 105 multiply, 7 sincos, 4 sqrt
-#   fk where nothing vanishes: 47 compare and select, 58 add, 12 divide, 80 multiply, 7 sincos, 4
+#   fk: 68 compare and select, 62 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
+#   fk where nothing vanishes: 45 compare and select, 60 add, 11 divide, 84 multiply, 7 sincos, 4
 #     sqrt
-#   skeleton: 73 compare and select, 79 add, 11 divide, 112 multiply, 7 sincos, 4 sqrt
-#   skeleton where nothing vanishes: 46 compare and select, 72 add, 10 divide, 88 multiply, 7
-#     sincos, 4 sqrt
-#   jacobian_parallel: 73 compare and select, 86 add, 11 divide, 106 multiply, 7 sincos, 4 sqrt
-#   jacobian_parallel where nothing vanishes: 46 compare and select, 79 add, 10 divide, 82
-#     multiply, 7 sincos, 4 sqrt
-#   jacobian_serial: 73 compare and select, 72 add, 11 divide, 119 multiply, 7 sincos, 4 sqrt
-#   jacobian_serial where nothing vanishes: 46 compare and select, 65 add, 10 divide, 95 multiply,
-#     7 sincos, 4 sqrt
-#   jacobian: 73 compare and select, 98 add, 23 divide, 156 multiply, 7 sincos, 4 sqrt
-#   jacobian where nothing vanishes: 46 compare and select, 91 add, 22 divide, 132 multiply, 7
-#     sincos, 4 sqrt
-#   singularities: 73 compare and select, 74 add, 11 divide, 120 multiply, 7 sincos, 4 sqrt
-#   singularities where nothing vanishes: 46 compare and select, 67 add, 10 divide, 96 multiply, 7
-#     sincos, 4 sqrt
-#   condition_number: 73 compare and select, 114 add, 19 divide, 164 multiply, 7 sincos, 8 sqrt
-#   condition_number where nothing vanishes: 46 compare and select, 107 add, 18 divide, 140
-#     multiply, 7 sincos, 8 sqrt
+#   skeleton: 67 compare and select, 74 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
+#   jacobian_parallel: 67 compare and select, 83 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
+#   jacobian_serial: 67 compare and select, 69 add, 9 divide, 110 multiply, 7 sincos, 4 sqrt
+#   jacobian: 67 compare and select, 95 add, 21 divide, 148 multiply, 7 sincos, 4 sqrt
+#   singularities: 67 compare and select, 71 add, 9 divide, 112 multiply, 7 sincos, 4 sqrt
+#   condition_number: 67 compare and select, 111 add, 17 divide, 157 multiply, 7 sincos, 8 sqrt
 #   ik: 107 compare and select, 78 add, 4 atan2, 13 divide, 105 multiply, 5 sincos, 7 sqrt
 #   workspace_contains: 53 compare and select, 26 add, 8 divide, 31 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -129,8 +117,8 @@ _DEFAULT = Parameters()
 def _fk(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
     s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
     s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
     s1, c1 = _runtime.sincos_as_in_c(theta1)
     s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
     del c_beta2_half
@@ -138,302 +126,300 @@ def _fk(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del c_beta1_half
     c1_x = r * c_alpha1
     del c_alpha1
-    t1 = np.abs(s_alpha2)
+    t1 = r * np.abs(s_alpha2)
     del s_alpha2
     t2 = c2 * t1
     del c2
-    t3 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t2)
-    t4 = r * np.abs(s_alpha1)
+    t3 = r * c_alpha2
+    del c_alpha2
+    t4 = c1_x + (s_gamma * t2 - c_gamma * t3)
+    t5 = r * np.abs(s_alpha1)
     del s_alpha1
-    c1_y = c1 * t4
+    c1_y = c1 * t5
     del c1
-    t5 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t2)
-    del c_alpha2, c_gamma, s_gamma, t2
-    c1_z = s1 * t4
-    del s1, t4
-    t6 = r * s2 * t1 - c1_z
+    t6 = c1_y - (s_gamma * t3 + c_gamma * t2)
+    del c_gamma, s_gamma, t2, t3
+    c1_z = s1 * t5
+    del s1, t5
+    t7 = c1_z - s2 * t1
     del s2, t1
-    u_u = t3 * t3 + t5 * t5 + t6 * t6
-    t7 = r * r
-    t8 = _runtime.VANISHING * _runtime.VANISHING
-    t9 = t7 * t8
-    same = u_u <= t9
-    t10 = _runtime.select(same, c1_y, t5)
-    t11 = _runtime.select(same, -t6, c1_z)
-    t12 = _runtime.select(same, c1_z, -t6)
-    del t6
-    t13 = _runtime.select(same, t5, c1_y)
-    del t5
-    product_x = t10 * t11 - t12 * t13
+    u_u = t4 * t4 + t6 * t6 + t7 * t7
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    t8 = r * r
+    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
     all_same = u_u + v_v <= t9
-    del t9
     whole = _runtime.select(r == 0.0, 1.0, r)
-    t14 = _runtime.select(same, c1_x, t3)
-    a_x = _runtime.select(all_same, whole, -t14)
-    t15 = _runtime.select(same, t3, c1_x)
-    del t3
-    product_y = t11 * a_x + t12 * t15
-    t16 = product_x * product_x + product_y * product_y
-    t17 = t13 * a_x + t10 * t15
-    product_2 = t16 + t17 * t17
-    del t16
+    same = u_u <= t9
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t18 = mu * _runtime.select(same, u_u, v_v)
     del u_u, v_v
-    slim = product_2 - t18 * 0.000244140625 <= _runtime.VANISHING * t18
-    del t18
     over = 1.0 / mu
-    t19 = t10 * t17 + t12 * product_y
-    t20 = a_x * t17 - t12 * product_x
-    t21 = a_x * product_y + t10 * product_x
-    m_m = _runtime.select(slim, over * (t19 * t19 + t20 * t20 + t21 * t21), product_2)
-    del product_2
-    in_line = m_m <= t8 * (t7 * mu)
-    del t8
-    t22 = whole * t12
+    t10 = _runtime.select(same, c1_y, t6)
+    t11 = _runtime.select(same, c1_x, t4)
+    a_x = _runtime.select(all_same, whole, -t11)
+    t12 = _runtime.select(same, t6, c1_y)
+    del t6
+    t13 = _runtime.select(same, t4, c1_x)
+    del t4
+    t14 = a_x * t12 + t10 * t13
+    t15 = _runtime.select(same, c1_z, t7)
+    t16 = _runtime.select(same, t7, c1_z)
+    del t7
+    m_y = a_x * t16 + t13 * t15
+    t17 = over * (t10 * t14 + t15 * m_y)
+    m_x = t10 * t16 - t12 * t15
+    t18 = over * (a_x * t14 - t15 * m_x)
+    del t14
+    t19 = over * (a_x * m_y + t10 * m_x)
+    del m_x, m_y
+    nu = t17 * t17 + t18 * t18 + t19 * t19
+    in_line = nu <= t9
+    del t9
+    t20 = whole * t15
     s_w = _runtime.sign(-(t10 * a_x))
-    m_x = _runtime.select(slim, over * (t10 * t21 - t12 * t20), product_x)
-    del product_x
+    w_x = _runtime.select(in_line, -(t20 * s_w), t10 * t19 - t15 * t18)
     length_a = np.sqrt(mu)
     del mu
-    t23 = whole * (t10 - a_x * s_w)
-    del whole
-    w_w = _runtime.select(in_line, 2.0 * (t22 * t22) + t23 * t23, m_m)
-    del m_m
-    nu = over * w_w
-    del w_w
-    beside_a = np.sqrt(nu)
-    part = 1.0 / (length_a * beside_a)
-    t24 = r * 2.0
-    r_2 = np.abs(s_beta2_half) * t24
+    t21 = whole * (t10 - a_x * s_w)
+    del s_w, whole
+    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
+    del over
+    length_n = np.sqrt(nu_w)
+    del nu_w
+    part = 1.0 / (length_a * length_n)
+    t22 = r * 2.0
+    r_2 = np.abs(s_beta2_half) * t22
     del s_beta2_half
-    r_1 = np.abs(s_beta1_half) * t24
-    del s_beta1_half, t24
+    over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    del length_a
-    t25 = D + r_1
-    t26 = _runtime.select(same, r, r_2)
-    t27 = t25 - t26
-    outer = np.maximum(t27, 0.0)
-    t28 = D - r_1
-    t29 = t26 + t28
-    inner = np.maximum(t29, 0.0)
+    r_1 = np.abs(s_beta1_half) * t22
+    del s_beta1_half, t22
+    t23 = D + r_1
+    t24 = _runtime.select(same, r, r_2)
+    t25 = t23 - t24
+    outer = np.maximum(t25, 0.0)
+    t26 = D - r_1
+    t27 = t24 + t26
+    inner = np.maximum(t27, 0.0)
     share = 1.0 / (outer + inner)
-    t30 = t26 - t28
-    del t28
-    slack = np.maximum(t30, 0.0)
-    t31 = share * np.sqrt(outer * inner * slack * (t26 + t25))
-    del t25, t26
-    rho = _runtime.select(all_same, r_1, t31)
-    del r_1, t31
-    t32 = nu - _runtime.select(same, r_2 * r_2, t7) + rho * rho
-    del nu, t7
-    over_a = beside_a * part
-    t33 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    del D, inner, outer, share, slack
-    along = _runtime.select(all_same, 0.0, t33)
-    del all_same, t33
-    t34 = over_a * (a_x * t15 - t10 * t13 - t11 * t12) + along
-    del t11, t13, t15
-    left = t32 + t34 * t34
-    del t32, t34
-    t35 = 2.0 * _runtime.select(in_line, 0.0, beside_a)
-    del beside_a
-    t36 = t35 * rho
-    del t35
-    t37 = left + t36
-    upper = np.maximum(t37, 0.0)
-    t38 = t36 - left
-    del left, t36
-    lower = np.maximum(t38, 0.0)
+    t28 = t24 - t26
+    del t26
+    slack = np.maximum(t28, 0.0)
+    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    del D
+    along = _runtime.select(all_same, 0.0, t29)
+    del t29
+    t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    del t12, t13, t16
+    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
+    del nu, t30, t8
+    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
+    del inner, outer, share, slack, t23, t24
+    rho = _runtime.select(all_same, r_1, t32)
+    del all_same, r_1, t32
+    left = t31 + rho * rho
+    del t31
+    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t34 = t33 * rho
+    del t33
+    t35 = left + t34
+    upper = np.maximum(t35, 0.0)
+    t36 = t34 - left
+    del left, t34
+    lower = np.maximum(t36, 0.0)
     both = upper + lower
-    t39 = _runtime.select(same, r_2, r)
+    t37 = _runtime.select(same, r_2, r)
     del r_2, same
-    t40 = (both <= _runtime.VANISHING * (r * t39)) | in_line
+    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
     half = rho / both
     del both
-    t41 = _runtime.select(t40, rho, 2.0 * half * np.sqrt(upper * lower))
+    t39 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
     del rho
-    h = part * t41
-    del t41
-    t42 = _runtime.select(in_line, -(t22 * s_w), m_x) * h
-    del m_x, s_w
-    Y = _runtime.select(t40, 0.0, part * over_a * half * (upper - lower))
-    del half, lower, part, t40, upper
+    h = part * t39
+    del t39
+    t40 = w_x * h
+    del w_x
+    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
+    del half, length_a, lower, part, t38, upper
     X = over_a * along
     del along, over_a
-    t43 = t19 * Y - (c1_x - t14 * X)
-    del c1_x, t14
-    t44 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t45 = t44 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    t41 = t17 * Y - (c1_x - t11 * X)
+    del c1_x, t11
+    t42 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t43 = t42 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t42
+    t44 = t43 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t43
+    t45 = t44 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t44
-    t46 = t45 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    invalid = np.logical_not(t45)
     del t45
-    t47 = t46 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t46
-    invalid = np.logical_not(t47)
-    del t47
-    t48 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t49 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t39) * 0.5)
-    del t39
-    t50 = (t48 <= t30) & (t48 <= t27) & (t48 <= t29) & (-t49 <= t37)
-    del t27, t29, t30, t37, t48
-    unreachable = np.logical_not(t50 & (-t49 <= t38))
-    del t38, t49, t50
-    t51 = _runtime.poison(invalid | unreachable)
-    m_y = _runtime.select(slim, over * (a_x * t21 + t12 * t19), product_y)
-    del product_y
-    t52 = _runtime.select(in_line, -t22, m_y) * h
-    del m_y, t22
-    t53 = t20 * Y - (c1_y - t10 * X)
+    t46 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t47 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t37) * 0.5)
+    del t37
+    t48 = (t46 <= t28) & (t46 <= t25) & (t46 <= t27) & (-t47 <= t35)
+    del t25, t27, t28, t35, t46
+    unreachable = np.logical_not(t48 & (-t47 <= t36))
+    del t36, t47, t48
+    t49 = _runtime.poison(invalid | unreachable)
+    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
+    del t20
+    t50 = w_y * h
+    del w_y
+    t51 = t18 * Y - (c1_y - t10 * X)
     del c1_y
-    t54 = _runtime.select(slim, over * (a_x * t20 + t10 * t19), t17)
-    del a_x, over, slim, t10, t17, t19, t20
-    t55 = _runtime.select(in_line, t23, -t54) * h
-    del h, t23, t54
-    t56 = t21 * Y - (c1_z - t12 * X)
-    del X, Y, c1_z, t12, t21
-    t57 = _runtime.status(invalid, unreachable, in_line)
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
+    del a_x, t10, t17, t18, t21
+    t52 = w_z * h
+    del h, w_z
+    t53 = t19 * Y - (c1_z - t15 * X)
+    del X, Y, c1_z, t15, t19
+    t54 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t42 - t43 + t51,
-        t52 - t53 + t51,
-        t55 - t56 + t51,
-        -(t43 + t42) + t51,
-        -(t53 + t52) + t51,
-        -(t56 + t55) + t51,
-        t57,
-        t57,
+        t40 - t41 + t49,
+        t50 - t51 + t49,
+        t52 - t53 + t49,
+        -(t41 + t40) + t49,
+        -(t51 + t50) + t49,
+        -(t53 + t52) + t49,
+        t54,
+        t54,
     )
 
 
 def _fk_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     # Where nothing vanishes; last, whether something does.
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
     s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
     s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
     s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
     s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
     del c_beta1_half
     s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
     del c_beta2_half
-    t1 = r * np.abs(s_alpha1)
-    del s_alpha1
-    c1_y = c1 * t1
-    del c1
-    t2 = np.abs(s_alpha2)
-    del s_alpha2
-    t3 = c2 * t2
-    del c2
-    t4 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t3)
     c1_x = r * c_alpha1
     del c_alpha1
-    t5 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t3)
-    del c_alpha2, c_gamma, s_gamma, t3
-    m_z = t5 * c1_y - c1_x * t4
-    c1_z = s1 * t1
-    del s1, t1
-    t6 = r * s2 * t2 - c1_z
-    del s2, t2
-    t7 = t5 * c1_z + c1_x * t6
-    u_u = t5 * t5 + t4 * t4 + t6 * t6
+    t1 = r * np.abs(s_alpha2)
+    del s_alpha2
+    t2 = c2 * t1
+    del c2
+    t3 = r * c_alpha2
+    del c_alpha2
+    t4 = c1_x + (s_gamma * t2 - c_gamma * t3)
+    t5 = r * np.abs(s_alpha1)
+    del s_alpha1
+    c1_y = c1 * t5
+    del c1
+    t6 = c1_y - (s_gamma * t3 + c_gamma * t2)
+    del c_gamma, s_gamma, t2, t3
+    c1_z = s1 * t5
+    del s1, t5
+    t7 = c1_z - s2 * t1
+    del s2, t1
+    u_u = t4 * t4 + t6 * t6 + t7 * t7
+    over = 1.0 / u_u
+    t8 = t4 * c1_y - c1_x * t6
+    t9 = t4 * c1_z - c1_x * t7
+    t10 = over * (t6 * t8 + t7 * t9)
     length_a = np.sqrt(u_u)
-    product_x = t4 * c1_z + c1_y * t6
-    product_2 = product_x * product_x + t7 * t7 + m_z * m_z
-    nu = product_2 / u_u
-    beside_a = np.sqrt(nu)
-    part = 1.0 / (length_a * beside_a)
-    over_a = beside_a * part
-    t8 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t8
+    m_x = t6 * c1_z - c1_y * t7
+    t11 = over * (t4 * t8 - t7 * m_x)
+    del t8
+    t12 = over * (t4 * t9 + t6 * m_x)
+    del m_x, over, t9
+    nu = t10 * t10 + t11 * t11 + t12 * t12
+    length_n = np.sqrt(nu)
+    part = 1.0 / (length_a * length_n)
+    t13 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t13
     del s_beta1_half
-    r_2 = np.abs(s_beta2_half) * t8
-    del s_beta2_half, t8
-    t9 = r_1 - r_2
-    t10 = length_a + t9
-    outer = np.maximum(t10, 0.0)
-    t11 = length_a - t9
-    del t9
-    inner = np.maximum(t11, 0.0)
-    share = 1.0 / (outer + inner)
-    t12 = r_1 + r_2
-    del r_1, r_2
-    t13 = t12 - length_a
-    slack = np.maximum(t13, 0.0)
-    t14 = np.sqrt(outer * inner * slack * (length_a + t12))
-    del t12
-    rho = share * t14
+    r_2 = np.abs(s_beta2_half) * t13
+    del s_beta2_half, t13
+    t14 = r_1 - r_2
+    t15 = length_a + t14
+    outer = np.maximum(t15, 0.0)
+    t16 = length_a - t14
     del t14
-    t15 = 2.0 * beside_a * rho
-    del beside_a
-    t16 = r * r
-    t17 = share * (length_a + slack) * (outer - inner) * 0.5
+    inner = np.maximum(t16, 0.0)
+    share = 1.0 / (outer + inner)
+    t17 = r_1 + r_2
+    del r_1, r_2
+    t18 = t17 - length_a
+    slack = np.maximum(t18, 0.0)
+    t19 = np.sqrt(outer * inner * slack * (length_a + t17))
+    del t17
+    rho = share * t19
+    del t19
+    t20 = 2.0 * length_n * rho
+    t21 = r * r
+    over_a = length_n * part
+    del length_n
+    t22 = share * (length_a + slack) * (outer - inner) * 0.5
     del inner, outer, share, slack
-    along = length_a * 0.5 + t17
-    del length_a, t17
-    t18 = over_a * (c1_x * t5 + c1_y * t4 - c1_z * t6) - along
-    t19 = t16 - nu - t18 * t18 - rho * rho
-    del nu, t18
-    t20 = t15 - t19
-    upper = np.maximum(t20, 0.0)
-    t21 = t19 + t15
-    del t15, t19
-    lower = np.maximum(t21, 0.0)
+    along = length_a * 0.5 + t22
+    del t22
+    t23 = over_a * (c1_x * t4 + c1_y * t6 + c1_z * t7) - along
+    t24 = t21 - nu - t23 * t23 - rho * rho
+    del t23
+    t25 = t20 - t24
+    upper = np.maximum(t25, 0.0)
+    t26 = t24 + t20
+    del t20, t24
+    lower = np.maximum(t26, 0.0)
     both = upper + lower
     half = rho / both
     del rho
-    Y = part * over_a * half * (upper - lower)
+    Y = length_a * part * half * (upper - lower)
+    del length_a
     X = over_a * along
     del along, over_a
-    t22 = (t4 * m_z - t6 * t7) * Y + (c1_x - t5 * X)
+    t27 = t10 * Y + (c1_x - t4 * X)
     h = part * (2.0 * half * np.sqrt(upper * lower))
     del half, lower, part, upper
-    t23 = product_x * h
-    t24 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t25 = t24 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t24
-    t26 = t25 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t25
-    t27 = t26 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t26
-    invalid = np.logical_not(t27)
-    del t27
-    t28 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t29 = _runtime.FEASIBILITY * (r * (r + r * 2.2737367544323206e-13) * 0.5)
-    t30 = (t28 <= t13) & (t28 <= t10) & (t28 <= t11) & (-t29 <= t20)
-    del t10, t11, t13, t20, t28
-    unreachable = np.logical_not(t30 & (-t29 <= t21))
-    del t21, t29, t30
-    t31 = _runtime.poison(invalid | unreachable)
-    t32 = (t5 * m_z + t6 * product_x) * Y - (c1_y - t4 * X)
-    t33 = t7 * h
-    t34 = m_z * h
-    del h, m_z
-    t35 = (t5 * t7 + t4 * product_x) * Y - (c1_z + t6 * X)
-    del X, Y, product_x, t4, t5, t6, t7
-    t36 = _runtime.status(invalid, unreachable, np.False_)
+    t28 = (t6 * t12 - t7 * t11) * h
+    t29 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t30 = t29 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t29
+    t31 = t30 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t30
+    t32 = t31 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t31
+    invalid = np.logical_not(t32)
+    del t32
+    t33 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t34 = _runtime.FEASIBILITY * (r * (r + r * 2.2737367544323206e-13) * 0.5)
+    t35 = (t33 <= t18) & (t33 <= t15) & (t33 <= t16) & (-t34 <= t25)
+    del t15, t16, t18, t25, t33
+    unreachable = np.logical_not(t35 & (-t34 <= t26))
+    del t26, t34, t35
+    t36 = _runtime.poison(invalid | unreachable)
+    t37 = t11 * Y - (c1_y - t6 * X)
+    t38 = (t4 * t12 + t7 * t10) * h
+    t39 = (t4 * t11 + t6 * t10) * h
+    del h, t10, t11, t4, t6
+    t40 = t12 * Y - (c1_z - t7 * X)
+    del X, Y, t12, t7
+    t41 = _runtime.status(invalid, unreachable, np.False_)
     del invalid, unreachable
-    t37 = _runtime.VANISHING * _runtime.VANISHING
-    t38 = t16 * t37
-    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    t42 = _runtime.VANISHING * t21
+    del t21
+    t43 = _runtime.VANISHING * t42
+    t44 = u_u + (c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
     del c1_x, c1_y, c1_z
-    t39 = u_u * v_v
-    slim = product_2 - t39 * 0.000244140625 <= _runtime.VANISHING * t39
-    del t39
-    t40 = (u_u <= t38) | (u_u + v_v <= t38) | slim | (product_2 <= t37 * (t16 * u_u))
-    del product_2, slim, t37, t38, u_u, v_v
+    t45 = (u_u <= t43) | (t44 <= t43) | (nu <= t43) | (both <= t42)
+    del both, nu, t42, t43, t44, u_u
     return (
-        t22 + t23 + t31,
-        -(t32 + t33) + t31,
-        t34 - t35 + t31,
-        t22 - t23 + t31,
-        t33 - t32 + t31,
-        -(t35 + t34) + t31,
-        t36,
-        t36,
-        t40 | (both <= _runtime.VANISHING * t16),
+        t27 + t28 + t36,
+        -(t37 + t38) + t36,
+        t39 - t40 + t36,
+        t27 - t28 + t36,
+        t38 - t37 + t36,
+        -(t40 + t39) + t36,
+        t41,
+        t41,
+        t45,
     )
 
 
@@ -445,7 +431,7 @@ _FK = _runtime.Kernel(
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
     common=_fk_common,
-    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -493,8 +479,8 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_gamma, c_gamma = _runtime.sincos(gamma)
-    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
     s2, c2 = _runtime.sincos(theta2)
+    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
     s1, c1 = _runtime.sincos(theta1)
     s_beta2_half = np.sin(beta2 * 0.5)
     s_beta1_half = np.sin(beta1 * 0.5)
@@ -508,389 +494,205 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t5 = -(_runtime.FEASIBILITY * (r * 0.3125))
     c1_x = r * c_alpha1
     del c_alpha1
-    t6 = np.abs(s_alpha2)
+    t6 = r * np.abs(s_alpha2)
     del s_alpha2
     t7 = c2 * t6
     del c2
-    t8 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t7)
-    t9 = r * np.abs(s_alpha1)
+    t8 = r * c_alpha2
+    del c_alpha2
+    t9 = c_gamma * t8
+    t10 = s_gamma * t7 - t9
+    t11 = c1_x + t10
+    t12 = r * np.abs(s_alpha1)
     del s_alpha1
-    c1_y = c1 * t9
+    c1_y = c1 * t12
     del c1
-    t10 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t7)
-    c2_z = r * s2 * t6
+    t13 = s_gamma * t8
+    del s_gamma, t8
+    c2_y = t13 + c_gamma * t7
+    del c_gamma, t7
+    t14 = c1_y - c2_y
+    c1_z = s1 * t12
+    del s1, t12
+    c2_z = s2 * t6
     del s2, t6
-    c1_z = s1 * t9
-    del s1, t9
-    t11 = c2_z - c1_z
-    u_u = t8 * t8 + t10 * t10 + t11 * t11
-    t12 = r * r
-    t13 = _runtime.VANISHING * _runtime.VANISHING
-    t14 = t12 * t13
-    same = u_u <= t14
-    t15 = r * 2.0
-    r_2 = np.abs(s_beta2_half) * t15
+    t15 = c1_z - c2_z
+    u_u = t11 * t11 + t14 * t14 + t15 * t15
+    t16 = r * r
+    t17 = _runtime.VANISHING * _runtime.VANISHING * t16
+    same = u_u <= t17
+    t18 = r * 2.0
+    r_2 = np.abs(s_beta2_half) * t18
     del s_beta2_half
-    t16 = _runtime.select(same, r, r_2)
-    r_1 = np.abs(s_beta1_half) * t15
-    del s_beta1_half, t15
+    t19 = _runtime.select(same, r, r_2)
+    r_1 = np.abs(s_beta1_half) * t18
+    del s_beta1_half, t18
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t14
-    del t14
+    all_same = u_u + v_v <= t17
     whole = _runtime.select(r == 0.0, 1.0, r)
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    del u_u, v_v
     length_a = np.sqrt(mu)
     D = _runtime.select(all_same, 0.0, length_a)
-    t17 = r_1 - D
-    t18 = t16 + t17
-    t19 = r_1 + D
-    t20 = t19 - t16
-    t21 = t16 - t17
-    del t17
-    t22 = _runtime.select(same, r_2, r)
-    t23 = 0.625 * (r * (r * 2.2737367544323206e-13 + t22))
-    t24 = -(_runtime.FEASIBILITY * t23)
-    del t23
-    t25 = _runtime.select(same, c1_y, t10)
-    t26 = _runtime.select(same, -t11, c1_z)
-    t27 = _runtime.select(same, c1_z, -t11)
-    del t11
-    t28 = _runtime.select(same, t10, c1_y)
-    del t10
-    product_x = t25 * t26 - t27 * t28
-    t29 = _runtime.select(same, c1_x, t8)
-    a_x = _runtime.select(all_same, whole, -t29)
-    t30 = _runtime.select(same, t8, c1_x)
-    del t8
-    product_y = t26 * a_x + t27 * t30
-    t31 = product_x * product_x + product_y * product_y
-    t32 = t28 * a_x + t25 * t30
-    product_2 = t31 + t32 * t32
-    del t31
-    t33 = mu * _runtime.select(same, u_u, v_v)
-    del u_u, v_v
-    slim = product_2 - t33 * 0.000244140625 <= _runtime.VANISHING * t33
-    del t33
+    t20 = r_1 - D
+    t21 = t19 + t20
+    t22 = r_1 + D
+    t23 = t22 - t19
+    t24 = t19 - t20
+    del t20
+    t25 = _runtime.select(same, r_2, r)
+    t26 = 0.625 * (r * (r * 2.2737367544323206e-13 + t25))
+    t27 = -(_runtime.FEASIBILITY * t26)
+    del t26
     over = 1.0 / mu
-    t34 = t25 * t32 + t27 * product_y
-    t35 = a_x * t32 - t27 * product_x
-    t36 = a_x * product_y + t25 * product_x
-    m_m = _runtime.select(slim, over * (t34 * t34 + t35 * t35 + t36 * t36), product_2)
-    del product_2
-    in_line = m_m <= t13 * (t12 * mu)
-    del t13
-    t37 = whole * t27
-    s_w = _runtime.sign(-(t25 * a_x))
-    t38 = whole * (t25 - a_x * s_w)
+    del mu
+    t28 = _runtime.select(same, c1_y, t14)
+    t29 = _runtime.select(same, c1_x, t11)
+    a_x = _runtime.select(all_same, whole, -t29)
+    t30 = _runtime.select(same, t14, c1_y)
+    del t14
+    t31 = _runtime.select(same, t11, c1_x)
+    del t11
+    t32 = a_x * t30 + t28 * t31
+    t33 = _runtime.select(same, c1_z, t15)
+    t34 = _runtime.select(same, t15, c1_z)
+    del t15
+    m_y = a_x * t34 + t31 * t33
+    t35 = over * (t28 * t32 + t33 * m_y)
+    m_x = t28 * t34 - t30 * t33
+    t36 = over * (a_x * t32 - t33 * m_x)
+    del t32
+    t37 = over * (a_x * m_y + t28 * m_x)
+    del m_x, m_y
+    nu = t35 * t35 + t36 * t36 + t37 * t37
+    in_line = nu <= t17
+    del t17
+    t38 = whole * t33
+    s_w = _runtime.sign(-(t28 * a_x))
+    t39 = whole * (t28 - a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (t37 * t37) + t38 * t38, m_m)
-    del m_m
-    nu = w_w / mu
-    del mu, w_w
-    beside_a = np.sqrt(nu)
-    part = 1.0 / (length_a * beside_a)
-    del length_a
-    over_a = beside_a * part
-    outer = np.maximum(t20, 0.0)
-    inner = np.maximum(t21, 0.0)
+    nu_w = _runtime.select(in_line, over * (2.0 * (t38 * t38) + t39 * t39), nu)
+    del over
+    length_n = np.sqrt(nu_w)
+    del nu_w
+    part = 1.0 / (length_a * length_n)
+    over_a = length_n * part
+    outer = np.maximum(t23, 0.0)
+    inner = np.maximum(t24, 0.0)
     share = 1.0 / (outer + inner)
-    slack = np.maximum(t18, 0.0)
-    t39 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    slack = np.maximum(t21, 0.0)
+    t40 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t39)
-    del t39
-    t40 = over_a * (a_x * t30 - t25 * t28 - t26 * t27) + along
-    del t26, t28, t30
-    t41 = nu - _runtime.select(same, r_2 * r_2, t12) + t40 * t40
-    del nu, r_2, same, t12, t40
-    t42 = share * np.sqrt(outer * inner * slack * (t16 + t19))
-    del inner, outer, share, slack, t16, t19
-    rho = _runtime.select(all_same, r_1, t42)
-    del all_same, r_1, t42
-    left = t41 + rho * rho
-    del t41
-    t43 = 2.0 * _runtime.select(in_line, 0.0, beside_a)
-    del beside_a
-    t44 = t43 * rho
-    del t43
-    t45 = left + t44
-    t46 = (t5 <= t18) & (t5 <= t20) & (t5 <= t21) & (t24 <= t45)
-    del t18, t20, t21, t5
-    t47 = t44 - left
-    del left, t44
-    failed = np.logical_not(t4) | np.logical_not(t46 & (t24 <= t47))
-    del t24, t4, t46
-    t48 = _runtime.poison(failed)
+    along = _runtime.select(all_same, 0.0, t40)
+    del t40
+    t41 = over_a * (a_x * t31 - t28 * t30 - t33 * t34) + along
+    del t30, t31, t34
+    t42 = nu - _runtime.select(same, r_2 * r_2, t16) + t41 * t41
+    del nu, r_2, same, t16, t41
+    t43 = share * np.sqrt(outer * inner * slack * (t19 + t22))
+    del inner, outer, share, slack, t19, t22
+    rho = _runtime.select(all_same, r_1, t43)
+    del all_same, r_1, t43
+    left = t42 + rho * rho
+    del t42
+    t44 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t45 = t44 * rho
+    del t44
+    t46 = left + t45
+    t47 = (t5 <= t21) & (t5 <= t23) & (t5 <= t24) & (t27 <= t46)
+    del t21, t23, t24, t5
+    t48 = t45 - left
+    del left, t45
+    failed = np.logical_not(t4) | np.logical_not(t47 & (t27 <= t48))
+    del t27, t4, t47
+    t49 = _runtime.poison(failed)
     del failed
-    t49 = 0.0 + t48
-    t50 = c1_x + t48
-    t51 = c1_y + t48
-    t52 = c1_z + t48
-    t53 = r * c_gamma
-    del c_gamma
-    t54 = c_alpha2 * t53
-    t55 = t54 + t48
-    t56 = r * s_gamma
-    del s_gamma
-    t57 = c_alpha2 * t56
-    del c_alpha2
-    t58 = t57 + t48
-    t59 = t54 - t7 * t56 + t48
-    del t54, t56
-    t60 = t57 + t7 * t53 + t48
-    del t53, t57, t7
-    t61 = c2_z + t48
+    t50 = 0.0 + t49
+    t51 = c1_x + t49
+    t52 = c1_y + t49
+    t53 = c1_z + t49
+    t54 = t9 + t49
+    del t9
+    t55 = t13 + t49
+    del t13
+    t56 = -t10 + t49
+    del t10
+    t57 = c2_y + t49
+    del c2_y
+    t58 = c2_z + t49
     del c2_z
     X = over_a * along
-    del along
-    upper = np.maximum(t45, 0.0)
-    del t45
-    lower = np.maximum(t47, 0.0)
-    del t47
+    del along, over_a
+    upper = np.maximum(t46, 0.0)
+    del t46
+    lower = np.maximum(t48, 0.0)
+    del t48
     both = upper + lower
-    t62 = (both <= _runtime.VANISHING * (r * t22)) | in_line
-    del t22
+    t59 = (both <= _runtime.VANISHING * (r * t25)) | in_line
+    del t25
     half = rho / both
     del both
-    Y = _runtime.select(t62, 0.0, part * over_a * half * (upper - lower))
-    del over_a
-    t63 = t29 * X + t34 * Y
+    Y = _runtime.select(t59, 0.0, length_a * part * half * (upper - lower))
+    del length_a
+    t60 = t29 * X + t35 * Y
     del t29
-    m_x = _runtime.select(slim, over * (t25 * t36 - t27 * t35), product_x)
-    del product_x
-    t64 = _runtime.select(t62, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t62, upper
-    h = part * t64
-    del part, t64
-    t65 = _runtime.select(in_line, -(t37 * s_w), m_x) * h
-    del m_x, s_w
-    t66 = t25 * X + t35 * Y
-    m_y = _runtime.select(slim, over * (a_x * t36 + t27 * t34), product_y)
-    del product_y
-    t67 = _runtime.select(in_line, -t37, m_y) * h
-    del m_y, t37
-    t68 = t27 * X + t36 * Y
-    del X, Y, t27, t36
-    t69 = _runtime.select(slim, over * (a_x * t35 + t25 * t34), t32)
-    del a_x, over, slim, t25, t32, t34, t35
-    t70 = _runtime.select(in_line, t38, -t69) * h
-    del h, in_line, t38, t69
+    w_x = _runtime.select(in_line, -(t38 * s_w), t28 * t37 - t33 * t36)
+    del s_w
+    t61 = _runtime.select(t59, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t59, upper
+    h = part * t61
+    del part, t61
+    t62 = w_x * h
+    del w_x
+    t63 = t28 * X + t36 * Y
+    w_y = _runtime.select(in_line, -t38, a_x * t37 + t33 * t35)
+    del t38
+    t64 = w_y * h
+    del w_y
+    t65 = t33 * X + t37 * Y
+    del X, Y, t33, t37
+    w_z = _runtime.select(in_line, t39, -(a_x * t36 + t28 * t35))
+    del a_x, in_line, t28, t35, t36, t39
+    t66 = w_z * h
+    del h, w_z
     return (
-        t49,
-        t49,
-        t49,
         t50,
-        t49,
-        t49,
+        t50,
+        t50,
+        t51,
+        t50,
         t50,
         t51,
         t52,
+        t53,
+        t54,
         t55,
-        t58,
-        t49,
-        t59,
-        t60,
-        t61,
-        c1_x - (t63 - t65) + t48,
-        c1_y - (t66 - t67) + t48,
-        c1_z - (t68 - t70) + t48,
-        t49,
-        t49,
-        t49,
         t50,
-        t49,
-        t49,
+        t56,
+        t57,
+        t58,
+        c1_x - (t60 - t62) + t49,
+        c1_y - (t63 - t64) + t49,
+        c1_z - (t65 - t66) + t49,
+        t50,
+        t50,
+        t50,
+        t51,
+        t50,
         t50,
         t51,
         t52,
+        t53,
+        t54,
         t55,
+        t50,
+        t56,
+        t57,
         t58,
-        t49,
-        t59,
-        t60,
-        t61,
-        c1_x - (t63 + t65) + t48,
-        c1_y - (t66 + t67) + t48,
-        c1_z - (t68 + t70) + t48,
-    )
-
-
-def _skeleton_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
-    # Where nothing vanishes; last, whether something does.
-    s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
-    del c_beta1_half
-    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
-    del c_beta2_half
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s2, c2 = _runtime.sincos_as_in_c(theta2)
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
-    t1 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t2 = t1 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t1
-    t3 = t2 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t2
-    t4 = t3 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t3
-    t5 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t6 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t6
-    del s_beta1_half
-    r_2 = np.abs(s_beta2_half) * t6
-    del s_beta2_half, t6
-    t7 = r_1 + r_2
-    c1_x = r * c_alpha1
-    del c_alpha1
-    t8 = np.abs(s_alpha2)
-    del s_alpha2
-    t9 = c2 * t8
-    del c2
-    t10 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t9)
-    t11 = r * np.abs(s_alpha1)
-    del s_alpha1
-    c1_y = c1 * t11
-    del c1
-    t12 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t9)
-    c2_z = r * s2 * t8
-    del s2, t8
-    c1_z = s1 * t11
-    del s1, t11
-    t13 = c2_z - c1_z
-    u_u = t10 * t10 + t12 * t12 + t13 * t13
-    length_a = np.sqrt(u_u)
-    t14 = t7 - length_a
-    t15 = r_1 - r_2
-    del r_1, r_2
-    t16 = length_a + t15
-    t17 = length_a - t15
-    del t15
-    t18 = 0.625 * (r * (r + r * 2.2737367544323206e-13))
-    t19 = -(_runtime.FEASIBILITY * t18)
-    del t18
-    product_x = t12 * c1_z + c1_y * t13
-    t20 = t10 * c1_z + c1_x * t13
-    m_z = t10 * c1_y - c1_x * t12
-    product_2 = product_x * product_x + t20 * t20 + m_z * m_z
-    nu = product_2 / u_u
-    beside_a = np.sqrt(nu)
-    outer = np.maximum(t16, 0.0)
-    inner = np.maximum(t17, 0.0)
-    share = 1.0 / (outer + inner)
-    slack = np.maximum(t14, 0.0)
-    t21 = np.sqrt(outer * inner * slack * (length_a + t7))
-    del t7
-    rho = share * t21
-    del t21
-    t22 = 2.0 * beside_a * rho
-    t23 = r * r
-    part = 1.0 / (length_a * beside_a)
-    over_a = beside_a * part
-    del beside_a
-    t24 = over_a * (c1_x * t10 + c1_y * t12 - c1_z * t13)
-    t25 = share * (length_a + slack) * (outer - inner) * 0.5
-    del inner, outer, share, slack
-    along = length_a * 0.5 + t25
-    del length_a, t25
-    t26 = t24 - along
-    del t24
-    t27 = t23 - nu - t26 * t26 - rho * rho
-    del nu, t26
-    t28 = t22 - t27
-    t29 = (t5 <= t14) & (t5 <= t16) & (t5 <= t17) & (t19 <= t28)
-    del t14, t16, t17, t5
-    t30 = t27 + t22
-    del t22, t27
-    failed = np.logical_not(t4) | np.logical_not(t29 & (t19 <= t30))
-    del t19, t29, t4
-    t31 = _runtime.poison(failed)
-    del failed
-    t32 = 0.0 + t31
-    t33 = c1_x + t31
-    t34 = c1_y + t31
-    t35 = c1_z + t31
-    t36 = r * c_gamma
-    del c_gamma
-    t37 = c_alpha2 * t36
-    t38 = t37 + t31
-    t39 = r * s_gamma
-    del s_gamma
-    t40 = c_alpha2 * t39
-    del c_alpha2
-    t41 = t40 + t31
-    t42 = t37 - t9 * t39 + t31
-    del t37, t39
-    t43 = t40 + t9 * t36 + t31
-    del t36, t40, t9
-    t44 = c2_z + t31
-    del c2_z
-    X = over_a * along
-    del along
-    upper = np.maximum(t28, 0.0)
-    del t28
-    lower = np.maximum(t30, 0.0)
-    del t30
-    both = upper + lower
-    half = rho / both
-    del rho
-    Y = part * over_a * half * (upper - lower)
-    del over_a
-    t45 = t10 * X - (t12 * m_z - t13 * t20) * Y
-    h = part * (2.0 * half * np.sqrt(upper * lower))
-    del half, lower, part, upper
-    t46 = product_x * h
-    t47 = t12 * X + (t10 * m_z + t13 * product_x) * Y
-    t48 = t20 * h
-    t49 = t13 * X - (t10 * t20 + t12 * product_x) * Y
-    del X, Y, product_x, t10, t12, t13, t20
-    t50 = m_z * h
-    del h, m_z
-    t51 = _runtime.VANISHING * _runtime.VANISHING
-    t52 = t23 * t51
-    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    t53 = u_u * v_v
-    slim = product_2 - t53 * 0.000244140625 <= _runtime.VANISHING * t53
-    del t53
-    t54 = (u_u <= t52) | (u_u + v_v <= t52) | slim | (product_2 <= t51 * (t23 * u_u))
-    del product_2, slim, t51, t52, u_u, v_v
-    return (
-        t32,
-        t32,
-        t32,
-        t33,
-        t32,
-        t32,
-        t33,
-        t34,
-        t35,
-        t38,
-        t41,
-        t32,
-        t42,
-        t43,
-        t44,
-        c1_x - (t45 - t46) + t31,
-        c1_y - (t47 + t48) + t31,
-        c1_z + (t49 + t50) + t31,
-        t32,
-        t32,
-        t32,
-        t33,
-        t32,
-        t32,
-        t33,
-        t34,
-        t35,
-        t38,
-        t41,
-        t32,
-        t42,
-        t43,
-        t44,
-        c1_x - (t45 + t46) + t31,
-        c1_y - (t47 - t48) + t31,
-        c1_z + (t49 - t50) + t31,
-        t54 | (both <= _runtime.VANISHING * t23),
+        c1_x - (t60 + t62) + t49,
+        c1_y - (t63 + t64) + t49,
+        c1_z - (t65 + t66) + t49,
     )
 
 
@@ -901,8 +703,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Array("points", (2, 6, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    common=_skeleton_common,
-    size=_runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -943,339 +744,186 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 def _jacobian_parallel(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_gamma, c_gamma = _runtime.sincos(gamma)
-    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
     s2, c2 = _runtime.sincos(theta2)
+    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
     s1, c1 = _runtime.sincos(theta1)
     s_beta1_half = np.sin(beta1 * 0.5)
     s_beta2_half = np.sin(beta2 * 0.5)
     c1_x = r * c_alpha1
     del c_alpha1
-    t1 = np.abs(s_alpha2)
+    t1 = r * np.abs(s_alpha2)
     del s_alpha2
     t2 = c2 * t1
     del c2
-    t3 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t2)
-    t4 = r * np.abs(s_alpha1)
+    t3 = r * c_alpha2
+    del c_alpha2
+    t4 = c1_x + (s_gamma * t2 - c_gamma * t3)
+    t5 = r * np.abs(s_alpha1)
     del s_alpha1
-    c1_y = c1 * t4
+    c1_y = c1 * t5
     del c1
-    t5 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t2)
-    del c_alpha2, c_gamma, s_gamma, t2
-    c1_z = s1 * t4
-    del s1, t4
-    t6 = r * s2 * t1 - c1_z
+    t6 = c1_y - (s_gamma * t3 + c_gamma * t2)
+    del c_gamma, s_gamma, t2, t3
+    c1_z = s1 * t5
+    del s1, t5
+    t7 = c1_z - s2 * t1
     del s2, t1
-    u_u = t3 * t3 + t5 * t5 + t6 * t6
-    t7 = r * r
-    t8 = _runtime.VANISHING * _runtime.VANISHING
-    t9 = t7 * t8
+    u_u = t4 * t4 + t6 * t6 + t7 * t7
+    t8 = r * r
+    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
     same = u_u <= t9
-    t10 = _runtime.select(same, c1_x, t3)
-    t11 = _runtime.select(same, c1_y, t5)
-    t12 = _runtime.select(same, -t6, c1_z)
-    t13 = _runtime.select(same, c1_z, -t6)
-    t14 = _runtime.select(same, t5, c1_y)
-    product_x = t11 * t12 - t13 * t14
+    t10 = _runtime.select(same, c1_x, t4)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     all_same = u_u + v_v <= t9
-    del t9
     whole = _runtime.select(r == 0.0, 1.0, r)
-    a_x = _runtime.select(all_same, whole, -t10)
-    t15 = _runtime.select(same, t3, c1_x)
-    product_y = t12 * a_x + t13 * t15
-    t16 = product_x * product_x + product_y * product_y
-    t17 = t14 * a_x + t11 * t15
-    product_2 = t16 + t17 * t17
-    del t16
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t18 = mu * _runtime.select(same, u_u, v_v)
     del u_u, v_v
-    slim = product_2 - t18 * 0.000244140625 <= _runtime.VANISHING * t18
-    del t18
     over = 1.0 / mu
-    t19 = t11 * t17 + t13 * product_y
-    t20 = a_x * t17 - t13 * product_x
-    t21 = a_x * product_y + t11 * product_x
-    m_m = _runtime.select(slim, over * (t19 * t19 + t20 * t20 + t21 * t21), product_2)
-    del product_2
-    in_line = m_m <= t8 * (t7 * mu)
-    del t8
-    t22 = whole * t13
+    t11 = _runtime.select(same, c1_y, t6)
+    a_x = _runtime.select(all_same, whole, -t10)
+    t12 = _runtime.select(same, t6, c1_y)
+    t13 = _runtime.select(same, t4, c1_x)
+    t14 = a_x * t12 + t11 * t13
+    t15 = _runtime.select(same, c1_z, t7)
+    t16 = _runtime.select(same, t7, c1_z)
+    m_y = a_x * t16 + t13 * t15
+    t17 = over * (t11 * t14 + t15 * m_y)
+    m_x = t11 * t16 - t12 * t15
+    t18 = over * (a_x * t14 - t15 * m_x)
+    del t14
+    t19 = over * (a_x * m_y + t11 * m_x)
+    del m_x, m_y
+    nu = t17 * t17 + t18 * t18 + t19 * t19
+    in_line = nu <= t9
+    del t9
+    t20 = whole * t15
     s_w = _runtime.sign(-(t11 * a_x))
-    t23 = whole * (t11 - a_x * s_w)
+    t21 = whole * (t11 - a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (t22 * t22) + t23 * t23, m_m)
-    del m_m
-    nu = w_w / mu
-    del w_w
-    beside_a = np.sqrt(nu)
+    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
+    del over
+    length_n = np.sqrt(nu_w)
+    del nu_w
     length_a = np.sqrt(mu)
     del mu
-    part = 1.0 / (length_a * beside_a)
-    over_a = beside_a * part
+    part = 1.0 / (length_a * length_n)
+    over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    del length_a
-    t24 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t24
+    t22 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t22
     del s_beta1_half
-    t25 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t24
-    del s_beta2_half, t24
-    t26 = _runtime.select(same, r, r_2)
-    t27 = t25 - t26
-    outer = np.maximum(t27, 0.0)
-    t28 = D - r_1
-    t29 = t26 + t28
-    inner = np.maximum(t29, 0.0)
+    t23 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t22
+    del s_beta2_half, t22
+    t24 = _runtime.select(same, r, r_2)
+    t25 = t23 - t24
+    outer = np.maximum(t25, 0.0)
+    t26 = D - r_1
+    t27 = t24 + t26
+    inner = np.maximum(t27, 0.0)
     share = 1.0 / (outer + inner)
-    t30 = t26 - t28
-    del t28
-    slack = np.maximum(t30, 0.0)
-    t31 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t28 = t24 - t26
+    del t26
+    slack = np.maximum(t28, 0.0)
+    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t31)
-    del t31
+    along = _runtime.select(all_same, 0.0, t29)
+    del t29
     X = over_a * along
-    t32 = over_a * (a_x * t15 - t11 * t14 - t12 * t13) + along
-    del along, t12, t14, t15
-    t33 = nu - _runtime.select(same, r_2 * r_2, t7) + t32 * t32
-    del nu, t32, t7
-    t34 = share * np.sqrt(outer * inner * slack * (t26 + t25))
-    del inner, outer, share, slack, t25, t26
-    rho = _runtime.select(all_same, r_1, t34)
-    del all_same, r_1, t34
-    left = t33 + rho * rho
+    t30 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along
+    del along, over_a, t12, t13, t16
+    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
+    del nu, t30, t8
+    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
+    del inner, outer, share, slack, t23, t24
+    rho = _runtime.select(all_same, r_1, t32)
+    del all_same, r_1, t32
+    left = t31 + rho * rho
+    del t31
+    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t34 = t33 * rho
     del t33
-    t35 = 2.0 * _runtime.select(in_line, 0.0, beside_a)
-    del beside_a
-    t36 = t35 * rho
-    del t35
-    t37 = left + t36
-    upper = np.maximum(t37, 0.0)
-    t38 = t36 - left
-    del left, t36
-    lower = np.maximum(t38, 0.0)
+    t35 = left + t34
+    upper = np.maximum(t35, 0.0)
+    t36 = t34 - left
+    del left, t34
+    lower = np.maximum(t36, 0.0)
     both = upper + lower
-    t39 = _runtime.select(same, r_2, r)
+    t37 = _runtime.select(same, r_2, r)
     del r_2, same
-    t40 = (both <= _runtime.VANISHING * (r * t39)) | in_line
+    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t40, 0.0, part * over_a * half * (upper - lower))
-    del over_a
-    t41 = t10 * X + t19 * Y
+    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
+    del length_a
+    t39 = t10 * X + t17 * Y
     del t10
-    m_x = _runtime.select(slim, over * (t11 * t21 - t13 * t20), product_x)
-    del product_x
-    t42 = _runtime.select(t40, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t40, upper
-    h = part * t42
-    del part, t42
-    t43 = _runtime.select(in_line, -(t22 * s_w), m_x) * h
-    del m_x, s_w
-    t44 = t41 - t43
-    t45 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t46 = t45 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t45
-    t47 = t46 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t46
-    t48 = t47 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t47
-    t49 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t50 = 0.625 * (r * (r * 2.2737367544323206e-13 + t39))
-    del t39
-    t51 = -(_runtime.FEASIBILITY * t50)
-    del t50
-    t52 = (t49 <= t30) & (t49 <= t27) & (t49 <= t29) & (t51 <= t37)
-    del t27, t29, t30, t37, t49
-    failed = np.logical_not(t48) | np.logical_not(t52 & (t51 <= t38))
-    del t38, t48, t51, t52
-    t53 = _runtime.poison(failed)
-    del failed
-    t54 = t11 * X + t20 * Y
-    m_y = _runtime.select(slim, over * (a_x * t21 + t13 * t19), product_y)
-    del product_y
-    t55 = _runtime.select(in_line, -t22, m_y) * h
-    del m_y, t22
-    t56 = t54 - t55
-    t57 = t13 * X + t21 * Y
-    del X, Y, t13, t21
-    t58 = _runtime.select(slim, over * (a_x * t20 + t11 * t19), t17)
-    del a_x, over, slim, t11, t17, t19, t20
-    t59 = _runtime.select(in_line, t23, -t58) * h
-    del h, in_line, t23, t58
-    t60 = t57 - t59
-    t61 = t41 + t43
-    del t41, t43
-    t62 = t54 + t55
-    del t54, t55
-    t63 = t57 + t59
-    del t57, t59
-    return (
-        c1_x - t44 + t53,
-        c1_y - t56 + t53,
-        c1_z - t60 + t53,
-        -t44 + t53,
-        -t56 + t53,
-        -t60 + t53,
-        t3 - t44 + t53,
-        t5 - t56 + t53,
-        -(t6 + t60) + t53,
-        c1_x - t61 + t53,
-        c1_y - t62 + t53,
-        c1_z - t63 + t53,
-        -t61 + t53,
-        -t62 + t53,
-        -t63 + t53,
-        t3 - t61 + t53,
-        t5 - t62 + t53,
-        -(t6 + t63) + t53,
-    )
-
-
-def _jacobian_parallel_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
-    # Where nothing vanishes; last, whether something does.
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s2, c2 = _runtime.sincos_as_in_c(theta2)
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
-    del c_beta1_half
-    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
-    del c_beta2_half
-    c1_x = r * c_alpha1
-    del c_alpha1
-    t1 = np.abs(s_alpha2)
-    del s_alpha2
-    t2 = c2 * t1
-    del c2
-    t3 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t2)
-    t4 = r * np.abs(s_alpha1)
-    del s_alpha1
-    c1_y = c1 * t4
-    del c1
-    t5 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t2)
-    del c_alpha2, c_gamma, s_gamma, t2
-    c1_z = s1 * t4
-    del s1, t4
-    t6 = r * s2 * t1 - c1_z
-    del s2, t1
-    product_x = t5 * c1_z + c1_y * t6
-    t7 = t3 * c1_z + c1_x * t6
-    m_z = t3 * c1_y - c1_x * t5
-    product_2 = product_x * product_x + t7 * t7 + m_z * m_z
-    u_u = t3 * t3 + t5 * t5 + t6 * t6
-    nu = product_2 / u_u
-    beside_a = np.sqrt(nu)
-    length_a = np.sqrt(u_u)
-    part = 1.0 / (length_a * beside_a)
-    over_a = beside_a * part
-    t8 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t8
-    del s_beta1_half
-    r_2 = np.abs(s_beta2_half) * t8
-    del s_beta2_half, t8
-    t9 = r_1 - r_2
-    t10 = length_a + t9
-    outer = np.maximum(t10, 0.0)
-    t11 = length_a - t9
-    del t9
-    inner = np.maximum(t11, 0.0)
-    share = 1.0 / (outer + inner)
-    t12 = r_1 + r_2
-    del r_1, r_2
-    t13 = t12 - length_a
-    slack = np.maximum(t13, 0.0)
-    t14 = share * (length_a + slack) * (outer - inner) * 0.5
-    along = length_a * 0.5 + t14
-    del t14
-    X = over_a * along
-    t15 = np.sqrt(outer * inner * slack * (length_a + t12))
-    del inner, length_a, outer, slack, t12
-    rho = share * t15
-    del share, t15
-    t16 = 2.0 * beside_a * rho
-    del beside_a
-    t17 = r * r
-    t18 = over_a * (c1_x * t3 + c1_y * t5 - c1_z * t6) - along
-    del along
-    t19 = t17 - nu - t18 * t18 - rho * rho
-    del nu, t18
-    t20 = t16 - t19
-    upper = np.maximum(t20, 0.0)
-    t21 = t19 + t16
-    del t16, t19
-    lower = np.maximum(t21, 0.0)
-    both = upper + lower
-    half = rho / both
-    del rho
-    Y = part * over_a * half * (upper - lower)
-    del over_a
-    t22 = t3 * X - (t5 * m_z - t6 * t7) * Y
-    h = part * (2.0 * half * np.sqrt(upper * lower))
-    del half, lower, part, upper
-    t23 = product_x * h
-    t24 = t22 - t23
-    t25 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t26 = t25 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t25
-    t27 = t26 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t26
-    t28 = t27 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t27
-    t29 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t30 = 0.625 * (r * (r + r * 2.2737367544323206e-13))
-    t31 = -(_runtime.FEASIBILITY * t30)
-    del t30
-    t32 = (t29 <= t13) & (t29 <= t10) & (t29 <= t11) & (t31 <= t20)
-    del t10, t11, t13, t20, t29
-    failed = np.logical_not(t28) | np.logical_not(t32 & (t31 <= t21))
-    del t21, t28, t31, t32
-    t33 = _runtime.poison(failed)
-    del failed
-    t34 = t5 * X + (t3 * m_z + t6 * product_x) * Y
-    t35 = t7 * h
-    t36 = t34 + t35
-    t37 = t6 * X - (t3 * t7 + t5 * product_x) * Y
-    del X, Y, product_x, t7
-    t38 = m_z * h
-    del h, m_z
-    A_13 = t37 + t38
-    t39 = t22 + t23
-    del t22, t23
-    t40 = t34 - t35
-    del t34, t35
-    A_13_below = t37 - t38
-    del t37, t38
-    t41 = _runtime.VANISHING * _runtime.VANISHING
-    t42 = t17 * t41
-    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    t43 = u_u * v_v
-    slim = product_2 - t43 * 0.000244140625 <= _runtime.VANISHING * t43
+    w_x = _runtime.select(in_line, -(t20 * s_w), t11 * t19 - t15 * t18)
+    del s_w
+    t40 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t38, upper
+    h = part * t40
+    del part, t40
+    t41 = w_x * h
+    del w_x
+    t42 = t39 - t41
+    t43 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t44 = t43 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     del t43
-    t44 = (u_u <= t42) | (u_u + v_v <= t42) | slim | (product_2 <= t41 * (t17 * u_u))
-    del product_2, slim, t41, t42, u_u, v_v
+    t45 = t44 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t44
+    t46 = t45 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t45
+    t47 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t48 = 0.625 * (r * (r * 2.2737367544323206e-13 + t37))
+    del t37
+    t49 = -(_runtime.FEASIBILITY * t48)
+    del t48
+    t50 = (t47 <= t28) & (t47 <= t25) & (t47 <= t27) & (t49 <= t35)
+    del t25, t27, t28, t35, t47
+    failed = np.logical_not(t46) | np.logical_not(t50 & (t49 <= t36))
+    del t36, t46, t49, t50
+    t51 = _runtime.poison(failed)
+    del failed
+    t52 = t11 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
+    del t20
+    t53 = w_y * h
+    del w_y
+    t54 = t52 - t53
+    t55 = t15 * X + t19 * Y
+    del X, Y, t15, t19
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t11 * t17))
+    del a_x, in_line, t11, t17, t18, t21
+    t56 = w_z * h
+    del h, w_z
+    t57 = t55 - t56
+    t58 = t39 + t41
+    del t39, t41
+    t59 = t52 + t53
+    del t52, t53
+    t60 = t55 + t56
+    del t55, t56
     return (
-        c1_x - t24 + t33,
-        c1_y - t36 + t33,
-        c1_z + A_13 + t33,
-        -t24 + t33,
-        -t36 + t33,
-        A_13 + t33,
-        t3 - t24 + t33,
-        t5 - t36 + t33,
-        A_13 - t6 + t33,
-        c1_x - t39 + t33,
-        c1_y - t40 + t33,
-        c1_z + A_13_below + t33,
-        -t39 + t33,
-        -t40 + t33,
-        A_13_below + t33,
-        t3 - t39 + t33,
-        t5 - t40 + t33,
-        A_13_below - t6 + t33,
-        t44 | (both <= _runtime.VANISHING * t17),
+        c1_x - t42 + t51,
+        c1_y - t54 + t51,
+        c1_z - t57 + t51,
+        -t42 + t51,
+        -t54 + t51,
+        -t57 + t51,
+        t4 - t42 + t51,
+        t6 - t54 + t51,
+        t7 - t57 + t51,
+        c1_x - t58 + t51,
+        c1_y - t59 + t51,
+        c1_z - t60 + t51,
+        -t58 + t51,
+        -t59 + t51,
+        -t60 + t51,
+        t4 - t58 + t51,
+        t6 - t59 + t51,
+        t7 - t60 + t51,
     )
 
 
@@ -1286,8 +934,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Array("A", (2, 3, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    common=_jacobian_parallel_common,
-    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1328,8 +975,8 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s1, c1 = _runtime.sincos(theta1)
     s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_gamma, c_gamma = _runtime.sincos(gamma)
-    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
     s2, c2 = _runtime.sincos(theta2)
+    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
     s_beta1_half = np.sin(beta1 * 0.5)
     s_beta2_half = np.sin(beta2 * 0.5)
     t1 = r * np.abs(s_alpha1)
@@ -1338,317 +985,165 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del s1
     c1_x = r * c_alpha1
     del c_alpha1
-    t2 = np.abs(s_alpha2)
+    t2 = r * np.abs(s_alpha2)
     del s_alpha2
     t3 = c2 * t2
-    t4 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t3)
+    del c2
+    t4 = r * c_alpha2
+    del c_alpha2
+    t5 = c1_x + (s_gamma * t3 - c_gamma * t4)
     c1_y = c1 * t1
     del c1, t1
-    t5 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t3)
-    del c_alpha2, t3
-    t6 = r * t2
-    del t2
-    c2_z = s2 * t6
-    del s2
+    t6 = c1_y - (s_gamma * t4 + c_gamma * t3)
+    del t4
+    c2_z = s2 * t2
+    del s2, t2
     t7 = c2_z - c1_z
-    u_u = t4 * t4 + t5 * t5 + t7 * t7
+    u_u = t5 * t5 + t6 * t6 + t7 * t7
     t8 = r * r
-    t9 = _runtime.VANISHING * _runtime.VANISHING
-    t10 = t8 * t9
-    same = u_u <= t10
-    t11 = _runtime.select(same, c1_y, t5)
-    t12 = _runtime.select(same, -t7, c1_z)
-    t13 = _runtime.select(same, c1_z, -t7)
-    t14 = _runtime.select(same, t5, c1_y)
-    product_x = t11 * t12 - t13 * t14
+    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
+    same = u_u <= t9
+    t10 = _runtime.select(same, c1_y, t6)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t10
-    del t10
+    all_same = u_u + v_v <= t9
     whole = _runtime.select(r == 0.0, 1.0, r)
-    t15 = _runtime.select(same, c1_x, t4)
-    a_x = _runtime.select(all_same, whole, -t15)
-    t16 = _runtime.select(same, t4, c1_x)
-    del c1_x
-    product_y = t12 * a_x + t13 * t16
-    t17 = product_x * product_x + product_y * product_y
-    t18 = t14 * a_x + t11 * t16
-    product_2 = t17 + t18 * t18
-    del t17
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t19 = mu * _runtime.select(same, u_u, v_v)
     del u_u, v_v
-    slim = product_2 - t19 * 0.000244140625 <= _runtime.VANISHING * t19
-    del t19
     over = 1.0 / mu
-    t20 = t11 * t18 + t13 * product_y
-    t21 = a_x * t18 - t13 * product_x
-    t22 = a_x * product_y + t11 * product_x
-    m_m = _runtime.select(slim, over * (t20 * t20 + t21 * t21 + t22 * t22), product_2)
-    del product_2
-    in_line = m_m <= t9 * (t8 * mu)
+    t11 = _runtime.select(same, c1_x, t5)
+    a_x = _runtime.select(all_same, whole, -t11)
+    t12 = _runtime.select(same, t6, c1_y)
+    t13 = _runtime.select(same, t5, c1_x)
+    del c1_x
+    t14 = a_x * t12 + t10 * t13
+    t15 = _runtime.select(same, c1_z, -t7)
+    t16 = _runtime.select(same, -t7, c1_z)
+    m_y = a_x * t16 + t13 * t15
+    t17 = over * (t10 * t14 + t15 * m_y)
+    m_x = t10 * t16 - t12 * t15
+    t18 = over * (a_x * t14 - t15 * m_x)
+    del t14
+    t19 = over * (a_x * m_y + t10 * m_x)
+    del m_x, m_y
+    nu = t17 * t17 + t18 * t18 + t19 * t19
+    in_line = nu <= t9
     del t9
-    t23 = whole * t13
-    s_w = _runtime.sign(-(t11 * a_x))
-    t24 = whole * (t11 - a_x * s_w)
+    t20 = whole * t15
+    s_w = _runtime.sign(-(t10 * a_x))
+    t21 = whole * (t10 - a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (t23 * t23) + t24 * t24, m_m)
-    del m_m
-    nu = w_w / mu
-    del w_w
-    beside_a = np.sqrt(nu)
+    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
+    del over
+    length_n = np.sqrt(nu_w)
+    del nu_w
     length_a = np.sqrt(mu)
     del mu
-    part = 1.0 / (length_a * beside_a)
-    over_a = beside_a * part
+    part = 1.0 / (length_a * length_n)
+    over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    del length_a
-    t25 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t25
+    t22 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t22
     del s_beta1_half
-    t26 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t25
-    del s_beta2_half, t25
-    t27 = _runtime.select(same, r, r_2)
-    t28 = t26 - t27
-    outer = np.maximum(t28, 0.0)
-    t29 = D - r_1
-    t30 = t27 + t29
-    inner = np.maximum(t30, 0.0)
+    t23 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t22
+    del s_beta2_half, t22
+    t24 = _runtime.select(same, r, r_2)
+    t25 = t23 - t24
+    outer = np.maximum(t25, 0.0)
+    t26 = D - r_1
+    t27 = t24 + t26
+    inner = np.maximum(t27, 0.0)
     share = 1.0 / (outer + inner)
-    t31 = t27 - t29
-    del t29
-    slack = np.maximum(t31, 0.0)
-    t32 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t28 = t24 - t26
+    del t26
+    slack = np.maximum(t28, 0.0)
+    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t32)
-    del t32
+    along = _runtime.select(all_same, 0.0, t29)
+    del t29
     X = over_a * along
-    t33 = over_a * (a_x * t16 - t11 * t14 - t12 * t13) + along
-    del along, t12, t14, t16
-    t34 = nu - _runtime.select(same, r_2 * r_2, t8) + t33 * t33
-    del nu, t33, t8
-    t35 = share * np.sqrt(outer * inner * slack * (t27 + t26))
-    del inner, outer, share, slack, t26, t27
-    rho = _runtime.select(all_same, r_1, t35)
-    del all_same, r_1, t35
-    left = t34 + rho * rho
-    del t34
-    t36 = 2.0 * _runtime.select(in_line, 0.0, beside_a)
-    del beside_a
-    t37 = t36 * rho
-    del t36
-    t38 = left + t37
-    upper = np.maximum(t38, 0.0)
-    t39 = t37 - left
-    del left, t37
-    lower = np.maximum(t39, 0.0)
+    t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    del along, over_a, t12, t13, t16
+    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
+    del nu, t30, t8
+    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
+    del inner, outer, share, slack, t23, t24
+    rho = _runtime.select(all_same, r_1, t32)
+    del all_same, r_1, t32
+    left = t31 + rho * rho
+    del t31
+    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t34 = t33 * rho
+    del t33
+    t35 = left + t34
+    upper = np.maximum(t35, 0.0)
+    t36 = t34 - left
+    del left, t34
+    lower = np.maximum(t36, 0.0)
     both = upper + lower
-    t40 = _runtime.select(same, r_2, r)
+    t37 = _runtime.select(same, r_2, r)
     del r_2, same
-    t41 = (both <= _runtime.VANISHING * (r * t40)) | in_line
+    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t41, 0.0, part * over_a * half * (upper - lower))
-    del over_a
-    t42 = t11 * X + t21 * Y
-    m_y = _runtime.select(slim, over * (a_x * t22 + t13 * t20), product_y)
-    del product_y
-    t43 = _runtime.select(t41, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t41, upper
-    h = part * t43
-    del part, t43
-    t44 = _runtime.select(in_line, -t23, m_y) * h
-    del m_y
-    t45 = t42 - t44
-    t46 = t13 * X + t22 * Y
-    t47 = _runtime.select(slim, over * (a_x * t21 + t11 * t20), t18)
-    del a_x, t18
-    t48 = _runtime.select(in_line, t24, -t47) * h
-    del t24, t47
-    t49 = t46 - t48
-    t50 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t51 = t50 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t50
-    t52 = t51 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
+    del length_a
+    t39 = t10 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
+    t40 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t38, upper
+    h = part * t40
+    del part, t40
+    t41 = w_y * h
+    del w_y
+    t42 = t39 - t41
+    t43 = t15 * X + t19 * Y
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
+    del a_x, t21
+    t44 = w_z * h
+    del w_z
+    t45 = t43 - t44
+    t46 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t47 = t46 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t46
+    t48 = t47 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t47
+    t49 = t48 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t48
+    t50 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t51 = 0.625 * (r * (r * 2.2737367544323206e-13 + t37))
+    del t37
+    t52 = -(_runtime.FEASIBILITY * t51)
     del t51
-    t53 = t52 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t52
-    t54 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t55 = 0.625 * (r * (r * 2.2737367544323206e-13 + t40))
-    del t40
-    t56 = -(_runtime.FEASIBILITY * t55)
-    del t55
-    t57 = (t54 <= t31) & (t54 <= t28) & (t54 <= t30) & (t56 <= t38)
-    del t28, t30, t31, t38, t54
-    failed = np.logical_not(t53) | np.logical_not(t57 & (t56 <= t39))
-    del t39, t53, t56, t57
-    t58 = _runtime.poison(failed)
+    t53 = (t50 <= t28) & (t50 <= t25) & (t50 <= t27) & (t52 <= t35)
+    del t25, t27, t28, t35, t50
+    failed = np.logical_not(t49) | np.logical_not(t53 & (t52 <= t36))
+    del t36, t49, t52, t53
+    t54 = _runtime.poison(failed)
     del failed
-    t59 = s_gamma * c2_z
+    t55 = s_gamma * c2_z
     del s_gamma
-    t60 = t15 * X + t20 * Y
-    del X, Y, t15, t20
-    m_x = _runtime.select(slim, over * (t11 * t22 - t13 * t21), product_x)
-    del over, product_x, slim, t11, t13, t21, t22
-    t61 = _runtime.select(in_line, -(t23 * s_w), m_x) * h
-    del h, in_line, m_x, s_w, t23
-    t62 = c_gamma * c2_z
+    t56 = t11 * X + t17 * Y
+    del X, Y, t11, t17
+    w_x = _runtime.select(in_line, -(t20 * s_w), t10 * t19 - t15 * t18)
+    del in_line, s_w, t10, t15, t18, t19, t20
+    t57 = w_x * h
+    del h, w_x
+    t58 = c_gamma * c2_z
     del c2_z, c_gamma
-    t63 = c2 * t6
-    del c2, t6
-    B_22 = t59 * (t4 - (t60 - t61)) - t62 * (t5 - t45) - t63 * (t7 + t49)
-    t64 = t42 + t44
-    del t42, t44
-    t65 = t46 + t48
-    del t46, t48
-    B_22_below = t59 * (t4 - (t60 + t61)) - t62 * (t5 - t64) - t63 * (t7 + t65)
-    del t4, t5, t59, t60, t61, t62, t63, t7
+    B_22 = t55 * (t5 - (t56 - t57)) - t58 * (t6 - t42) - t3 * (t7 + t45)
+    t59 = t39 + t41
+    del t39, t41
+    t60 = t43 + t44
+    del t43, t44
+    B_22_below = t55 * (t5 - (t56 + t57)) - t58 * (t6 - t59) - t3 * (t7 + t60)
+    del t3, t5, t55, t56, t57, t58, t6, t7
     return (
-        c1_z * t45 - c1_y * t49 + t58,
-        B_22 + t58,
-        c1_z * t64 - c1_y * t65 + t58,
-        B_22_below + t58,
-    )
-
-
-def _jacobian_serial_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
-    # Where nothing vanishes; last, whether something does.
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s2, c2 = _runtime.sincos_as_in_c(theta2)
-    s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
-    del c_beta1_half
-    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
-    del c_beta2_half
-    t1 = r * np.abs(s_alpha1)
-    del s_alpha1
-    c1_z = s1 * t1
-    del s1
-    c1_y = c1 * t1
-    del c1, t1
-    t2 = np.abs(s_alpha2)
-    del s_alpha2
-    t3 = c2 * t2
-    t4 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t3)
-    t5 = r * t2
-    del t2
-    c2_z = s2 * t5
-    del s2
-    t6 = c2_z - c1_z
-    product_x = c1_z * t4 + c1_y * t6
-    c1_x = r * c_alpha1
-    del c_alpha1
-    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t3)
-    del c_alpha2, t3
-    t8 = c1_z * t7 + c1_x * t6
-    m_z = c1_y * t7 - c1_x * t4
-    product_2 = product_x * product_x + t8 * t8 + m_z * m_z
-    u_u = t7 * t7 + t4 * t4 + t6 * t6
-    nu = product_2 / u_u
-    beside_a = np.sqrt(nu)
-    length_a = np.sqrt(u_u)
-    part = 1.0 / (length_a * beside_a)
-    over_a = beside_a * part
-    t9 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t9
-    del s_beta1_half
-    r_2 = np.abs(s_beta2_half) * t9
-    del s_beta2_half, t9
-    t10 = r_1 - r_2
-    t11 = length_a + t10
-    outer = np.maximum(t11, 0.0)
-    t12 = length_a - t10
-    del t10
-    inner = np.maximum(t12, 0.0)
-    share = 1.0 / (outer + inner)
-    t13 = r_1 + r_2
-    del r_1, r_2
-    t14 = t13 - length_a
-    slack = np.maximum(t14, 0.0)
-    t15 = share * (length_a + slack) * (outer - inner) * 0.5
-    along = length_a * 0.5 + t15
-    del t15
-    X = over_a * along
-    t16 = np.sqrt(outer * inner * slack * (length_a + t13))
-    del inner, length_a, outer, slack, t13
-    rho = share * t16
-    del share, t16
-    t17 = 2.0 * beside_a * rho
-    del beside_a
-    t18 = r * r
-    t19 = over_a * (c1_x * t7 + c1_y * t4 - c1_z * t6) - along
-    del along
-    t20 = t18 - nu - t19 * t19 - rho * rho
-    del nu, t19
-    t21 = t17 - t20
-    upper = np.maximum(t21, 0.0)
-    t22 = t20 + t17
-    del t17, t20
-    lower = np.maximum(t22, 0.0)
-    both = upper + lower
-    half = rho / both
-    del rho
-    Y = part * over_a * half * (upper - lower)
-    del over_a
-    t23 = t4 * X + (t7 * m_z + t6 * product_x) * Y
-    h = part * (2.0 * half * np.sqrt(upper * lower))
-    del half, lower, part, upper
-    t24 = t8 * h
-    t25 = t23 + t24
-    t26 = t6 * X - (t7 * t8 + t4 * product_x) * Y
-    t27 = m_z * h
-    A_13 = t26 + t27
-    t28 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t29 = t28 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t28
-    t30 = t29 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t29
-    t31 = t30 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t30
-    t32 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t33 = 0.625 * (r * (r + r * 2.2737367544323206e-13))
-    t34 = -(_runtime.FEASIBILITY * t33)
-    del t33
-    t35 = (t32 <= t14) & (t32 <= t11) & (t32 <= t12) & (t34 <= t21)
-    del t11, t12, t14, t21, t32
-    failed = np.logical_not(t31) | np.logical_not(t35 & (t34 <= t22))
-    del t22, t31, t34, t35
-    t36 = _runtime.poison(failed)
-    del failed
-    t37 = s_gamma * c2_z
-    del s_gamma
-    t38 = t7 * X - (t4 * m_z - t6 * t8) * Y
-    del X, Y, m_z, t8
-    t39 = product_x * h
-    del h, product_x
-    t40 = c_gamma * c2_z
-    del c2_z, c_gamma
-    t41 = c2 * t5
-    del c2, t5
-    B_22 = t37 * (t7 - (t38 - t39)) - t40 * (t4 - t25) - t41 * (t6 - A_13)
-    t42 = t23 - t24
-    del t23, t24
-    A_13_below = t26 - t27
-    del t26, t27
-    B_22_below = t37 * (t7 - (t38 + t39)) - t40 * (t4 - t42) - t41 * (t6 - A_13_below)
-    del t37, t38, t39, t4, t40, t41, t6, t7
-    t43 = _runtime.VANISHING * _runtime.VANISHING
-    t44 = t18 * t43
-    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    del c1_x
-    t45 = u_u * v_v
-    slim = product_2 - t45 * 0.000244140625 <= _runtime.VANISHING * t45
-    del t45
-    t46 = (u_u <= t44) | (u_u + v_v <= t44) | slim | (product_2 <= t43 * (t18 * u_u))
-    del product_2, slim, t43, t44, u_u, v_v
-    return (
-        c1_z * t25 + c1_y * A_13 + t36,
-        B_22 + t36,
-        c1_z * t42 + c1_y * A_13_below + t36,
-        B_22_below + t36,
-        t46 | (both <= _runtime.VANISHING * t18),
+        c1_z * t42 - c1_y * t45 + t54,
+        B_22 + t54,
+        c1_z * t59 - c1_y * t60 + t54,
+        B_22_below + t54,
     )
 
 
@@ -1659,8 +1154,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Array("B", (2, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    common=_jacobian_serial_common,
-    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1701,8 +1195,8 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s1, c1 = _runtime.sincos(theta1)
     s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_gamma, c_gamma = _runtime.sincos(gamma)
-    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
     s2, c2 = _runtime.sincos(theta2)
+    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
     s_beta1_half = np.sin(beta1 * 0.5)
     s_beta2_half = np.sin(beta2 * 0.5)
     t1 = r * np.abs(s_alpha1)
@@ -1711,417 +1205,216 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del s1
     c1_x = r * c_alpha1
     del c_alpha1
-    t2 = np.abs(s_alpha2)
+    t2 = r * np.abs(s_alpha2)
     del s_alpha2
     t3 = c2 * t2
-    t4 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t3)
+    del c2
+    t4 = r * c_alpha2
+    del c_alpha2
+    t5 = c1_x + (s_gamma * t3 - c_gamma * t4)
     c1_y = c1 * t1
     del c1, t1
-    t5 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t3)
-    del c_alpha2, t3
-    t6 = r * t2
-    del t2
-    c2_z = s2 * t6
-    del s2
+    t6 = c1_y - (s_gamma * t4 + c_gamma * t3)
+    del t4
+    c2_z = s2 * t2
+    del s2, t2
     t7 = c2_z - c1_z
-    u_u = t4 * t4 + t5 * t5 + t7 * t7
+    u_u = t5 * t5 + t6 * t6 + t7 * t7
     t8 = r * r
-    t9 = _runtime.VANISHING * _runtime.VANISHING
-    t10 = t8 * t9
-    same = u_u <= t10
-    t11 = _runtime.select(same, c1_y, t5)
-    t12 = _runtime.select(same, -t7, c1_z)
-    t13 = _runtime.select(same, c1_z, -t7)
-    t14 = _runtime.select(same, t5, c1_y)
-    product_x = t11 * t12 - t13 * t14
+    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
+    same = u_u <= t9
+    t10 = _runtime.select(same, c1_y, t6)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t10
-    del t10
+    all_same = u_u + v_v <= t9
     whole = _runtime.select(r == 0.0, 1.0, r)
-    t15 = _runtime.select(same, c1_x, t4)
-    a_x = _runtime.select(all_same, whole, -t15)
-    t16 = _runtime.select(same, t4, c1_x)
-    product_y = t12 * a_x + t13 * t16
-    t17 = product_x * product_x + product_y * product_y
-    t18 = t14 * a_x + t11 * t16
-    product_2 = t17 + t18 * t18
-    del t17
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t19 = mu * _runtime.select(same, u_u, v_v)
     del u_u, v_v
-    slim = product_2 - t19 * 0.000244140625 <= _runtime.VANISHING * t19
-    del t19
     over = 1.0 / mu
-    t20 = t11 * t18 + t13 * product_y
-    t21 = a_x * t18 - t13 * product_x
-    t22 = a_x * product_y + t11 * product_x
-    m_m = _runtime.select(slim, over * (t20 * t20 + t21 * t21 + t22 * t22), product_2)
-    del product_2
-    in_line = m_m <= t9 * (t8 * mu)
+    t11 = _runtime.select(same, c1_x, t5)
+    a_x = _runtime.select(all_same, whole, -t11)
+    t12 = _runtime.select(same, t6, c1_y)
+    t13 = _runtime.select(same, t5, c1_x)
+    t14 = a_x * t12 + t10 * t13
+    t15 = _runtime.select(same, c1_z, -t7)
+    t16 = _runtime.select(same, -t7, c1_z)
+    m_y = a_x * t16 + t13 * t15
+    t17 = over * (t10 * t14 + t15 * m_y)
+    m_x = t10 * t16 - t12 * t15
+    t18 = over * (a_x * t14 - t15 * m_x)
+    del t14
+    t19 = over * (a_x * m_y + t10 * m_x)
+    del m_x, m_y
+    nu = t17 * t17 + t18 * t18 + t19 * t19
+    in_line = nu <= t9
     del t9
-    t23 = whole * t13
-    s_w = _runtime.sign(-(t11 * a_x))
-    t24 = whole * (t11 - a_x * s_w)
+    t20 = whole * t15
+    s_w = _runtime.sign(-(t10 * a_x))
+    t21 = whole * (t10 - a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (t23 * t23) + t24 * t24, m_m)
-    del m_m
-    nu = w_w / mu
-    beside_a = np.sqrt(nu)
+    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
+    del over
+    length_n = np.sqrt(nu_w)
+    del nu_w
     length_a = np.sqrt(mu)
-    del mu
-    part = 1.0 / (length_a * beside_a)
-    over_a = beside_a * part
+    part = 1.0 / (length_a * length_n)
+    over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    del length_a
-    t25 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t25
+    t22 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t22
     del s_beta1_half
-    t26 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t25
-    del s_beta2_half, t25
-    t27 = _runtime.select(same, r, r_2)
-    t28 = t26 - t27
-    outer = np.maximum(t28, 0.0)
-    t29 = D - r_1
-    t30 = t27 + t29
-    inner = np.maximum(t30, 0.0)
+    t23 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t22
+    del s_beta2_half, t22
+    t24 = _runtime.select(same, r, r_2)
+    t25 = t23 - t24
+    outer = np.maximum(t25, 0.0)
+    t26 = D - r_1
+    t27 = t24 + t26
+    inner = np.maximum(t27, 0.0)
     share = 1.0 / (outer + inner)
-    t31 = t27 - t29
-    del t29
-    slack = np.maximum(t31, 0.0)
-    t32 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t28 = t24 - t26
+    del t26
+    slack = np.maximum(t28, 0.0)
+    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t32)
-    del t32
+    along = _runtime.select(all_same, 0.0, t29)
+    del t29
     X = over_a * along
-    t33 = over_a * (a_x * t16 - t11 * t14 - t12 * t13) + along
-    del along, t12, t14, t16
-    t34 = nu - _runtime.select(same, r_2 * r_2, t8) + t33 * t33
-    del nu, t33, t8
-    t35 = share * np.sqrt(outer * inner * slack * (t27 + t26))
-    del inner, outer, share, slack, t26, t27
-    rho = _runtime.select(all_same, r_1, t35)
-    del all_same, r_1, t35
-    left = t34 + rho * rho
-    del t34
-    t36 = 2.0 * _runtime.select(in_line, 0.0, beside_a)
-    del beside_a
-    t37 = t36 * rho
-    del t36
-    t38 = left + t37
-    upper = np.maximum(t38, 0.0)
-    t39 = t37 - left
-    del left, t37
-    lower = np.maximum(t39, 0.0)
+    t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    del along, over_a, t12, t13, t16
+    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
+    del t30, t8
+    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
+    del inner, outer, share, slack, t23, t24
+    rho = _runtime.select(all_same, r_1, t32)
+    del all_same, r_1, t32
+    left = t31 + rho * rho
+    del t31
+    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t34 = t33 * rho
+    del t33
+    t35 = left + t34
+    upper = np.maximum(t35, 0.0)
+    t36 = t34 - left
+    del left, t34
+    lower = np.maximum(t36, 0.0)
     both = upper + lower
-    t40 = _runtime.select(same, r_2, r)
+    t37 = _runtime.select(same, r_2, r)
     del r_2, same
-    t41 = (both <= _runtime.VANISHING * (r * t40)) | in_line
+    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t41, 0.0, part * over_a * half * (upper - lower))
-    del over_a
-    t42 = t11 * X + t21 * Y
-    m_y = _runtime.select(slim, over * (a_x * t22 + t13 * t20), product_y)
-    del product_y
-    t43 = _runtime.select(t41, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t41, upper
-    h = part * t43
-    del part, t43
-    t44 = _runtime.select(in_line, -t23, m_y) * h
-    del m_y
-    t45 = t42 - t44
-    t46 = t13 * X + t22 * Y
-    t47 = _runtime.select(slim, over * (a_x * t21 + t11 * t20), t18)
-    del a_x, t18
-    t48 = _runtime.select(in_line, t24, -t47) * h
-    del t24, t47
-    t49 = t46 - t48
-    B_11 = c1_z * t45 - c1_y * t49
-    A_02 = c1_y - t45
-    t50 = t7 + t49
-    A_03 = c1_z - t49
-    A_22 = t5 - t45
-    Delta = w_w * h
-    del w_w
-    t51 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t52 = t51 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t51
-    t53 = t52 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
+    del length_a
+    t39 = t10 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
+    t40 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t38, upper
+    h = part * t40
+    del part, t40
+    t41 = w_y * h
+    del w_y
+    t42 = t39 - t41
+    t43 = t15 * X + t19 * Y
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
+    del a_x, t21
+    t44 = w_z * h
+    del w_z
+    t45 = t43 - t44
+    B_11 = c1_z * t42 - c1_y * t45
+    A_02 = c1_y - t42
+    t46 = t7 + t45
+    A_03 = c1_z - t45
+    A_22 = t6 - t42
+    Delta = mu * nu * h
+    del mu, nu
+    t47 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t48 = t47 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t47
+    t49 = t48 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t48
+    t50 = t49 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t49
+    t51 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t52 = 0.625 * (r * (r * 2.2737367544323206e-13 + t37))
+    del t37
+    t53 = -(_runtime.FEASIBILITY * t52)
     del t52
-    t54 = t53 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t53
-    t55 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t56 = 0.625 * (r * (r * 2.2737367544323206e-13 + t40))
-    del t40
-    t57 = -(_runtime.FEASIBILITY * t56)
-    del t56
-    t58 = (t55 <= t31) & (t55 <= t28) & (t55 <= t30) & (t57 <= t38)
-    del t28, t30, t31, t38, t55
-    failed = np.logical_not(t54) | np.logical_not(t58 & (t57 <= t39))
-    del t39, t54, t57, t58
-    t59 = _runtime.poison(failed)
+    t54 = (t51 <= t28) & (t51 <= t25) & (t51 <= t27) & (t53 <= t35)
+    del t25, t27, t28, t35, t51
+    failed = np.logical_not(t50) | np.logical_not(t54 & (t53 <= t36))
+    del t36, t50, t53, t54
+    t55 = _runtime.poison(failed)
     del failed
-    t60 = B_11 * (A_02 * t50 + A_03 * A_22) / Delta + t59
-    t61 = s_gamma * c2_z
+    t56 = B_11 * (A_02 * t46 + A_03 * A_22) / Delta + t55
+    t57 = s_gamma * c2_z
     del s_gamma
-    t62 = t15 * X + t20 * Y
-    del X, Y, t15, t20
-    m_x = _runtime.select(slim, over * (t11 * t22 - t13 * t21), product_x)
-    del over, product_x, slim, t11, t13, t21, t22
-    t63 = _runtime.select(in_line, -(t23 * s_w), m_x) * h
-    del h, in_line, m_x, s_w, t23
-    t64 = t62 - t63
-    A_21 = t4 - t64
-    t65 = c_gamma * c2_z
+    t58 = t11 * X + t17 * Y
+    del X, Y, t11, t17
+    w_x = _runtime.select(in_line, -(t20 * s_w), t10 * t19 - t15 * t18)
+    del in_line, s_w, t10, t15, t18, t19, t20
+    t59 = w_x * h
+    del h, w_x
+    t60 = t58 - t59
+    A_21 = t5 - t60
+    t61 = c_gamma * c2_z
     del c2_z, c_gamma
-    t66 = c2 * t6
-    del c2, t6
-    B_22 = t61 * A_21 - t65 * A_22 - t66 * t50
-    t67 = -(B_22 * (t49 * A_02 - t45 * A_03) / Delta) + t59
-    A_01 = c1_x - t64
-    t68 = -(B_11 * (t50 * A_01 + A_03 * A_21) / Delta) + t59
-    del t50
-    t69 = B_22 * (t49 * A_01 - A_03 * t64) / Delta + t59
-    del A_03, t49
-    t70 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
+    B_22 = t57 * A_21 - t61 * A_22 - t3 * t46
+    t62 = -(B_22 * (t45 * A_02 - t42 * A_03) / Delta) + t55
+    A_01 = c1_x - t60
+    t63 = -(B_11 * (t46 * A_01 + A_03 * A_21) / Delta) + t55
+    del t46
+    t64 = B_22 * (t45 * A_01 - A_03 * t60) / Delta + t55
+    del A_03, t45
+    t65 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
     del A_21, A_22, B_11
-    t71 = -(B_22 * (t45 * A_01 - A_02 * t64) / Delta) + t59
-    del A_01, A_02, B_22, t45, t64
-    t72 = t42 + t44
-    del t42, t44
-    t73 = t46 + t48
-    del t46, t48
-    B_11_below = c1_z * t72 - c1_y * t73
-    A_02_below = c1_y - t72
+    t66 = -(B_22 * (t42 * A_01 - A_02 * t60) / Delta) + t55
+    del A_01, A_02, B_22, t42, t60
+    t67 = t39 + t41
+    del t39, t41
+    t68 = t43 + t44
+    del t43, t44
+    B_11_below = c1_z * t67 - c1_y * t68
+    A_02_below = c1_y - t67
     del c1_y
-    t74 = t7 + t73
+    t69 = t7 + t68
     del t7
-    A_03_below = c1_z - t73
+    A_03_below = c1_z - t68
     del c1_z
-    A_22_below = t5 - t72
-    del t5
-    t75 = B_11_below * (A_02_below * t74 + A_03_below * A_22_below)
-    t76 = t62 + t63
-    del t62, t63
-    A_21_below = t4 - t76
-    del t4
-    B_22_below = t61 * A_21_below - t65 * A_22_below - t66 * t74
-    del t61, t65, t66
-    t77 = B_22_below * (t73 * A_02_below - t72 * A_03_below)
-    A_01_below = c1_x - t76
-    del c1_x
-    t78 = B_11_below * (t74 * A_01_below + A_03_below * A_21_below)
-    del t74
-    t79 = B_22_below * (t73 * A_01_below - A_03_below * t76)
-    del A_03_below, t73
-    t80 = A_22_below * A_01_below - A_02_below * A_21_below
-    del A_21_below, A_22_below
-    t81 = B_22_below * (t72 * A_01_below - A_02_below * t76)
-    del A_01_below, A_02_below, B_22_below, t72, t76
-    return (
-        t60,
-        t67,
-        t68,
-        t69,
-        t70 + t59,
-        t71,
-        -(t75 / Delta) + t59,
-        t77 / Delta + t59,
-        t78 / Delta + t59,
-        -(t79 / Delta) + t59,
-        B_11_below * t80 / Delta + t59,
-        t81 / Delta + t59,
-    )
-
-
-def _jacobian_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
-    # Where nothing vanishes; last, whether something does.
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s2, c2 = _runtime.sincos_as_in_c(theta2)
-    s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
-    del c_beta1_half
-    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
-    del c_beta2_half
-    t1 = r * np.abs(s_alpha1)
-    del s_alpha1
-    c1_z = s1 * t1
-    del s1
-    c1_y = c1 * t1
-    del c1, t1
-    t2 = np.abs(s_alpha2)
-    del s_alpha2
-    t3 = c2 * t2
-    t4 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t3)
-    t5 = r * t2
-    del t2
-    c2_z = s2 * t5
-    del s2
-    t6 = c2_z - c1_z
-    product_x = c1_z * t4 + c1_y * t6
-    c1_x = r * c_alpha1
-    del c_alpha1
-    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t3)
-    del c_alpha2, t3
-    t8 = c1_z * t7 + c1_x * t6
-    m_z = c1_y * t7 - c1_x * t4
-    product_2 = product_x * product_x + t8 * t8 + m_z * m_z
-    u_u = t7 * t7 + t4 * t4 + t6 * t6
-    nu = product_2 / u_u
-    beside_a = np.sqrt(nu)
-    length_a = np.sqrt(u_u)
-    part = 1.0 / (length_a * beside_a)
-    over_a = beside_a * part
-    t9 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t9
-    del s_beta1_half
-    r_2 = np.abs(s_beta2_half) * t9
-    del s_beta2_half, t9
-    t10 = r_1 - r_2
-    t11 = length_a + t10
-    outer = np.maximum(t11, 0.0)
-    t12 = length_a - t10
-    del t10
-    inner = np.maximum(t12, 0.0)
-    share = 1.0 / (outer + inner)
-    t13 = r_1 + r_2
-    del r_1, r_2
-    t14 = t13 - length_a
-    slack = np.maximum(t14, 0.0)
-    t15 = share * (length_a + slack) * (outer - inner) * 0.5
-    along = length_a * 0.5 + t15
-    del t15
-    X = over_a * along
-    t16 = np.sqrt(outer * inner * slack * (length_a + t13))
-    del inner, length_a, outer, slack, t13
-    rho = share * t16
-    del share, t16
-    t17 = 2.0 * beside_a * rho
-    del beside_a
-    t18 = r * r
-    t19 = over_a * (c1_x * t7 + c1_y * t4 - c1_z * t6) - along
-    del along
-    t20 = t18 - nu - t19 * t19 - rho * rho
-    del nu, t19
-    t21 = t17 - t20
-    upper = np.maximum(t21, 0.0)
-    t22 = t20 + t17
-    del t17, t20
-    lower = np.maximum(t22, 0.0)
-    both = upper + lower
-    half = rho / both
-    del rho
-    Y = part * over_a * half * (upper - lower)
-    del over_a
-    t23 = t4 * X + (t7 * m_z + t6 * product_x) * Y
-    h = part * (2.0 * half * np.sqrt(upper * lower))
-    del half, lower, part, upper
-    t24 = t8 * h
-    t25 = t23 + t24
-    t26 = t6 * X - (t7 * t8 + t4 * product_x) * Y
-    t27 = m_z * h
-    A_13 = t26 + t27
-    B_11 = c1_z * t25 + c1_y * A_13
-    A_02 = c1_y - t25
-    t28 = t6 - A_13
-    A_03 = c1_z + A_13
-    A_22 = t4 - t25
-    Delta = product_2 * h
-    t29 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t30 = t29 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t29
-    t31 = t30 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t30
-    t32 = t31 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t31
-    t33 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t34 = 0.625 * (r * (r + r * 2.2737367544323206e-13))
-    t35 = -(_runtime.FEASIBILITY * t34)
-    del t34
-    t36 = (t33 <= t14) & (t33 <= t11) & (t33 <= t12) & (t35 <= t21)
-    del t11, t12, t14, t21, t33
-    failed = np.logical_not(t32) | np.logical_not(t36 & (t35 <= t22))
-    del t22, t32, t35, t36
-    t37 = _runtime.poison(failed)
-    del failed
-    t38 = B_11 * (A_02 * t28 + A_03 * A_22) / Delta + t37
-    t39 = s_gamma * c2_z
-    del s_gamma
-    t40 = t7 * X - (t4 * m_z - t6 * t8) * Y
-    del X, Y, m_z, t8
-    t41 = product_x * h
-    del h, product_x
-    t42 = t40 - t41
-    A_21 = t7 - t42
-    t43 = c_gamma * c2_z
-    del c2_z, c_gamma
-    t44 = c2 * t5
-    del c2, t5
-    B_22 = t39 * A_21 - t43 * A_22 - t44 * t28
-    t45 = B_22 * (A_13 * A_02 + t25 * A_03) / Delta + t37
-    A_01 = c1_x - t42
-    t46 = -(B_11 * (t28 * A_01 + A_03 * A_21) / Delta) + t37
-    del t28
-    t47 = -(B_22 * (A_13 * A_01 + A_03 * t42) / Delta) + t37
-    del A_03, A_13
-    t48 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
-    del A_21, A_22, B_11
-    t49 = -(B_22 * (t25 * A_01 - A_02 * t42) / Delta) + t37
-    del A_01, A_02, B_22, t25, t42
-    t50 = t23 - t24
-    del t23, t24
-    A_13_below = t26 - t27
-    del t26, t27
-    B_11_below = c1_z * t50 + c1_y * A_13_below
-    A_02_below = c1_y - t50
-    t51 = t6 - A_13_below
+    A_22_below = t6 - t67
     del t6
-    A_03_below = c1_z + A_13_below
-    A_22_below = t4 - t50
-    del t4
-    t52 = B_11_below * (A_02_below * t51 + A_03_below * A_22_below)
-    t53 = t40 + t41
-    del t40, t41
-    A_21_below = t7 - t53
-    del t7
-    B_22_below = t39 * A_21_below - t43 * A_22_below - t44 * t51
-    del t39, t43, t44
-    t54 = B_22_below * (A_13_below * A_02_below + t50 * A_03_below)
-    A_01_below = c1_x - t53
-    t55 = B_11_below * (t51 * A_01_below + A_03_below * A_21_below)
-    del t51
-    t56 = B_22_below * (A_13_below * A_01_below + A_03_below * t53)
-    del A_03_below, A_13_below
-    t57 = A_22_below * A_01_below - A_02_below * A_21_below
+    t70 = B_11_below * (A_02_below * t69 + A_03_below * A_22_below)
+    t71 = t58 + t59
+    del t58, t59
+    A_21_below = t5 - t71
+    del t5
+    B_22_below = t57 * A_21_below - t61 * A_22_below - t3 * t69
+    del t3, t57, t61
+    t72 = B_22_below * (t68 * A_02_below - t67 * A_03_below)
+    A_01_below = c1_x - t71
+    del c1_x
+    t73 = B_11_below * (t69 * A_01_below + A_03_below * A_21_below)
+    del t69
+    t74 = B_22_below * (t68 * A_01_below - A_03_below * t71)
+    del A_03_below, t68
+    t75 = A_22_below * A_01_below - A_02_below * A_21_below
     del A_21_below, A_22_below
-    t58 = B_22_below * (t50 * A_01_below - A_02_below * t53)
-    del A_01_below, A_02_below, B_22_below, t50, t53
-    t59 = _runtime.VANISHING * _runtime.VANISHING
-    t60 = t18 * t59
-    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    del c1_x, c1_y, c1_z
-    t61 = u_u * v_v
-    slim = product_2 - t61 * 0.000244140625 <= _runtime.VANISHING * t61
-    del t61
-    t62 = (u_u <= t60) | (u_u + v_v <= t60) | slim | (product_2 <= t59 * (t18 * u_u))
-    del product_2, slim, t59, t60, u_u, v_v
+    t76 = B_22_below * (t67 * A_01_below - A_02_below * t71)
+    del A_01_below, A_02_below, B_22_below, t67, t71
     return (
-        t38,
-        t45,
-        t46,
-        t47,
-        t48 + t37,
-        t49,
-        -(t52 / Delta) + t37,
-        -(t54 / Delta) + t37,
-        t55 / Delta + t37,
-        t56 / Delta + t37,
-        B_11_below * t57 / Delta + t37,
-        t58 / Delta + t37,
-        t62 | (both <= _runtime.VANISHING * t18),
+        t56,
+        t62,
+        t63,
+        t64,
+        t65 + t55,
+        t66,
+        -(t70 / Delta) + t55,
+        t72 / Delta + t55,
+        t73 / Delta + t55,
+        -(t74 / Delta) + t55,
+        B_11_below * t75 / Delta + t55,
+        t76 / Delta + t55,
     )
 
 
@@ -2132,8 +1425,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 3, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    common=_jacobian_common,
-    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -2175,8 +1467,8 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s1, c1 = _runtime.sincos(theta1)
     s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_gamma, c_gamma = _runtime.sincos(gamma)
-    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
     s2, c2 = _runtime.sincos(theta2)
+    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
     s_beta1_half = np.sin(beta1 * 0.5)
     s_beta2_half = np.sin(beta2 * 0.5)
     t1 = r * np.abs(s_alpha1)
@@ -2185,324 +1477,168 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del s1
     c1_x = r * c_alpha1
     del c_alpha1
-    t2 = np.abs(s_alpha2)
+    t2 = r * np.abs(s_alpha2)
     del s_alpha2
     t3 = c2 * t2
-    t4 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t3)
+    del c2
+    t4 = r * c_alpha2
+    del c_alpha2
+    t5 = c1_x + (s_gamma * t3 - c_gamma * t4)
     c1_y = c1 * t1
     del c1, t1
-    t5 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t3)
-    del c_alpha2, t3
-    t6 = r * t2
-    del t2
-    c2_z = s2 * t6
-    del s2
+    t6 = c1_y - (s_gamma * t4 + c_gamma * t3)
+    del t4
+    c2_z = s2 * t2
+    del s2, t2
     t7 = c2_z - c1_z
-    u_u = t4 * t4 + t5 * t5 + t7 * t7
+    u_u = t5 * t5 + t6 * t6 + t7 * t7
     t8 = r * r
-    t9 = _runtime.VANISHING * _runtime.VANISHING
-    t10 = t8 * t9
-    same = u_u <= t10
-    t11 = _runtime.select(same, c1_y, t5)
-    t12 = _runtime.select(same, -t7, c1_z)
-    t13 = _runtime.select(same, c1_z, -t7)
-    t14 = _runtime.select(same, t5, c1_y)
-    product_x = t11 * t12 - t13 * t14
+    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
+    same = u_u <= t9
+    t10 = _runtime.select(same, c1_y, t6)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t10
-    del t10
+    all_same = u_u + v_v <= t9
     whole = _runtime.select(r == 0.0, 1.0, r)
-    t15 = _runtime.select(same, c1_x, t4)
-    a_x = _runtime.select(all_same, whole, -t15)
-    t16 = _runtime.select(same, t4, c1_x)
-    del c1_x
-    product_y = t12 * a_x + t13 * t16
-    t17 = product_x * product_x + product_y * product_y
-    t18 = t14 * a_x + t11 * t16
-    product_2 = t17 + t18 * t18
-    del t17
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t19 = mu * _runtime.select(same, u_u, v_v)
     del u_u, v_v
-    slim = product_2 - t19 * 0.000244140625 <= _runtime.VANISHING * t19
-    del t19
     over = 1.0 / mu
-    t20 = t11 * t18 + t13 * product_y
-    t21 = a_x * t18 - t13 * product_x
-    t22 = a_x * product_y + t11 * product_x
-    m_m = _runtime.select(slim, over * (t20 * t20 + t21 * t21 + t22 * t22), product_2)
-    del product_2
-    in_line = m_m <= t9 * (t8 * mu)
+    t11 = _runtime.select(same, c1_x, t5)
+    a_x = _runtime.select(all_same, whole, -t11)
+    t12 = _runtime.select(same, t6, c1_y)
+    t13 = _runtime.select(same, t5, c1_x)
+    del c1_x
+    t14 = a_x * t12 + t10 * t13
+    t15 = _runtime.select(same, c1_z, -t7)
+    t16 = _runtime.select(same, -t7, c1_z)
+    m_y = a_x * t16 + t13 * t15
+    t17 = over * (t10 * t14 + t15 * m_y)
+    m_x = t10 * t16 - t12 * t15
+    t18 = over * (a_x * t14 - t15 * m_x)
+    del t14
+    t19 = over * (a_x * m_y + t10 * m_x)
+    del m_x, m_y
+    nu = t17 * t17 + t18 * t18 + t19 * t19
+    in_line = nu <= t9
     del t9
-    t23 = whole * t13
-    s_w = _runtime.sign(-(t11 * a_x))
-    t24 = whole * (t11 - a_x * s_w)
+    t20 = whole * t15
+    s_w = _runtime.sign(-(t10 * a_x))
+    t21 = whole * (t10 - a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (t23 * t23) + t24 * t24, m_m)
-    del m_m
-    nu = w_w / mu
-    beside_a = np.sqrt(nu)
+    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
+    del over
+    length_n = np.sqrt(nu_w)
+    del nu_w
     length_a = np.sqrt(mu)
-    del mu
-    part = 1.0 / (length_a * beside_a)
-    over_a = beside_a * part
+    part = 1.0 / (length_a * length_n)
+    over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    del length_a
-    t25 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t25
+    t22 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t22
     del s_beta1_half
-    t26 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t25
-    del s_beta2_half, t25
-    t27 = _runtime.select(same, r, r_2)
-    t28 = t26 - t27
-    outer = np.maximum(t28, 0.0)
-    t29 = D - r_1
-    t30 = t27 + t29
-    inner = np.maximum(t30, 0.0)
+    t23 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t22
+    del s_beta2_half, t22
+    t24 = _runtime.select(same, r, r_2)
+    t25 = t23 - t24
+    outer = np.maximum(t25, 0.0)
+    t26 = D - r_1
+    t27 = t24 + t26
+    inner = np.maximum(t27, 0.0)
     share = 1.0 / (outer + inner)
-    t31 = t27 - t29
-    del t29
-    slack = np.maximum(t31, 0.0)
-    t32 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t28 = t24 - t26
+    del t26
+    slack = np.maximum(t28, 0.0)
+    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t32)
-    del t32
+    along = _runtime.select(all_same, 0.0, t29)
+    del t29
     X = over_a * along
-    t33 = over_a * (a_x * t16 - t11 * t14 - t12 * t13) + along
-    del along, t12, t14, t16
-    t34 = nu - _runtime.select(same, r_2 * r_2, t8) + t33 * t33
-    del nu, t33, t8
-    t35 = share * np.sqrt(outer * inner * slack * (t27 + t26))
-    del inner, outer, share, slack, t26, t27
-    rho = _runtime.select(all_same, r_1, t35)
-    del all_same, r_1, t35
-    left = t34 + rho * rho
-    del t34
-    t36 = 2.0 * _runtime.select(in_line, 0.0, beside_a)
-    del beside_a
-    t37 = t36 * rho
-    del t36
-    t38 = left + t37
-    upper = np.maximum(t38, 0.0)
-    t39 = t37 - left
-    del left, t37
-    lower = np.maximum(t39, 0.0)
+    t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
+    del along, over_a, t12, t13, t16
+    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
+    del t30, t8
+    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
+    del inner, outer, share, slack, t23, t24
+    rho = _runtime.select(all_same, r_1, t32)
+    del all_same, r_1, t32
+    left = t31 + rho * rho
+    del t31
+    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t34 = t33 * rho
+    del t33
+    t35 = left + t34
+    upper = np.maximum(t35, 0.0)
+    t36 = t34 - left
+    del left, t34
+    lower = np.maximum(t36, 0.0)
     both = upper + lower
-    t40 = _runtime.select(same, r_2, r)
+    t37 = _runtime.select(same, r_2, r)
     del r_2, same
-    t41 = (both <= _runtime.VANISHING * (r * t40)) | in_line
+    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t41, 0.0, part * over_a * half * (upper - lower))
-    del over_a
-    t42 = t11 * X + t21 * Y
-    m_y = _runtime.select(slim, over * (a_x * t22 + t13 * t20), product_y)
-    del product_y
-    t43 = _runtime.select(t41, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t41, upper
-    h = part * t43
-    del part, t43
-    t44 = _runtime.select(in_line, -t23, m_y) * h
-    del m_y
-    t45 = t42 - t44
-    t46 = t13 * X + t22 * Y
-    t47 = _runtime.select(slim, over * (a_x * t21 + t11 * t20), t18)
-    del a_x, t18
-    t48 = _runtime.select(in_line, t24, -t47) * h
-    del t24, t47
-    t49 = t46 - t48
-    t50 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t51 = t50 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t50
-    t52 = t51 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
+    del length_a
+    t39 = t10 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
+    t40 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t38, upper
+    h = part * t40
+    del part, t40
+    t41 = w_y * h
+    del w_y
+    t42 = t39 - t41
+    t43 = t15 * X + t19 * Y
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
+    del a_x, t21
+    t44 = w_z * h
+    del w_z
+    t45 = t43 - t44
+    t46 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t47 = t46 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t46
+    t48 = t47 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t47
+    t49 = t48 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t48
+    t50 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t51 = 0.625 * (r * (r * 2.2737367544323206e-13 + t37))
+    del t37
+    t52 = -(_runtime.FEASIBILITY * t51)
     del t51
-    t53 = t52 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t52
-    t54 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t55 = 0.625 * (r * (r * 2.2737367544323206e-13 + t40))
-    del t40
-    t56 = -(_runtime.FEASIBILITY * t55)
-    del t55
-    t57 = (t54 <= t31) & (t54 <= t28) & (t54 <= t30) & (t56 <= t38)
-    del t28, t30, t31, t38, t54
-    failed = np.logical_not(t53) | np.logical_not(t57 & (t56 <= t39))
-    del t39, t53, t56, t57
-    t58 = _runtime.poison(failed)
+    t53 = (t50 <= t28) & (t50 <= t25) & (t50 <= t27) & (t52 <= t35)
+    del t25, t27, t28, t35, t50
+    failed = np.logical_not(t49) | np.logical_not(t53 & (t52 <= t36))
+    del t36, t49, t52, t53
+    t54 = _runtime.poison(failed)
     del failed
-    t59 = s_gamma * c2_z
+    t55 = s_gamma * c2_z
     del s_gamma
-    t60 = t15 * X + t20 * Y
-    del X, Y, t15, t20
-    m_x = _runtime.select(slim, over * (t11 * t22 - t13 * t21), product_x)
-    del over, product_x, slim, t11, t13, t21, t22
-    t61 = _runtime.select(in_line, -(t23 * s_w), m_x) * h
-    del in_line, m_x, s_w, t23
-    t62 = c_gamma * c2_z
+    t56 = t11 * X + t17 * Y
+    del X, Y, t11, t17
+    w_x = _runtime.select(in_line, -(t20 * s_w), t10 * t19 - t15 * t18)
+    del in_line, s_w, t10, t15, t18, t19, t20
+    t57 = w_x * h
+    del w_x
+    t58 = c_gamma * c2_z
     del c2_z, c_gamma
-    t63 = c2 * t6
-    del c2, t6
-    B_22 = t59 * (t4 - (t60 - t61)) - t62 * (t5 - t45) - t63 * (t7 + t49)
-    Delta = w_w * h
-    del h, w_w
-    t64 = t42 + t44
-    del t42, t44
-    t65 = t46 + t48
-    del t46, t48
-    B_22_below = t59 * (t4 - (t60 + t61)) - t62 * (t5 - t64) - t63 * (t7 + t65)
-    del t4, t5, t59, t60, t61, t62, t63, t7
+    B_22 = t55 * (t5 - (t56 - t57)) - t58 * (t6 - t42) - t3 * (t7 + t45)
+    Delta = mu * nu * h
+    del h, mu, nu
+    t59 = t39 + t41
+    del t39, t41
+    t60 = t43 + t44
+    del t43, t44
+    B_22_below = t55 * (t5 - (t56 + t57)) - t58 * (t6 - t59) - t3 * (t7 + t60)
+    del t3, t5, t55, t56, t57, t58, t6, t7
     return (
-        c1_z * t45 - c1_y * t49 + t58,
-        B_22 + t58,
-        Delta + t58,
-        c1_z * t64 - c1_y * t65 + t58,
-        B_22_below + t58,
-        -Delta + t58,
-    )
-
-
-def _singularities_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
-    # Where nothing vanishes; last, whether something does.
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s2, c2 = _runtime.sincos_as_in_c(theta2)
-    s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
-    del c_beta1_half
-    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
-    del c_beta2_half
-    t1 = r * np.abs(s_alpha1)
-    del s_alpha1
-    c1_z = s1 * t1
-    del s1
-    c1_y = c1 * t1
-    del c1, t1
-    t2 = np.abs(s_alpha2)
-    del s_alpha2
-    t3 = c2 * t2
-    t4 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t3)
-    t5 = r * t2
-    del t2
-    c2_z = s2 * t5
-    del s2
-    t6 = c2_z - c1_z
-    product_x = c1_z * t4 + c1_y * t6
-    c1_x = r * c_alpha1
-    del c_alpha1
-    t7 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t3)
-    del c_alpha2, t3
-    t8 = c1_z * t7 + c1_x * t6
-    m_z = c1_y * t7 - c1_x * t4
-    product_2 = product_x * product_x + t8 * t8 + m_z * m_z
-    u_u = t7 * t7 + t4 * t4 + t6 * t6
-    nu = product_2 / u_u
-    beside_a = np.sqrt(nu)
-    length_a = np.sqrt(u_u)
-    part = 1.0 / (length_a * beside_a)
-    over_a = beside_a * part
-    t9 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t9
-    del s_beta1_half
-    r_2 = np.abs(s_beta2_half) * t9
-    del s_beta2_half, t9
-    t10 = r_1 - r_2
-    t11 = length_a + t10
-    outer = np.maximum(t11, 0.0)
-    t12 = length_a - t10
-    del t10
-    inner = np.maximum(t12, 0.0)
-    share = 1.0 / (outer + inner)
-    t13 = r_1 + r_2
-    del r_1, r_2
-    t14 = t13 - length_a
-    slack = np.maximum(t14, 0.0)
-    t15 = share * (length_a + slack) * (outer - inner) * 0.5
-    along = length_a * 0.5 + t15
-    del t15
-    X = over_a * along
-    t16 = np.sqrt(outer * inner * slack * (length_a + t13))
-    del inner, length_a, outer, slack, t13
-    rho = share * t16
-    del share, t16
-    t17 = 2.0 * beside_a * rho
-    del beside_a
-    t18 = r * r
-    t19 = over_a * (c1_x * t7 + c1_y * t4 - c1_z * t6) - along
-    del along
-    t20 = t18 - nu - t19 * t19 - rho * rho
-    del nu, t19
-    t21 = t17 - t20
-    upper = np.maximum(t21, 0.0)
-    t22 = t20 + t17
-    del t17, t20
-    lower = np.maximum(t22, 0.0)
-    both = upper + lower
-    half = rho / both
-    del rho
-    Y = part * over_a * half * (upper - lower)
-    del over_a
-    t23 = t4 * X + (t7 * m_z + t6 * product_x) * Y
-    h = part * (2.0 * half * np.sqrt(upper * lower))
-    del half, lower, part, upper
-    t24 = t8 * h
-    t25 = t23 + t24
-    t26 = t6 * X - (t7 * t8 + t4 * product_x) * Y
-    t27 = m_z * h
-    A_13 = t26 + t27
-    t28 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t29 = t28 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t28
-    t30 = t29 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t29
-    t31 = t30 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t30
-    t32 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t33 = 0.625 * (r * (r + r * 2.2737367544323206e-13))
-    t34 = -(_runtime.FEASIBILITY * t33)
-    del t33
-    t35 = (t32 <= t14) & (t32 <= t11) & (t32 <= t12) & (t34 <= t21)
-    del t11, t12, t14, t21, t32
-    failed = np.logical_not(t31) | np.logical_not(t35 & (t34 <= t22))
-    del t22, t31, t34, t35
-    t36 = _runtime.poison(failed)
-    del failed
-    t37 = s_gamma * c2_z
-    del s_gamma
-    t38 = t7 * X - (t4 * m_z - t6 * t8) * Y
-    del X, Y, m_z, t8
-    t39 = product_x * h
-    del product_x
-    t40 = c_gamma * c2_z
-    del c2_z, c_gamma
-    t41 = c2 * t5
-    del c2, t5
-    B_22 = t37 * (t7 - (t38 - t39)) - t40 * (t4 - t25) - t41 * (t6 - A_13)
-    Delta = product_2 * h
-    del h
-    t42 = t23 - t24
-    del t23, t24
-    A_13_below = t26 - t27
-    del t26, t27
-    B_22_below = t37 * (t7 - (t38 + t39)) - t40 * (t4 - t42) - t41 * (t6 - A_13_below)
-    del t37, t38, t39, t4, t40, t41, t6, t7
-    t43 = _runtime.VANISHING * _runtime.VANISHING
-    t44 = t18 * t43
-    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    del c1_x
-    t45 = u_u * v_v
-    slim = product_2 - t45 * 0.000244140625 <= _runtime.VANISHING * t45
-    del t45
-    t46 = (u_u <= t44) | (u_u + v_v <= t44) | slim | (product_2 <= t43 * (t18 * u_u))
-    del product_2, slim, t43, t44, u_u, v_v
-    return (
-        c1_z * t25 + c1_y * A_13 + t36,
-        B_22 + t36,
-        Delta + t36,
-        c1_z * t42 + c1_y * A_13_below + t36,
-        B_22_below + t36,
-        -Delta + t36,
-        t46 | (both <= _runtime.VANISHING * t18),
+        c1_z * t42 - c1_y * t45 + t54,
+        B_22 + t54,
+        Delta + t54,
+        c1_z * t59 - c1_y * t60 + t54,
+        B_22_below + t54,
+        -Delta + t54,
     )
 
 
@@ -2513,8 +1649,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    common=_singularities_common,
-    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -2554,152 +1689,145 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_gamma, c_gamma = _runtime.sincos(gamma)
-    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
     s2, c2 = _runtime.sincos(theta2)
+    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
     s1, c1 = _runtime.sincos(theta1)
     s_beta1_half = np.sin(beta1 * 0.5)
     s_beta2_half = np.sin(beta2 * 0.5)
     c1_x = r * c_alpha1
     del c_alpha1
-    t1 = np.abs(s_alpha2)
+    t1 = r * np.abs(s_alpha2)
     del s_alpha2
     t2 = c2 * t1
     del c2
-    t3 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t2)
-    t4 = r * np.abs(s_alpha1)
+    t3 = r * c_alpha2
+    del c_alpha2
+    t4 = c1_x + (s_gamma * t2 - c_gamma * t3)
+    t5 = r * np.abs(s_alpha1)
     del s_alpha1
-    c1_y = c1 * t4
+    c1_y = c1 * t5
     del c1
-    t5 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t2)
-    del c_alpha2, c_gamma, s_gamma, t2
-    c1_z = s1 * t4
-    del s1, t4
-    t6 = r * s2 * t1 - c1_z
+    t6 = c1_y - (s_gamma * t3 + c_gamma * t2)
+    del c_gamma, s_gamma, t2, t3
+    c1_z = s1 * t5
+    del s1, t5
+    t7 = c1_z - s2 * t1
     del s2, t1
-    u_u = t3 * t3 + t5 * t5 + t6 * t6
-    t7 = r * r
-    t8 = _runtime.VANISHING * _runtime.VANISHING
-    t9 = t7 * t8
+    u_u = t4 * t4 + t6 * t6 + t7 * t7
+    t8 = r * r
+    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
     same = u_u <= t9
-    t10 = _runtime.select(same, c1_x, t3)
-    t11 = _runtime.select(same, c1_y, t5)
-    t12 = _runtime.select(same, -t6, c1_z)
-    t13 = _runtime.select(same, c1_z, -t6)
-    t14 = _runtime.select(same, t5, c1_y)
-    product_x = t11 * t12 - t13 * t14
+    t10 = _runtime.select(same, c1_x, t4)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     all_same = u_u + v_v <= t9
-    del t9
     whole = _runtime.select(r == 0.0, 1.0, r)
-    a_x = _runtime.select(all_same, whole, -t10)
-    t15 = _runtime.select(same, t3, c1_x)
-    product_y = t12 * a_x + t13 * t15
-    t16 = product_x * product_x + product_y * product_y
-    t17 = t14 * a_x + t11 * t15
-    product_2 = t16 + t17 * t17
-    del t16
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t18 = mu * _runtime.select(same, u_u, v_v)
     del u_u, v_v
-    slim = product_2 - t18 * 0.000244140625 <= _runtime.VANISHING * t18
-    del t18
     over = 1.0 / mu
-    t19 = t11 * t17 + t13 * product_y
-    t20 = a_x * t17 - t13 * product_x
-    t21 = a_x * product_y + t11 * product_x
-    m_m = _runtime.select(slim, over * (t19 * t19 + t20 * t20 + t21 * t21), product_2)
-    del product_2
-    in_line = m_m <= t8 * (t7 * mu)
-    del t8
-    t22 = whole * t13
+    t11 = _runtime.select(same, c1_y, t6)
+    a_x = _runtime.select(all_same, whole, -t10)
+    t12 = _runtime.select(same, t6, c1_y)
+    t13 = _runtime.select(same, t4, c1_x)
+    t14 = a_x * t12 + t11 * t13
+    t15 = _runtime.select(same, c1_z, t7)
+    t16 = _runtime.select(same, t7, c1_z)
+    m_y = a_x * t16 + t13 * t15
+    t17 = over * (t11 * t14 + t15 * m_y)
+    m_x = t11 * t16 - t12 * t15
+    t18 = over * (a_x * t14 - t15 * m_x)
+    del t14
+    t19 = over * (a_x * m_y + t11 * m_x)
+    del m_x, m_y
+    nu = t17 * t17 + t18 * t18 + t19 * t19
+    in_line = nu <= t9
+    del t9
+    t20 = whole * t15
     s_w = _runtime.sign(-(t11 * a_x))
-    t23 = whole * (t11 - a_x * s_w)
+    t21 = whole * (t11 - a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (t22 * t22) + t23 * t23, m_m)
-    del m_m
-    nu = w_w / mu
-    beside_a = np.sqrt(nu)
+    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
+    del over
+    length_n = np.sqrt(nu_w)
+    del nu_w
     length_a = np.sqrt(mu)
-    del mu
-    part = 1.0 / (length_a * beside_a)
-    over_a = beside_a * part
+    part = 1.0 / (length_a * length_n)
+    over_a = length_n * part
     D = _runtime.select(all_same, 0.0, length_a)
-    del length_a
-    t24 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t24
+    t22 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t22
     del s_beta1_half
-    t25 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t24
-    del s_beta2_half, t24
-    t26 = _runtime.select(same, r, r_2)
-    t27 = t25 - t26
-    outer = np.maximum(t27, 0.0)
-    t28 = D - r_1
-    t29 = t26 + t28
-    inner = np.maximum(t29, 0.0)
+    t23 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t22
+    del s_beta2_half, t22
+    t24 = _runtime.select(same, r, r_2)
+    t25 = t23 - t24
+    outer = np.maximum(t25, 0.0)
+    t26 = D - r_1
+    t27 = t24 + t26
+    inner = np.maximum(t27, 0.0)
     share = 1.0 / (outer + inner)
-    t30 = t26 - t28
-    del t28
-    slack = np.maximum(t30, 0.0)
-    t31 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t28 = t24 - t26
+    del t26
+    slack = np.maximum(t28, 0.0)
+    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t31)
-    del t31
+    along = _runtime.select(all_same, 0.0, t29)
+    del t29
     X = over_a * along
-    t32 = over_a * (a_x * t15 - t11 * t14 - t12 * t13) + along
-    del along, t12, t14, t15
-    t33 = nu - _runtime.select(same, r_2 * r_2, t7) + t32 * t32
-    del nu, t32, t7
-    t34 = share * np.sqrt(outer * inner * slack * (t26 + t25))
-    del inner, outer, share, slack, t25, t26
-    rho = _runtime.select(all_same, r_1, t34)
-    del all_same, r_1, t34
-    left = t33 + rho * rho
+    t30 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along
+    del along, over_a, t12, t13, t16
+    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
+    del t30, t8
+    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
+    del inner, outer, share, slack, t23, t24
+    rho = _runtime.select(all_same, r_1, t32)
+    del all_same, r_1, t32
+    left = t31 + rho * rho
+    del t31
+    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
+    del length_n
+    t34 = t33 * rho
     del t33
-    t35 = 2.0 * _runtime.select(in_line, 0.0, beside_a)
-    del beside_a
-    t36 = t35 * rho
-    del t35
-    t37 = left + t36
-    upper = np.maximum(t37, 0.0)
-    t38 = t36 - left
-    del left, t36
-    lower = np.maximum(t38, 0.0)
+    t35 = left + t34
+    upper = np.maximum(t35, 0.0)
+    t36 = t34 - left
+    del left, t34
+    lower = np.maximum(t36, 0.0)
     both = upper + lower
-    t39 = _runtime.select(same, r_2, r)
+    t37 = _runtime.select(same, r_2, r)
     del r_2, same
-    t40 = (both <= _runtime.VANISHING * (r * t39)) | in_line
+    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t40, 0.0, part * over_a * half * (upper - lower))
-    del over_a
-    t41 = t10 * X + t19 * Y
+    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
+    del length_a
+    t39 = t10 * X + t17 * Y
     del t10
-    m_x = _runtime.select(slim, over * (t11 * t21 - t13 * t20), product_x)
-    del product_x
-    t42 = _runtime.select(t40, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t40, upper
-    h = part * t42
-    del part, t42
-    t43 = _runtime.select(in_line, -(t22 * s_w), m_x) * h
-    del m_x, s_w
-    t44 = t41 - t43
-    A_01 = c1_x - t44
-    t45 = t11 * X + t20 * Y
-    m_y = _runtime.select(slim, over * (a_x * t21 + t13 * t19), product_y)
-    del product_y
-    t46 = _runtime.select(in_line, -t22, m_y) * h
-    del m_y, t22
-    t47 = t45 - t46
-    A_02 = c1_y - t47
-    t48 = t13 * X + t21 * Y
-    del X, Y, t13, t21
-    t49 = _runtime.select(slim, over * (a_x * t20 + t11 * t19), t17)
-    del a_x, over, slim, t11, t17, t19, t20
-    t50 = _runtime.select(in_line, t23, -t49) * h
-    del in_line, t23, t49
-    t51 = t48 - t50
-    A_03 = c1_z - t51
+    w_x = _runtime.select(in_line, -(t20 * s_w), t11 * t19 - t15 * t18)
+    del s_w
+    t40 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t38, upper
+    h = part * t40
+    del part, t40
+    t41 = w_x * h
+    del w_x
+    t42 = t39 - t41
+    A_01 = c1_x - t42
+    t43 = t11 * X + t18 * Y
+    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
+    del t20
+    t44 = w_y * h
+    del w_y
+    t45 = t43 - t44
+    A_02 = c1_y - t45
+    t46 = t15 * X + t19 * Y
+    del X, Y, t15, t19
+    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t11 * t17))
+    del a_x, in_line, t11, t17, t18, t21
+    t47 = w_z * h
+    del w_z
+    t48 = t46 - t47
+    A_03 = c1_z - t48
     strut = np.sqrt(A_01 * A_01 + A_02 * A_02 + A_03 * A_03)
     radial_x = A_01 / strut
     del A_01
@@ -2707,313 +1835,104 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del A_02
     radial_z = A_03 / strut
     del A_03
-    t52 = t44 * radial_x + t47 * radial_y + t51 * radial_z
-    t53 = t44 - radial_x * t52
-    t54 = t47 - radial_y * t52
-    t55 = t51 - radial_z * t52
-    del t52
-    square1 = t53 * t53 + t54 * t54 + t55 * t55
-    A_21 = t3 - t44
-    del t44
-    A_22 = t5 - t47
-    del t47
-    t56 = t6 + t51
-    del t51
-    off2 = radial_x * A_21 + radial_y * A_22 - radial_z * t56
-    t2_x = A_21 - radial_x * off2
-    del A_21, radial_x
-    t2_y = A_22 - radial_y * off2
-    del A_22, radial_y
-    t57 = t56 + radial_z * off2
-    del off2, radial_z, t56
-    square2 = t2_x * t2_x + t2_y * t2_y + t57 * t57
-    t58 = square1 - square2
-    t59 = t53 * t2_x + t54 * t2_y - t55 * t57
-    del t2_x, t2_y, t53, t54, t55, t57
-    t60 = square1 + square2 + np.sqrt(t58 * t58 + 4.0 * (t59 * t59))
-    del square1, square2, t58, t59
-    t61 = 2.0 * (w_w * h)
-    del h, w_w
-    t62 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t63 = t62 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t62
-    t64 = t63 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t63
-    t65 = t64 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t64
-    t66 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t67 = 0.625 * (r * (r * 2.2737367544323206e-13 + t39))
-    del t39
-    t68 = -(_runtime.FEASIBILITY * t67)
-    del t67
-    t69 = (t66 <= t30) & (t66 <= t27) & (t66 <= t29) & (t68 <= t37)
-    del t27, t29, t30, t37, t66
-    failed = np.logical_not(t65) | np.logical_not(t69 & (t68 <= t38))
-    del t38, t65, t68, t69
-    t70 = _runtime.poison(failed)
-    del failed
-    t71 = t41 + t43
-    del t41, t43
-    A_01_below = c1_x - t71
-    del c1_x
-    t72 = t45 + t46
-    del t45, t46
-    A_02_below = c1_y - t72
-    del c1_y
-    t73 = A_01_below * A_01_below + A_02_below * A_02_below
-    t74 = t48 + t50
-    del t48, t50
-    A_03_below = c1_z - t74
-    del c1_z
-    strut_below = np.sqrt(t73 + A_03_below * A_03_below)
-    del t73
-    radial_x_below = A_01_below / strut_below
-    del A_01_below
-    radial_y_below = A_02_below / strut_below
-    del A_02_below
-    radial_z_below = A_03_below / strut_below
-    del A_03_below
-    t75 = t71 * radial_x_below + t72 * radial_y_below + t74 * radial_z_below
-    t76 = t71 - radial_x_below * t75
-    t77 = t72 - radial_y_below * t75
-    t78 = t74 - radial_z_below * t75
-    del t75
-    square1_below = t76 * t76 + t77 * t77 + t78 * t78
-    A_21_below = t3 - t71
-    del t3, t71
-    A_22_below = t5 - t72
-    del t5, t72
-    t79 = radial_x_below * A_21_below + radial_y_below * A_22_below
-    t80 = t6 + t74
-    del t6, t74
-    off2_below = t79 - radial_z_below * t80
-    del t79
-    t2_x_below = A_21_below - radial_x_below * off2_below
-    del A_21_below, radial_x_below
-    t2_y_below = A_22_below - radial_y_below * off2_below
-    del A_22_below, radial_y_below
-    t81 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
-    t82 = t80 + radial_z_below * off2_below
-    del off2_below, radial_z_below, t80
-    square2_below = t81 + t82 * t82
-    del t81
-    t83 = square1_below - square2_below
-    t84 = t76 * t2_x_below + t77 * t2_y_below - t78 * t82
-    del t2_x_below, t2_y_below, t76, t77, t78, t82
-    t85 = square1_below + square2_below + np.sqrt(t83 * t83 + 4.0 * (t84 * t84))
-    del square1_below, square2_below, t83, t84
-    return (
-        strut * t60 / t61 + t70,
-        strut_below * t85 / t61 + t70,
-    )
-
-
-def _condition_number_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
-    # Where nothing vanishes; last, whether something does.
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s2, c2 = _runtime.sincos_as_in_c(theta2)
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
-    del c_beta1_half
-    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
-    del c_beta2_half
-    c1_x = r * c_alpha1
-    del c_alpha1
-    t1 = np.abs(s_alpha2)
-    del s_alpha2
-    t2 = c2 * t1
-    del c2
-    t3 = c1_x - r * (c_gamma * c_alpha2 - s_gamma * t2)
-    t4 = r * np.abs(s_alpha1)
-    del s_alpha1
-    c1_y = c1 * t4
-    del c1
-    t5 = c1_y - r * (s_gamma * c_alpha2 + c_gamma * t2)
-    del c_alpha2, c_gamma, s_gamma, t2
-    c1_z = s1 * t4
-    del s1, t4
-    t6 = r * s2 * t1 - c1_z
-    del s2, t1
-    product_x = t5 * c1_z + c1_y * t6
-    t7 = t3 * c1_z + c1_x * t6
-    m_z = t3 * c1_y - c1_x * t5
-    product_2 = product_x * product_x + t7 * t7 + m_z * m_z
-    u_u = t3 * t3 + t5 * t5 + t6 * t6
-    nu = product_2 / u_u
-    beside_a = np.sqrt(nu)
-    length_a = np.sqrt(u_u)
-    part = 1.0 / (length_a * beside_a)
-    over_a = beside_a * part
-    t8 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t8
-    del s_beta1_half
-    r_2 = np.abs(s_beta2_half) * t8
-    del s_beta2_half, t8
-    t9 = r_1 - r_2
-    t10 = length_a + t9
-    outer = np.maximum(t10, 0.0)
-    t11 = length_a - t9
-    del t9
-    inner = np.maximum(t11, 0.0)
-    share = 1.0 / (outer + inner)
-    t12 = r_1 + r_2
-    del r_1, r_2
-    t13 = t12 - length_a
-    slack = np.maximum(t13, 0.0)
-    t14 = share * (length_a + slack) * (outer - inner) * 0.5
-    along = length_a * 0.5 + t14
-    del t14
-    X = over_a * along
-    t15 = np.sqrt(outer * inner * slack * (length_a + t12))
-    del inner, length_a, outer, slack, t12
-    rho = share * t15
-    del share, t15
-    t16 = 2.0 * beside_a * rho
-    del beside_a
-    t17 = r * r
-    t18 = over_a * (c1_x * t3 + c1_y * t5 - c1_z * t6) - along
-    del along
-    t19 = t17 - nu - t18 * t18 - rho * rho
-    del nu, t18
-    t20 = t16 - t19
-    upper = np.maximum(t20, 0.0)
-    t21 = t19 + t16
-    del t16, t19
-    lower = np.maximum(t21, 0.0)
-    both = upper + lower
-    half = rho / both
-    del rho
-    Y = part * over_a * half * (upper - lower)
-    del over_a
-    t22 = t3 * X - (t5 * m_z - t6 * t7) * Y
-    h = part * (2.0 * half * np.sqrt(upper * lower))
-    del half, lower, part, upper
-    t23 = product_x * h
-    t24 = t22 - t23
-    A_01 = c1_x - t24
-    t25 = t5 * X + (t3 * m_z + t6 * product_x) * Y
-    t26 = t7 * h
-    t27 = t25 + t26
-    A_02 = c1_y - t27
-    t28 = t6 * X - (t3 * t7 + t5 * product_x) * Y
-    del X, Y, product_x, t7
-    t29 = m_z * h
-    del m_z
-    A_13 = t28 + t29
-    A_03 = c1_z + A_13
-    strut = np.sqrt(A_01 * A_01 + A_02 * A_02 + A_03 * A_03)
-    radial_x = A_01 / strut
-    del A_01
-    radial_y = A_02 / strut
-    del A_02
-    radial_z = A_03 / strut
-    del A_03
-    t30 = t24 * radial_x + t27 * radial_y - A_13 * radial_z
-    t31 = t24 - radial_x * t30
-    t32 = t27 - radial_y * t30
-    t33 = A_13 + radial_z * t30
-    del t30
-    square1 = t31 * t31 + t32 * t32 + t33 * t33
-    A_21 = t3 - t24
-    del t24
-    A_22 = t5 - t27
-    del t27
-    t34 = t6 - A_13
-    del A_13
-    off2 = radial_x * A_21 + radial_y * A_22 - radial_z * t34
-    t2_x = A_21 - radial_x * off2
-    del A_21, radial_x
-    t2_y = A_22 - radial_y * off2
-    del A_22, radial_y
-    t35 = t34 + radial_z * off2
-    del off2, radial_z, t34
-    square2 = t2_x * t2_x + t2_y * t2_y + t35 * t35
-    t36 = square1 - square2
-    t37 = t31 * t2_x + t32 * t2_y + t33 * t35
-    del t2_x, t2_y, t31, t32, t33, t35
-    t38 = square1 + square2 + np.sqrt(t36 * t36 + 4.0 * (t37 * t37))
-    del square1, square2, t36, t37
-    t39 = 2.0 * (product_2 * h)
-    del h
-    t40 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t41 = t40 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t40
-    t42 = t41 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t41
-    t43 = t42 & (np.isfinite(theta1) & np.isfinite(theta2))
+    t49 = t42 * radial_x + t45 * radial_y + t48 * radial_z
+    t50 = t42 - radial_x * t49
+    t51 = t45 - radial_y * t49
+    t52 = t48 - radial_z * t49
+    del t49
+    square1 = t50 * t50 + t51 * t51 + t52 * t52
+    A_21 = t4 - t42
     del t42
-    t44 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t45 = 0.625 * (r * (r + r * 2.2737367544323206e-13))
-    t46 = -(_runtime.FEASIBILITY * t45)
+    A_22 = t6 - t45
     del t45
-    t47 = (t44 <= t13) & (t44 <= t10) & (t44 <= t11) & (t46 <= t20)
-    del t10, t11, t13, t20, t44
-    failed = np.logical_not(t43) | np.logical_not(t47 & (t46 <= t21))
-    del t21, t43, t46, t47
-    t48 = _runtime.poison(failed)
+    A_23 = t7 - t48
+    del t48
+    off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23
+    t2_x = A_21 - radial_x * off2
+    del A_21, radial_x
+    t2_y = A_22 - radial_y * off2
+    del A_22, radial_y
+    t2_z = A_23 - radial_z * off2
+    del A_23, off2, radial_z
+    square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z
+    t53 = square1 - square2
+    t54 = t50 * t2_x + t51 * t2_y + t52 * t2_z
+    del t2_x, t2_y, t2_z, t50, t51, t52
+    t55 = square1 + square2 + np.sqrt(t53 * t53 + 4.0 * (t54 * t54))
+    del square1, square2, t53, t54
+    t56 = 2.0 * (mu * nu * h)
+    del h, mu, nu
+    t57 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t58 = t57 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t57
+    t59 = t58 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t58
+    t60 = t59 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t59
+    t61 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t62 = 0.625 * (r * (r * 2.2737367544323206e-13 + t37))
+    del t37
+    t63 = -(_runtime.FEASIBILITY * t62)
+    del t62
+    t64 = (t61 <= t28) & (t61 <= t25) & (t61 <= t27) & (t63 <= t35)
+    del t25, t27, t28, t35, t61
+    failed = np.logical_not(t60) | np.logical_not(t64 & (t63 <= t36))
+    del t36, t60, t63, t64
+    t65 = _runtime.poison(failed)
     del failed
-    t49 = t22 + t23
-    del t22, t23
-    A_01_below = c1_x - t49
-    t50 = t25 - t26
-    del t25, t26
-    A_02_below = c1_y - t50
-    t51 = A_01_below * A_01_below + A_02_below * A_02_below
-    A_13_below = t28 - t29
-    del t28, t29
-    A_03_below = c1_z + A_13_below
-    strut_below = np.sqrt(t51 + A_03_below * A_03_below)
-    del t51
+    t66 = t39 + t41
+    del t39, t41
+    A_01_below = c1_x - t66
+    del c1_x
+    t67 = t43 + t44
+    del t43, t44
+    A_02_below = c1_y - t67
+    del c1_y
+    t68 = A_01_below * A_01_below + A_02_below * A_02_below
+    t69 = t46 + t47
+    del t46, t47
+    A_03_below = c1_z - t69
+    del c1_z
+    strut_below = np.sqrt(t68 + A_03_below * A_03_below)
+    del t68
     radial_x_below = A_01_below / strut_below
     del A_01_below
     radial_y_below = A_02_below / strut_below
     del A_02_below
     radial_z_below = A_03_below / strut_below
     del A_03_below
-    t52 = t49 * radial_x_below + t50 * radial_y_below - A_13_below * radial_z_below
-    t53 = t49 - radial_x_below * t52
-    t54 = t50 - radial_y_below * t52
-    t55 = A_13_below + radial_z_below * t52
-    del t52
-    square1_below = t53 * t53 + t54 * t54 + t55 * t55
-    A_21_below = t3 - t49
-    del t3, t49
-    A_22_below = t5 - t50
-    del t5, t50
-    t56 = radial_x_below * A_21_below + radial_y_below * A_22_below
-    t57 = t6 - A_13_below
-    del A_13_below, t6
-    off2_below = t56 - radial_z_below * t57
-    del t56
+    t70 = t66 * radial_x_below + t67 * radial_y_below + t69 * radial_z_below
+    t71 = t66 - radial_x_below * t70
+    t72 = t67 - radial_y_below * t70
+    t73 = t69 - radial_z_below * t70
+    del t70
+    square1_below = t71 * t71 + t72 * t72 + t73 * t73
+    A_21_below = t4 - t66
+    del t4, t66
+    A_22_below = t6 - t67
+    del t6, t67
+    t74 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    A_23_below = t7 - t69
+    del t69, t7
+    off2_below = t74 + radial_z_below * A_23_below
+    del t74
     t2_x_below = A_21_below - radial_x_below * off2_below
     del A_21_below, radial_x_below
     t2_y_below = A_22_below - radial_y_below * off2_below
     del A_22_below, radial_y_below
-    t58 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
-    t59 = t57 + radial_z_below * off2_below
-    del off2_below, radial_z_below, t57
-    square2_below = t58 + t59 * t59
-    del t58
-    t60 = square1_below - square2_below
-    t61 = t53 * t2_x_below + t54 * t2_y_below + t55 * t59
-    del t2_x_below, t2_y_below, t53, t54, t55, t59
-    t62 = square1_below + square2_below + np.sqrt(t60 * t60 + 4.0 * (t61 * t61))
-    del square1_below, square2_below, t60, t61
-    t63 = _runtime.VANISHING * _runtime.VANISHING
-    t64 = t17 * t63
-    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    del c1_x, c1_y, c1_z
-    t65 = u_u * v_v
-    slim = product_2 - t65 * 0.000244140625 <= _runtime.VANISHING * t65
-    del t65
-    t66 = (u_u <= t64) | (u_u + v_v <= t64) | slim | (product_2 <= t63 * (t17 * u_u))
-    del product_2, slim, t63, t64, u_u, v_v
+    t75 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t2_z_below = A_23_below - radial_z_below * off2_below
+    del A_23_below, off2_below, radial_z_below
+    square2_below = t75 + t2_z_below * t2_z_below
+    del t75
+    t76 = square1_below - square2_below
+    t77 = t71 * t2_x_below + t72 * t2_y_below + t73 * t2_z_below
+    del t2_x_below, t2_y_below, t2_z_below, t71, t72, t73
+    t78 = square1_below + square2_below + np.sqrt(t76 * t76 + 4.0 * (t77 * t77))
+    del square1_below, square2_below, t76, t77
     return (
-        strut * t38 / t39 + t48,
-        strut_below * t62 / t39 + t48,
-        t66 | (both <= _runtime.VANISHING * t17),
+        strut * t55 / t56 + t65,
+        strut_below * t78 / t56 + t65,
     )
 
 
@@ -3024,8 +1943,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Array("kappa", (2,)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    common=_condition_number_common,
-    size=_runtime.Size((2,), (), 2.5849394142282115e-26, 9.353610478917779e+49),
+    size=_runtime.Size((2,), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 

@@ -149,6 +149,14 @@ def test_a_crank_would_turn_the_triangle() -> None:
     q3 = d.joint("q3")
     first, second, _ = legs(4, Parallelogram(4, (1, 0, 0), 1), 5)
     prism = Prism(5, (0, 1, 0), 1, (1, 0, 0))
-    crank = Crank(q3, 1, prism, (0, 0, 4), (1, 0, 0), (0, 0, 1), (0, 0, 1))
+    crank = Crank(
+        joint=q3,
+        length=1,
+        rod=prism,
+        pivot=(0, 0, 4),
+        along=(1, 0, 0),
+        across=(0, 0, 1),
+        on_hand=(0, 0, 1),
+    )
     with pytest.raises(ShapeError, match="turns the triangle on it"):
         parallel(d, [real(x) for x in "xyz"], [first, second, crank])

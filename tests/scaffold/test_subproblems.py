@@ -265,9 +265,9 @@ def test_a_given_joint_is_an_input(franka: tuple[Derivation, Serial]) -> None:
     assert d.inverses[0].targets[-1].name == "x_t7"
 
 
-def test_three_parallel_axes_that_carry_a_point_are_named() -> None:
-    """An arm for a drone: its wrist has two axes that meet."""
-    rows = [(2, 0, 0), (1, 0, 0), (0, pi / 2, 0), (0, pi / 2, 1), (0, 0, 1)]
+def test_two_axes_beside_three_parallel_ones_have_to_meet() -> None:
+    """An arm for a drone: its wrist has two axes that pass each other."""
+    rows = [(2, 0, 0), (1, 0, 0), (0, pi / 2, 0), (1, pi / 2, 1), (0, 0, 1)]
     with pytest.raises(NoChainError) as e:
         propose(arm(rows)[1])
-    assert "axes 1, 2 and 3 are parallel" in [t.error.found for t in e.value.tried]
+    assert "axes 4 and 5 do not meet" in [t.error.found for t in e.value.tried]

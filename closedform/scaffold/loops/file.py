@@ -244,7 +244,10 @@ def _on_slider(loop: Loop, name: str, given: Mapping[str, Any], where: str) -> M
         raise TableError(f"{where}: {GROUND} has no point {at}, or {slider} is a body already")
     loop.bodies[slider] = {at: loop.bodies[GROUND][at]}
     axis = _axis(loop, given["axis"], where, "axis")
-    loop.joints[f"{name}_turn"] = Joint(f"{name}_turn", "revolute", (slider, body), at, axis, False)
+    turn = f"{name}_turn"
+    loop.joints[turn] = Joint(
+        name=turn, kind="revolute", between=(slider, body), at=at, axis=axis, driven=False
+    )
     return {**given, "kind": "prismatic", "between": [GROUND, slider]}
 
 

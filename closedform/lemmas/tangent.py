@@ -236,7 +236,8 @@ class LinksAtHeight(Goal):
         farthest = (self.l1 + self.l2) ** 2 - self.height**2
         nearest = (self.l1 - self.l2) ** 2 - self.height**2
         wanted = program.let(f"wanted{suffix}", sp.Max(0, nearest, sp.Min(square, farthest)))
-        rounding = 2 * at.h * scale * self.rounding
+        # with a name, as SymPy divides both sides of a condition by their content
+        rounding = program.let(f"rounding{suffix}", 2 * at.h * scale * self.rounding)
         result = sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True))
         least = rounding
         for root, exists in self.preferred:

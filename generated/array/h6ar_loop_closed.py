@@ -12,7 +12,7 @@
 #   jacobian: 131 compare and select, 190 add, 59 divide, 325 multiply, 6 sincos, 8 sqrt
 #   determinant: 85 compare and select, 94 add, 28 divide, 159 multiply, 5 sincos, 8 sqrt
 #   singularities: 89 compare and select, 94 add, 27 divide, 149 multiply, 5 sincos, 8 sqrt
-#   ik: 2540 compare and select, 1006 add, 28 atan2, 279 divide, 1477 multiply, 1 reduce to a
+#   ik: 2540 compare and select, 1006 add, 28 atan2, 278 divide, 1477 multiply, 1 reduce to a
 #     turn, 3 sincos, 72 sqrt
 #   wrist_length: 25 compare and select, 6 add, 3 divide, 9 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
@@ -1895,7 +1895,7 @@ def _ik(ops, x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t44 = L1 - fore
     t45 = t44 * t44
     wanted = ops.max(ops.max(0.0, t45 - t41), ops.min(t42, t39 - t41))
-    t46 = ops.abs(t42 - wanted) * 0.5 <= ops.rounding * t43
+    t46 = ops.abs(t42 - wanted) <= 2.0 * ops.rounding * t43
     in_reach = ops.select(tangent, ops.sqrt(ops.select(t46, wanted, t42)), root)
     square = t41 + in_reach * in_reach
     t47 = t39 - square

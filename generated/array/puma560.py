@@ -11,7 +11,7 @@
 #   singularities: 5 add, 9 multiply, 3 sincos
 #   jacobian_space: 29 add, 65 multiply, 5 sincos
 #   jacobian_body: 26 add, 61 multiply, 5 sincos
-#   ik: 269 compare and select, 168 add, 20 atan2, 17 divide, 255 multiply, 22 sqrt
+#   ik: 269 compare and select, 168 add, 20 atan2, 16 divide, 256 multiply, 22 sqrt
 """Puma 560.
 
 A vertical base axis (theta1), two parallel horizontal axes (theta2, theta3) and a spherical
@@ -806,7 +806,7 @@ def _ik(
     t20 = a2 - f
     t21 = t13 * t13
     wanted1 = ops.max(ops.max(0.0, t20 * t20 - t18), ops.min(t19, t21 - t18))
-    t22 = ops.abs(t19 - wanted1) * 0.5 <= h1 * ops.rounding * size
+    t22 = ops.abs(t19 - wanted1) <= h1 * 2.0 * ops.rounding * size
     held1 = ops.select(t22, wanted1, t19)
     kept1 = ops.select(tangent1, ops.sqrt(held1), root1)
     r_elbow = ops.sqrt(t18 + kept1 * kept1)

@@ -13,7 +13,7 @@
  *   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
  *   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
  *   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
- *   ik: 725 compare and select, 539 add, 29 atan2, 173 divide, 744 multiply, 1 reduce to a turn, 3
+ *   ik: 725 compare and select, 539 add, 29 atan2, 173 divide, 743 multiply, 1 reduce to a turn, 3
  *     sincos, 54 sqrt
  *   ik where nothing vanishes: 250 compare and select, 174 add, 16 atan2, 43 divide, 168 multiply,
  *     1 reduce to a turn, 3 sincos, 25 sqrt

@@ -13,7 +13,7 @@
  *   jacobian: 55 compare and select, 208 add, 53 divide, 321 multiply, 6 sincos, 6 sqrt
  *   determinant: 55 compare and select, 86 add, 22 divide, 155 multiply, 5 sincos, 6 sqrt
  *   singularities: 55 compare and select, 91 add, 21 divide, 145 multiply, 5 sincos, 6 sqrt
- *   ik: 866 compare and select, 643 add, 28 atan2, 163 divide, 917 multiply, 1 reduce to a turn, 3
+ *   ik: 866 compare and select, 643 add, 28 atan2, 162 divide, 917 multiply, 1 reduce to a turn, 3
  *     sincos, 42 sqrt
  *   ik where nothing vanishes: 285 compare and select, 263 add, 23 atan2, 36 divide, 343 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
@@ -2150,7 +2150,8 @@ CF_INLINE void h6ar_loop_closed_ik_whole_kernel(const int single, const real_t o
     const real_t t33 = cf_rounded(single, one, t32 * t32);
     const real_t t34 = cf_rounded(single, one, t17 * t17);
     const real_t wanted = cf_max(cf_max(CLOSEDFORM_C(0.0), t31 - t33), cf_min(t15, t34 - t33));
-    const int t35 = cf_abs(t15 - wanted) * CLOSEDFORM_C(0.5) <= CLOSEDFORM_ROUNDING * t29;
+    const real_t rounding = CLOSEDFORM_C(2.0) * CLOSEDFORM_ROUNDING * t29;
+    const int t35 = cf_abs(t15 - wanted) <= rounding;
     const real_t t36 = cf_sqrt(cf_select(t35, wanted, t15));
     const real_t t37 = above * CLOSEDFORM_C(0.5) - below * CLOSEDFORM_C(0.5);
     const int t38 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d1) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;

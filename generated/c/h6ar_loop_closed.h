@@ -13,7 +13,7 @@
  *   jacobian: 55 compare and select, 208 add, 53 divide, 321 multiply, 6 sincos, 6 sqrt
  *   determinant: 55 compare and select, 86 add, 22 divide, 155 multiply, 5 sincos, 6 sqrt
  *   singularities: 55 compare and select, 91 add, 21 divide, 145 multiply, 5 sincos, 6 sqrt
- *   ik: 866 compare and select, 643 add, 28 atan2, 163 divide, 917 multiply, 1 reduce to a turn, 3
+ *   ik: 866 compare and select, 643 add, 28 atan2, 162 divide, 917 multiply, 1 reduce to a turn, 3
  *     sincos, 42 sqrt
  *   ik where nothing vanishes: 285 compare and select, 263 add, 23 atan2, 36 divide, 343 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt

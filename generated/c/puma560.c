@@ -12,7 +12,7 @@
  *   singularities: 5 add, 9 multiply, 3 sincos
  *   jacobian_space: 29 add, 65 multiply, 5 sincos
  *   jacobian_body: 26 add, 61 multiply, 5 sincos
- *   ik: 141 compare and select, 146 add, 20 atan2, 12 divide, 177 multiply, 11 sqrt
+ *   ik: 141 compare and select, 146 add, 20 atan2, 11 divide, 178 multiply, 11 sqrt
  */
 #include "puma560.h"
 
@@ -923,7 +923,8 @@ CF_INLINE void puma560_ik_kernel(const int single, const real_t one,
     const real_t t11 = cf_max(CLOSEDFORM_C(0.0), cf_rounded(single, one, t9 * t9) - t10);
     const real_t t12 = cf_rounded(single, one, t3 * t3);
     const real_t wanted1 = cf_max(t11, cf_min(t8, t12 - t10));
-    const int t13 = cf_abs(t8 - wanted1) * CLOSEDFORM_C(0.5) <= h1 * CLOSEDFORM_ROUNDING * size;
+    const real_t rounding1 = h1 * CLOSEDFORM_C(2.0) * CLOSEDFORM_ROUNDING * size;
+    const int t13 = cf_abs(t8 - wanted1) <= rounding1;
     const real_t held1 = cf_select(t13, wanted1, t8);
     const real_t t14 = cf_rounded(single, one, t7 * t7) + CLOSEDFORM_C(4.0) * held1;
     const real_t span1 = cf_rarely(single, tangent1, cf_sqrt(t14), below1 + above1);

@@ -12,7 +12,7 @@
 //   jacobian: 55 compare and select, 208 add, 53 divide, 321 multiply, 6 sincos, 6 sqrt
 //   determinant: 55 compare and select, 86 add, 22 divide, 155 multiply, 5 sincos, 6 sqrt
 //   singularities: 55 compare and select, 91 add, 21 divide, 145 multiply, 5 sincos, 6 sqrt
-//   ik: 866 compare and select, 643 add, 28 atan2, 163 divide, 917 multiply, 1 reduce to a turn, 3
+//   ik: 866 compare and select, 643 add, 28 atan2, 162 divide, 917 multiply, 1 reduce to a turn, 3
 //     sincos, 42 sqrt
 //   ik where nothing vanishes: 285 compare and select, 263 add, 23 atan2, 36 divide, 343 multiply,
 //     1 reduce to a turn, 3 sincos, 16 sqrt
@@ -1906,7 +1906,7 @@ function _ik(v, o) {
     const t28 = t27 * t27;
     const t29 = t16 * t16;
     const wanted = Math.max(Math.max(0.0, t26 - t28), Math.min(t15, t29 - t28));
-    const t30 = Math.abs(t15 - wanted) * 0.5 <= _runtime.ROUNDING * t24;
+    const t30 = Math.abs(t15 - wanted) <= 2.0 * _runtime.ROUNDING * t24;
     const t31 = Math.sqrt(t30 ? wanted : t15);
     const t32 = tangent ? Math.atan2(t31, above * 0.5 - below * 0.5) : Math.atan2(2.0 * root,
         above - below);

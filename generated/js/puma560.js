@@ -11,7 +11,7 @@
 //   singularities: 5 add, 9 multiply, 3 sincos
 //   jacobian_space: 29 add, 65 multiply, 5 sincos
 //   jacobian_body: 26 add, 61 multiply, 5 sincos
-//   ik: 141 compare and select, 146 add, 20 atan2, 12 divide, 177 multiply, 11 sqrt
+//   ik: 141 compare and select, 146 add, 20 atan2, 11 divide, 178 multiply, 11 sqrt
 
 /**
  * Puma 560.
@@ -923,7 +923,7 @@ function _ik(v, o) {
     const t8 = T34 * T34;
     const t9 = t1 * t1;
     const wanted1 = Math.max(Math.max(0.0, t7 * t7 - t8), Math.min(t6, t9 - t8));
-    const t10 = Math.abs(t6 - wanted1) * 0.5 <= h1 * _runtime.ROUNDING * size;
+    const t10 = Math.abs(t6 - wanted1) <= h1 * 2.0 * _runtime.ROUNDING * size;
     const held1 = t10 ? wanted1 : t6;
     const span1 = tangent1 ? Math.sqrt(t5 * t5 + 4.0 * held1) : below1 + above1;
     const t11 = 1.0 / (h1 * span1);

@@ -12,7 +12,7 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
-#   ik: 725 compare and select, 539 add, 29 atan2, 173 divide, 744 multiply, 1 reduce to a turn, 3
+#   ik: 725 compare and select, 539 add, 29 atan2, 173 divide, 743 multiply, 1 reduce to a turn, 3
 #     sincos, 54 sqrt
 #   ik where nothing vanishes: 250 compare and select, 174 add, 16 atan2, 43 divide, 168 multiply,
 #     1 reduce to a turn, 3 sincos, 25 sqrt
@@ -1608,1602 +1608,1603 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     root_same_ahead_squared = root_same_ahead * root_same_ahead
     del root_same_ahead
     root_same_ahead_away = np.abs(t13 - root_same_ahead_squared)
-    t42 = t22 * 1.8189894035458565e-12
-    t43 = t40 & (root_same_ahead_away <= t42)
-    root_same_ahead_least = _runtime.select(t43, root_same_ahead_away, t42)
-    del root_same_ahead_away, t42
-    t44 = root_apart_ahead_away <= root_same_ahead_least
-    t45 = t40 & t44
-    del t40, t44
-    root_apart_ahead_least = _runtime.select(t45, root_apart_ahead_away, root_same_ahead_least)
+    rounding = t22 * 1.8189894035458565e-12
+    del t22
+    t42 = t40 & (root_same_ahead_away <= rounding)
+    root_same_ahead_least = _runtime.select(t42, root_same_ahead_away, rounding)
+    del root_same_ahead_away
+    t43 = root_apart_ahead_away <= root_same_ahead_least
+    t44 = t40 & t43
+    del t40, t43
+    root_apart_ahead_least = _runtime.select(t44, root_apart_ahead_away, root_same_ahead_least)
     del root_apart_ahead_away, root_same_ahead_least
-    t46 = root_same_behind_away <= root_apart_ahead_least
-    t47 = t46 & t35 & t36
-    del t46
-    root_same_behind_least = _runtime.select(t47, root_same_behind_away, root_apart_ahead_least)
+    t45 = root_same_behind_away <= root_apart_ahead_least
+    t46 = t45 & t35 & t36
+    del t45
+    root_same_behind_least = _runtime.select(t46, root_same_behind_away, root_apart_ahead_least)
     del root_apart_ahead_least, root_same_behind_away
-    t48 = np.abs(t13 - root_apart_behind_squared) <= root_same_behind_least
+    t47 = np.abs(t13 - root_apart_behind_squared) <= root_same_behind_least
     del root_same_behind_least
-    t49 = L1 - fore
-    t50 = t49 * t49
-    t51 = t2 * t2
-    t52 = t14 * t14
-    wanted = np.maximum(np.maximum(0.0, t50 - t51), np.minimum(t13, t52 - t51))
-    t53 = _runtime.select(549755813888.0 * np.abs(t13 - wanted) <= t22, wanted, t13)
-    del t13, t22, wanted
-    root_same_ahead_held = _runtime.select(t43, root_same_ahead_squared, t53)
-    del root_same_ahead_squared, t43, t53
-    root_apart_ahead_held = _runtime.select(t45, root_apart_ahead_squared, root_same_ahead_held)
-    del root_apart_ahead_squared, root_same_ahead_held, t45
-    root_same_behind_held = _runtime.select(t47, root_same_behind_squared, root_apart_ahead_held)
-    del root_apart_ahead_held, root_same_behind_squared, t47
-    root_apart_behind_held = _runtime.select(t35 & t36 & t48, root_apart_behind_squared, root_same_behind_held)
-    del root_apart_behind_squared, root_same_behind_held, t35, t36, t48
-    t54 = np.sqrt(root_apart_behind_held)
+    t48 = L1 - fore
+    t49 = t48 * t48
+    t50 = t2 * t2
+    t51 = t14 * t14
+    wanted = np.maximum(np.maximum(0.0, t49 - t50), np.minimum(t13, t51 - t50))
+    t52 = _runtime.select(np.abs(t13 - wanted) <= rounding, wanted, t13)
+    del rounding, t13, wanted
+    root_same_ahead_held = _runtime.select(t42, root_same_ahead_squared, t52)
+    del root_same_ahead_squared, t42, t52
+    root_apart_ahead_held = _runtime.select(t44, root_apart_ahead_squared, root_same_ahead_held)
+    del root_apart_ahead_squared, root_same_ahead_held, t44
+    root_same_behind_held = _runtime.select(t46, root_same_behind_squared, root_apart_ahead_held)
+    del root_apart_ahead_held, root_same_behind_squared, t46
+    root_apart_behind_held = _runtime.select(t35 & t36 & t47, root_apart_behind_squared, root_same_behind_held)
+    del root_apart_behind_squared, root_same_behind_held, t35, t36, t47
+    t53 = np.sqrt(root_apart_behind_held)
     del root_apart_behind_held
-    in_reach = _runtime.select(tangent, t54, root)
-    t55 = np.abs(in_reach)
-    t56 = _runtime.VANISHING * t14
-    folded = np.abs(t2) + t55 <= t56
-    short = L1 * fore <= _runtime.VANISHING * t52
-    t57 = 2.0 * fore
-    t58 = in_reach * in_reach
-    square = t51 + t58
-    del t51
-    t59 = square - t50
+    in_reach = _runtime.select(tangent, t53, root)
+    t54 = np.abs(in_reach)
+    t55 = _runtime.VANISHING * t14
+    folded = np.abs(t2) + t54 <= t55
+    short = L1 * fore <= _runtime.VANISHING * t51
+    t56 = 2.0 * fore
+    t57 = in_reach * in_reach
+    square = t50 + t57
     del t50
-    M = np.maximum(t59, 0.0)
-    t60 = t52 - square
-    del square, t52
-    N = np.maximum(t60, 0.0)
-    t61 = 1.0 / (M + N)
-    ahead_1 = _runtime.select(short, t14, t49 + t57 * M * t61)
+    t58 = square - t49
+    del t49
+    M = np.maximum(t58, 0.0)
+    t59 = t51 - square
+    del square, t51
+    N = np.maximum(t59, 0.0)
+    t60 = 1.0 / (M + N)
+    ahead_1 = _runtime.select(short, t14, t48 + t56 * M * t60)
     del t14
-    t62 = in_reach * ahead_1
-    t63 = 2.0 * np.sqrt(M * N)
-    s_bend_front_elbow_down = _runtime.select(short, 0.0, t61 * t63)
-    t64 = fore * s_bend_front_elbow_down
-    t65 = t2 * t64
-    out_2 = t62 - t65
-    t66 = t2 * ahead_1
+    t61 = in_reach * ahead_1
+    t62 = 2.0 * np.sqrt(M * N)
+    s_bend_front_elbow_down = _runtime.select(short, 0.0, t60 * t62)
+    t63 = fore * s_bend_front_elbow_down
+    t64 = t2 * t63
+    out_2 = t61 - t64
+    t65 = t2 * ahead_1
     del ahead_1, t2
-    t67 = in_reach * t64
-    del in_reach, t64
-    up = t66 + t67
-    t68 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
-    t69 = out_2 * t68
-    ctheta2A = _runtime.select(folded, 1.0, t69)
-    stheta2A = _runtime.select(folded, 0.0, up * t68)
-    del t68
-    t70 = higher * stheta2A
-    p_1 = ahead * ctheta2A + t70
-    bare = fore <= t56
-    del t56
-    t71 = 1.0 / fore
-    s_lag = _runtime.select(bare, 0.0, L_2W * t71)
-    t72 = M - N
+    t66 = in_reach * t63
+    del in_reach, t63
+    up = t65 + t66
+    t67 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
+    t68 = out_2 * t67
+    ctheta2A = _runtime.select(folded, 1.0, t68)
+    stheta2A = _runtime.select(folded, 0.0, up * t67)
+    del t67
+    t69 = higher * stheta2A
+    p_1 = ahead * ctheta2A + t69
+    bare = fore <= t55
+    del t55
+    t70 = 1.0 / fore
+    s_lag = _runtime.select(bare, 0.0, L_2W * t70)
+    t71 = M - N
     del M, N
-    c_bend = _runtime.select(short, 1.0, t61 * t72)
-    del t61
-    t73 = s_lag * c_bend
-    c_lag = _runtime.select(bare, 1.0, a_3W * t71)
-    del bare, t71
-    t74 = c_lag * s_bend_front_elbow_down
-    s_relative = t73 - t74
-    t75 = c_lag * c_bend
+    c_bend = _runtime.select(short, 1.0, t60 * t71)
+    del t60
+    t72 = s_lag * c_bend
+    c_lag = _runtime.select(bare, 1.0, a_3W * t70)
+    del bare, t70
+    t73 = c_lag * s_bend_front_elbow_down
+    s_relative = t72 - t73
+    t74 = c_lag * c_bend
     del c_bend
-    t76 = s_lag * s_bend_front_elbow_down
+    t75 = s_lag * s_bend_front_elbow_down
     del s_bend_front_elbow_down
-    c_relative = t75 + t76
+    c_relative = t74 + t75
     v_2 = L2 * s_relative + a3 * c_relative
-    t77 = ahead * stheta2A
-    t78 = t77 - higher * ctheta2A
+    t76 = ahead * stheta2A
+    t77 = t76 - higher * ctheta2A
     v_1 = L2 * c_relative - a3 * s_relative
-    t79 = p_1 * v_2 + t78 * v_1
+    t78 = p_1 * v_2 + t77 * v_1
     whole_alpha = L1 * v_1
-    t80 = np.abs(whole_alpha)
-    t81 = np.abs(t79) - t80
-    t82 = np.maximum(t81 * 9.094947017729282e-13, -t81)
-    t83 = d * 0.25 + t32 * 0.25 + np.abs(ahead) * 0.25 + far_apart
+    t79 = np.abs(whole_alpha)
+    t80 = np.abs(t78) - t79
+    t81 = np.maximum(t80 * 9.094947017729282e-13, -t80)
+    t82 = d * 0.25 + t32 * 0.25 + np.abs(ahead) * 0.25 + far_apart
     del far_apart, t32
-    play = t83 + lengths * 0.00048828125
-    del t83
-    t84 = fore_size * play
-    t85 = _runtime.VANISHING * t84
-    spent_alpha = t82 <= t85
+    play = t82 + lengths * 0.00048828125
     del t82
-    t86 = v_2 * _runtime.sign(whole_alpha)
+    t83 = fore_size * play
+    t84 = _runtime.VANISHING * t83
+    spent_alpha = t81 <= t84
+    del t81
+    t85 = v_2 * _runtime.sign(whole_alpha)
     del whole_alpha
-    slope_aside_alpha = L1 * t86
-    t87 = np.abs(slope_aside_alpha)
-    t88 = 1.4142135623730951 * np.sqrt(slack)
-    t89 = np.sqrt(L1) * t88
-    t90 = tangent & (16.0 * t55 <= np.abs(t10))
-    t91 = L1 * 9.5367431640625e-07
+    slope_aside_alpha = L1 * t85
+    t86 = np.abs(slope_aside_alpha)
+    t87 = 1.4142135623730951 * np.sqrt(slack)
+    t88 = np.sqrt(L1) * t87
+    t89 = tangent & (16.0 * t54 <= np.abs(t10))
+    t90 = L1 * 9.5367431640625e-07
     tilt = L_2W * c_relative - a_3W * s_relative
-    t92 = np.abs(tilt)
-    t93 = t90 & (t91 <= t92)
+    t91 = np.abs(tilt)
+    t92 = t89 & (t90 <= t91)
     stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING
-    t94 = np.logical_not(stretched)
+    t93 = np.logical_not(stretched)
     del stretched
-    wider = _runtime.select(t93 & t94, 128.0, 1.0)
-    t95 = 1.0 / (slack * (wider * wider))
-    t96 = (L1 + t89 * wider / 2000000.0) * t95
-    heavy_1_alpha = _runtime.select(spent_alpha, t96, 1.0)
-    gain_1_alpha = _runtime.select(spent_alpha, t87 / heavy_1_alpha, 0.0)
-    t97 = gain_1_alpha * gain_1_alpha
-    t98 = play * play
-    t99 = fore_size * fore_size * t98
+    wider = _runtime.select(t92 & t93, 128.0, 1.0)
+    t94 = 1.0 / (slack * (wider * wider))
+    t95 = (L1 + t88 * wider / 2000000.0) * t94
+    heavy_1_alpha = _runtime.select(spent_alpha, t95, 1.0)
+    gain_1_alpha = _runtime.select(spent_alpha, t86 / heavy_1_alpha, 0.0)
+    t96 = gain_1_alpha * gain_1_alpha
+    t97 = play * play
+    t98 = fore_size * fore_size * t97
     del fore_size
-    t100 = 1.0 / L1
-    aside_rate = _runtime.select(t93, -(t100 * (stheta2A * tilt)), 0.0)
-    fore_rate = _runtime.select(t93, ctheta2A, 1.0)
+    t99 = 1.0 / L1
+    aside_rate = _runtime.select(t92, -(t99 * (stheta2A * tilt)), 0.0)
+    fore_rate = _runtime.select(t92, ctheta2A, 1.0)
     del ctheta2A
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
     del c_relative, s_relative
-    t101 = t86 * drawn
-    del t86
-    t102 = _runtime.sign(-t79) * (p_1 * v_1 - v_2 * t78)
-    del t79
-    slope_alpha = slope_aside_alpha * aside_rate - fore_rate * (t101 - t102)
-    del t102
-    t103 = np.abs(slope_alpha)
-    t104 = slack * 8.673617379884035e-19 + np.sqrt(t10 * t10 + t58)
-    del t58
-    t105 = 1.0 / t104
-    t106 = t55 * t105
-    del t55
-    t107 = t92 * _runtime.select(t93, t106, 1.0)
-    del t92
-    t108 = t88 * wider
+    t100 = t85 * drawn
+    del t85
+    t101 = _runtime.sign(-t78) * (p_1 * v_1 - v_2 * t77)
+    del t78
+    slope_alpha = slope_aside_alpha * aside_rate - fore_rate * (t100 - t101)
+    del t101
+    t102 = np.abs(slope_alpha)
+    t103 = slack * 8.673617379884035e-19 + np.sqrt(t10 * t10 + t57)
+    del t57
+    t104 = 1.0 / t103
+    t105 = t54 * t104
+    del t54
+    t106 = t91 * _runtime.select(t92, t105, 1.0)
+    del t91
+    t107 = t87 * wider
     del wider
-    t109 = fore_rate * drawn
-    t110 = aside_rate + fore_rate - t100 * t109
-    t111 = L1 * (t110 * t110) + fore * (fore_rate * fore_rate)
+    t108 = fore_rate * drawn
+    t109 = aside_rate + fore_rate - t99 * t108
+    t110 = L1 * (t109 * t109) + fore * (fore_rate * fore_rate)
+    del t109
+    t111 = _runtime.select(t92, t104, 0.0) * (tilt * tilt)
+    t112 = np.sqrt(t110 + t111)
     del t110
-    t112 = _runtime.select(t93, t105, 0.0) * (tilt * tilt)
-    t113 = np.sqrt(t111 + t112)
-    del t111
-    t114 = t95 * (t107 + t108 * t113 / 2000000.0)
-    heavy_0_alpha = _runtime.select(spent_alpha, t114, 1.0)
-    gain_0_alpha = _runtime.select(spent_alpha, t103 / heavy_0_alpha, 0.0)
-    t115 = t97 / (t97 + t99 + gain_0_alpha * gain_0_alpha)
-    del t97
-    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t81 < 0.0, t115, 0.0), 0.0)
-    del t115
-    t116 = _runtime.sign(slope_aside_alpha)
-    t117 = t87 + t84 * heavy_1_alpha * 5.960464477539063e-08
-    del heavy_1_alpha
-    aside_alpha = _runtime.select(spent_alpha, t81 * share_alpha * t116 / t117, 0.0)
-    del t117
-    lack_alpha = t81 * (1.0 - share_alpha)
-    del share_alpha
-    t118 = t103 + t84 * heavy_0_alpha * 5.960464477539063e-08
-    del t103
-    t119 = 1.0 / t118
-    del t118
-    t120 = heavy_0_alpha * lack_alpha * t119 <= 9.094947017729282e-13
-    del heavy_0_alpha
-    t121 = lack_alpha * t119
-    del lack_alpha, t119
-    t122 = _runtime.select(t120 & (0.0 < t121), t121, 0.0)
-    del t120, t121
-    turn_alpha = _runtime.select(spent_alpha, _runtime.sign(slope_alpha) * t122, 0.0)
-    del slope_alpha, t122
-    t123 = fore_rate * turn_alpha
-    t124 = aside_alpha + aside_rate * turn_alpha + t123 - t100 * (t109 * turn_alpha)
-    lean_alpha = _runtime.select(spent_alpha, t124, 0.0)
-    del t124
-    t125 = np.sqrt(1.0 + lean_alpha * lean_alpha)
-    t126 = 1.0 / t125
-    p_1_alpha = _runtime.select(spent_alpha, p_1 * t126 - t78 * lean_alpha * t126, p_1)
-    part_beta = L1 * p_1_alpha
-    fore_turn_alpha = _runtime.select(spent_alpha, t123, 0.0)
-    del t123
-    t127 = np.sqrt(1.0 + fore_turn_alpha * fore_turn_alpha)
-    t128 = 1.0 / (t125 * t127)
-    del t125, t127
-    t129 = t128 + t128 * (lean_alpha * fore_turn_alpha)
-    t130 = fore_turn_alpha * t128 - lean_alpha * t128
-    del t128
-    v_1_alpha = _runtime.select(spent_alpha, v_1 * t129 - v_2 * t130, v_1)
-    whole_beta = L1 * v_1_alpha
-    t131 = np.abs(part_beta) - np.abs(whole_beta)
-    t132 = np.maximum(t131 * 9.094947017729282e-13, -t131)
-    t133 = L1 * play
-    t134 = _runtime.VANISHING * t133
-    spent_beta = t132 <= t134
-    del t132
-    t135 = _runtime.select(spent_alpha, t126 * (p_1 * lean_alpha) + t78 * t126, t78)
-    del p_1, t126, t78
-    t136 = t135 * _runtime.sign(part_beta)
-    del part_beta
-    v_2_alpha = _runtime.select(spent_alpha, v_1 * t130 + v_2 * t129, v_2)
-    del t129, t130
-    t137 = v_2_alpha * _runtime.sign(whole_beta)
-    del whole_beta
-    slope_aside_beta = L1 * (t136 + t137)
-    t138 = np.abs(slope_aside_beta)
-    heavy_1_beta = _runtime.select(spent_beta, t96, 1.0)
-    gain_1_beta = _runtime.select(spent_beta, t138 / heavy_1_beta, 0.0)
-    t139 = gain_1_beta * gain_1_beta
-    t140 = L1 * L1 * t98
-    del t98
-    t141 = L1 - drawn
-    slope_beta = aside_rate * slope_aside_beta - fore_rate * (drawn * t137 - t136 * t141)
-    del t136, t137
-    t142 = np.abs(slope_beta)
-    heavy_0_beta = _runtime.select(spent_beta, t114, 1.0)
+    t113 = t94 * (t106 + t107 * t112 / 2000000.0)
+    heavy_0_alpha = _runtime.select(spent_alpha, t113, 1.0)
+    gain_0_alpha = _runtime.select(spent_alpha, t102 / heavy_0_alpha, 0.0)
+    t114 = t96 / (t96 + t98 + gain_0_alpha * gain_0_alpha)
+    del t96
+    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t80 < 0.0, t114, 0.0), 0.0)
     del t114
-    gain_0_beta = _runtime.select(spent_beta, t142 / heavy_0_beta, 0.0)
-    t143 = t139 / (t139 + t140 + gain_0_beta * gain_0_beta)
-    del t139
-    share_beta = _runtime.select(spent_beta, _runtime.select(-t131 < 0.0, t143, 0.0), 0.0)
-    del t143
-    t144 = t131 * share_beta * _runtime.sign(slope_aside_beta)
-    del slope_aside_beta
-    t145 = t138 + t133 * heavy_1_beta * 5.960464477539063e-08
-    del heavy_1_beta, t138
-    aside_beta = _runtime.select(spent_beta, t144 / t145, 0.0)
-    del t144, t145
-    lack_beta = t131 * (1.0 - share_beta)
-    del share_beta
-    t146 = t142 + t133 * heavy_0_beta * 5.960464477539063e-08
+    t115 = _runtime.sign(slope_aside_alpha)
+    t116 = t86 + t83 * heavy_1_alpha * 5.960464477539063e-08
+    del heavy_1_alpha
+    aside_alpha = _runtime.select(spent_alpha, t80 * share_alpha * t115 / t116, 0.0)
+    del t116
+    lack_alpha = t80 * (1.0 - share_alpha)
+    del share_alpha
+    t117 = t102 + t83 * heavy_0_alpha * 5.960464477539063e-08
+    del t102
+    t118 = 1.0 / t117
+    del t117
+    t119 = heavy_0_alpha * lack_alpha * t118 <= 9.094947017729282e-13
+    del heavy_0_alpha
+    t120 = lack_alpha * t118
+    del lack_alpha, t118
+    t121 = _runtime.select(t119 & (0.0 < t120), t120, 0.0)
+    del t119, t120
+    turn_alpha = _runtime.select(spent_alpha, _runtime.sign(slope_alpha) * t121, 0.0)
+    del slope_alpha, t121
+    t122 = fore_rate * turn_alpha
+    t123 = aside_alpha + aside_rate * turn_alpha + t122 - t99 * (t108 * turn_alpha)
+    lean_alpha = _runtime.select(spent_alpha, t123, 0.0)
+    del t123
+    t124 = np.sqrt(1.0 + lean_alpha * lean_alpha)
+    t125 = 1.0 / t124
+    p_1_alpha = _runtime.select(spent_alpha, p_1 * t125 - t77 * lean_alpha * t125, p_1)
+    part_beta = L1 * p_1_alpha
+    fore_turn_alpha = _runtime.select(spent_alpha, t122, 0.0)
+    del t122
+    t126 = np.sqrt(1.0 + fore_turn_alpha * fore_turn_alpha)
+    t127 = 1.0 / (t124 * t126)
+    del t124, t126
+    t128 = t127 + t127 * (lean_alpha * fore_turn_alpha)
+    t129 = fore_turn_alpha * t127 - lean_alpha * t127
+    del t127
+    v_1_alpha = _runtime.select(spent_alpha, v_1 * t128 - v_2 * t129, v_1)
+    whole_beta = L1 * v_1_alpha
+    t130 = np.abs(part_beta) - np.abs(whole_beta)
+    t131 = np.maximum(t130 * 9.094947017729282e-13, -t130)
+    t132 = L1 * play
+    t133 = _runtime.VANISHING * t132
+    spent_beta = t131 <= t133
+    del t131
+    t134 = _runtime.select(spent_alpha, t125 * (p_1 * lean_alpha) + t77 * t125, t77)
+    del p_1, t125, t77
+    t135 = t134 * _runtime.sign(part_beta)
+    del part_beta
+    v_2_alpha = _runtime.select(spent_alpha, v_1 * t129 + v_2 * t128, v_2)
+    del t128, t129
+    t136 = v_2_alpha * _runtime.sign(whole_beta)
+    del whole_beta
+    slope_aside_beta = L1 * (t135 + t136)
+    t137 = np.abs(slope_aside_beta)
+    heavy_1_beta = _runtime.select(spent_beta, t95, 1.0)
+    gain_1_beta = _runtime.select(spent_beta, t137 / heavy_1_beta, 0.0)
+    t138 = gain_1_beta * gain_1_beta
+    t139 = L1 * L1 * t97
+    del t97
+    t140 = L1 - drawn
+    slope_beta = aside_rate * slope_aside_beta - fore_rate * (drawn * t136 - t135 * t140)
+    del t135, t136
+    t141 = np.abs(slope_beta)
+    heavy_0_beta = _runtime.select(spent_beta, t113, 1.0)
+    del t113
+    gain_0_beta = _runtime.select(spent_beta, t141 / heavy_0_beta, 0.0)
+    t142 = t138 / (t138 + t139 + gain_0_beta * gain_0_beta)
+    del t138
+    share_beta = _runtime.select(spent_beta, _runtime.select(-t130 < 0.0, t142, 0.0), 0.0)
     del t142
-    t147 = 1.0 / t146
-    del t146
-    t148 = heavy_0_beta * lack_beta * t147 <= 9.094947017729282e-13
+    t143 = t130 * share_beta * _runtime.sign(slope_aside_beta)
+    del slope_aside_beta
+    t144 = t137 + t132 * heavy_1_beta * 5.960464477539063e-08
+    del heavy_1_beta, t137
+    aside_beta = _runtime.select(spent_beta, t143 / t144, 0.0)
+    del t143, t144
+    lack_beta = t130 * (1.0 - share_beta)
+    del share_beta
+    t145 = t141 + t132 * heavy_0_beta * 5.960464477539063e-08
+    del t141
+    t146 = 1.0 / t145
+    del t145
+    t147 = heavy_0_beta * lack_beta * t146 <= 9.094947017729282e-13
     del heavy_0_beta
-    t149 = lack_beta * t147
-    del lack_beta, t147
-    t150 = _runtime.select(t148 & (0.0 < t149), t149, 0.0)
-    del t148, t149
-    turn_beta = _runtime.select(spent_beta, _runtime.sign(slope_beta) * t150, 0.0)
-    del slope_beta, t150
-    t151 = fore_rate * turn_beta
+    t148 = lack_beta * t146
+    del lack_beta, t146
+    t149 = _runtime.select(t147 & (0.0 < t148), t148, 0.0)
+    del t147, t148
+    turn_beta = _runtime.select(spent_beta, _runtime.sign(slope_beta) * t149, 0.0)
+    del slope_beta, t149
+    t150 = fore_rate * turn_beta
     del fore_rate
-    t152 = aside_beta + aside_rate * turn_beta + t151 - t100 * (t109 * turn_beta)
-    del aside_rate, t109
-    lean_beta = _runtime.select(spent_beta, t152, 0.0)
-    del t152
-    t153 = np.sqrt(1.0 + lean_beta * lean_beta)
-    t154 = 1.0 / t153
-    t155 = _runtime.select(spent_beta, p_1_alpha * lean_beta * t154 + t135 * t154, t135)
-    fore_turn_beta = _runtime.select(spent_beta, t151, 0.0)
+    t151 = aside_beta + aside_rate * turn_beta + t150 - t99 * (t108 * turn_beta)
+    del aside_rate, t108
+    lean_beta = _runtime.select(spent_beta, t151, 0.0)
     del t151
-    t156 = np.sqrt(1.0 + fore_turn_beta * fore_turn_beta)
-    t157 = 1.0 / (t153 * t156)
-    del t153, t156
-    t158 = fore_turn_beta * t157 - lean_beta * t157
-    t159 = t157 + t157 * (lean_beta * fore_turn_beta)
-    del t157
-    v_2_beta = _runtime.select(spent_beta, v_1_alpha * t158 + v_2_alpha * t159, v_2_alpha)
-    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t159 - v_2_alpha * t158, v_1_alpha)
-    del t158, t159, v_1_alpha, v_2_alpha
+    t152 = np.sqrt(1.0 + lean_beta * lean_beta)
+    t153 = 1.0 / t152
+    t154 = _runtime.select(spent_beta, p_1_alpha * lean_beta * t153 + t134 * t153, t134)
+    fore_turn_beta = _runtime.select(spent_beta, t150, 0.0)
+    del t150
+    t155 = np.sqrt(1.0 + fore_turn_beta * fore_turn_beta)
+    t156 = 1.0 / (t152 * t155)
+    del t152, t155
+    t157 = fore_turn_beta * t156 - lean_beta * t156
+    t158 = t156 + t156 * (lean_beta * fore_turn_beta)
+    del t156
+    v_2_beta = _runtime.select(spent_beta, v_1_alpha * t157 + v_2_alpha * t158, v_2_alpha)
+    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t158 - v_2_alpha * t157, v_1_alpha)
+    del t157, t158, v_1_alpha, v_2_alpha
     sigma_uv = _runtime.sign(-(L1 * v_1_beta))
-    t160 = v_1_beta * sigma_uv
-    t161 = np.abs(v_2_beta)
-    parallel = -t160 <= _runtime.VANISHING * (64.0 * t161)
-    whole_y = _runtime.select(parallel, L1 + t161, -t160)
-    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t154 - t154 * (t135 * lean_beta), p_1_alpha)
-    del p_1_alpha, t135, t154
-    t162 = sigma_uv * p_1_beta
+    t159 = v_1_beta * sigma_uv
+    t160 = np.abs(v_2_beta)
+    parallel = -t159 <= _runtime.VANISHING * (64.0 * t160)
+    whole_y = _runtime.select(parallel, L1 + t160, -t159)
+    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t153 - t153 * (t134 * lean_beta), p_1_alpha)
+    del p_1_alpha, t134, t153
+    t161 = sigma_uv * p_1_beta
     del sigma_uv
-    t163 = _runtime.select(parallel, t155 * _runtime.sign(v_2_beta), t162)
-    t164 = whole_y + t163
-    t165 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
-    below_beta_0 = np.maximum(t164, t165)
-    t166 = whole_y - t163
-    above_beta_0 = np.maximum(t166, t165)
-    t167 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
+    t162 = _runtime.select(parallel, t154 * _runtime.sign(v_2_beta), t161)
+    t163 = whole_y + t162
+    t164 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
+    below_beta_0 = np.maximum(t163, t164)
+    t165 = whole_y - t162
+    above_beta_0 = np.maximum(t165, t164)
+    t166 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
     del above_beta_0, below_beta_0
-    t168 = t155 - v_2_beta * t167
-    del t167
-    left_along = L1 - np.abs(t168)
-    t169 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
-    t170 = _runtime.VANISHING * play
-    spent_along = t169 <= t170
-    del t169
-    t171 = spent_along | spent_alpha | spent_beta
-    t172 = 1.0 / (t104 * t104)
-    del t104
-    t173 = _runtime.select(t93, -(t10 * tilt * t172), 0.0)
-    waist_turn = _runtime.select(t171, (turn_alpha + turn_beta) * t173, 0.0)
+    t167 = t154 - v_2_beta * t166
+    del t166
+    left_along = L1 - np.abs(t167)
+    t168 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t169 = _runtime.VANISHING * play
+    spent_along = t168 <= t169
+    del t168
+    t170 = spent_along | spent_alpha | spent_beta
+    t171 = 1.0 / (t103 * t103)
+    del t103
+    t172 = _runtime.select(t92, -(t10 * tilt * t171), 0.0)
+    waist_turn = _runtime.select(t170, (turn_alpha + turn_beta) * t172, 0.0)
     nowhere = h <= _runtime.VANISHING * lengths
     del h
-    t174 = np.arctan2(x, y)
-    t175 = _runtime.select(tangent, np.arctan2(t54, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
-    del above, below, root, t54
-    t176 = _runtime.select(nowhere, 0.0, t174 - t175)
-    t177 = _runtime.wrap(np.arctan2(waist_turn, 1.0) - t176)
+    t173 = np.arctan2(x, y)
+    t174 = _runtime.select(tangent, np.arctan2(t53, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
+    del above, below, root, t53
+    t175 = _runtime.select(nowhere, 0.0, t173 - t174)
+    t176 = _runtime.wrap(np.arctan2(waist_turn, 1.0) - t175)
     del waist_turn
-    t178 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t179 = t178 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t177 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t178 = t177 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t177
+    t179 = t178 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
     del t178
-    t180 = t179 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
+    t180 = t179 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
     del t179
-    t181 = t180 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
-    del t180
-    t182 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t183 = _runtime.select(0.0 < L1 * d * t15, 0.0, 1.0)
+    t181 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t182 = _runtime.select(0.0 < L1 * d * t15, 0.0, 1.0)
     del t15
-    t184 = t181 & t182 & (np.abs(t183) <= _runtime.ROTATION)
-    del t181, t182, t183
-    invalid = np.logical_not(t184)
-    del t184
-    t185 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
+    t183 = t180 & t181 & (np.abs(t182) <= _runtime.ROTATION)
+    del t180, t181, t182
+    invalid = np.logical_not(t183)
+    del t183
+    t184 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
     del c_psi, s_psi
-    t186 = -(_runtime.FEASIBILITY * (t4 * t185))
-    del t185, t4
-    t187 = (-_runtime.FEASIBILITY <= c_phi) & (t186 <= t5)
+    t185 = -(_runtime.FEASIBILITY * (t4 * t184))
+    del t184, t4
+    t186 = (-_runtime.FEASIBILITY <= c_phi) & (t185 <= t5)
     del c_phi, t5
-    t188 = -(_runtime.FEASIBILITY * slack)
-    t189 = t187 & (t186 <= t6) & (t188 <= t12) & (t188 <= t11)
-    del t11, t12, t186, t187, t188, t6
-    t190 = _runtime.FEASIBILITY * ((L1 * 2.0 + t57) * slack)
-    del t57
-    t191 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t192 = _runtime.FEASIBILITY * ((t191 + 2.0 * np.abs(t49)) * slack)
-    del t191, t49
-    t193 = t189 & (-t190 <= t60) & (-t192 <= t59)
-    del t189, t190, t192, t59, t60
-    t194 = _runtime.select(spent_alpha, gain_1_alpha + gain_0_alpha, 0.0)
+    t187 = -(_runtime.FEASIBILITY * slack)
+    t188 = t186 & (t185 <= t6) & (t187 <= t12) & (t187 <= t11)
+    del t11, t12, t185, t186, t187, t6
+    t189 = _runtime.FEASIBILITY * ((L1 * 2.0 + t56) * slack)
+    del t56
+    t190 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t191 = _runtime.FEASIBILITY * ((t190 + 2.0 * np.abs(t48)) * slack)
+    del t190, t48
+    t192 = t188 & (-t189 <= t59) & (-t191 <= t58)
+    del t188, t189, t191, t58, t59
+    t193 = _runtime.select(spent_alpha, gain_1_alpha + gain_0_alpha, 0.0)
     del gain_0_alpha, gain_1_alpha
-    leniency = _runtime.select(tangent & t94, 16384.0, 4.0)
-    t195 = (t84 + t194) * _runtime.select(spent_alpha, leniency, 1.0)
-    del t194
-    t196 = t193 & (-(_runtime.FEASIBILITY * t195) <= -t81)
-    del t195, t81
-    t197 = _runtime.select(spent_beta, gain_1_beta + gain_0_beta, 0.0)
+    leniency = _runtime.select(tangent & t93, 16384.0, 4.0)
+    t194 = (t83 + t193) * _runtime.select(spent_alpha, leniency, 1.0)
+    del t193
+    t195 = t192 & (-(_runtime.FEASIBILITY * t194) <= -t80)
+    del t194, t80
+    t196 = _runtime.select(spent_beta, gain_1_beta + gain_0_beta, 0.0)
     del gain_0_beta, gain_1_beta
-    t198 = (t133 + t197) * _runtime.select(spent_beta, leniency, 1.0)
-    del t197
-    t199 = t196 & (-(_runtime.FEASIBILITY * t198) <= -t131)
-    del t131, t196, t198
-    t200 = _runtime.select(spent_alpha | spent_beta, leniency, 1.0)
-    t201 = -(_runtime.FEASIBILITY * (play * t200))
-    t202 = t199 & (t201 <= t162 - t160) & (t201 <= -(t160 + t162))
-    del t162, t199
-    t203 = 32.0 * play
-    t204 = t200 * t203
-    del t200
-    t205 = L1 / 1000000000.0
-    t206 = _runtime.select(spent_along, t161 / (t205 - t160), 0.0)
-    del t161
-    t207 = -(_runtime.FEASIBILITY * (t204 * (1.0 + t206)))
-    del t206
-    t208 = t202 & (t201 <= t164) & (t201 <= t166) & (t207 <= left_along)
-    del t164, t166, t202, t207
-    t209 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
+    t197 = (t132 + t196) * _runtime.select(spent_beta, leniency, 1.0)
+    del t196
+    t198 = t195 & (-(_runtime.FEASIBILITY * t197) <= -t130)
+    del t130, t195, t197
+    t199 = _runtime.select(spent_alpha | spent_beta, leniency, 1.0)
+    t200 = -(_runtime.FEASIBILITY * (play * t199))
+    t201 = t198 & (t200 <= t161 - t159) & (t200 <= -(t159 + t161))
+    del t161, t198
+    t202 = 32.0 * play
+    t203 = t199 * t202
+    del t199
+    t204 = L1 / 1000000000.0
+    t205 = _runtime.select(spent_along, t160 / (t204 - t159), 0.0)
+    del t160
+    t206 = -(_runtime.FEASIBILITY * (t203 * (1.0 + t205)))
+    del t205
+    t207 = t201 & (t200 <= t163) & (t200 <= t165) & (t206 <= left_along)
+    del t163, t165, t201, t206
+    t208 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
     del left_along
-    t210 = t209 / (t160 * t160 + v_2_beta * v_2_beta) * _runtime.sign(-t168)
-    del t160, t168, t209
-    t211 = _runtime.select(spent_along, t163 + whole_y * t210, t163)
-    del spent_along, t163, t210
-    t212 = whole_y + t211
-    t213 = whole_y - t211
-    del t211, whole_y
-    t214 = -(_runtime.FEASIBILITY * t204)
-    del t204
-    below_beta = np.maximum(t212, t165)
-    above_beta = np.maximum(t213, t165)
-    t215 = 1.0 / (below_beta + above_beta)
-    t216 = (below_beta - above_beta) * t215
-    t217 = t155 - v_2_beta * t216
-    del t155, v_2_beta
-    t218 = L1 + t217
-    t219 = t208 & (t201 <= t212) & (t201 <= t213) & (t214 <= t218)
-    del t201, t208, t212, t213
-    t220 = L1 - t217
-    unreachable = np.logical_not(t219 & (t214 <= t220))
-    del t214, t219
-    t221 = _runtime.poison(invalid | unreachable)
-    t222 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
-    t223 = np.arctan2(lean_alpha + lean_beta, 1.0 - lean_alpha * lean_beta)
+    t209 = t208 / (t159 * t159 + v_2_beta * v_2_beta) * _runtime.sign(-t167)
+    del t159, t167, t208
+    t210 = _runtime.select(spent_along, t162 + whole_y * t209, t162)
+    del spent_along, t162, t209
+    t211 = whole_y + t210
+    t212 = whole_y - t210
+    del t210, whole_y
+    t213 = -(_runtime.FEASIBILITY * t203)
+    del t203
+    below_beta = np.maximum(t211, t164)
+    above_beta = np.maximum(t212, t164)
+    t214 = 1.0 / (below_beta + above_beta)
+    t215 = (below_beta - above_beta) * t214
+    t216 = t154 - v_2_beta * t215
+    del t154, v_2_beta
+    t217 = L1 + t216
+    t218 = t207 & (t200 <= t211) & (t200 <= t212) & (t213 <= t217)
+    del t200, t207, t211, t212
+    t219 = L1 - t216
+    unreachable = np.logical_not(t218 & (t213 <= t219))
+    del t213, t218
+    t220 = _runtime.poison(invalid | unreachable)
+    t221 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
+    t222 = np.arctan2(lean_alpha + lean_beta, 1.0 - lean_alpha * lean_beta)
     del lean_alpha, lean_beta
-    t224 = t222 + t223
-    del t222
-    below_alpha = np.maximum(t218, t165)
-    del t218
-    above_alpha = np.maximum(t220, t165)
-    del t220
-    t225 = 1.0 / (below_alpha + above_alpha)
-    t226 = (below_alpha - above_alpha) * t225
-    t227 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t223 = t221 + t222
+    del t221
+    below_alpha = np.maximum(t217, t164)
+    del t217
+    above_alpha = np.maximum(t219, t164)
+    del t219
+    t224 = 1.0 / (below_alpha + above_alpha)
+    t225 = (below_alpha - above_alpha) * t224
+    t226 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
     del above_alpha, below_alpha
-    t228 = np.arctan2(t226, t225 * t227)
-    del t225, t227
-    t229 = np.arctan2(s_lag, c_lag)
+    t227 = np.arctan2(t225, t224 * t226)
+    del t224, t226
+    t228 = np.arctan2(s_lag, c_lag)
     del c_lag, s_lag
-    t230 = _runtime.select(short, 0.0, np.arctan2(t63, t72))
-    del t63, t72
-    t231 = t229 - t230
-    t232 = np.arctan2(fore_turn_alpha + fore_turn_beta, 1.0 - fore_turn_alpha * fore_turn_beta)
+    t229 = _runtime.select(short, 0.0, np.arctan2(t62, t71))
+    del t62, t71
+    t230 = t228 - t229
+    t231 = np.arctan2(fore_turn_alpha + fore_turn_beta, 1.0 - fore_turn_alpha * fore_turn_beta)
     del fore_turn_alpha, fore_turn_beta
-    t233 = t231 - (t223 - t232)
-    del t223, t232
-    t234 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    t232 = t230 - (t222 - t231)
+    del t222, t231
+    t233 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
     del above_beta, below_beta
-    t235 = t228 - np.arctan2(t216, t215 * t234)
-    del t215, t234
-    t236 = _runtime.wrap(principal_pitch)
+    t234 = t227 - np.arctan2(t215, t214 * t233)
+    del t214, t233
+    t235 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    out_front_elbow_down = t62 + t65
-    del t62, t65
-    up_front_elbow_down = t66 - t67
-    del t66, t67
-    t237 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
-    t238 = 1.0 / np.sqrt(t237)
+    out_front_elbow_down = t61 + t64
+    del t61, t64
+    up_front_elbow_down = t65 - t66
+    del t65, t66
+    t236 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
+    t237 = 1.0 / np.sqrt(t236)
+    del t236
+    t238 = out_front_elbow_down * t237
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t238)
+    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t237)
     del t237
-    t239 = out_front_elbow_down * t238
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t239)
-    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t238)
-    del t238
-    t240 = higher * stheta2A_front_elbow_down
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t240
-    s_relative_front_elbow_down = t73 + t74
-    del t73, t74
-    c_relative_front_elbow_down = t75 - t76
-    del t75, t76
+    t239 = higher * stheta2A_front_elbow_down
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t239
+    s_relative_front_elbow_down = t72 + t73
+    del t72, t73
+    c_relative_front_elbow_down = t74 - t75
+    del t74, t75
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    t241 = ahead * stheta2A_front_elbow_down
-    t242 = t241 - higher * ctheta2A_front_elbow_down
+    t240 = ahead * stheta2A_front_elbow_down
+    t241 = t240 - higher * ctheta2A_front_elbow_down
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
-    t243 = p_1_front_elbow_down * v_2_front_elbow_down + t242 * v_1_front_elbow_down
+    t242 = p_1_front_elbow_down * v_2_front_elbow_down + t241 * v_1_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t244 = np.abs(whole_alpha_front_elbow_down)
-    t245 = np.abs(t243) - t244
-    t246 = np.maximum(t245 * 9.094947017729282e-13, -t245)
-    spent_alpha_front_elbow_down = t246 <= t85
-    del t246
-    t247 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
+    t243 = np.abs(whole_alpha_front_elbow_down)
+    t244 = np.abs(t242) - t243
+    t245 = np.maximum(t244 * 9.094947017729282e-13, -t244)
+    spent_alpha_front_elbow_down = t245 <= t84
+    del t245
+    t246 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
-    slope_aside_alpha_front_elbow_down = L1 * t247
-    t248 = np.abs(slope_aside_alpha_front_elbow_down)
+    slope_aside_alpha_front_elbow_down = L1 * t246
+    t247 = np.abs(slope_aside_alpha_front_elbow_down)
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
-    t249 = np.abs(tilt_front_elbow_down)
-    t250 = t90 & (t91 <= t249)
-    del t90, t91
-    wider_front_elbow_down = _runtime.select(t250 & t94, 128.0, 1.0)
-    del t94
-    t251 = L1 + t89 * wider_front_elbow_down / 2000000.0
-    t252 = wider_front_elbow_down * wider_front_elbow_down
-    t253 = 1.0 / (slack * t252)
-    del t252
-    t254 = t251 * t253
+    t248 = np.abs(tilt_front_elbow_down)
+    t249 = t89 & (t90 <= t248)
+    del t89, t90
+    wider_front_elbow_down = _runtime.select(t249 & t93, 128.0, 1.0)
+    del t93
+    t250 = L1 + t88 * wider_front_elbow_down / 2000000.0
+    t251 = wider_front_elbow_down * wider_front_elbow_down
+    t252 = 1.0 / (slack * t251)
     del t251
-    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t254, 1.0)
-    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t248 / heavy_1_alpha_front_elbow_down, 0.0)
-    t255 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
-    t256 = stheta2A_front_elbow_down * tilt_front_elbow_down
-    aside_rate_front_elbow_down = _runtime.select(t250, -(t100 * t256), 0.0)
-    del t256
-    t257 = slope_aside_alpha_front_elbow_down * aside_rate_front_elbow_down
-    fore_rate_front_elbow_down = _runtime.select(t250, ctheta2A_front_elbow_down, 1.0)
+    t253 = t250 * t252
+    del t250
+    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t253, 1.0)
+    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t247 / heavy_1_alpha_front_elbow_down, 0.0)
+    t254 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
+    t255 = stheta2A_front_elbow_down * tilt_front_elbow_down
+    aside_rate_front_elbow_down = _runtime.select(t249, -(t99 * t255), 0.0)
+    del t255
+    t256 = slope_aside_alpha_front_elbow_down * aside_rate_front_elbow_down
+    fore_rate_front_elbow_down = _runtime.select(t249, ctheta2A_front_elbow_down, 1.0)
     del ctheta2A_front_elbow_down
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
     del L_2W, a_3W, c_relative_front_elbow_down, s_relative_front_elbow_down
-    t258 = t247 * drawn_front_elbow_down
-    del t247
-    t259 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t242
-    t260 = fore_rate_front_elbow_down * (t258 - _runtime.sign(-t243) * t259)
-    del t243, t259
-    slope_alpha_front_elbow_down = t257 - t260
-    del t257, t260
-    t261 = np.abs(slope_alpha_front_elbow_down)
-    t262 = t249 * _runtime.select(t250, t106, 1.0)
-    del t106, t249
-    t263 = t88 * wider_front_elbow_down
+    t257 = t246 * drawn_front_elbow_down
+    del t246
+    t258 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t241
+    t259 = fore_rate_front_elbow_down * (t257 - _runtime.sign(-t242) * t258)
+    del t242, t258
+    slope_alpha_front_elbow_down = t256 - t259
+    del t256, t259
+    t260 = np.abs(slope_alpha_front_elbow_down)
+    t261 = t248 * _runtime.select(t249, t105, 1.0)
+    del t105, t248
+    t262 = t87 * wider_front_elbow_down
     del wider_front_elbow_down
-    t264 = aside_rate_front_elbow_down + fore_rate_front_elbow_down
-    t265 = fore_rate_front_elbow_down * drawn_front_elbow_down
-    t266 = t264 - t100 * t265
-    del t264
-    t267 = fore_rate_front_elbow_down * fore_rate_front_elbow_down
-    t268 = tilt_front_elbow_down * tilt_front_elbow_down
-    t269 = _runtime.select(t250, t105, 0.0) * t268
-    del t105, t268
-    t270 = np.sqrt(L1 * (t266 * t266) + fore * t267 + t269)
-    del t266, t267
-    t271 = t253 * (t262 + t263 * t270 / 2000000.0)
-    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t271, 1.0)
-    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t261 / heavy_0_alpha_front_elbow_down, 0.0)
-    t272 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
-    t273 = _runtime.select(-t245 < 0.0, t255 / (t99 + t255 + t272), 0.0)
-    del t255, t272
-    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t273, 0.0)
-    del t273
-    t274 = _runtime.sign(slope_aside_alpha_front_elbow_down)
-    t275 = t84 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
+    t263 = aside_rate_front_elbow_down + fore_rate_front_elbow_down
+    t264 = fore_rate_front_elbow_down * drawn_front_elbow_down
+    t265 = t263 - t99 * t264
+    del t263
+    t266 = fore_rate_front_elbow_down * fore_rate_front_elbow_down
+    t267 = tilt_front_elbow_down * tilt_front_elbow_down
+    t268 = _runtime.select(t249, t104, 0.0) * t267
+    del t104, t267
+    t269 = np.sqrt(L1 * (t265 * t265) + fore * t266 + t268)
+    del t265, t266
+    t270 = t252 * (t261 + t262 * t269 / 2000000.0)
+    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t270, 1.0)
+    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t260 / heavy_0_alpha_front_elbow_down, 0.0)
+    t271 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
+    t272 = _runtime.select(-t244 < 0.0, t254 / (t98 + t254 + t271), 0.0)
+    del t254, t271
+    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t272, 0.0)
+    del t272
+    t273 = _runtime.sign(slope_aside_alpha_front_elbow_down)
+    t274 = t83 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
     del heavy_1_alpha_front_elbow_down
-    t276 = t245 * share_alpha_front_elbow_down * t274 / (t248 + t275)
+    t275 = t244 * share_alpha_front_elbow_down * t273 / (t247 + t274)
+    del t274
+    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t275, 0.0)
     del t275
-    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t276, 0.0)
-    del t276
-    lack_alpha_front_elbow_down = t245 * (1.0 - share_alpha_front_elbow_down)
+    lack_alpha_front_elbow_down = t244 * (1.0 - share_alpha_front_elbow_down)
     del share_alpha_front_elbow_down
-    t277 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
-    t278 = t84 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
+    t276 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
+    t277 = t83 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
     del heavy_0_alpha_front_elbow_down
-    t279 = 1.0 / (t261 + t278)
-    del t261, t278
-    t280 = lack_alpha_front_elbow_down * t279
+    t278 = 1.0 / (t260 + t277)
+    del t260, t277
+    t279 = lack_alpha_front_elbow_down * t278
     del lack_alpha_front_elbow_down
-    t281 = (t277 * t279 <= 9.094947017729282e-13) & (0.0 < t280)
-    del t277, t279
-    t282 = _runtime.sign(slope_alpha_front_elbow_down) * _runtime.select(t281, t280, 0.0)
-    del slope_alpha_front_elbow_down, t280, t281
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t282, 0.0)
+    t280 = (t276 * t278 <= 9.094947017729282e-13) & (0.0 < t279)
+    del t276, t278
+    t281 = _runtime.sign(slope_alpha_front_elbow_down) * _runtime.select(t280, t279, 0.0)
+    del slope_alpha_front_elbow_down, t279, t280
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t281, 0.0)
+    del t281
+    t282 = aside_rate_front_elbow_down * turn_alpha_front_elbow_down
+    t283 = fore_rate_front_elbow_down * turn_alpha_front_elbow_down
+    t284 = aside_alpha_front_elbow_down + t282 + t283 - t99 * (t264 * turn_alpha_front_elbow_down)
     del t282
-    t283 = aside_rate_front_elbow_down * turn_alpha_front_elbow_down
-    t284 = fore_rate_front_elbow_down * turn_alpha_front_elbow_down
-    t285 = aside_alpha_front_elbow_down + t283 + t284 - t100 * (t265 * turn_alpha_front_elbow_down)
-    del t283
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t285, 0.0)
-    del t285
-    t286 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t287 = np.sqrt(1.0 + t286)
-    del t286
-    t288 = 1.0 / t287
-    t289 = p_1_front_elbow_down * t288 - t242 * lean_alpha_front_elbow_down * t288
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t289, p_1_front_elbow_down)
-    del t289
-    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    fore_turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t284, 0.0)
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t284, 0.0)
     del t284
-    t290 = fore_turn_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
-    t291 = 1.0 / (t287 * np.sqrt(1.0 + t290))
-    del t287, t290
-    t292 = lean_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
-    t293 = t291 + t291 * t292
-    del t292
-    t294 = fore_turn_alpha_front_elbow_down * t291 - lean_alpha_front_elbow_down * t291
+    t285 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t286 = np.sqrt(1.0 + t285)
+    del t285
+    t287 = 1.0 / t286
+    t288 = p_1_front_elbow_down * t287 - t241 * lean_alpha_front_elbow_down * t287
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t288, p_1_front_elbow_down)
+    del t288
+    part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
+    fore_turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t283, 0.0)
+    del t283
+    t289 = fore_turn_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
+    t290 = 1.0 / (t286 * np.sqrt(1.0 + t289))
+    del t286, t289
+    t291 = lean_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
+    t292 = t290 + t290 * t291
     del t291
-    t295 = v_1_front_elbow_down * t293 - v_2_front_elbow_down * t294
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t295, v_1_front_elbow_down)
-    del t295
+    t293 = fore_turn_alpha_front_elbow_down * t290 - lean_alpha_front_elbow_down * t290
+    del t290
+    t294 = v_1_front_elbow_down * t292 - v_2_front_elbow_down * t293
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t294, v_1_front_elbow_down)
+    del t294
     whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t296 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
-    t297 = np.maximum(t296 * 9.094947017729282e-13, -t296)
-    spent_beta_front_elbow_down = t297 <= t134
-    del t297
-    t298 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    t295 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
+    t296 = np.maximum(t295 * 9.094947017729282e-13, -t295)
+    spent_beta_front_elbow_down = t296 <= t133
+    del t296
+    t297 = p_1_front_elbow_down * lean_alpha_front_elbow_down
     del p_1_front_elbow_down
-    t299 = _runtime.select(spent_alpha_front_elbow_down, t288 * t298 + t242 * t288, t242)
-    del t242, t288, t298
-    t300 = t299 * _runtime.sign(part_beta_front_elbow_down)
+    t298 = _runtime.select(spent_alpha_front_elbow_down, t287 * t297 + t241 * t287, t241)
+    del t241, t287, t297
+    t299 = t298 * _runtime.sign(part_beta_front_elbow_down)
     del part_beta_front_elbow_down
-    t301 = v_1_front_elbow_down * t294 + v_2_front_elbow_down * t293
-    del t293, t294
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t301, v_2_front_elbow_down)
-    del t301
-    t302 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
+    t300 = v_1_front_elbow_down * t293 + v_2_front_elbow_down * t292
+    del t292, t293
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t300, v_2_front_elbow_down)
+    del t300
+    t301 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
     del whole_beta_front_elbow_down
-    slope_aside_beta_front_elbow_down = L1 * (t300 + t302)
-    t303 = np.abs(slope_aside_beta_front_elbow_down)
-    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t254, 1.0)
-    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t303 / heavy_1_beta_front_elbow_down, 0.0)
-    t304 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
-    t305 = aside_rate_front_elbow_down * slope_aside_beta_front_elbow_down
-    t306 = L1 - drawn_front_elbow_down
-    t307 = fore_rate_front_elbow_down * (drawn_front_elbow_down * t302 - t300 * t306)
-    del t300, t302
-    slope_beta_front_elbow_down = t305 - t307
-    del t305, t307
-    t308 = np.abs(slope_beta_front_elbow_down)
-    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t271, 1.0)
-    del t271
-    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t308 / heavy_0_beta_front_elbow_down, 0.0)
-    t309 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
-    t310 = _runtime.select(-t296 < 0.0, t304 / (t140 + t304 + t309), 0.0)
-    del t304, t309
-    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t310, 0.0)
-    del t310
-    t311 = _runtime.sign(slope_aside_beta_front_elbow_down)
+    slope_aside_beta_front_elbow_down = L1 * (t299 + t301)
+    t302 = np.abs(slope_aside_beta_front_elbow_down)
+    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t253, 1.0)
+    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t302 / heavy_1_beta_front_elbow_down, 0.0)
+    t303 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
+    t304 = aside_rate_front_elbow_down * slope_aside_beta_front_elbow_down
+    t305 = L1 - drawn_front_elbow_down
+    t306 = fore_rate_front_elbow_down * (drawn_front_elbow_down * t301 - t299 * t305)
+    del t299, t301
+    slope_beta_front_elbow_down = t304 - t306
+    del t304, t306
+    t307 = np.abs(slope_beta_front_elbow_down)
+    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t270, 1.0)
+    del t270
+    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t307 / heavy_0_beta_front_elbow_down, 0.0)
+    t308 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
+    t309 = _runtime.select(-t295 < 0.0, t303 / (t139 + t303 + t308), 0.0)
+    del t303, t308
+    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t309, 0.0)
+    del t309
+    t310 = _runtime.sign(slope_aside_beta_front_elbow_down)
     del slope_aside_beta_front_elbow_down
-    t312 = t133 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
+    t311 = t132 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_1_beta_front_elbow_down
-    t313 = t296 * share_beta_front_elbow_down * t311 / (t303 + t312)
-    del t303, t311, t312
-    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t313, 0.0)
-    del t313
-    lack_beta_front_elbow_down = t296 * (1.0 - share_beta_front_elbow_down)
+    t312 = t295 * share_beta_front_elbow_down * t310 / (t302 + t311)
+    del t302, t310, t311
+    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t312, 0.0)
+    del t312
+    lack_beta_front_elbow_down = t295 * (1.0 - share_beta_front_elbow_down)
     del share_beta_front_elbow_down
-    t314 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
-    t315 = t133 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
+    t313 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
+    t314 = t132 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_0_beta_front_elbow_down
-    t316 = 1.0 / (t308 + t315)
-    del t308, t315
-    t317 = lack_beta_front_elbow_down * t316
+    t315 = 1.0 / (t307 + t314)
+    del t307, t314
+    t316 = lack_beta_front_elbow_down * t315
     del lack_beta_front_elbow_down
-    t318 = (t314 * t316 <= 9.094947017729282e-13) & (0.0 < t317)
-    del t314, t316
-    t319 = _runtime.sign(slope_beta_front_elbow_down) * _runtime.select(t318, t317, 0.0)
-    del slope_beta_front_elbow_down, t317, t318
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t319, 0.0)
-    del t319
-    t320 = aside_rate_front_elbow_down * turn_beta_front_elbow_down
+    t317 = (t313 * t315 <= 9.094947017729282e-13) & (0.0 < t316)
+    del t313, t315
+    t318 = _runtime.sign(slope_beta_front_elbow_down) * _runtime.select(t317, t316, 0.0)
+    del slope_beta_front_elbow_down, t316, t317
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t318, 0.0)
+    del t318
+    t319 = aside_rate_front_elbow_down * turn_beta_front_elbow_down
     del aside_rate_front_elbow_down
-    t321 = fore_rate_front_elbow_down * turn_beta_front_elbow_down
+    t320 = fore_rate_front_elbow_down * turn_beta_front_elbow_down
     del fore_rate_front_elbow_down
-    t322 = aside_beta_front_elbow_down + t320 + t321 - t100 * (t265 * turn_beta_front_elbow_down)
-    del t265, t320
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t322, 0.0)
-    del t322
-    t323 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
-    t324 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
-    t325 = np.sqrt(1.0 + t324)
-    del t324
-    t326 = 1.0 / t325
-    t327 = _runtime.select(spent_beta_front_elbow_down, t323 * t326 + t299 * t326, t299)
-    del t323
-    fore_turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t321, 0.0)
+    t321 = aside_beta_front_elbow_down + t319 + t320 - t99 * (t264 * turn_beta_front_elbow_down)
+    del t264, t319
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t321, 0.0)
     del t321
-    t328 = fore_turn_beta_front_elbow_down * fore_turn_beta_front_elbow_down
-    t329 = 1.0 / (t325 * np.sqrt(1.0 + t328))
-    del t325, t328
-    t330 = fore_turn_beta_front_elbow_down * t329 - lean_beta_front_elbow_down * t329
-    t331 = lean_beta_front_elbow_down * fore_turn_beta_front_elbow_down
-    t332 = t329 + t329 * t331
-    del t329, t331
-    t333 = v_1_alpha_front_elbow_down * t330 + v_2_alpha_front_elbow_down * t332
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t333, v_2_alpha_front_elbow_down)
-    del t333
-    t334 = v_1_alpha_front_elbow_down * t332 - v_2_alpha_front_elbow_down * t330
-    del t330, t332, v_2_alpha_front_elbow_down
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t334, v_1_alpha_front_elbow_down)
-    del t334, v_1_alpha_front_elbow_down
+    t322 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t323 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
+    t324 = np.sqrt(1.0 + t323)
+    del t323
+    t325 = 1.0 / t324
+    t326 = _runtime.select(spent_beta_front_elbow_down, t322 * t325 + t298 * t325, t298)
+    del t322
+    fore_turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t320, 0.0)
+    del t320
+    t327 = fore_turn_beta_front_elbow_down * fore_turn_beta_front_elbow_down
+    t328 = 1.0 / (t324 * np.sqrt(1.0 + t327))
+    del t324, t327
+    t329 = fore_turn_beta_front_elbow_down * t328 - lean_beta_front_elbow_down * t328
+    t330 = lean_beta_front_elbow_down * fore_turn_beta_front_elbow_down
+    t331 = t328 + t328 * t330
+    del t328, t330
+    t332 = v_1_alpha_front_elbow_down * t329 + v_2_alpha_front_elbow_down * t331
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t332, v_2_alpha_front_elbow_down)
+    del t332
+    t333 = v_1_alpha_front_elbow_down * t331 - v_2_alpha_front_elbow_down * t329
+    del t329, t331, v_2_alpha_front_elbow_down
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t333, v_1_alpha_front_elbow_down)
+    del t333, v_1_alpha_front_elbow_down
     sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
-    t335 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
-    t336 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t335 <= _runtime.VANISHING * (64.0 * t336)
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t336, -t335)
-    t337 = t327 * _runtime.sign(v_2_beta_front_elbow_down)
-    t338 = p_1_alpha_front_elbow_down * t326 - t326 * (t299 * lean_beta_front_elbow_down)
-    del t299, t326
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t338, p_1_alpha_front_elbow_down)
-    del p_1_alpha_front_elbow_down, t338
-    t339 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t334 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    t335 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t334 <= _runtime.VANISHING * (64.0 * t335)
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t335, -t334)
+    t336 = t326 * _runtime.sign(v_2_beta_front_elbow_down)
+    t337 = p_1_alpha_front_elbow_down * t325 - t325 * (t298 * lean_beta_front_elbow_down)
+    del t298, t325
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t337, p_1_alpha_front_elbow_down)
+    del p_1_alpha_front_elbow_down, t337
+    t338 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
     del sigma_uv_front_elbow_down
-    t340 = _runtime.select(parallel_front_elbow_down, t337, t339)
-    del t337
-    t341 = whole_y_front_elbow_down + t340
-    below_beta_0_front_elbow_down = np.maximum(t341, t165)
-    t342 = whole_y_front_elbow_down - t340
-    above_beta_0_front_elbow_down = np.maximum(t342, t165)
-    t343 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    t339 = _runtime.select(parallel_front_elbow_down, t336, t338)
+    del t336
+    t340 = whole_y_front_elbow_down + t339
+    below_beta_0_front_elbow_down = np.maximum(t340, t164)
+    t341 = whole_y_front_elbow_down - t339
+    above_beta_0_front_elbow_down = np.maximum(t341, t164)
+    t342 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t344 = v_2_beta_front_elbow_down * (t343 / total_beta_0_front_elbow_down)
-    del t343, total_beta_0_front_elbow_down
-    t345 = t327 - t344
-    del t344
-    left_along_front_elbow_down = L1 - np.abs(t345)
-    t346 = left_along_front_elbow_down * 9.094947017729282e-13
-    t347 = np.maximum(-t346, left_along_front_elbow_down)
+    t343 = v_2_beta_front_elbow_down * (t342 / total_beta_0_front_elbow_down)
+    del t342, total_beta_0_front_elbow_down
+    t344 = t326 - t343
+    del t343
+    left_along_front_elbow_down = L1 - np.abs(t344)
+    t345 = left_along_front_elbow_down * 9.094947017729282e-13
+    t346 = np.maximum(-t345, left_along_front_elbow_down)
+    del t345
+    spent_along_front_elbow_down = t346 <= t169
     del t346
-    spent_along_front_elbow_down = t347 <= t170
+    t347 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
+    t348 = t347 | spent_beta_front_elbow_down
     del t347
-    t348 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
-    t349 = t348 | spent_beta_front_elbow_down
-    del t348
-    t350 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
-    t351 = _runtime.select(t250, -(t172 * (t10 * tilt_front_elbow_down)), 0.0)
-    del t10, t172
-    t352 = np.arctan2(_runtime.select(t349, t350 * t351, 0.0), 1.0)
-    del t350
-    t353 = gain_1_alpha_front_elbow_down + gain_0_alpha_front_elbow_down
+    t349 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    t350 = _runtime.select(t249, -(t171 * (t10 * tilt_front_elbow_down)), 0.0)
+    del t10, t171
+    t351 = np.arctan2(_runtime.select(t348, t349 * t350, 0.0), 1.0)
+    del t349
+    t352 = gain_1_alpha_front_elbow_down + gain_0_alpha_front_elbow_down
     del gain_0_alpha_front_elbow_down, gain_1_alpha_front_elbow_down
-    t354 = _runtime.select(spent_alpha_front_elbow_down, t353, 0.0)
-    del t353
-    t355 = _runtime.select(spent_alpha_front_elbow_down, leniency, 1.0)
-    t356 = -(_runtime.FEASIBILITY * ((t84 + t354) * t355))
-    del t354, t355
-    t357 = gain_1_beta_front_elbow_down + gain_0_beta_front_elbow_down
+    t353 = _runtime.select(spent_alpha_front_elbow_down, t352, 0.0)
+    del t352
+    t354 = _runtime.select(spent_alpha_front_elbow_down, leniency, 1.0)
+    t355 = -(_runtime.FEASIBILITY * ((t83 + t353) * t354))
+    del t353, t354
+    t356 = gain_1_beta_front_elbow_down + gain_0_beta_front_elbow_down
     del gain_0_beta_front_elbow_down, gain_1_beta_front_elbow_down
-    t358 = _runtime.select(spent_beta_front_elbow_down, t357, 0.0)
-    del t357
-    t359 = _runtime.select(spent_beta_front_elbow_down, leniency, 1.0)
-    t360 = _runtime.FEASIBILITY * ((t133 + t358) * t359)
-    del t358, t359
-    t361 = spent_alpha_front_elbow_down | spent_beta_front_elbow_down
-    t362 = _runtime.select(t361, leniency, 1.0)
+    t357 = _runtime.select(spent_beta_front_elbow_down, t356, 0.0)
+    del t356
+    t358 = _runtime.select(spent_beta_front_elbow_down, leniency, 1.0)
+    t359 = _runtime.FEASIBILITY * ((t132 + t357) * t358)
+    del t357, t358
+    t360 = spent_alpha_front_elbow_down | spent_beta_front_elbow_down
+    t361 = _runtime.select(t360, leniency, 1.0)
+    del t360
+    t362 = -(_runtime.FEASIBILITY * (play * t361))
+    t363 = t192 & (t355 <= -t244) & (-t359 <= -t295) & (t362 <= t338 - t334)
+    del t244, t295, t355, t359
+    t364 = t363 & (t362 <= -(t334 + t338)) & (t362 <= t340)
+    del t338, t340, t363
+    t365 = t202 * t361
     del t361
-    t363 = -(_runtime.FEASIBILITY * (play * t362))
-    t364 = t193 & (t356 <= -t245) & (-t360 <= -t296) & (t363 <= t339 - t335)
-    del t245, t296, t356, t360
-    t365 = t364 & (t363 <= -(t335 + t339)) & (t363 <= t341)
-    del t339, t341, t364
-    t366 = t203 * t362
-    del t362
-    t367 = _runtime.select(spent_along_front_elbow_down, t336 / (t205 - t335), 0.0)
-    del t336
-    t368 = -(_runtime.FEASIBILITY * (t366 * (1.0 + t367)))
-    del t367
-    t369 = t365 & (t363 <= t342) & (t368 <= left_along_front_elbow_down)
-    del t342, t365, t368
-    t370 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
-    del left_along_front_elbow_down
-    t371 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t372 = v_2_beta_front_elbow_down * t370 / (t335 * t335 + t371)
-    del t335, t370, t371
-    t373 = whole_y_front_elbow_down * (t372 * _runtime.sign(-t345))
-    del t345, t372
-    t374 = _runtime.select(spent_along_front_elbow_down, t340 + t373, t340)
-    del spent_along_front_elbow_down, t340, t373
-    t375 = whole_y_front_elbow_down + t374
-    t376 = whole_y_front_elbow_down - t374
-    del t374, whole_y_front_elbow_down
-    t377 = -(_runtime.FEASIBILITY * t366)
+    t366 = _runtime.select(spent_along_front_elbow_down, t335 / (t204 - t334), 0.0)
+    del t335
+    t367 = -(_runtime.FEASIBILITY * (t365 * (1.0 + t366)))
     del t366
-    below_beta_front_elbow_down = np.maximum(t375, t165)
-    above_beta_front_elbow_down = np.maximum(t376, t165)
-    t378 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t368 = t364 & (t362 <= t341) & (t367 <= left_along_front_elbow_down)
+    del t341, t364, t367
+    t369 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
+    del left_along_front_elbow_down
+    t370 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t371 = v_2_beta_front_elbow_down * t369 / (t334 * t334 + t370)
+    del t334, t369, t370
+    t372 = whole_y_front_elbow_down * (t371 * _runtime.sign(-t344))
+    del t344, t371
+    t373 = _runtime.select(spent_along_front_elbow_down, t339 + t372, t339)
+    del spent_along_front_elbow_down, t339, t372
+    t374 = whole_y_front_elbow_down + t373
+    t375 = whole_y_front_elbow_down - t373
+    del t373, whole_y_front_elbow_down
+    t376 = -(_runtime.FEASIBILITY * t365)
+    del t365
+    below_beta_front_elbow_down = np.maximum(t374, t164)
+    above_beta_front_elbow_down = np.maximum(t375, t164)
+    t377 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t379 = 1.0 / total_beta_front_elbow_down
+    t378 = 1.0 / total_beta_front_elbow_down
     del total_beta_front_elbow_down
-    t380 = t378 * t379
-    del t378
-    t381 = t327 - v_2_beta_front_elbow_down * t380
-    del t327, v_2_beta_front_elbow_down
-    t382 = L1 + t381
-    t383 = t369 & (t363 <= t375) & (t363 <= t376) & (t377 <= t382)
-    del t363, t369, t375, t376
-    t384 = L1 - t381
-    unreachable_2 = np.logical_not(t383 & (t377 <= t384))
-    del t377, t383
-    t385 = _runtime.poison(invalid | unreachable_2)
-    t386 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
-    t387 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
-    t388 = lean_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t379 = t377 * t378
+    del t377
+    t380 = t326 - v_2_beta_front_elbow_down * t379
+    del t326, v_2_beta_front_elbow_down
+    t381 = L1 + t380
+    t382 = t368 & (t362 <= t374) & (t362 <= t375) & (t376 <= t381)
+    del t362, t368, t374, t375
+    t383 = L1 - t380
+    unreachable_2 = np.logical_not(t382 & (t376 <= t383))
+    del t376, t382
+    t384 = _runtime.poison(invalid | unreachable_2)
+    t385 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
+    t386 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    t387 = lean_alpha_front_elbow_down * lean_beta_front_elbow_down
     del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t389 = np.arctan2(t387, 1.0 - t388)
-    del t387, t388
-    t390 = _runtime.select(folded, 0.0, t386) + t389
-    del t386
-    below_alpha_front_elbow_down = np.maximum(t382, t165)
-    del t382
-    above_alpha_front_elbow_down = np.maximum(t384, t165)
-    del t384
-    t391 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t388 = np.arctan2(t386, 1.0 - t387)
+    del t386, t387
+    t389 = _runtime.select(folded, 0.0, t385) + t388
+    del t385
+    below_alpha_front_elbow_down = np.maximum(t381, t164)
+    del t381
+    above_alpha_front_elbow_down = np.maximum(t383, t164)
+    del t383
+    t390 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t392 = 1.0 / total_alpha_front_elbow_down
+    t391 = 1.0 / total_alpha_front_elbow_down
     del total_alpha_front_elbow_down
-    t393 = t391 * t392
-    del t391
-    t394 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t392 = t390 * t391
+    del t390
+    t393 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t395 = np.arctan2(t393, t392 * t394)
-    del t392, t394
-    t396 = t229 + t230
-    del t229, t230
-    t397 = fore_turn_alpha_front_elbow_down + fore_turn_beta_front_elbow_down
-    t398 = fore_turn_alpha_front_elbow_down * fore_turn_beta_front_elbow_down
+    t394 = np.arctan2(t392, t391 * t393)
+    del t391, t393
+    t395 = t228 + t229
+    del t228, t229
+    t396 = fore_turn_alpha_front_elbow_down + fore_turn_beta_front_elbow_down
+    t397 = fore_turn_alpha_front_elbow_down * fore_turn_beta_front_elbow_down
     del fore_turn_alpha_front_elbow_down, fore_turn_beta_front_elbow_down
-    t399 = t396 - (t389 - np.arctan2(t397, 1.0 - t398))
-    del t389, t397, t398
-    t400 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t398 = t395 - (t388 - np.arctan2(t396, 1.0 - t397))
+    del t388, t396, t397
+    t399 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t401 = t395 - np.arctan2(t380, t379 * t400)
-    del t379, t400
-    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t69)
+    t400 = t394 - np.arctan2(t379, t378 * t399)
+    del t378, t399
+    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t68)
+    del t68
+    p_1_rear_elbow_up = t69 + ahead * ctheta2A_rear_elbow_up
     del t69
-    p_1_rear_elbow_up = t70 + ahead * ctheta2A_rear_elbow_up
-    del t70
-    t402 = t77 - higher * ctheta2A_rear_elbow_up
-    del t77
-    t403 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t402
-    margin_alpha_rear_elbow_up = t244 - np.abs(t403)
-    del t244
-    t404 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t405 = np.maximum(-t404, margin_alpha_rear_elbow_up)
+    t401 = t76 - higher * ctheta2A_rear_elbow_up
+    del t76
+    t402 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t401
+    margin_alpha_rear_elbow_up = t243 - np.abs(t402)
+    del t243
+    t403 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t404 = np.maximum(-t403, margin_alpha_rear_elbow_up)
+    del t403
+    spent_alpha_rear_elbow_up = t404 <= t84
     del t404
-    spent_alpha_rear_elbow_up = t405 <= t85
-    del t405
-    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t254, 1.0)
-    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t248 / heavy_1_alpha_rear_elbow_up, 0.0)
-    t406 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
-    aside_rate_rear_elbow_up = _runtime.select(t250, -(t100 * (stheta2A * tilt_front_elbow_down)), 0.0)
+    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t253, 1.0)
+    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t247 / heavy_1_alpha_rear_elbow_up, 0.0)
+    t405 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
+    aside_rate_rear_elbow_up = _runtime.select(t249, -(t99 * (stheta2A * tilt_front_elbow_down)), 0.0)
     del stheta2A, tilt_front_elbow_down
-    t407 = slope_aside_alpha_front_elbow_down * aside_rate_rear_elbow_up
+    t406 = slope_aside_alpha_front_elbow_down * aside_rate_rear_elbow_up
     del slope_aside_alpha_front_elbow_down
-    fore_rate_rear_elbow_up = _runtime.select(t250, ctheta2A_rear_elbow_up, 1.0)
-    del ctheta2A_rear_elbow_up, t250
-    t408 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t402
-    t409 = fore_rate_rear_elbow_up * (t258 - _runtime.sign(-t403) * t408)
-    del t258, t403, t408
-    slope_alpha_rear_elbow_up = t407 - t409
-    del t407, t409
-    t410 = np.abs(slope_alpha_rear_elbow_up)
-    t411 = aside_rate_rear_elbow_up + fore_rate_rear_elbow_up
-    t412 = drawn_front_elbow_down * fore_rate_rear_elbow_up
-    t413 = t411 - t100 * t412
-    del t411
-    t414 = fore_rate_rear_elbow_up * fore_rate_rear_elbow_up
-    t415 = np.sqrt(t269 + L1 * (t413 * t413) + fore * t414)
-    del t269, t413, t414
-    t416 = t253 * (t262 + t263 * t415 / 2000000.0)
-    del t253, t263
-    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t416, 1.0)
-    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t410 / heavy_0_alpha_rear_elbow_up, 0.0)
-    t417 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
-    t418 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t406 / (t99 + t406 + t417), 0.0)
-    del t406, t417
-    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t418, 0.0)
-    del t418
-    t419 = t274 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
-    del t274
-    t420 = t84 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
+    fore_rate_rear_elbow_up = _runtime.select(t249, ctheta2A_rear_elbow_up, 1.0)
+    del ctheta2A_rear_elbow_up, t249
+    t407 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t401
+    t408 = fore_rate_rear_elbow_up * (t257 - _runtime.sign(-t402) * t407)
+    del t257, t402, t407
+    slope_alpha_rear_elbow_up = t406 - t408
+    del t406, t408
+    t409 = np.abs(slope_alpha_rear_elbow_up)
+    t410 = aside_rate_rear_elbow_up + fore_rate_rear_elbow_up
+    t411 = drawn_front_elbow_down * fore_rate_rear_elbow_up
+    t412 = t410 - t99 * t411
+    del t410
+    t413 = fore_rate_rear_elbow_up * fore_rate_rear_elbow_up
+    t414 = np.sqrt(t268 + L1 * (t412 * t412) + fore * t413)
+    del t268, t412, t413
+    t415 = t252 * (t261 + t262 * t414 / 2000000.0)
+    del t252, t262
+    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t415, 1.0)
+    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t409 / heavy_0_alpha_rear_elbow_up, 0.0)
+    t416 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
+    t417 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t405 / (t98 + t405 + t416), 0.0)
+    del t405, t416
+    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t417, 0.0)
+    del t417
+    t418 = t273 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
+    del t273
+    t419 = t83 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_up
-    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t419 / (t248 + t420)), 0.0)
-    del t248, t419, t420
-    t421 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
+    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t418 / (t247 + t419)), 0.0)
+    del t247, t418, t419
+    t420 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
     del share_alpha_rear_elbow_up
-    t422 = t84 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
-    t423 = 1.0 / (t410 + t422)
-    del t410, t422
-    t424 = -(heavy_0_alpha_rear_elbow_up * t421 * t423) <= 9.094947017729282e-13
+    t421 = t83 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
+    t422 = 1.0 / (t409 + t421)
+    del t409, t421
+    t423 = -(heavy_0_alpha_rear_elbow_up * t420 * t422) <= 9.094947017729282e-13
     del heavy_0_alpha_rear_elbow_up
-    t425 = -(t421 * t423)
-    del t421, t423
-    t426 = _runtime.select(t424 & (0.0 < t425), t425, 0.0)
-    del t424, t425
-    t427 = _runtime.sign(slope_alpha_rear_elbow_up) * t426
-    del slope_alpha_rear_elbow_up, t426
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t427, 0.0)
+    t424 = -(t420 * t422)
+    del t420, t422
+    t425 = _runtime.select(t423 & (0.0 < t424), t424, 0.0)
+    del t423, t424
+    t426 = _runtime.sign(slope_alpha_rear_elbow_up) * t425
+    del slope_alpha_rear_elbow_up, t425
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t426, 0.0)
+    del t426
+    t427 = aside_rate_rear_elbow_up * turn_alpha_rear_elbow_up
+    t428 = fore_rate_rear_elbow_up * turn_alpha_rear_elbow_up
+    t429 = aside_alpha_rear_elbow_up + t427 + t428 - t99 * (t411 * turn_alpha_rear_elbow_up)
     del t427
-    t428 = aside_rate_rear_elbow_up * turn_alpha_rear_elbow_up
-    t429 = fore_rate_rear_elbow_up * turn_alpha_rear_elbow_up
-    t430 = aside_alpha_rear_elbow_up + t428 + t429 - t100 * (t412 * turn_alpha_rear_elbow_up)
-    del t428
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t430, 0.0)
-    del t430
-    t431 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t432 = np.sqrt(1.0 + t431)
-    del t431
-    t433 = 1.0 / t432
-    t434 = p_1_rear_elbow_up * t433 - t402 * lean_alpha_rear_elbow_up * t433
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t434, p_1_rear_elbow_up)
-    del t434
-    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    fore_turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t429, 0.0)
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t429, 0.0)
     del t429
-    t435 = fore_turn_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
-    t436 = 1.0 / (t432 * np.sqrt(1.0 + t435))
-    del t432, t435
-    t437 = lean_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
-    t438 = t436 + t436 * t437
-    del t437
-    t439 = fore_turn_alpha_rear_elbow_up * t436 - lean_alpha_rear_elbow_up * t436
+    t430 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t431 = np.sqrt(1.0 + t430)
+    del t430
+    t432 = 1.0 / t431
+    t433 = p_1_rear_elbow_up * t432 - t401 * lean_alpha_rear_elbow_up * t432
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t433, p_1_rear_elbow_up)
+    del t433
+    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
+    fore_turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t428, 0.0)
+    del t428
+    t434 = fore_turn_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
+    t435 = 1.0 / (t431 * np.sqrt(1.0 + t434))
+    del t431, t434
+    t436 = lean_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
+    t437 = t435 + t435 * t436
     del t436
-    t440 = v_1_front_elbow_down * t438 - v_2_front_elbow_down * t439
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t440, v_1_front_elbow_down)
-    del t440
+    t438 = fore_turn_alpha_rear_elbow_up * t435 - lean_alpha_rear_elbow_up * t435
+    del t435
+    t439 = v_1_front_elbow_down * t437 - v_2_front_elbow_down * t438
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t439, v_1_front_elbow_down)
+    del t439
     whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t441 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
-    t442 = np.maximum(t441 * 9.094947017729282e-13, -t441)
-    spent_beta_rear_elbow_up = t442 <= t134
-    del t442
-    t443 = t433 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
+    t440 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    t441 = np.maximum(t440 * 9.094947017729282e-13, -t440)
+    spent_beta_rear_elbow_up = t441 <= t133
+    del t441
+    t442 = t432 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
     del p_1_rear_elbow_up
-    t444 = _runtime.select(spent_alpha_rear_elbow_up, t443 + t402 * t433, t402)
-    del t402, t433, t443
-    t445 = t444 * _runtime.sign(part_beta_rear_elbow_up)
+    t443 = _runtime.select(spent_alpha_rear_elbow_up, t442 + t401 * t432, t401)
+    del t401, t432, t442
+    t444 = t443 * _runtime.sign(part_beta_rear_elbow_up)
     del part_beta_rear_elbow_up
-    t446 = v_1_front_elbow_down * t439 + v_2_front_elbow_down * t438
-    del t438, t439, v_1_front_elbow_down
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t446, v_2_front_elbow_down)
-    del t446, v_2_front_elbow_down
-    t447 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
+    t445 = v_1_front_elbow_down * t438 + v_2_front_elbow_down * t437
+    del t437, t438, v_1_front_elbow_down
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t445, v_2_front_elbow_down)
+    del t445, v_2_front_elbow_down
+    t446 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
     del whole_beta_rear_elbow_up
-    slope_aside_beta_rear_elbow_up = L1 * (t445 + t447)
-    t448 = np.abs(slope_aside_beta_rear_elbow_up)
-    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t254, 1.0)
-    del t254
-    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t448 / heavy_1_beta_rear_elbow_up, 0.0)
-    t449 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
-    t450 = aside_rate_rear_elbow_up * slope_aside_beta_rear_elbow_up
-    t451 = fore_rate_rear_elbow_up * (drawn_front_elbow_down * t447 - t306 * t445)
-    del drawn_front_elbow_down, t306, t445, t447
-    slope_beta_rear_elbow_up = t450 - t451
-    del t450, t451
-    t452 = np.abs(slope_beta_rear_elbow_up)
-    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t416, 1.0)
-    del t416
-    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t452 / heavy_0_beta_rear_elbow_up, 0.0)
-    t453 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
-    t454 = _runtime.select(-t441 < 0.0, t449 / (t140 + t449 + t453), 0.0)
-    del t449, t453
-    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t454, 0.0)
-    del t454
-    t455 = _runtime.sign(slope_aside_beta_rear_elbow_up)
+    slope_aside_beta_rear_elbow_up = L1 * (t444 + t446)
+    t447 = np.abs(slope_aside_beta_rear_elbow_up)
+    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t253, 1.0)
+    del t253
+    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t447 / heavy_1_beta_rear_elbow_up, 0.0)
+    t448 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
+    t449 = aside_rate_rear_elbow_up * slope_aside_beta_rear_elbow_up
+    t450 = fore_rate_rear_elbow_up * (drawn_front_elbow_down * t446 - t305 * t444)
+    del drawn_front_elbow_down, t305, t444, t446
+    slope_beta_rear_elbow_up = t449 - t450
+    del t449, t450
+    t451 = np.abs(slope_beta_rear_elbow_up)
+    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t415, 1.0)
+    del t415
+    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t451 / heavy_0_beta_rear_elbow_up, 0.0)
+    t452 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
+    t453 = _runtime.select(-t440 < 0.0, t448 / (t139 + t448 + t452), 0.0)
+    del t448, t452
+    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t453, 0.0)
+    del t453
+    t454 = _runtime.sign(slope_aside_beta_rear_elbow_up)
     del slope_aside_beta_rear_elbow_up
-    t456 = t133 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
+    t455 = t132 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_beta_rear_elbow_up
-    t457 = t441 * share_beta_rear_elbow_up * t455 / (t448 + t456)
-    del t448, t455, t456
-    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t457, 0.0)
-    del t457
-    lack_beta_rear_elbow_up = t441 * (1.0 - share_beta_rear_elbow_up)
+    t456 = t440 * share_beta_rear_elbow_up * t454 / (t447 + t455)
+    del t447, t454, t455
+    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t456, 0.0)
+    del t456
+    lack_beta_rear_elbow_up = t440 * (1.0 - share_beta_rear_elbow_up)
     del share_beta_rear_elbow_up
-    t458 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
-    t459 = t133 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
+    t457 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
+    t458 = t132 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
     del heavy_0_beta_rear_elbow_up
-    t460 = 1.0 / (t452 + t459)
-    del t452, t459
-    t461 = lack_beta_rear_elbow_up * t460
+    t459 = 1.0 / (t451 + t458)
+    del t451, t458
+    t460 = lack_beta_rear_elbow_up * t459
     del lack_beta_rear_elbow_up
-    t462 = (t458 * t460 <= 9.094947017729282e-13) & (0.0 < t461)
-    del t458, t460
-    t463 = _runtime.sign(slope_beta_rear_elbow_up) * _runtime.select(t462, t461, 0.0)
-    del slope_beta_rear_elbow_up, t461, t462
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t463, 0.0)
-    del t463
-    t464 = aside_rate_rear_elbow_up * turn_beta_rear_elbow_up
+    t461 = (t457 * t459 <= 9.094947017729282e-13) & (0.0 < t460)
+    del t457, t459
+    t462 = _runtime.sign(slope_beta_rear_elbow_up) * _runtime.select(t461, t460, 0.0)
+    del slope_beta_rear_elbow_up, t460, t461
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t462, 0.0)
+    del t462
+    t463 = aside_rate_rear_elbow_up * turn_beta_rear_elbow_up
     del aside_rate_rear_elbow_up
-    t465 = fore_rate_rear_elbow_up * turn_beta_rear_elbow_up
+    t464 = fore_rate_rear_elbow_up * turn_beta_rear_elbow_up
     del fore_rate_rear_elbow_up
-    t466 = aside_beta_rear_elbow_up + t464 + t465 - t100 * (t412 * turn_beta_rear_elbow_up)
-    del t412, t464
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t466, 0.0)
-    del t466
-    t467 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
-    t468 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t469 = np.sqrt(1.0 + t468)
-    del t468
-    t470 = 1.0 / t469
-    t471 = _runtime.select(spent_beta_rear_elbow_up, t467 * t470 + t444 * t470, t444)
-    del t467
-    fore_turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t465, 0.0)
+    t465 = aside_beta_rear_elbow_up + t463 + t464 - t99 * (t411 * turn_beta_rear_elbow_up)
+    del t411, t463
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t465, 0.0)
     del t465
-    t472 = fore_turn_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
-    t473 = 1.0 / (t469 * np.sqrt(1.0 + t472))
-    del t469, t472
-    t474 = fore_turn_beta_rear_elbow_up * t473 - lean_beta_rear_elbow_up * t473
-    t475 = lean_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
-    t476 = t473 + t473 * t475
-    del t473, t475
-    t477 = v_1_alpha_rear_elbow_up * t474 + v_2_alpha_rear_elbow_up * t476
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t477, v_2_alpha_rear_elbow_up)
-    del t477
-    t478 = v_1_alpha_rear_elbow_up * t476 - v_2_alpha_rear_elbow_up * t474
-    del t474, t476, v_2_alpha_rear_elbow_up
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t478, v_1_alpha_rear_elbow_up)
-    del t478, v_1_alpha_rear_elbow_up
+    t466 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t467 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t468 = np.sqrt(1.0 + t467)
+    del t467
+    t469 = 1.0 / t468
+    t470 = _runtime.select(spent_beta_rear_elbow_up, t466 * t469 + t443 * t469, t443)
+    del t466
+    fore_turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t464, 0.0)
+    del t464
+    t471 = fore_turn_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    t472 = 1.0 / (t468 * np.sqrt(1.0 + t471))
+    del t468, t471
+    t473 = fore_turn_beta_rear_elbow_up * t472 - lean_beta_rear_elbow_up * t472
+    t474 = lean_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    t475 = t472 + t472 * t474
+    del t472, t474
+    t476 = v_1_alpha_rear_elbow_up * t473 + v_2_alpha_rear_elbow_up * t475
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t476, v_2_alpha_rear_elbow_up)
+    del t476
+    t477 = v_1_alpha_rear_elbow_up * t475 - v_2_alpha_rear_elbow_up * t473
+    del t473, t475, v_2_alpha_rear_elbow_up
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t477, v_1_alpha_rear_elbow_up)
+    del t477, v_1_alpha_rear_elbow_up
     sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
-    t479 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    t480 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t479 <= _runtime.VANISHING * (64.0 * t480)
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t480, -t479)
-    t481 = p_1_alpha_rear_elbow_up * t470 - t470 * (t444 * lean_beta_rear_elbow_up)
-    del t444, t470
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t481, p_1_alpha_rear_elbow_up)
-    del p_1_alpha_rear_elbow_up, t481
-    t482 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t478 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    t479 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t478 <= _runtime.VANISHING * (64.0 * t479)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t479, -t478)
+    t480 = p_1_alpha_rear_elbow_up * t469 - t469 * (t443 * lean_beta_rear_elbow_up)
+    del t443, t469
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t480, p_1_alpha_rear_elbow_up)
+    del p_1_alpha_rear_elbow_up, t480
+    t481 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
     del sigma_uv_rear_elbow_up
-    t483 = _runtime.select(parallel_rear_elbow_up, t471 * _runtime.sign(v_2_beta_rear_elbow_up), t482)
-    t484 = whole_y_rear_elbow_up + t483
-    below_beta_0_rear_elbow_up = np.maximum(t484, t165)
-    t485 = whole_y_rear_elbow_up - t483
-    above_beta_0_rear_elbow_up = np.maximum(t485, t165)
-    t486 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    t482 = _runtime.select(parallel_rear_elbow_up, t470 * _runtime.sign(v_2_beta_rear_elbow_up), t481)
+    t483 = whole_y_rear_elbow_up + t482
+    below_beta_0_rear_elbow_up = np.maximum(t483, t164)
+    t484 = whole_y_rear_elbow_up - t482
+    above_beta_0_rear_elbow_up = np.maximum(t484, t164)
+    t485 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t487 = v_2_beta_rear_elbow_up * (t486 / total_beta_0_rear_elbow_up)
-    del t486, total_beta_0_rear_elbow_up
-    t488 = t471 - t487
-    del t487
-    left_along_rear_elbow_up = L1 - np.abs(t488)
-    t489 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t489, left_along_rear_elbow_up) <= t170
+    t486 = v_2_beta_rear_elbow_up * (t485 / total_beta_0_rear_elbow_up)
+    del t485, total_beta_0_rear_elbow_up
+    t487 = t470 - t486
+    del t486
+    left_along_rear_elbow_up = L1 - np.abs(t487)
+    t488 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t488, left_along_rear_elbow_up) <= t169
+    del t488
+    t489 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
+    t490 = t489 | spent_beta_rear_elbow_up
     del t489
-    t490 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
-    t491 = t490 | spent_beta_rear_elbow_up
-    del t490
-    t492 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
-    t493 = np.arctan2(_runtime.select(t491, t351 * t492, 0.0), 1.0)
-    del t351, t492
-    t494 = _runtime.select(nowhere, 0.0, t174 + t175)
-    del t174, t175
-    t495 = gain_1_alpha_rear_elbow_up + gain_0_alpha_rear_elbow_up
+    t491 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    t492 = np.arctan2(_runtime.select(t490, t350 * t491, 0.0), 1.0)
+    del t350, t491
+    t493 = _runtime.select(nowhere, 0.0, t173 + t174)
+    del t173, t174
+    t494 = gain_1_alpha_rear_elbow_up + gain_0_alpha_rear_elbow_up
     del gain_0_alpha_rear_elbow_up, gain_1_alpha_rear_elbow_up
-    t496 = _runtime.select(spent_alpha_rear_elbow_up, t495, 0.0)
-    del t495
-    t497 = _runtime.select(spent_alpha_rear_elbow_up, leniency, 1.0)
-    t498 = -(_runtime.FEASIBILITY * ((t84 + t496) * t497))
-    del t496, t497
-    t499 = gain_1_beta_rear_elbow_up + gain_0_beta_rear_elbow_up
+    t495 = _runtime.select(spent_alpha_rear_elbow_up, t494, 0.0)
+    del t494
+    t496 = _runtime.select(spent_alpha_rear_elbow_up, leniency, 1.0)
+    t497 = -(_runtime.FEASIBILITY * ((t83 + t495) * t496))
+    del t495, t496
+    t498 = gain_1_beta_rear_elbow_up + gain_0_beta_rear_elbow_up
     del gain_0_beta_rear_elbow_up, gain_1_beta_rear_elbow_up
-    t500 = _runtime.select(spent_beta_rear_elbow_up, t499, 0.0)
-    del t499
-    t501 = _runtime.select(spent_beta_rear_elbow_up, leniency, 1.0)
-    t502 = _runtime.FEASIBILITY * ((t133 + t500) * t501)
-    del t500, t501
-    t503 = t193 & (t498 <= margin_alpha_rear_elbow_up) & (-t502 <= -t441)
-    del margin_alpha_rear_elbow_up, t441, t498, t502
-    t504 = spent_alpha_rear_elbow_up | spent_beta_rear_elbow_up
-    t505 = _runtime.select(t504, leniency, 1.0)
+    t499 = _runtime.select(spent_beta_rear_elbow_up, t498, 0.0)
+    del t498
+    t500 = _runtime.select(spent_beta_rear_elbow_up, leniency, 1.0)
+    t501 = _runtime.FEASIBILITY * ((t132 + t499) * t500)
+    del t499, t500
+    t502 = t192 & (t497 <= margin_alpha_rear_elbow_up) & (-t501 <= -t440)
+    del margin_alpha_rear_elbow_up, t440, t497, t501
+    t503 = spent_alpha_rear_elbow_up | spent_beta_rear_elbow_up
+    t504 = _runtime.select(t503, leniency, 1.0)
+    del t503
+    t505 = -(_runtime.FEASIBILITY * (play * t504))
+    t506 = t502 & (t505 <= t481 - t478) & (t505 <= -(t478 + t481))
+    del t481, t502
+    t507 = t202 * t504
     del t504
-    t506 = -(_runtime.FEASIBILITY * (play * t505))
-    t507 = t503 & (t506 <= t482 - t479) & (t506 <= -(t479 + t482))
-    del t482, t503
-    t508 = t203 * t505
-    del t505
-    t509 = _runtime.select(spent_along_rear_elbow_up, t480 / (t205 - t479), 0.0)
-    del t480
-    t510 = -(_runtime.FEASIBILITY * (t508 * (1.0 + t509)))
-    del t509
-    t511 = t507 & (t506 <= t484) & (t506 <= t485) & (t510 <= left_along_rear_elbow_up)
-    del t484, t485, t507, t510
-    t512 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
-    del left_along_rear_elbow_up
-    t513 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t514 = v_2_beta_rear_elbow_up * t512 / (t479 * t479 + t513)
-    del t479, t512, t513
-    t515 = whole_y_rear_elbow_up * (t514 * _runtime.sign(-t488))
-    del t488, t514
-    t516 = _runtime.select(spent_along_rear_elbow_up, t483 + t515, t483)
-    del spent_along_rear_elbow_up, t483, t515
-    t517 = whole_y_rear_elbow_up + t516
-    t518 = whole_y_rear_elbow_up - t516
-    del t516, whole_y_rear_elbow_up
-    t519 = -(_runtime.FEASIBILITY * t508)
+    t508 = _runtime.select(spent_along_rear_elbow_up, t479 / (t204 - t478), 0.0)
+    del t479
+    t509 = -(_runtime.FEASIBILITY * (t507 * (1.0 + t508)))
     del t508
-    below_beta_rear_elbow_up = np.maximum(t517, t165)
-    above_beta_rear_elbow_up = np.maximum(t518, t165)
-    t520 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t510 = t506 & (t505 <= t483) & (t505 <= t484) & (t509 <= left_along_rear_elbow_up)
+    del t483, t484, t506, t509
+    t511 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
+    del left_along_rear_elbow_up
+    t512 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t513 = v_2_beta_rear_elbow_up * t511 / (t478 * t478 + t512)
+    del t478, t511, t512
+    t514 = whole_y_rear_elbow_up * (t513 * _runtime.sign(-t487))
+    del t487, t513
+    t515 = _runtime.select(spent_along_rear_elbow_up, t482 + t514, t482)
+    del spent_along_rear_elbow_up, t482, t514
+    t516 = whole_y_rear_elbow_up + t515
+    t517 = whole_y_rear_elbow_up - t515
+    del t515, whole_y_rear_elbow_up
+    t518 = -(_runtime.FEASIBILITY * t507)
+    del t507
+    below_beta_rear_elbow_up = np.maximum(t516, t164)
+    above_beta_rear_elbow_up = np.maximum(t517, t164)
+    t519 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t521 = 1.0 / total_beta_rear_elbow_up
+    t520 = 1.0 / total_beta_rear_elbow_up
     del total_beta_rear_elbow_up
-    t522 = t520 * t521
-    del t520
-    t523 = t471 - v_2_beta_rear_elbow_up * t522
-    del t471, v_2_beta_rear_elbow_up
-    t524 = L1 + t523
-    t525 = t511 & (t506 <= t517) & (t506 <= t518) & (t519 <= t524)
-    del t506, t511, t517, t518
-    t526 = L1 - t523
-    unreachable_3 = np.logical_not(t525 & (t519 <= t526))
-    del t519, t525
-    t527 = _runtime.poison(invalid | unreachable_3)
-    t528 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
+    t521 = t519 * t520
+    del t519
+    t522 = t470 - v_2_beta_rear_elbow_up * t521
+    del t470, v_2_beta_rear_elbow_up
+    t523 = L1 + t522
+    t524 = t510 & (t505 <= t516) & (t505 <= t517) & (t518 <= t523)
+    del t505, t510, t516, t517
+    t525 = L1 - t522
+    unreachable_3 = np.logical_not(t524 & (t518 <= t525))
+    del t518, t524
+    t526 = _runtime.poison(invalid | unreachable_3)
+    t527 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
     del out_2, up
-    t529 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
-    t530 = lean_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t528 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    t529 = lean_alpha_rear_elbow_up * lean_beta_rear_elbow_up
     del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t531 = np.arctan2(t529, 1.0 - t530)
-    del t529, t530
-    t532 = t528 + t531
-    del t528
-    below_alpha_rear_elbow_up = np.maximum(t524, t165)
-    del t524
-    above_alpha_rear_elbow_up = np.maximum(t526, t165)
-    del t526
-    t533 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t530 = np.arctan2(t528, 1.0 - t529)
+    del t528, t529
+    t531 = t527 + t530
+    del t527
+    below_alpha_rear_elbow_up = np.maximum(t523, t164)
+    del t523
+    above_alpha_rear_elbow_up = np.maximum(t525, t164)
+    del t525
+    t532 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t534 = 1.0 / total_alpha_rear_elbow_up
+    t533 = 1.0 / total_alpha_rear_elbow_up
     del total_alpha_rear_elbow_up
-    t535 = t533 * t534
-    del t533
-    t536 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t534 = t532 * t533
+    del t532
+    t535 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t537 = np.arctan2(t535, t534 * t536)
-    del t534, t536
-    t538 = fore_turn_alpha_rear_elbow_up + fore_turn_beta_rear_elbow_up
-    t539 = fore_turn_alpha_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    t536 = np.arctan2(t534, t533 * t535)
+    del t533, t535
+    t537 = fore_turn_alpha_rear_elbow_up + fore_turn_beta_rear_elbow_up
+    t538 = fore_turn_alpha_rear_elbow_up * fore_turn_beta_rear_elbow_up
     del fore_turn_alpha_rear_elbow_up, fore_turn_beta_rear_elbow_up
-    t540 = t396 - (t531 - np.arctan2(t538, 1.0 - t539))
-    del t396, t531, t538, t539
-    t541 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    t539 = t395 - (t530 - np.arctan2(t537, 1.0 - t538))
+    del t395, t530, t537, t538
+    t540 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
     del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t542 = t537 - np.arctan2(t522, t521 * t541)
-    del t521, t541
-    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t239)
-    del t239
-    p_1_rear_elbow_down = t240 + ahead * ctheta2A_rear_elbow_down
-    del ahead, t240
-    t543 = t241 - higher * ctheta2A_rear_elbow_down
-    del higher, t241
-    t544 = v_2 * p_1_rear_elbow_down + v_1 * t543
-    margin_alpha_rear_elbow_down = t80 - np.abs(t544)
-    del t80
-    t545 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t546 = np.maximum(-t545, margin_alpha_rear_elbow_down)
-    del t545
-    spent_alpha_rear_elbow_down = t546 <= t85
-    del t546, t85
-    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t96, 1.0)
-    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t87 / heavy_1_alpha_rear_elbow_down, 0.0)
-    t547 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
-    aside_rate_rear_elbow_down = _runtime.select(t93, -(t100 * (tilt * stheta2A_front_elbow_down)), 0.0)
-    del stheta2A_front_elbow_down, tilt
-    t548 = slope_aside_alpha * aside_rate_rear_elbow_down
-    del slope_aside_alpha
-    fore_rate_rear_elbow_down = _runtime.select(t93, ctheta2A_rear_elbow_down, 1.0)
-    del ctheta2A_rear_elbow_down, t93
-    t549 = _runtime.sign(-t544) * (v_1 * p_1_rear_elbow_down - v_2 * t543)
+    t541 = t536 - np.arctan2(t521, t520 * t540)
+    del t520, t540
+    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t238)
+    del t238
+    p_1_rear_elbow_down = t239 + ahead * ctheta2A_rear_elbow_down
+    del ahead, t239
+    t542 = t240 - higher * ctheta2A_rear_elbow_down
+    del higher, t240
+    t543 = v_2 * p_1_rear_elbow_down + v_1 * t542
+    margin_alpha_rear_elbow_down = t79 - np.abs(t543)
+    del t79
+    t544 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t545 = np.maximum(-t544, margin_alpha_rear_elbow_down)
     del t544
-    slope_alpha_rear_elbow_down = t548 - fore_rate_rear_elbow_down * (t101 - t549)
-    del t101, t548, t549
-    t550 = np.abs(slope_alpha_rear_elbow_down)
-    t551 = aside_rate_rear_elbow_down + fore_rate_rear_elbow_down
-    t552 = drawn * fore_rate_rear_elbow_down
-    t553 = t551 - t100 * t552
-    del t551
-    t554 = fore_rate_rear_elbow_down * fore_rate_rear_elbow_down
-    t555 = np.sqrt(t112 + L1 * (t553 * t553) + fore * t554)
-    del fore, t112, t553, t554
-    t556 = t95 * (t107 + t108 * t555 / 2000000.0)
-    del t108, t95
-    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t556, 1.0)
-    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t550 / heavy_0_alpha_rear_elbow_down, 0.0)
-    t557 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
-    t558 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t547 / (t99 + t547 + t557), 0.0)
-    del t547, t557, t99
-    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t558, 0.0)
-    del t558
-    t559 = t116 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
-    del t116
-    t560 = t84 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
+    spent_alpha_rear_elbow_down = t545 <= t84
+    del t545, t84
+    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t95, 1.0)
+    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t86 / heavy_1_alpha_rear_elbow_down, 0.0)
+    t546 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
+    aside_rate_rear_elbow_down = _runtime.select(t92, -(t99 * (tilt * stheta2A_front_elbow_down)), 0.0)
+    del stheta2A_front_elbow_down, tilt
+    t547 = slope_aside_alpha * aside_rate_rear_elbow_down
+    del slope_aside_alpha
+    fore_rate_rear_elbow_down = _runtime.select(t92, ctheta2A_rear_elbow_down, 1.0)
+    del ctheta2A_rear_elbow_down, t92
+    t548 = _runtime.sign(-t543) * (v_1 * p_1_rear_elbow_down - v_2 * t542)
+    del t543
+    slope_alpha_rear_elbow_down = t547 - fore_rate_rear_elbow_down * (t100 - t548)
+    del t100, t547, t548
+    t549 = np.abs(slope_alpha_rear_elbow_down)
+    t550 = aside_rate_rear_elbow_down + fore_rate_rear_elbow_down
+    t551 = drawn * fore_rate_rear_elbow_down
+    t552 = t550 - t99 * t551
+    del t550
+    t553 = fore_rate_rear_elbow_down * fore_rate_rear_elbow_down
+    t554 = np.sqrt(t111 + L1 * (t552 * t552) + fore * t553)
+    del fore, t111, t552, t553
+    t555 = t94 * (t106 + t107 * t554 / 2000000.0)
+    del t107, t94
+    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t555, 1.0)
+    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t549 / heavy_0_alpha_rear_elbow_down, 0.0)
+    t556 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
+    t557 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t546 / (t98 + t546 + t556), 0.0)
+    del t546, t556, t98
+    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t557, 0.0)
+    del t557
+    t558 = t115 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
+    del t115
+    t559 = t83 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_down
-    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t559 / (t87 + t560)), 0.0)
-    del t559, t560, t87
-    t561 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
+    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t558 / (t86 + t559)), 0.0)
+    del t558, t559, t86
+    t560 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
     del share_alpha_rear_elbow_down
-    t562 = t84 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
-    t563 = 1.0 / (t550 + t562)
-    del t550, t562
-    t564 = -(heavy_0_alpha_rear_elbow_down * t561 * t563)
+    t561 = t83 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
+    t562 = 1.0 / (t549 + t561)
+    del t549, t561
+    t563 = -(heavy_0_alpha_rear_elbow_down * t560 * t562)
     del heavy_0_alpha_rear_elbow_down
-    t565 = -(t561 * t563)
-    del t561, t563
-    t566 = (t564 <= 9.094947017729282e-13) & (0.0 < t565)
-    del t564
-    t567 = _runtime.sign(slope_alpha_rear_elbow_down) * _runtime.select(t566, t565, 0.0)
-    del slope_alpha_rear_elbow_down, t565, t566
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t567, 0.0)
+    t564 = -(t560 * t562)
+    del t560, t562
+    t565 = (t563 <= 9.094947017729282e-13) & (0.0 < t564)
+    del t563
+    t566 = _runtime.sign(slope_alpha_rear_elbow_down) * _runtime.select(t565, t564, 0.0)
+    del slope_alpha_rear_elbow_down, t564, t565
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t566, 0.0)
+    del t566
+    t567 = aside_rate_rear_elbow_down * turn_alpha_rear_elbow_down
+    t568 = fore_rate_rear_elbow_down * turn_alpha_rear_elbow_down
+    t569 = aside_alpha_rear_elbow_down + t567 + t568 - t99 * (t551 * turn_alpha_rear_elbow_down)
     del t567
-    t568 = aside_rate_rear_elbow_down * turn_alpha_rear_elbow_down
-    t569 = fore_rate_rear_elbow_down * turn_alpha_rear_elbow_down
-    t570 = aside_alpha_rear_elbow_down + t568 + t569 - t100 * (t552 * turn_alpha_rear_elbow_down)
-    del t568
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t570, 0.0)
-    del t570
-    t571 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t572 = np.sqrt(1.0 + t571)
-    del t571
-    t573 = 1.0 / t572
-    t574 = p_1_rear_elbow_down * t573 - t543 * lean_alpha_rear_elbow_down * t573
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t574, p_1_rear_elbow_down)
-    del t574
-    part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    fore_turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t569, 0.0)
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t569, 0.0)
     del t569
-    t575 = fore_turn_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
-    t576 = 1.0 / (t572 * np.sqrt(1.0 + t575))
-    del t572, t575
-    t577 = lean_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
-    t578 = t576 + t576 * t577
-    del t577
-    t579 = fore_turn_alpha_rear_elbow_down * t576 - lean_alpha_rear_elbow_down * t576
+    t570 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t571 = np.sqrt(1.0 + t570)
+    del t570
+    t572 = 1.0 / t571
+    t573 = p_1_rear_elbow_down * t572 - t542 * lean_alpha_rear_elbow_down * t572
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t573, p_1_rear_elbow_down)
+    del t573
+    part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
+    fore_turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t568, 0.0)
+    del t568
+    t574 = fore_turn_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
+    t575 = 1.0 / (t571 * np.sqrt(1.0 + t574))
+    del t571, t574
+    t576 = lean_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
+    t577 = t575 + t575 * t576
     del t576
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t578 - v_2 * t579, v_1)
+    t578 = fore_turn_alpha_rear_elbow_down * t575 - lean_alpha_rear_elbow_down * t575
+    del t575
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t577 - v_2 * t578, v_1)
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t580 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
-    t581 = np.maximum(t580 * 9.094947017729282e-13, -t580)
-    spent_beta_rear_elbow_down = t581 <= t134
-    del t134, t581
-    t582 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    t579 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    t580 = np.maximum(t579 * 9.094947017729282e-13, -t579)
+    spent_beta_rear_elbow_down = t580 <= t133
+    del t133, t580
+    t581 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
     del p_1_rear_elbow_down
-    t583 = _runtime.select(spent_alpha_rear_elbow_down, t573 * t582 + t543 * t573, t543)
-    del t543, t573, t582
-    t584 = t583 * _runtime.sign(part_beta_rear_elbow_down)
+    t582 = _runtime.select(spent_alpha_rear_elbow_down, t572 * t581 + t542 * t572, t542)
+    del t542, t572, t581
+    t583 = t582 * _runtime.sign(part_beta_rear_elbow_down)
     del part_beta_rear_elbow_down
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t579 + v_2 * t578, v_2)
-    del t578, t579, v_1, v_2
-    t585 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t578 + v_2 * t577, v_2)
+    del t577, t578, v_1, v_2
+    t584 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
     del whole_beta_rear_elbow_down
-    slope_aside_beta_rear_elbow_down = L1 * (t584 + t585)
-    t586 = np.abs(slope_aside_beta_rear_elbow_down)
-    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t96, 1.0)
-    del t96
-    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t586 / heavy_1_beta_rear_elbow_down, 0.0)
-    t587 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
-    t588 = aside_rate_rear_elbow_down * slope_aside_beta_rear_elbow_down
-    t589 = fore_rate_rear_elbow_down * (drawn * t585 - t141 * t584)
-    del drawn, t141, t584, t585
-    slope_beta_rear_elbow_down = t588 - t589
-    del t588, t589
-    t590 = np.abs(slope_beta_rear_elbow_down)
-    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t556, 1.0)
-    del t556
-    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t590 / heavy_0_beta_rear_elbow_down, 0.0)
-    t591 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
-    t592 = _runtime.select(-t580 < 0.0, t587 / (t140 + t587 + t591), 0.0)
-    del t140, t587, t591
-    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t592, 0.0)
-    del t592
-    t593 = _runtime.sign(slope_aside_beta_rear_elbow_down)
+    slope_aside_beta_rear_elbow_down = L1 * (t583 + t584)
+    t585 = np.abs(slope_aside_beta_rear_elbow_down)
+    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t95, 1.0)
+    del t95
+    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t585 / heavy_1_beta_rear_elbow_down, 0.0)
+    t586 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
+    t587 = aside_rate_rear_elbow_down * slope_aside_beta_rear_elbow_down
+    t588 = fore_rate_rear_elbow_down * (drawn * t584 - t140 * t583)
+    del drawn, t140, t583, t584
+    slope_beta_rear_elbow_down = t587 - t588
+    del t587, t588
+    t589 = np.abs(slope_beta_rear_elbow_down)
+    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t555, 1.0)
+    del t555
+    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t589 / heavy_0_beta_rear_elbow_down, 0.0)
+    t590 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
+    t591 = _runtime.select(-t579 < 0.0, t586 / (t139 + t586 + t590), 0.0)
+    del t139, t586, t590
+    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t591, 0.0)
+    del t591
+    t592 = _runtime.sign(slope_aside_beta_rear_elbow_down)
     del slope_aside_beta_rear_elbow_down
-    t594 = t133 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
+    t593 = t132 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
     del heavy_1_beta_rear_elbow_down
-    t595 = t580 * share_beta_rear_elbow_down * t593 / (t586 + t594)
-    del t586, t593, t594
-    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t595, 0.0)
-    del t595
-    lack_beta_rear_elbow_down = t580 * (1.0 - share_beta_rear_elbow_down)
+    t594 = t579 * share_beta_rear_elbow_down * t592 / (t585 + t593)
+    del t585, t592, t593
+    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t594, 0.0)
+    del t594
+    lack_beta_rear_elbow_down = t579 * (1.0 - share_beta_rear_elbow_down)
     del share_beta_rear_elbow_down
-    t596 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
-    t597 = t133 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
+    t595 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
+    t596 = t132 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
     del heavy_0_beta_rear_elbow_down
-    t598 = 1.0 / (t590 + t597)
-    del t590, t597
-    t599 = lack_beta_rear_elbow_down * t598
+    t597 = 1.0 / (t589 + t596)
+    del t589, t596
+    t598 = lack_beta_rear_elbow_down * t597
     del lack_beta_rear_elbow_down
-    t600 = (t596 * t598 <= 9.094947017729282e-13) & (0.0 < t599)
-    del t596, t598
-    t601 = _runtime.sign(slope_beta_rear_elbow_down) * _runtime.select(t600, t599, 0.0)
-    del slope_beta_rear_elbow_down, t599, t600
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t601, 0.0)
-    del t601
-    t602 = aside_rate_rear_elbow_down * turn_beta_rear_elbow_down
+    t599 = (t595 * t597 <= 9.094947017729282e-13) & (0.0 < t598)
+    del t595, t597
+    t600 = _runtime.sign(slope_beta_rear_elbow_down) * _runtime.select(t599, t598, 0.0)
+    del slope_beta_rear_elbow_down, t598, t599
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t600, 0.0)
+    del t600
+    t601 = aside_rate_rear_elbow_down * turn_beta_rear_elbow_down
     del aside_rate_rear_elbow_down
-    t603 = fore_rate_rear_elbow_down * turn_beta_rear_elbow_down
+    t602 = fore_rate_rear_elbow_down * turn_beta_rear_elbow_down
     del fore_rate_rear_elbow_down
-    t604 = aside_beta_rear_elbow_down + t602 + t603 - t100 * (t552 * turn_beta_rear_elbow_down)
-    del t100, t552, t602
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t604, 0.0)
-    del t604
-    t605 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
-    t606 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t607 = np.sqrt(1.0 + t606)
-    del t606
-    t608 = 1.0 / t607
-    t609 = _runtime.select(spent_beta_rear_elbow_down, t605 * t608 + t583 * t608, t583)
-    del t605
-    fore_turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t603, 0.0)
+    t603 = aside_beta_rear_elbow_down + t601 + t602 - t99 * (t551 * turn_beta_rear_elbow_down)
+    del t551, t601, t99
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t603, 0.0)
     del t603
-    t610 = fore_turn_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
-    t611 = 1.0 / (t607 * np.sqrt(1.0 + t610))
-    del t607, t610
-    t612 = fore_turn_beta_rear_elbow_down * t611 - lean_beta_rear_elbow_down * t611
-    t613 = lean_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
-    t614 = t611 + t611 * t613
-    del t611, t613
-    t615 = v_1_alpha_rear_elbow_down * t612 + v_2_alpha_rear_elbow_down * t614
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t615, v_2_alpha_rear_elbow_down)
-    del t615
-    t616 = v_1_alpha_rear_elbow_down * t614 - v_2_alpha_rear_elbow_down * t612
-    del t612, t614, v_2_alpha_rear_elbow_down
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t616, v_1_alpha_rear_elbow_down)
-    del t616, v_1_alpha_rear_elbow_down
+    t604 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t605 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t606 = np.sqrt(1.0 + t605)
+    del t605
+    t607 = 1.0 / t606
+    t608 = _runtime.select(spent_beta_rear_elbow_down, t604 * t607 + t582 * t607, t582)
+    del t604
+    fore_turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t602, 0.0)
+    del t602
+    t609 = fore_turn_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t610 = 1.0 / (t606 * np.sqrt(1.0 + t609))
+    del t606, t609
+    t611 = fore_turn_beta_rear_elbow_down * t610 - lean_beta_rear_elbow_down * t610
+    t612 = lean_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t613 = t610 + t610 * t612
+    del t610, t612
+    t614 = v_1_alpha_rear_elbow_down * t611 + v_2_alpha_rear_elbow_down * t613
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t614, v_2_alpha_rear_elbow_down)
+    del t614
+    t615 = v_1_alpha_rear_elbow_down * t613 - v_2_alpha_rear_elbow_down * t611
+    del t611, t613, v_2_alpha_rear_elbow_down
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t615, v_1_alpha_rear_elbow_down)
+    del t615, v_1_alpha_rear_elbow_down
     sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
-    t617 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
-    t618 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t617 <= _runtime.VANISHING * (64.0 * t618)
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t618, -t617)
-    t619 = t609 * _runtime.sign(v_2_beta_rear_elbow_down)
-    t620 = p_1_alpha_rear_elbow_down * t608 - t608 * (t583 * lean_beta_rear_elbow_down)
-    del t583, t608
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t620, p_1_alpha_rear_elbow_down)
-    del p_1_alpha_rear_elbow_down, t620
-    t621 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t616 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t617 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t616 <= _runtime.VANISHING * (64.0 * t617)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t617, -t616)
+    t618 = t608 * _runtime.sign(v_2_beta_rear_elbow_down)
+    t619 = p_1_alpha_rear_elbow_down * t607 - t607 * (t582 * lean_beta_rear_elbow_down)
+    del t582, t607
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t619, p_1_alpha_rear_elbow_down)
+    del p_1_alpha_rear_elbow_down, t619
+    t620 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
     del sigma_uv_rear_elbow_down
-    t622 = _runtime.select(parallel_rear_elbow_down, t619, t621)
-    del t619
-    t623 = whole_y_rear_elbow_down + t622
-    below_beta_0_rear_elbow_down = np.maximum(t623, t165)
-    t624 = whole_y_rear_elbow_down - t622
-    above_beta_0_rear_elbow_down = np.maximum(t624, t165)
-    t625 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t621 = _runtime.select(parallel_rear_elbow_down, t618, t620)
+    del t618
+    t622 = whole_y_rear_elbow_down + t621
+    below_beta_0_rear_elbow_down = np.maximum(t622, t164)
+    t623 = whole_y_rear_elbow_down - t621
+    above_beta_0_rear_elbow_down = np.maximum(t623, t164)
+    t624 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t626 = v_2_beta_rear_elbow_down * (t625 / total_beta_0_rear_elbow_down)
-    del t625, total_beta_0_rear_elbow_down
-    t627 = t609 - t626
-    del t626
-    left_along_rear_elbow_down = L1 - np.abs(t627)
-    t628 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t629 = np.maximum(-t628, left_along_rear_elbow_down)
-    del t628
-    spent_along_rear_elbow_down = t629 <= t170
-    del t170, t629
-    t630 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
-    t631 = t630 | spent_beta_rear_elbow_down
-    del t630
-    t632 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
-    t633 = np.arctan2(_runtime.select(t631, t173 * t632, 0.0), 1.0)
-    del t173, t632
-    t634 = gain_1_alpha_rear_elbow_down + gain_0_alpha_rear_elbow_down
+    t625 = v_2_beta_rear_elbow_down * (t624 / total_beta_0_rear_elbow_down)
+    del t624, total_beta_0_rear_elbow_down
+    t626 = t608 - t625
+    del t625
+    left_along_rear_elbow_down = L1 - np.abs(t626)
+    t627 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t628 = np.maximum(-t627, left_along_rear_elbow_down)
+    del t627
+    spent_along_rear_elbow_down = t628 <= t169
+    del t169, t628
+    t629 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
+    t630 = t629 | spent_beta_rear_elbow_down
+    del t629
+    t631 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    t632 = np.arctan2(_runtime.select(t630, t172 * t631, 0.0), 1.0)
+    del t172, t631
+    t633 = gain_1_alpha_rear_elbow_down + gain_0_alpha_rear_elbow_down
     del gain_0_alpha_rear_elbow_down, gain_1_alpha_rear_elbow_down
-    t635 = _runtime.select(spent_alpha_rear_elbow_down, t634, 0.0)
-    del t634
-    t636 = _runtime.select(spent_alpha_rear_elbow_down, leniency, 1.0)
-    t637 = -(_runtime.FEASIBILITY * ((t84 + t635) * t636))
-    del t635, t636, t84
-    t638 = t193 & (t637 <= margin_alpha_rear_elbow_down)
-    del margin_alpha_rear_elbow_down, t193, t637
-    t639 = gain_1_beta_rear_elbow_down + gain_0_beta_rear_elbow_down
+    t634 = _runtime.select(spent_alpha_rear_elbow_down, t633, 0.0)
+    del t633
+    t635 = _runtime.select(spent_alpha_rear_elbow_down, leniency, 1.0)
+    t636 = -(_runtime.FEASIBILITY * ((t83 + t634) * t635))
+    del t634, t635, t83
+    t637 = t192 & (t636 <= margin_alpha_rear_elbow_down)
+    del margin_alpha_rear_elbow_down, t192, t636
+    t638 = gain_1_beta_rear_elbow_down + gain_0_beta_rear_elbow_down
     del gain_0_beta_rear_elbow_down, gain_1_beta_rear_elbow_down
-    t640 = _runtime.select(spent_beta_rear_elbow_down, t639, 0.0)
-    del t639
-    t641 = _runtime.select(spent_beta_rear_elbow_down, leniency, 1.0)
-    t642 = _runtime.FEASIBILITY * ((t133 + t640) * t641)
-    del t133, t640, t641
-    t643 = spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down
-    t644 = _runtime.select(t643, leniency, 1.0)
-    del leniency, t643
-    t645 = -(_runtime.FEASIBILITY * (play * t644))
+    t639 = _runtime.select(spent_beta_rear_elbow_down, t638, 0.0)
+    del t638
+    t640 = _runtime.select(spent_beta_rear_elbow_down, leniency, 1.0)
+    t641 = _runtime.FEASIBILITY * ((t132 + t639) * t640)
+    del t132, t639, t640
+    t642 = spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down
+    t643 = _runtime.select(t642, leniency, 1.0)
+    del leniency, t642
+    t644 = -(_runtime.FEASIBILITY * (play * t643))
     del play
-    t646 = t638 & (-t642 <= -t580) & (t645 <= t621 - t617)
-    del t580, t638, t642
-    t647 = t646 & (t645 <= -(t617 + t621)) & (t645 <= t623)
-    del t621, t623, t646
-    t648 = t203 * t644
-    del t203, t644
-    t649 = _runtime.select(spent_along_rear_elbow_down, t618 / (t205 - t617), 0.0)
-    del t205, t618
-    t650 = -(_runtime.FEASIBILITY * (t648 * (1.0 + t649)))
-    del t649
-    t651 = t647 & (t645 <= t624) & (t650 <= left_along_rear_elbow_down)
-    del t624, t647, t650
-    t652 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
-    del left_along_rear_elbow_down
-    t653 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t654 = v_2_beta_rear_elbow_down * t652 / (t617 * t617 + t653)
-    del t617, t652, t653
-    t655 = whole_y_rear_elbow_down * (t654 * _runtime.sign(-t627))
-    del t627, t654
-    t656 = _runtime.select(spent_along_rear_elbow_down, t622 + t655, t622)
-    del spent_along_rear_elbow_down, t622, t655
-    t657 = whole_y_rear_elbow_down + t656
-    t658 = whole_y_rear_elbow_down - t656
-    del t656, whole_y_rear_elbow_down
-    t659 = -(_runtime.FEASIBILITY * t648)
+    t645 = t637 & (-t641 <= -t579) & (t644 <= t620 - t616)
+    del t579, t637, t641
+    t646 = t645 & (t644 <= -(t616 + t620)) & (t644 <= t622)
+    del t620, t622, t645
+    t647 = t202 * t643
+    del t202, t643
+    t648 = _runtime.select(spent_along_rear_elbow_down, t617 / (t204 - t616), 0.0)
+    del t204, t617
+    t649 = -(_runtime.FEASIBILITY * (t647 * (1.0 + t648)))
     del t648
-    below_beta_rear_elbow_down = np.maximum(t657, t165)
-    above_beta_rear_elbow_down = np.maximum(t658, t165)
-    t660 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t650 = t646 & (t644 <= t623) & (t649 <= left_along_rear_elbow_down)
+    del t623, t646, t649
+    t651 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
+    del left_along_rear_elbow_down
+    t652 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t653 = v_2_beta_rear_elbow_down * t651 / (t616 * t616 + t652)
+    del t616, t651, t652
+    t654 = whole_y_rear_elbow_down * (t653 * _runtime.sign(-t626))
+    del t626, t653
+    t655 = _runtime.select(spent_along_rear_elbow_down, t621 + t654, t621)
+    del spent_along_rear_elbow_down, t621, t654
+    t656 = whole_y_rear_elbow_down + t655
+    t657 = whole_y_rear_elbow_down - t655
+    del t655, whole_y_rear_elbow_down
+    t658 = -(_runtime.FEASIBILITY * t647)
+    del t647
+    below_beta_rear_elbow_down = np.maximum(t656, t164)
+    above_beta_rear_elbow_down = np.maximum(t657, t164)
+    t659 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t661 = 1.0 / total_beta_rear_elbow_down
+    t660 = 1.0 / total_beta_rear_elbow_down
     del total_beta_rear_elbow_down
-    t662 = t660 * t661
-    del t660
-    t663 = t609 - v_2_beta_rear_elbow_down * t662
-    del t609, v_2_beta_rear_elbow_down
-    t664 = L1 + t663
-    t665 = t651 & (t645 <= t657) & (t645 <= t658) & (t659 <= t664)
-    del t645, t651, t657, t658
-    t666 = L1 - t663
-    unreachable_4 = np.logical_not(t665 & (t659 <= t666))
-    del t659, t665
-    t667 = _runtime.poison(invalid | unreachable_4)
-    t668 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
+    t661 = t659 * t660
+    del t659
+    t662 = t608 - v_2_beta_rear_elbow_down * t661
+    del t608, v_2_beta_rear_elbow_down
+    t663 = L1 + t662
+    t664 = t650 & (t644 <= t656) & (t644 <= t657) & (t658 <= t663)
+    del t644, t650, t656, t657
+    t665 = L1 - t662
+    unreachable_4 = np.logical_not(t664 & (t658 <= t665))
+    del t658, t664
+    t666 = _runtime.poison(invalid | unreachable_4)
+    t667 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
     del out_front_elbow_down, up_front_elbow_down
-    t669 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
-    t670 = lean_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t668 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    t669 = lean_alpha_rear_elbow_down * lean_beta_rear_elbow_down
     del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t671 = np.arctan2(t669, 1.0 - t670)
-    del t669, t670
-    t672 = _runtime.select(folded, 0.0, t668) + t671
-    del t668
-    below_alpha_rear_elbow_down = np.maximum(t664, t165)
-    del t664
-    above_alpha_rear_elbow_down = np.maximum(t666, t165)
-    del t165, t666
-    t673 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t670 = np.arctan2(t668, 1.0 - t669)
+    del t668, t669
+    t671 = _runtime.select(folded, 0.0, t667) + t670
+    del t667
+    below_alpha_rear_elbow_down = np.maximum(t663, t164)
+    del t663
+    above_alpha_rear_elbow_down = np.maximum(t665, t164)
+    del t164, t665
+    t672 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t674 = 1.0 / total_alpha_rear_elbow_down
+    t673 = 1.0 / total_alpha_rear_elbow_down
     del total_alpha_rear_elbow_down
-    t675 = t673 * t674
-    del t673
-    t676 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t674 = t672 * t673
+    del t672
+    t675 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t677 = np.arctan2(t675, t674 * t676)
-    del t674, t676
-    t678 = fore_turn_alpha_rear_elbow_down + fore_turn_beta_rear_elbow_down
-    t679 = fore_turn_alpha_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t676 = np.arctan2(t674, t673 * t675)
+    del t673, t675
+    t677 = fore_turn_alpha_rear_elbow_down + fore_turn_beta_rear_elbow_down
+    t678 = fore_turn_alpha_rear_elbow_down * fore_turn_beta_rear_elbow_down
     del fore_turn_alpha_rear_elbow_down, fore_turn_beta_rear_elbow_down
-    t680 = t231 - (t671 - np.arctan2(t678, 1.0 - t679))
-    del t231, t671, t678, t679
-    t681 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t679 = t230 - (t670 - np.arctan2(t677, 1.0 - t678))
+    del t230, t670, t677, t678
+    t680 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t682 = t677 - np.arctan2(t662, t661 * t681)
-    del t661, t681
-    t683 = (wrist <= al * _runtime.DETERMINED) | nowhere
+    t681 = t676 - np.arctan2(t661, t660 * t680)
+    del t660, t680
+    t682 = (wrist <= al * _runtime.DETERMINED) | nowhere
     del nowhere
-    t684 = t683 | folded | short
-    del folded, short, t683
-    t685 = 1.0 / slack
+    t683 = t682 | folded | short
+    del folded, short, t682
+    t684 = 1.0 / slack
     del slack
-    t686 = t685 * (t107 + t88 * t113 / 2000000.0)
-    del t113
-    t687 = 1099511627776.0 * _runtime.select(spent_alpha, t686, 1.0)
-    t688 = t685 * (L1 + t89 / 2000000.0)
-    del t89
-    t689 = 1099511627776.0 * _runtime.select(spent_alpha, t688, 1.0)
-    t690 = 1.0 - t687 * np.abs(turn_alpha) - t689 * np.abs(aside_alpha)
-    del aside_alpha, t687, t689, turn_alpha
-    t691 = _runtime.select(spent_alpha, t690, 1.0) <= _runtime.DETERMINED
-    del spent_alpha, t690
-    t692 = 1099511627776.0 * _runtime.select(spent_beta, t686, 1.0)
-    del t686
-    t693 = 1099511627776.0 * _runtime.select(spent_beta, t688, 1.0)
-    t694 = 1.0 - t692 * np.abs(turn_beta) - t693 * np.abs(aside_beta)
-    del aside_beta, t692, t693, turn_beta
-    t695 = _runtime.select(spent_beta, t694, 1.0) <= _runtime.DETERMINED
-    del spent_beta, t694
-    t696 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
-    t697 = t696 + al * 0.015625 + d * 0.015625 + d1 * 0.015625
+    t685 = t684 * (t106 + t87 * t112 / 2000000.0)
+    del t112
+    t686 = 1099511627776.0 * _runtime.select(spent_alpha, t685, 1.0)
+    t687 = t684 * (L1 + t88 / 2000000.0)
+    del t88
+    t688 = 1099511627776.0 * _runtime.select(spent_alpha, t687, 1.0)
+    t689 = 1.0 - t686 * np.abs(turn_alpha) - t688 * np.abs(aside_alpha)
+    del aside_alpha, t686, t688, turn_alpha
+    t690 = _runtime.select(spent_alpha, t689, 1.0) <= _runtime.DETERMINED
+    del spent_alpha, t689
+    t691 = 1099511627776.0 * _runtime.select(spent_beta, t685, 1.0)
+    del t685
+    t692 = 1099511627776.0 * _runtime.select(spent_beta, t687, 1.0)
+    t693 = 1.0 - t691 * np.abs(turn_beta) - t692 * np.abs(aside_beta)
+    del aside_beta, t691, t692, turn_beta
+    t694 = _runtime.select(spent_beta, t693, 1.0) <= _runtime.DETERMINED
+    del spent_beta, t693
+    t695 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
+    t696 = t695 + al * 0.015625 + d * 0.015625 + d1 * 0.015625
+    del t695
+    t697 = t696 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
     del t696
-    t698 = t697 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
-    del t697
-    t699 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
+    t698 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
     del t_phi, t_psi
-    t700 = np.minimum(np.maximum(d, t698) * t699, wrist * lengths / al)
-    del t698, t699, wrist
-    t701 = np.abs(p_1_beta + v_1_beta * t216) + np.abs(t217 - L1 * t226)
-    del p_1_beta, t216, t217, t226, v_1_beta
-    t702 = 1125899906842624.0 * _runtime.select(t171, t701, 0.0)
+    t699 = np.minimum(np.maximum(d, t697) * t698, wrist * lengths / al)
+    del t697, t698, wrist
+    t700 = np.abs(p_1_beta + v_1_beta * t215) + np.abs(t216 - L1 * t225)
+    del p_1_beta, t215, t216, t225, v_1_beta
+    t701 = 1125899906842624.0 * _runtime.select(t170, t700, 0.0)
+    del t700
+    t702 = _runtime.select(t170, t699, 1.0) <= _runtime.DETERMINED * t701
     del t701
-    t703 = _runtime.select(t171, t700, 1.0) <= _runtime.DETERMINED * t702
-    del t702
-    t704 = lengths - 4.0 * by_wrist
+    t703 = lengths - 4.0 * by_wrist
     del by_wrist
-    t705 = _runtime.select(t171 | tangent, t704, lengths)
-    del t171
-    t706 = _runtime.DETERMINED * lengths
-    t707 = t684 | t691 | t695 | parallel | t703 | (t705 <= t706)
-    del parallel, t691, t695, t703, t705
-    t708 = t685 * (t262 + t88 * t270 / 2000000.0)
-    del t270
-    usual_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t708, 1.0)
-    t709 = 1099511627776.0 * usual_0_alpha_front_elbow_down
+    t704 = _runtime.select(t170 | tangent, t703, lengths)
+    del t170
+    t705 = _runtime.DETERMINED * lengths
+    t706 = t683 | t690 | t694 | parallel | t702 | (t704 <= t705)
+    del parallel, t690, t694, t702, t704
+    t707 = t684 * (t261 + t87 * t269 / 2000000.0)
+    del t269
+    usual_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t707, 1.0)
+    t708 = 1099511627776.0 * usual_0_alpha_front_elbow_down
     del usual_0_alpha_front_elbow_down
-    t710 = 1.0 - t709 * np.abs(turn_alpha_front_elbow_down)
-    del t709, turn_alpha_front_elbow_down
-    usual_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t688, 1.0)
-    t711 = 1099511627776.0 * usual_1_alpha_front_elbow_down
+    t709 = 1.0 - t708 * np.abs(turn_alpha_front_elbow_down)
+    del t708, turn_alpha_front_elbow_down
+    usual_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t687, 1.0)
+    t710 = 1099511627776.0 * usual_1_alpha_front_elbow_down
     del usual_1_alpha_front_elbow_down
-    t712 = t710 - t711 * np.abs(aside_alpha_front_elbow_down)
-    del aside_alpha_front_elbow_down, t710, t711
-    t713 = _runtime.select(spent_alpha_front_elbow_down, t712, 1.0)
-    del spent_alpha_front_elbow_down, t712
-    usual_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t708, 1.0)
-    del t708
-    t714 = 1099511627776.0 * usual_0_beta_front_elbow_down
+    t711 = t709 - t710 * np.abs(aside_alpha_front_elbow_down)
+    del aside_alpha_front_elbow_down, t709, t710
+    t712 = _runtime.select(spent_alpha_front_elbow_down, t711, 1.0)
+    del spent_alpha_front_elbow_down, t711
+    usual_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t707, 1.0)
+    del t707
+    t713 = 1099511627776.0 * usual_0_beta_front_elbow_down
     del usual_0_beta_front_elbow_down
-    t715 = 1.0 - t714 * np.abs(turn_beta_front_elbow_down)
-    del t714, turn_beta_front_elbow_down
-    usual_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t688, 1.0)
-    t716 = 1099511627776.0 * usual_1_beta_front_elbow_down
+    t714 = 1.0 - t713 * np.abs(turn_beta_front_elbow_down)
+    del t713, turn_beta_front_elbow_down
+    usual_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t687, 1.0)
+    t715 = 1099511627776.0 * usual_1_beta_front_elbow_down
     del usual_1_beta_front_elbow_down
-    t717 = t715 - t716 * np.abs(aside_beta_front_elbow_down)
-    del aside_beta_front_elbow_down, t715, t716
-    t718 = _runtime.select(spent_beta_front_elbow_down, t717, 1.0)
-    del spent_beta_front_elbow_down, t717
-    t719 = t684 | (t713 <= _runtime.DETERMINED) | (t718 <= _runtime.DETERMINED)
-    del t713, t718
-    t720 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t380
-    del p_1_beta_front_elbow_down, t380, v_1_beta_front_elbow_down
-    missed_front_elbow_down = _runtime.select(t349, np.abs(t720) + np.abs(t381 - L1 * t393), 0.0)
-    del t381, t393, t720
-    t721 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
+    t716 = t714 - t715 * np.abs(aside_beta_front_elbow_down)
+    del aside_beta_front_elbow_down, t714, t715
+    t717 = _runtime.select(spent_beta_front_elbow_down, t716, 1.0)
+    del spent_beta_front_elbow_down, t716
+    t718 = t683 | (t712 <= _runtime.DETERMINED) | (t717 <= _runtime.DETERMINED)
+    del t712, t717
+    t719 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t379
+    del p_1_beta_front_elbow_down, t379, v_1_beta_front_elbow_down
+    missed_front_elbow_down = _runtime.select(t348, np.abs(t719) + np.abs(t380 - L1 * t392), 0.0)
+    del t380, t392, t719
+    t720 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
     del missed_front_elbow_down
-    t722 = t719 | parallel_front_elbow_down | (_runtime.select(t349, t700, 1.0) <= t721)
-    del parallel_front_elbow_down, t719, t721
-    t723 = _runtime.select(t349 | tangent, t704, lengths)
-    del t349
-    t724 = _runtime.status(invalid, unreachable_2, t722 | (t723 <= t706))
-    del t722, t723, unreachable_2
-    t725 = t685 * (t262 + t88 * t415 / 2000000.0)
-    del t262, t415
-    usual_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t725, 1.0)
-    t726 = 1099511627776.0 * usual_0_alpha_rear_elbow_up
+    t721 = t718 | parallel_front_elbow_down | (_runtime.select(t348, t699, 1.0) <= t720)
+    del parallel_front_elbow_down, t718, t720
+    t722 = _runtime.select(t348 | tangent, t703, lengths)
+    del t348
+    t723 = _runtime.status(invalid, unreachable_2, t721 | (t722 <= t705))
+    del t721, t722, unreachable_2
+    t724 = t684 * (t261 + t87 * t414 / 2000000.0)
+    del t261, t414
+    usual_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t724, 1.0)
+    t725 = 1099511627776.0 * usual_0_alpha_rear_elbow_up
     del usual_0_alpha_rear_elbow_up
-    t727 = 1.0 - t726 * np.abs(turn_alpha_rear_elbow_up)
-    del t726, turn_alpha_rear_elbow_up
-    usual_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t688, 1.0)
-    t728 = 1099511627776.0 * usual_1_alpha_rear_elbow_up
+    t726 = 1.0 - t725 * np.abs(turn_alpha_rear_elbow_up)
+    del t725, turn_alpha_rear_elbow_up
+    usual_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t687, 1.0)
+    t727 = 1099511627776.0 * usual_1_alpha_rear_elbow_up
     del usual_1_alpha_rear_elbow_up
-    t729 = t727 - t728 * np.abs(aside_alpha_rear_elbow_up)
-    del aside_alpha_rear_elbow_up, t727, t728
-    t730 = _runtime.select(spent_alpha_rear_elbow_up, t729, 1.0)
-    del spent_alpha_rear_elbow_up, t729
-    usual_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t725, 1.0)
-    del t725
-    t731 = 1099511627776.0 * usual_0_beta_rear_elbow_up * np.abs(turn_beta_rear_elbow_up)
+    t728 = t726 - t727 * np.abs(aside_alpha_rear_elbow_up)
+    del aside_alpha_rear_elbow_up, t726, t727
+    t729 = _runtime.select(spent_alpha_rear_elbow_up, t728, 1.0)
+    del spent_alpha_rear_elbow_up, t728
+    usual_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t724, 1.0)
+    del t724
+    t730 = 1099511627776.0 * usual_0_beta_rear_elbow_up * np.abs(turn_beta_rear_elbow_up)
     del turn_beta_rear_elbow_up, usual_0_beta_rear_elbow_up
-    usual_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t688, 1.0)
-    t732 = 1099511627776.0 * usual_1_beta_rear_elbow_up * np.abs(aside_beta_rear_elbow_up)
+    usual_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t687, 1.0)
+    t731 = 1099511627776.0 * usual_1_beta_rear_elbow_up * np.abs(aside_beta_rear_elbow_up)
     del aside_beta_rear_elbow_up, usual_1_beta_rear_elbow_up
-    t733 = _runtime.select(spent_beta_rear_elbow_up, 1.0 - t731 - t732, 1.0)
-    del spent_beta_rear_elbow_up, t731, t732
-    t734 = t684 | (t730 <= _runtime.DETERMINED) | (t733 <= _runtime.DETERMINED)
-    del t730, t733
-    t735 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t522
-    del p_1_beta_rear_elbow_up, t522, v_1_beta_rear_elbow_up
-    missed_rear_elbow_up = _runtime.select(t491, np.abs(t735) + np.abs(t523 - L1 * t535), 0.0)
-    del t523, t535, t735
-    t736 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
+    t732 = _runtime.select(spent_beta_rear_elbow_up, 1.0 - t730 - t731, 1.0)
+    del spent_beta_rear_elbow_up, t730, t731
+    t733 = t683 | (t729 <= _runtime.DETERMINED) | (t732 <= _runtime.DETERMINED)
+    del t729, t732
+    t734 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t521
+    del p_1_beta_rear_elbow_up, t521, v_1_beta_rear_elbow_up
+    missed_rear_elbow_up = _runtime.select(t490, np.abs(t734) + np.abs(t522 - L1 * t534), 0.0)
+    del t522, t534, t734
+    t735 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
     del missed_rear_elbow_up
-    t737 = t734 | parallel_rear_elbow_up | (_runtime.select(t491, t700, 1.0) <= t736)
-    del parallel_rear_elbow_up, t734, t736
-    t738 = _runtime.select(t491 | tangent, t704, lengths)
-    del t491
-    t739 = _runtime.status(invalid, unreachable_3, t737 | (t738 <= t706))
-    del t737, t738, unreachable_3
-    t740 = t685 * (t107 + t88 * t555 / 2000000.0)
-    del t107, t555, t685, t88
-    usual_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t740, 1.0)
-    t741 = 1099511627776.0 * usual_0_alpha_rear_elbow_down
+    t736 = t733 | parallel_rear_elbow_up | (_runtime.select(t490, t699, 1.0) <= t735)
+    del parallel_rear_elbow_up, t733, t735
+    t737 = _runtime.select(t490 | tangent, t703, lengths)
+    del t490
+    t738 = _runtime.status(invalid, unreachable_3, t736 | (t737 <= t705))
+    del t736, t737, unreachable_3
+    t739 = t684 * (t106 + t87 * t554 / 2000000.0)
+    del t106, t554, t684, t87
+    usual_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t739, 1.0)
+    t740 = 1099511627776.0 * usual_0_alpha_rear_elbow_down
     del usual_0_alpha_rear_elbow_down
-    t742 = 1.0 - t741 * np.abs(turn_alpha_rear_elbow_down)
-    del t741, turn_alpha_rear_elbow_down
-    usual_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t688, 1.0)
-    t743 = 1099511627776.0 * usual_1_alpha_rear_elbow_down
+    t741 = 1.0 - t740 * np.abs(turn_alpha_rear_elbow_down)
+    del t740, turn_alpha_rear_elbow_down
+    usual_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t687, 1.0)
+    t742 = 1099511627776.0 * usual_1_alpha_rear_elbow_down
     del usual_1_alpha_rear_elbow_down
-    t744 = t742 - t743 * np.abs(aside_alpha_rear_elbow_down)
-    del aside_alpha_rear_elbow_down, t742, t743
-    t745 = _runtime.select(spent_alpha_rear_elbow_down, t744, 1.0)
-    del spent_alpha_rear_elbow_down, t744
-    usual_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t740, 1.0)
-    del t740
-    t746 = 1099511627776.0 * usual_0_beta_rear_elbow_down
+    t743 = t741 - t742 * np.abs(aside_alpha_rear_elbow_down)
+    del aside_alpha_rear_elbow_down, t741, t742
+    t744 = _runtime.select(spent_alpha_rear_elbow_down, t743, 1.0)
+    del spent_alpha_rear_elbow_down, t743
+    usual_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t739, 1.0)
+    del t739
+    t745 = 1099511627776.0 * usual_0_beta_rear_elbow_down
     del usual_0_beta_rear_elbow_down
-    t747 = 1.0 - t746 * np.abs(turn_beta_rear_elbow_down)
-    del t746, turn_beta_rear_elbow_down
-    usual_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t688, 1.0)
-    del t688
-    t748 = 1099511627776.0 * usual_1_beta_rear_elbow_down
+    t746 = 1.0 - t745 * np.abs(turn_beta_rear_elbow_down)
+    del t745, turn_beta_rear_elbow_down
+    usual_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t687, 1.0)
+    del t687
+    t747 = 1099511627776.0 * usual_1_beta_rear_elbow_down
     del usual_1_beta_rear_elbow_down
-    t749 = t747 - t748 * np.abs(aside_beta_rear_elbow_down)
-    del aside_beta_rear_elbow_down, t747, t748
-    t750 = _runtime.select(spent_beta_rear_elbow_down, t749, 1.0)
-    del spent_beta_rear_elbow_down, t749
-    t751 = t684 | (t745 <= _runtime.DETERMINED) | (t750 <= _runtime.DETERMINED)
-    del t684, t745, t750
-    t752 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t662
-    del p_1_beta_rear_elbow_down, t662, v_1_beta_rear_elbow_down
-    missed_rear_elbow_down = _runtime.select(t631, np.abs(t752) + np.abs(t663 - L1 * t675), 0.0)
-    del t663, t675, t752
-    t753 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
+    t748 = t746 - t747 * np.abs(aside_beta_rear_elbow_down)
+    del aside_beta_rear_elbow_down, t746, t747
+    t749 = _runtime.select(spent_beta_rear_elbow_down, t748, 1.0)
+    del spent_beta_rear_elbow_down, t748
+    t750 = t683 | (t744 <= _runtime.DETERMINED) | (t749 <= _runtime.DETERMINED)
+    del t683, t744, t749
+    t751 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t661
+    del p_1_beta_rear_elbow_down, t661, v_1_beta_rear_elbow_down
+    missed_rear_elbow_down = _runtime.select(t630, np.abs(t751) + np.abs(t662 - L1 * t674), 0.0)
+    del t662, t674, t751
+    t752 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
     del missed_rear_elbow_down
-    t754 = t751 | parallel_rear_elbow_down | (_runtime.select(t631, t700, 1.0) <= t753)
-    del parallel_rear_elbow_down, t700, t751, t753
-    t755 = _runtime.select(t631 | tangent, t704, lengths)
-    del lengths, t631, t704, tangent
-    t756 = _runtime.status(invalid, unreachable_4, t754 | (t755 <= t706))
-    del t706, t754, t755, unreachable_4
+    t753 = t750 | parallel_rear_elbow_down | (_runtime.select(t630, t699, 1.0) <= t752)
+    del parallel_rear_elbow_down, t699, t750, t752
+    t754 = _runtime.select(t630 | tangent, t703, lengths)
+    del lengths, t630, t703, tangent
+    t755 = _runtime.status(invalid, unreachable_4, t753 | (t754 <= t705))
+    del t705, t753, t754, unreachable_4
     return (
-        t177 + t221,
-        _runtime.wrap(t224 - t228) + t221,
-        _runtime.wrap(t233 + t235) + t221,
-        _runtime.wrap(t224 + t228) + t221,
-        _runtime.wrap(t233 - t235) + t221,
-        t236 + t221,
-        _runtime.wrap(t352 - t176) + t385,
-        _runtime.wrap(t390 - t395) + t385,
-        _runtime.wrap(t399 + t401) + t385,
-        _runtime.wrap(t390 + t395) + t385,
-        _runtime.wrap(t399 - t401) + t385,
-        t236 + t385,
-        _runtime.wrap(t493 - t494) + t527,
-        _runtime.wrap(t532 - t537) + t527,
-        _runtime.wrap(t540 + t542) + t527,
-        _runtime.wrap(t532 + t537) + t527,
-        _runtime.wrap(t540 - t542) + t527,
-        t236 + t527,
-        _runtime.wrap(t633 - t494) + t667,
-        _runtime.wrap(t672 - t677) + t667,
-        _runtime.wrap(t680 + t682) + t667,
-        _runtime.wrap(t672 + t677) + t667,
-        _runtime.wrap(t680 - t682) + t667,
-        t236 + t667,
-        _runtime.status(invalid, unreachable, t707),
-        t724,
-        t739,
-        t756,
+        t176 + t220,
+        _runtime.wrap(t223 - t227) + t220,
+        _runtime.wrap(t232 + t234) + t220,
+        _runtime.wrap(t223 + t227) + t220,
+        _runtime.wrap(t232 - t234) + t220,
+        t235 + t220,
+        _runtime.wrap(t351 - t175) + t384,
+        _runtime.wrap(t389 - t394) + t384,
+        _runtime.wrap(t398 + t400) + t384,
+        _runtime.wrap(t389 + t394) + t384,
+        _runtime.wrap(t398 - t400) + t384,
+        t235 + t384,
+        _runtime.wrap(t492 - t493) + t526,
+        _runtime.wrap(t531 - t536) + t526,
+        _runtime.wrap(t539 + t541) + t526,
+        _runtime.wrap(t531 + t536) + t526,
+        _runtime.wrap(t539 - t541) + t526,
+        t235 + t526,
+        _runtime.wrap(t632 - t493) + t666,
+        _runtime.wrap(t671 - t676) + t666,
+        _runtime.wrap(t679 + t681) + t666,
+        _runtime.wrap(t671 + t676) + t666,
+        _runtime.wrap(t679 - t681) + t666,
+        t235 + t666,
+        _runtime.status(invalid, unreachable, t706),
+        t723,
+        t738,
+        t755,
     )
 
 

@@ -12,7 +12,7 @@
 #   jacobian: 55 compare and select, 208 add, 53 divide, 321 multiply, 6 sincos, 6 sqrt
 #   determinant: 55 compare and select, 86 add, 22 divide, 155 multiply, 5 sincos, 6 sqrt
 #   singularities: 55 compare and select, 91 add, 21 divide, 145 multiply, 5 sincos, 6 sqrt
-#   ik: 866 compare and select, 643 add, 28 atan2, 163 divide, 917 multiply, 1 reduce to a turn, 3
+#   ik: 866 compare and select, 643 add, 28 atan2, 162 divide, 917 multiply, 1 reduce to a turn, 3
 #     sincos, 42 sqrt
 #   ik where nothing vanishes: 285 compare and select, 263 add, 23 atan2, 36 divide, 343 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
@@ -2103,7 +2103,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t28 = t27 * t27
     t29 = t16 * t16
     wanted = np.maximum(np.maximum(0.0, t26 - t28), np.minimum(t15, t29 - t28))
-    t30 = np.abs(t15 - wanted) * 0.5 <= _runtime.ROUNDING * t24
+    t30 = np.abs(t15 - wanted) <= 2.0 * _runtime.ROUNDING * t24
     del t24
     t31 = np.sqrt(_runtime.select(t30, wanted, t15))
     del t15, t30, wanted

@@ -11,7 +11,7 @@
 #   singularities: 5 add, 9 multiply, 3 sincos
 #   jacobian_space: 29 add, 65 multiply, 5 sincos
 #   jacobian_body: 26 add, 61 multiply, 5 sincos
-#   ik: 141 compare and select, 146 add, 20 atan2, 12 divide, 177 multiply, 11 sqrt
+#   ik: 141 compare and select, 146 add, 20 atan2, 11 divide, 178 multiply, 11 sqrt
 """Puma 560.
 
 A vertical base axis (theta1), two parallel horizontal axes (theta2, theta3) and a spherical
@@ -813,7 +813,7 @@ def _ik(
     t8 = T34 * T34
     t9 = t1 * t1
     wanted1 = np.maximum(np.maximum(0.0, t7 * t7 - t8), np.minimum(t6, t9 - t8))
-    t10 = np.abs(t6 - wanted1) * 0.5 <= h1 * _runtime.ROUNDING * size
+    t10 = np.abs(t6 - wanted1) <= h1 * 2.0 * _runtime.ROUNDING * size
     held1 = _runtime.select(t10, wanted1, t6)
     del t10, t6, wanted1
     span1 = _runtime.select(tangent1, np.sqrt(t5 * t5 + 4.0 * held1), below1 + above1)

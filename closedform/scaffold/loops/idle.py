@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from closedform.mechanics.assur_slides import groups_for, holder, sliding_order
@@ -41,12 +41,7 @@ def _without_shafts(loop: Loop) -> Loop:
         f"{loop.file}: {listed([j.name for j in idle])} leave the hand all freedoms and are left "
         f"out{beside}"
     )
-    return replace(
-        loop,
-        bodies={b: at for b, at in loop.bodies.items() if b not in gone},
-        rods={b: length for b, length in loop.rods.items() if b not in gone},
-        joints=joints,
-    )
+    return _without(loop, gone, joints)
 
 
 def _shaft_joints(loop: Loop, hand: str) -> Iterator[Joint]:
@@ -94,11 +89,17 @@ def _without_bodies(loop: Loop) -> Loop:
         f"{loop.file}: {listed(idle)} do{'es' * (len(idle) == 1)} not move the hand and "
         f"{'is' if len(idle) == 1 else 'are'} left out"
     )
+    joints = {n: j for n, j in loop.joints.items() if not {*j.between} & {*idle}}
+    return _without(loop, idle, joints)
+
+
+def _without(loop: Loop, gone: Sequence[str], joints: Mapping[str, Joint]) -> Loop:
+    """The loop without some bodies and rods, with these joints."""
     return replace(
         loop,
-        bodies={name: at for name, at in loop.bodies.items() if name not in idle},
-        rods={name: length for name, length in loop.rods.items() if name not in idle},
-        joints={n: j for n, j in loop.joints.items() if not {*j.between} & {*idle}},
+        bodies={b: at for b, at in loop.bodies.items() if b not in gone},
+        rods={b: length for b, length in loop.rods.items() if b not in gone},
+        joints=dict(joints),
     )
 
 

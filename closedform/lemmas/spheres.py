@@ -15,24 +15,27 @@ from closedform.model.lemma import Lemma
 
 theorem(
     "three spheres",
-    statement=r"""Let $\mathbf c_2 = \mathbf a \ne \mathbf 0$ and $\mathbf c_3 = k\,\mathbf a +
-\mathbf n$ with $\mathbf n \ne \mathbf 0$ at right angles to $\mathbf a$, and let $\mu = |\mathbf
-a|^2$, $\nu = |\mathbf n|^2$ and $\mathbf w = \mathbf a \times \mathbf n$.  The points $\mathbf x$
-at the distance $r_1$ from the origin, $r_2$ from $\mathbf c_2$ and $r_3$ from $\mathbf c_3$ are
-$\mathbf x = X\,\mathbf a + Y\,\mathbf n + \sigma h\,\mathbf w$ with
-$$X = \frac{\mu + r_1^2 - r_2^2}{2 \mu}, \qquad Y = \frac{\nu + k^2 \mu + r_1^2 - r_3^2 - 2 k \mu
-X}{2 \nu}, \qquad h = \sqrt{\frac{r_1^2 - \mu X^2 - \nu Y^2}{\mu \nu}}, \qquad \sigma = \pm 1.$$
-They exist if and only if $\mu X^2 + \nu Y^2 \le r_1^2$, and coincide if and only if these are
-equal.  The first two spheres share a circle of the radius $\rho = \sqrt{r_1^2 - \mu X^2}$, and
-$$Y = \frac{\nu + \mu (k - X)^2 + \rho^2 - r_3^2}{2 \nu}, \qquad h = \sqrt{\frac{\rho^2 - \nu
-Y^2}{\mu \nu}}.$$""",
-    proof=r"""The vectors $\mathbf a$, $\mathbf n$ and $\mathbf w$ are at right angles to each
-other, and $|\mathbf w|^2 = \mu \nu$.  Write $\mathbf x = X\,\mathbf a + Y\,\mathbf n + Z\,\mathbf
-w$.  The first distance says $\mu X^2 + \nu Y^2 + \mu \nu Z^2 = r_1^2$.  Each of the others,
-subtracted from it, is linear: $2 \mu X = \mu + r_1^2 - r_2^2$ and $2 k \mu X + 2 \nu Y = k^2 \mu +
-\nu + r_1^2 - r_3^2$.  These give $X$ and $Y$, and the first equation gives $Z^2$.  With $r_1^2 =
-\mu X^2 + \rho^2$ they become the second form, in which short lengths are not the differences of
-long ones.""",
+    statement=r"""Let $\mathbf c_2 = \mathbf a$ and $\mathbf c_3$ be such that $\mathbf m = \mathbf
+a \times \mathbf c_3 \ne \mathbf 0$, and let $\mathbf n = \mathbf m \times \mathbf a$, $\mu =
+|\mathbf a|^2$, $\lambda = |\mathbf m|^2$ and $k = \mathbf a \cdot \mathbf c_3 / \mu$.  The points
+$\mathbf x$ at the distance $r_1$ from the origin, $r_2$ from $\mathbf c_2$ and $r_3$ from $\mathbf
+c_3$ are $\mathbf x = X\,\mathbf a + Y\,\mathbf n + \sigma h\,\mathbf m$ with
+$$X = \frac{\mu + r_1^2 - r_2^2}{2 \mu}, \qquad Y = \frac{|\mathbf c_3|^2 + r_1^2 - r_3^2 - 2 k \mu
+X}{2 \lambda}, \qquad h = \sqrt{\frac{r_1^2 - \mu X^2 - \lambda \mu Y^2}{\lambda}}, \qquad \sigma =
+\pm 1.$$
+They exist if and only if $\mu X^2 + \lambda \mu Y^2 \le r_1^2$, and coincide if and only if these
+are equal.  The first two spheres share a circle of the radius $\rho = \sqrt{r_1^2 - \mu X^2}$, and
+with $\nu = \lambda / \mu$
+$$Y = \frac{\nu + \mu (k - X)^2 + \rho^2 - r_3^2}{2 \lambda}, \qquad h = \sqrt{\frac{\rho^2 -
+\lambda \mu Y^2}{\lambda}}.$$""",
+    proof=r"""The vectors $\mathbf a$, $\mathbf n$ and $\mathbf m$ are at right angles to each
+other, $|\mathbf n|^2 = \lambda \mu$, and $\mathbf c_3 = k\,\mathbf a + \mathbf n / \mu$.  Write
+$\mathbf x = X\,\mathbf a + Y\,\mathbf n + Z\,\mathbf m$.  The first distance says $\mu X^2 +
+\lambda \mu Y^2 + \lambda Z^2 = r_1^2$.  Each of the others, subtracted from it, is linear: $2 \mu X
+= \mu + r_1^2 - r_2^2$ and $2 k \mu X + 2 \lambda Y = |\mathbf c_3|^2 + r_1^2 - r_3^2$.  These give
+$X$ and $Y$, and the first equation gives $Z^2$.  With $r_1^2 = \mu X^2 + \rho^2$ and $|\mathbf
+c_3|^2 = \mu k^2 + \nu$ they become the second form, in which short lengths are not the differences
+of long ones.""",
     exception=r"""If the centres are in line, there is no common point unless the third sphere
 contains the circle in which the first two meet, or two spheres are the same and meet the other;
 then $\mathbf x$ is free on this circle.  If all three are the same, $\mathbf x$ is free on it.""",
@@ -118,30 +121,24 @@ def three_spheres(
     whole = p.let("whole", choose(sp.Eq(scale, 0), 1, scale), nonnegative=True)
     a = sp.Matrix([p.let("a_x", choose(point, whole, span[0])), *span[1:]])
     mu = p.let("mu", choose(point, whole**2, either(vv, uu)), nonnegative=True)
-    over = p.let("over", 1 / mu, nonnegative=True)
-    # The first product has lost its direction where the centres are nearly in line, but the others
-    # are at right angles to a whatever it is.
-    first = _vector(p, "m", a.cross(other))
-    n = _vector(p, "n", first.cross(a) * over)
-    nu = p.let("nu", n.dot(n), nonnegative=True)
-    line = p.vanishes("in_line", nu, square, "the centres are in line", free, squares=True)
+    first, n, size = _frame(p, a, other, (mu, either(uu, vv)))
+    line = p.vanishes("in_line", size, square * mu, "the centres are in line", free, squares=True)
     equal = r1 == r2 == r3
     beside, length = _perpendicular(p, a, whole)
-    w = _vector(p, "w", [choose(line, e, f) for e, f in zip(beside, a.cross(n), strict=True)])
+    w = _vector(p, "w", [choose(line, e, f) for e, f in zip(beside, first, strict=True)])
+    lam = p.let("w_w", choose(line, length, size), nonnegative=True)
     if equal:
-        # nu + k (k - 1) mu as a product of differences: small if the last two centres are close
+        # |c|^2 - k mu as a product of differences: small if the last two centres are close
         left = other.dot(other - span)
-        part = p.let("part", 1 / choose(line, length, mu * nu), nonnegative=True)
-        squares = (mu, nu, part)
+        part = p.let("part", 1 / lam, nonnegative=True)
         X, Y, h = _equal_spheres(
-            p, r1, squares, left, flags=(point, line), scale=scale, share=share
+            p, r1, (mu, part), left, flags=(point, line), scale=scale, share=share
         )
         more: tuple[sp.Symbol, ...] = ()
     else:
         lengths = (r1, either(r3, r2), either(r2, r3))
-        squares = (mu, nu, p.let("nu_w", choose(line, length * over, nu), nonnegative=True))
         X, Y, h, flat = _unequal_spheres(
-            p, lengths, squares, other.dot(a), flags=(point, line), scale=scale, share=share
+            p, lengths, (mu, lam), other.dot(a), flags=(point, line), scale=scale, share=share
         )
         more = (flat,)
     from_first = [X * e + Y * f + sigma * h * g for e, f, g in zip(span, n, w, strict=True)]
@@ -150,8 +147,7 @@ def three_spheres(
     lemma = Lemma(
         "three spheres",
         r"|\mathbf x| = r_1,\ |\mathbf x - \mathbf a| = r_2,\ |\mathbf x - \mathbf c_3| = r_3 "
-        r"\;\Rightarrow\; \mathbf x = X\,\mathbf a + Y\,\mathbf n + \sigma h\,\mathbf a \times "
-        r"\mathbf n",
+        r"\;\Rightarrow\; \mathbf x = X\,\mathbf a + Y\,\mathbf n + \sigma h\,\mathbf m",
         tuple(
             (place - c).dot(place - c) - r**2
             for c, r in zip((sp.zeros(3, 1), u, v), radii, strict=True)
@@ -159,16 +155,14 @@ def three_spheres(
         dict(zip(unknowns, found, strict=True)),
         2,
         signs=(sigma,),
-        vectors=(
-            r"The algorithm finds $\mathbf n$ as $\mathbf m \times \mathbf a / \mu$ with "
-            r"$\mathbf m = \mathbf a \times \mathbf c_3$, $\mu = |\mathbf a|^2$ and "
-            r"$\nu = |\mathbf n|^2$." + r"  The radii are equal, so $X = 1/2$." * equal
-        ),
-        letters={uu: r"\mu"},
+        vectors=r"Here $\mathbf m = \mathbf a \times \mathbf c_3$ and "
+        r"$\mathbf n = \mathbf m \times \mathbf a$ with $\mu = |\mathbf a|^2$ and "
+        r"$\lambda = |\mathbf m|^2$." + ("  The radii are equal, so $X = 1/2$." if equal else ""),
+        letters={uu: r"\mu", size: r"\lambda"},
         written={"u": r"\mathbf a", "v": r"\mathbf c_3"},
     )
-    D, j = sp.sqrt(mu), sp.sqrt(nu)
-    rise = sigma * h * D * j
+    D, j = sp.sqrt(mu), sp.sqrt(size)  # zero where the centres are in line
+    ahead, rise = Y * D * j, sigma * h * j
     return Meeting(
         Link(
             unknowns,
@@ -179,12 +173,12 @@ def three_spheres(
         ),
         tuple(from_first),
         sigma,
-        h * mu * nu,
+        h * size,
         sp.Matrix(
             [
-                [X * D, Y * j, rise],
-                [(X - 1) * D, Y * j, rise],
-                [X * D - other.dot(a) / D, (Y - 1) * j, rise],
+                [X * D, ahead, rise],
+                [(X - 1) * D, ahead, rise],
+                [X * D - other.dot(a) / D, ahead - j / D, rise],
             ]
         ),
     )
@@ -193,31 +187,35 @@ def three_spheres(
 def _equal_spheres(
     p: Program,
     r: sp.Symbol,
-    squares: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
+    squares: tuple[sp.Symbol, sp.Symbol],
     left: sp.Expr,
     *,
     flags: tuple[sp.Symbol, sp.Symbol],
     scale: sp.Expr,
     share: sp.Rational,
 ) -> tuple[sp.Expr, sp.Symbol, sp.Symbol]:
-    """X, Y and h for one radius; ``squares`` are mu, nu and 1 / (mu nu), ``left`` is 2 nu Y."""
-    (mu, nu, part), (point, line) = squares, flags
+    """X, Y and h for one radius.
+
+    ``squares`` has mu and the inverse of lambda, and ``left`` is 2 lambda Y.
+    """
+    (mu, part), (point, line) = squares, flags
     left = p.let("left", left)
     p.match(choose(line, left, 0), scale**2, "the spheres whose centres are in line share a circle")
-    Y = p.let("Y", choose(line, 0, left * mu * part / 2))
+    Y = p.let("Y", choose(line, 0, left * part / 2))
     # the error that is allowed for the spheres makes the radius of the circle larger
     missed = 2 * share * scale * r
-    square = choose(point, 0, mu / 4 + nu * Y**2)
+    # lambda Y^2 is left^2 / (4 lambda)
+    square = choose(point, 0, mu * (1 + choose(line, 0, left**2 * part)) / 4)
     slack = p.bound("slack", r**2 - square, missed, "the spheres meet")
     touching = p.vanishes("touching", slack, missed, "the spheres touch")
-    rise = choose(touching, 0, sp.sqrt(slack) * sp.sqrt(part))
+    rise = choose(touching, 0, sp.sqrt(slack * part))
     return sp.S.Half, Y, p.let("h", rise, nonnegative=True)
 
 
 def _unequal_spheres(
     p: Program,
     radii: tuple[sp.Expr, sp.Expr, sp.Expr],
-    squares: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
+    squares: tuple[sp.Symbol, sp.Symbol],
     dot: sp.Expr,
     *,
     flags: tuple[sp.Symbol, sp.Symbol],
@@ -226,18 +224,19 @@ def _unequal_spheres(
 ) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol, sp.Symbol]:
     """X, Y and h from the circle of the first two spheres.
 
-    ``squares`` has mu, nu and w^2 / mu, and ``dot`` is k mu.
+    ``squares`` has mu and lambda, and ``dot`` is k mu.
 
     This circle comes from differences of lengths, which stay exact for short rods.  If the third
     sphere just misses it, the point stays on it.  The last result is a flag that is true if the
     third sphere contains it.
     """
-    (r1, near, far), (mu, nu, beyond), (point, line) = radii, squares, flags
+    (r1, near, far), (mu, lam), (point, line) = radii, squares, flags
     # if the first two spheres just touch, their errors add to that of the third, so each gets a
     # third
     tolerated = 2 * share * scale / 3
     unit = p.let("length_a", sp.sqrt(mu), nonnegative=True)
-    rest = p.let("length_n", sp.sqrt(beyond), nonnegative=True)
+    nu = p.let("nu", lam / mu, nonnegative=True)
+    rest = p.let("beside_a", sp.sqrt(nu), nonnegative=True)
     D = p.let("D", choose(point, 0, unit), nonnegative=True)
     j = p.let("j", choose(line, 0, rest), nonnegative=True)
     A = p.bound("slack", r1 + near - D, tolerated, "the spheres meet")
@@ -248,7 +247,7 @@ def _unequal_spheres(
     radius = p.let("rho", choose(point, r1, beside), nonnegative=True)
     part = p.let("part", 1 / (unit * rest), nonnegative=True)
     over = p.let("over_a", rest * part, nonnegative=True)
-    left = p.let("left", nu + (dot * over - along) ** 2 + radius**2 - far**2)
+    left = p.let("left", choose(line, 0, nu) + (dot * over - along) ** 2 + radius**2 - far**2)
     meaning = "the third sphere meets the circle of the others"
     # for a radius of zero the allowed error is the same, and its square is what appears here
     missed = 2 * tolerated * (far + scale / 2**42)
@@ -259,9 +258,28 @@ def _unequal_spheres(
     anywhere = sp.Or(flat, line)
     half = p.let("half", radius / both)
     X = p.let("X", along * over)
-    Y = p.let("Y", choose(anywhere, 0, half * (upper - lower) * unit * part))
+    Y = p.let("Y", choose(anywhere, 0, half * (upper - lower) * part * over))
     rise = choose(anywhere, radius, 2 * half * sp.sqrt(upper) * sp.sqrt(lower))
     return X, Y, p.let("h", rise * part, nonnegative=True), flat
+
+
+def _frame(
+    p: Program, a: sp.Matrix, c: sp.Matrix, squares: tuple[sp.Expr, sp.Expr]
+) -> tuple[sp.Matrix, sp.Matrix, sp.Symbol]:
+    """The vectors m and n, and the square of m; ``squares`` are those of a and c.
+
+    Where the centres are nearly in line, the product m has lost its direction.  There it is found
+    again from n, which is at right angles to a whatever m was.
+    """
+    (mu, square), m = squares, _vector(p, "product", a.cross(c))
+    n = _vector(p, "n", m.cross(a))
+    lam = p.let("product_2", m.dot(m), nonnegative=True)
+    apart = mu * square
+    slim = p.vanishes("slim", lam - apart / 2**12, apart, "the centres are nearly in line")
+    over = p.let("over", 1 / mu, nonnegative=True)
+    again = [choose(slim, e * over, f) for e, f in zip(a.cross(n), m, strict=True)]
+    size = choose(slim, n.dot(n) * over, lam)
+    return _vector(p, "m", again), n, p.let("m_m", size, nonnegative=True)
 
 
 def lens(

@@ -100,6 +100,8 @@ class Ranges:
             return is_const(node.args[1], 0)
         if node.op == "select":
             return all(map(self.positive, node.args[1:]))
+        if node.op == "div":
+            return all(map(self.positive, node.args))
         if node.op == "product":
             return all(n % 2 == 0 or self.positive(f) for f, n in Counter(node.args).items())
         if node.op == "sum":

@@ -2,15 +2,15 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 70 compare and select, 62 add, 12 divide, 97 multiply, 6 sincos, 1 sqrt
-#   skeleton: 133 compare and select, 113 add, 18 divide, 96 multiply, 6 sincos, 1 sqrt
-#   jacobian_parallel: 81 compare and select, 71 add, 12 divide, 97 multiply, 6 sincos, 1 sqrt
-#   jacobian_serial: 69 compare and select, 83 add, 12 divide, 121 multiply, 6 sincos, 1 sqrt
-#   jacobian: 82 compare and select, 101 add, 30 divide, 176 multiply, 6 sincos, 1 sqrt
-#   determinant: 66 compare and select, 83 add, 14 divide, 126 multiply, 6 sincos, 1 sqrt
-#   singularities: 71 compare and select, 83 add, 12 divide, 122 multiply, 6 sincos, 1 sqrt
-#   condition_number: 68 compare and select, 121 add, 14 divide, 173 multiply, 6 sincos, 3 sqrt
-#   constraint: 65 compare and select, 93 add, 12 divide, 159 multiply, 6 sincos, 1 sqrt
+#   fk: 79 compare and select, 63 add, 11 divide, 96 multiply, 6 sincos, 1 sqrt
+#   skeleton: 142 compare and select, 114 add, 17 divide, 96 multiply, 6 sincos, 1 sqrt
+#   jacobian_parallel: 90 compare and select, 72 add, 11 divide, 96 multiply, 6 sincos, 1 sqrt
+#   jacobian_serial: 78 compare and select, 84 add, 11 divide, 120 multiply, 6 sincos, 1 sqrt
+#   jacobian: 92 compare and select, 102 add, 29 divide, 175 multiply, 6 sincos, 1 sqrt
+#   determinant: 76 compare and select, 84 add, 13 divide, 125 multiply, 6 sincos, 1 sqrt
+#   singularities: 81 compare and select, 84 add, 11 divide, 121 multiply, 6 sincos, 1 sqrt
+#   condition_number: 78 compare and select, 122 add, 13 divide, 172 multiply, 6 sincos, 3 sqrt
+#   constraint: 74 compare and select, 94 add, 11 divide, 158 multiply, 6 sincos, 1 sqrt
 #   ik: 187 compare and select, 157 add, 6 atan2, 13 divide, 175 multiply, 3 sincos, 18 sqrt
 #   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -173,88 +173,85 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
     u_u = u_z * u_z + t7 * t7 + t9 * t9
-    v_z = t3 - L * s3
-    t10 = L * c3
-    t11 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10)
-    t12 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10)
-    v_v = v_z * v_z + t11 * t11 + t12 * t12
     size = f + e + L + l
-    t13 = size * size
-    t14 = ops.vanishing * ops.vanishing * t13
-    all_same = u_u + v_v <= t14
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t14
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    t15 = ops.select(same, t12, t9)
-    d_x = ops.select(same, t11, t7)
-    a_x = ops.select(all_same, whole, d_x)
-    t16 = ops.select(same, t9, t12)
-    t17 = ops.select(same, t7, t11)
-    t18 = a_x * t16 - t15 * t17
+    t10 = size * size
+    t11 = ops.vanishing * ops.vanishing
+    t12 = t10 * t11
+    same = u_u <= t12
+    t13 = L * c3
+    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
+    t15 = ops.select(same, t14, t9)
+    v_z = t3 - L * s3
+    t16 = ops.select(same, u_z, v_z)
+    t17 = ops.select(same, t9, t14)
     d_z = ops.select(same, v_z, u_z)
-    t19 = ops.select(same, u_z, v_z)
-    t20 = a_x * t19 - t17 * d_z
-    t21 = t15 * t18 + d_z * t20
-    t22 = over * t21
-    t23 = t15 * t19 - t16 * d_z
-    t24 = a_x * t18 - d_z * t23
-    t25 = over * t24
-    t26 = a_x * t20 + t15 * t23
-    n_z = over * t26
-    nu = t22 * t22 + t25 * t25 + n_z * n_z
-    in_line = nu <= t14
-    t27 = t17 * (d_x - t17) + t16 * (t15 - t16) + t19 * (d_z - t19)
-    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
+    t18 = t15 * t16 - t17 * d_z
+    t19 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
+    v_v = v_z * v_z + t19 * t19 + t14 * t14
+    all_same = u_u + v_v <= t12
+    whole = ops.select((size == 0.0), 1.0, size)
+    d_x = ops.select(same, t19, t7)
+    a_x = ops.select(all_same, whole, d_x)
+    t20 = ops.select(same, t7, t19)
+    t21 = a_x * t16 - t20 * d_z
+    t22 = a_x * t17 - t15 * t20
+    product_2 = t18 * t18 + t21 * t21 + t22 * t22
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t23 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t23 * 0.000244140625 <= ops.vanishing * t23
+    t24 = t15 * t22 + d_z * t21
+    t25 = a_x * t22 - d_z * t18
+    n_z = a_x * t21 + t15 * t18
+    t26 = t24 * t24 + t25 * t25 + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t26, product_2)
+    in_line = m_m <= t11 * (t10 * mu)
+    t27 = t20 * (d_x - t20) + t17 * (t15 - t17) + t16 * (d_z - t16)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t10 * ops.feasibility
     t29 = l * size * 0.75
     t30 = l * l
     g_1 = whole * d_z
     s_w = ops.sign(t15 * a_x)
     t31 = whole * (t15 + a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
-    t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
-    t34 = mu * 0.25
-    t35 = ops.select(all_same, 0.0, nu * (t33 * t33) + t34)
+    t33 = t27 * t27
+    t34 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t32, m_m) * t33)
+    t35 = ops.select(all_same, 0.0, mu * (1.0 + t34) * 0.25)
     t36 = t30 - t35
     unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
     t37 = ops.opposite(failed)
+    t38 = ops.opposite(in_line)
+    t39 = t37 & t38
     touching = ops.max(t36, 0.0) <= ops.vanishing * t29
-    t38 = t37 & ops.opposite(touching)
-    t39 = t37 | (t38 & ops.opposite(all_same))
-    t40 = ops.opposite(in_line)
-    t41 = t38 | (t39 & t40)
-    t42 = t41 & t40
-    over_2 = 1.0 / ops.select(t39 | t42, mu, 1.0)
-    t43 = over_2 * t21
-    t44 = over_2 * t24
-    n_z_2 = over_2 * t26
-    nu_2 = t43 * t43 + t44 * t44 + n_z_2 * n_z_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t41 & in_line, t32, 1.0), 1.0 / ops.select(t42, mu * nu_2, 1.0))
-    t45 = ops.select(in_line, 0.0, mu * part_2 * t27 * 0.5)
-    t46 = d_x * 0.5 - (t5 - t43 * t45)
-    w_x = ops.select(in_line, g_1 * s_w, t15 * n_z_2 - d_z * t44)
-    t47 = ops.select(all_same, 0.0, nu_2 * (t45 * t45) + t34)
-    t48 = ops.select(t38, part_2 * ops.max(t30 - t47, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t48))
-    t49 = w_x * h
-    t50 = t15 * 0.5 - (t8 + t44 * t45)
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t43))
-    t51 = h * w_y
-    t52 = d_z * 0.5 - (t3 + n_z_2 * t45)
-    w_z = ops.select(in_line, -t31, a_x * t44 + t15 * t43)
-    t53 = h * w_z
-    t54 = ops.status(invalid, unreachable, in_line)
+    t40 = t37 & ops.opposite(touching)
+    t41 = t39 | t40 | (t40 & ops.opposite(all_same) & t38)
+    t42 = ops.select((t39 & slim) | (t41 & t38 & slim), mu, 1.0)
+    over = 1.0 / t42
+    w_w = ops.select(in_line, t32, ops.select(slim, over * t26, product_2))
+    part = 1.0 / ops.select(t41, w_w, 1.0)
+    t43 = ops.select(in_line, 0.0, part * t27 * 0.5)
+    t44 = d_x * 0.5 - (t5 - t24 * t43)
+    m_x = ops.select(slim, over * (t15 * n_z - d_z * t25), t18)
+    t45 = mu * (1.0 + ops.select(in_line, 0.0, part * t33))
+    slack = ops.max(t30 - ops.select(all_same, 0.0, t45 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t40, part * slack, 1.0)))
+    t46 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t47 = t15 * 0.5 - (t8 + t25 * t43)
+    t48 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
+    t49 = h * ops.select(in_line, g_1, -t48)
+    t50 = d_z * 0.5 - (t3 + n_z * t43)
+    m_z = ops.select(slim, over * (a_x * t25 + t15 * t24), t22)
+    t51 = h * ops.select(in_line, -t31, m_z)
+    t52 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t46 - t49),
+        ops.select(failed, ops.nan, t44 - t46),
+        ops.select(failed, ops.nan, t47 - t49),
         ops.select(failed, ops.nan, t50 - t51),
-        ops.select(failed, ops.nan, t52 - t53),
-        ops.select(failed, ops.nan, t49 + t46),
+        ops.select(failed, ops.nan, t46 + t44),
+        ops.select(failed, ops.nan, t49 + t47),
         ops.select(failed, ops.nan, t51 + t50),
-        ops.select(failed, ops.nan, t53 + t52),
-        t54,
-        t54,
+        t52,
+        t52,
     )
 
 
@@ -265,7 +262,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8),
+    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 12),
 )
 
 
@@ -319,10 +316,10 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s3 = ops.sin(theta3)
-    c3 = ops.cos(theta3)
     s_alpha3 = ops.sin(alpha3)
     c_alpha3 = ops.cos(alpha3)
+    s3 = ops.sin(theta3)
+    c3 = ops.cos(theta3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
@@ -348,271 +345,267 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t21 = t20 + s_alpha2 * t12
     t22 = t18 - (t19 - t21)
     u_u = u_z * u_z + t14 * t14 + t22 * t22
-    t23 = L * s3
-    v_z = t3 - t23
-    t24 = e * c_alpha3
-    t25 = f * c_alpha3
-    t26 = L * c3
-    t27 = t25 + c_alpha3 * t26
-    t28 = t9 - (t24 - t27)
-    t29 = e * s_alpha3
-    t30 = f * s_alpha3
-    t31 = t30 + s_alpha3 * t26
-    t32 = t18 - (t29 - t31)
-    v_v = v_z * v_z + t28 * t28 + t32 * t32
     size = f + e + L + l
-    t33 = size * size
-    t34 = ops.vanishing * ops.vanishing * t33
-    all_same = u_u + v_v <= t34
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t34
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    t35 = ops.select(same, t32, t22)
-    d_x = ops.select(same, t28, t14)
-    a_x = ops.select(all_same, whole, d_x)
-    t36 = ops.select(same, t22, t32)
-    t37 = ops.select(same, t14, t28)
-    t38 = a_x * t36 - t35 * t37
+    t23 = size * size
+    t24 = ops.vanishing * ops.vanishing
+    t25 = t23 * t24
+    same = u_u <= t25
+    t26 = e * s_alpha3
+    t27 = f * s_alpha3
+    t28 = L * c3
+    t29 = t27 + s_alpha3 * t28
+    t30 = t18 - (t26 - t29)
+    t31 = ops.select(same, t30, t22)
+    t32 = L * s3
+    v_z = t3 - t32
+    t33 = ops.select(same, u_z, v_z)
     d_z = ops.select(same, v_z, u_z)
-    t39 = ops.select(same, u_z, v_z)
-    t40 = a_x * t39 - t37 * d_z
-    t41 = t35 * t38 + d_z * t40
-    t42 = over * t41
-    t43 = t35 * t39 - t36 * d_z
-    t44 = a_x * t38 - d_z * t43
-    t45 = over * t44
-    t46 = a_x * t40 + t35 * t43
-    n_z = over * t46
-    nu = t42 * t42 + t45 * t45 + n_z * n_z
-    in_line = nu <= t34
-    t47 = t37 * (d_x - t37) + t36 * (t35 - t36) + t39 * (d_z - t39)
-    t48 = ops.abs(ops.select(in_line, -t47, 0.0)) <= t33 * ops.feasibility
+    t34 = ops.select(same, t22, t30)
+    t35 = t31 * t33 - d_z * t34
+    t36 = e * c_alpha3
+    t37 = f * c_alpha3
+    t38 = t37 + c_alpha3 * t28
+    t39 = t9 - (t36 - t38)
+    v_v = v_z * v_z + t39 * t39 + t30 * t30
+    all_same = u_u + v_v <= t25
+    whole = ops.select((size == 0.0), 1.0, size)
+    d_x = ops.select(same, t39, t14)
+    a_x = ops.select(all_same, whole, d_x)
+    t40 = ops.select(same, t14, t39)
+    t41 = t33 * a_x - d_z * t40
+    t42 = t34 * a_x - t31 * t40
+    product_2 = t35 * t35 + t41 * t41 + t42 * t42
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t43 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t43 * 0.000244140625 <= ops.vanishing * t43
+    t44 = t31 * t42 + d_z * t41
+    t45 = a_x * t42 - d_z * t35
+    n_z = a_x * t41 + t31 * t35
+    t46 = t44 * t44 + t45 * t45 + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t46, product_2)
+    in_line = m_m <= t24 * (t23 * mu)
+    t47 = t40 * (d_x - t40) + t34 * (t31 - t34) - t33 * (t33 - d_z)
+    t48 = ops.abs(ops.select(in_line, -t47, 0.0)) <= t23 * ops.feasibility
     t49 = 0.9375 * (l * size)
     t50 = l * l
-    t51 = mu * t47
     g_1 = whole * d_z
-    s_w = ops.sign(t35 * a_x)
-    t52 = whole * (t35 + a_x * s_w)
-    t53 = 2.0 * (g_1 * g_1) + t52 * t52
-    part = ops.select(in_line, 1.0 / t53, 1.0 / (mu * nu))
-    t54 = ops.select(in_line, 0.0, t51 * part * 0.5)
-    t55 = mu * 0.25
-    t56 = ops.select(all_same, 0.0, nu * (t54 * t54) + t55)
-    t57 = t50 - t56
-    unreachable = ops.opposite(t48 & (-(ops.feasibility * t49) <= t57))
+    s_w = ops.sign(t31 * a_x)
+    t51 = whole * (t31 + a_x * s_w)
+    t52 = 2.0 * (g_1 * g_1) + t51 * t51
+    t53 = t47 * t47
+    t54 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t52, m_m) * t53)
+    t55 = ops.select(all_same, 0.0, mu * (1.0 + t54) * 0.25)
+    t56 = t50 - t55
+    unreachable = ops.opposite(t48 & (-(ops.feasibility * t49) <= t56))
     failed = invalid | unreachable
-    t58 = ops.select(failed, ops.nan, t6)
-    t59 = ops.select(failed, ops.nan, t16)
-    t60 = ops.select(failed, ops.nan, 0.0)
-    t61 = ops.select(failed, ops.nan, t8)
-    t62 = ops.select(failed, ops.nan, t17)
-    t63 = ops.select(failed, ops.nan, -t3)
-    t64 = ops.opposite(failed)
-    touching = ops.max(t57, 0.0) <= ops.vanishing * t49
-    t65 = t64 & ops.opposite(touching)
-    t66 = t64 | (t65 & ops.opposite(all_same))
-    t67 = ops.opposite(in_line)
-    t68 = t65 | (t66 & t67)
-    t69 = t68 & t67
-    over_2 = 1.0 / ops.select(t66 | t69, mu, 1.0)
-    t70 = over_2 * t41
-    t71 = over_2 * t44
-    n_z_2 = over_2 * t46
-    nu_2 = t70 * t70 + t71 * t71 + n_z_2 * n_z_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t68 & in_line, t53, 1.0), 1.0 / ops.select(t69, mu * nu_2, 1.0))
-    t72 = ops.select(in_line, 0.0, t51 * part_2 * 0.5)
-    t73 = t70 * t72 + d_x * 0.5
-    w_x = ops.select(in_line, g_1 * s_w, t35 * n_z_2 - d_z * t71)
-    t74 = ops.select(all_same, 0.0, nu_2 * (t72 * t72) + t55)
-    t75 = ops.select(t65, part_2 * ops.max(t50 - t74, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t75))
-    t76 = w_x * h
-    t77 = t9 - (t73 - t76)
-    t78 = t5 - t77
-    t79 = t71 * t72 - t35 * 0.5
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t70))
-    t80 = h * w_y
-    t81 = t18 + (t79 + t80)
-    t82 = t15 - t81
-    t83 = n_z_2 * t72 - d_z * 0.5
-    w_z = ops.select(in_line, -t52, a_x * t71 + t35 * t70)
-    t84 = h * w_z
-    t85 = ops.select(failed, ops.nan, -(t3 + (t83 + t84)))
-    t86 = t15 * 0.5
-    t87 = ops.select(failed, ops.nan, t8 - t86)
-    t88 = t5 * 0.5
-    t89 = ops.select(failed, ops.nan, t88 + t17)
-    t90 = ops.select(failed, ops.nan, t86 + t8)
-    t91 = ops.select(failed, ops.nan, t17 - t88)
-    t92 = ops.select(failed, ops.nan, t11)
-    t93 = ops.select(failed, ops.nan, t20)
-    t94 = ops.select(failed, ops.nan, t13)
-    t95 = ops.select(failed, ops.nan, t21)
-    t96 = ops.select(failed, ops.nan, -t4)
-    t97 = t10 - t77
-    t98 = t19 - t81
-    t99 = t19 * 0.5
-    t100 = ops.select(failed, ops.nan, t13 - t99)
-    t101 = t10 * 0.5
-    t102 = ops.select(failed, ops.nan, t101 + t21)
-    t103 = ops.select(failed, ops.nan, t99 + t13)
-    t104 = ops.select(failed, ops.nan, t21 - t101)
-    t105 = ops.select(failed, ops.nan, t25)
-    t106 = ops.select(failed, ops.nan, t30)
-    t107 = ops.select(failed, ops.nan, t27)
-    t108 = ops.select(failed, ops.nan, t31)
-    t109 = ops.select(failed, ops.nan, -t23)
-    t110 = t24 - t77
-    t111 = t29 - t81
-    t112 = t29 * 0.5
-    t113 = ops.select(failed, ops.nan, t27 - t112)
-    t114 = t24 * 0.5
-    t115 = ops.select(failed, ops.nan, t114 + t31)
-    t116 = ops.select(failed, ops.nan, t112 + t27)
-    t117 = ops.select(failed, ops.nan, t31 - t114)
-    t118 = t9 - (t73 + t76)
-    t119 = t5 - t118
-    t120 = t18 + (t79 - t80)
-    t121 = t15 - t120
-    t122 = ops.select(failed, ops.nan, -(t3 + (t83 - t84)))
-    t123 = t10 - t118
-    t124 = t19 - t120
-    t125 = t24 - t118
-    t126 = t29 - t120
+    t57 = ops.select(failed, ops.nan, t6)
+    t58 = ops.select(failed, ops.nan, t16)
+    t59 = ops.select(failed, ops.nan, 0.0)
+    t60 = ops.select(failed, ops.nan, t8)
+    t61 = ops.select(failed, ops.nan, t17)
+    t62 = ops.select(failed, ops.nan, -t3)
+    t63 = ops.opposite(failed)
+    t64 = ops.opposite(in_line)
+    t65 = t63 & t64
+    touching = ops.max(t56, 0.0) <= ops.vanishing * t49
+    t66 = t63 & ops.opposite(touching)
+    t67 = t65 | t66 | (t66 & ops.opposite(all_same) & t64)
+    t68 = ops.select((t65 & slim) | (t67 & t64 & slim), mu, 1.0)
+    over = 1.0 / t68
+    w_w = ops.select(in_line, t52, ops.select(slim, over * t46, product_2))
+    part = 1.0 / ops.select(t67, w_w, 1.0)
+    t69 = ops.select(in_line, 0.0, t47 * part * 0.5)
+    t70 = t44 * t69 + d_x * 0.5
+    m_x = ops.select(slim, over * (t31 * n_z - d_z * t45), t35)
+    t71 = mu * (1.0 + ops.select(in_line, 0.0, part * t53))
+    slack = ops.max(t50 - ops.select(all_same, 0.0, t71 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t66, part * slack, 1.0)))
+    t72 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t73 = t9 - (t70 - t72)
+    t74 = t5 - t73
+    t75 = t45 * t69 - t31 * 0.5
+    t76 = ops.select(slim, over * (a_x * n_z + d_z * t44), t41)
+    t77 = h * ops.select(in_line, g_1, -t76)
+    t78 = t18 + (t75 + t77)
+    t79 = t15 - t78
+    t80 = n_z * t69 - d_z * 0.5
+    m_z = ops.select(slim, over * (a_x * t45 + t31 * t44), t42)
+    t81 = h * ops.select(in_line, -t51, m_z)
+    t82 = ops.select(failed, ops.nan, -(t3 + (t80 + t81)))
+    t83 = t15 * 0.5
+    t84 = ops.select(failed, ops.nan, t8 - t83)
+    t85 = t5 * 0.5
+    t86 = ops.select(failed, ops.nan, t85 + t17)
+    t87 = ops.select(failed, ops.nan, t83 + t8)
+    t88 = ops.select(failed, ops.nan, t17 - t85)
+    t89 = ops.select(failed, ops.nan, t11)
+    t90 = ops.select(failed, ops.nan, t20)
+    t91 = ops.select(failed, ops.nan, t13)
+    t92 = ops.select(failed, ops.nan, t21)
+    t93 = ops.select(failed, ops.nan, -t4)
+    t94 = t10 - t73
+    t95 = t19 - t78
+    t96 = t19 * 0.5
+    t97 = ops.select(failed, ops.nan, t13 - t96)
+    t98 = t10 * 0.5
+    t99 = ops.select(failed, ops.nan, t98 + t21)
+    t100 = ops.select(failed, ops.nan, t96 + t13)
+    t101 = ops.select(failed, ops.nan, t21 - t98)
+    t102 = ops.select(failed, ops.nan, t37)
+    t103 = ops.select(failed, ops.nan, t27)
+    t104 = ops.select(failed, ops.nan, t38)
+    t105 = ops.select(failed, ops.nan, t29)
+    t106 = ops.select(failed, ops.nan, -t32)
+    t107 = t36 - t73
+    t108 = t26 - t78
+    t109 = t26 * 0.5
+    t110 = ops.select(failed, ops.nan, t38 - t109)
+    t111 = t36 * 0.5
+    t112 = ops.select(failed, ops.nan, t111 + t29)
+    t113 = ops.select(failed, ops.nan, t109 + t38)
+    t114 = ops.select(failed, ops.nan, t29 - t111)
+    t115 = t9 - (t70 + t72)
+    t116 = t5 - t115
+    t117 = t18 + (t75 - t77)
+    t118 = t15 - t117
+    t119 = ops.select(failed, ops.nan, -(t3 + (t80 - t81)))
+    t120 = t10 - t115
+    t121 = t19 - t117
+    t122 = t36 - t115
+    t123 = t26 - t117
     return (
+        t57,
         t58,
         t59,
         t60,
         t61,
         t62,
-        t63,
-        ops.select(failed, ops.nan, t78),
-        ops.select(failed, ops.nan, t82),
-        t85,
+        ops.select(failed, ops.nan, t74),
+        ops.select(failed, ops.nan, t79),
+        t82,
+        t84,
+        t86,
+        t62,
         t87,
+        t88,
+        t62,
+        ops.select(failed, ops.nan, t74 - t83),
+        ops.select(failed, ops.nan, t85 + t79),
+        t82,
+        ops.select(failed, ops.nan, t83 + t74),
+        ops.select(failed, ops.nan, t79 - t85),
+        t82,
         t89,
-        t63,
         t90,
+        t59,
         t91,
-        t63,
-        ops.select(failed, ops.nan, t78 - t86),
-        ops.select(failed, ops.nan, t88 + t82),
-        t85,
-        ops.select(failed, ops.nan, t86 + t78),
-        ops.select(failed, ops.nan, t82 - t88),
-        t85,
         t92,
         t93,
-        t60,
-        t94,
-        t95,
-        t96,
-        ops.select(failed, ops.nan, t97),
-        ops.select(failed, ops.nan, t98),
-        t85,
+        ops.select(failed, ops.nan, t94),
+        ops.select(failed, ops.nan, t95),
+        t82,
+        t97,
+        t99,
+        t93,
         t100,
+        t101,
+        t93,
+        ops.select(failed, ops.nan, t94 - t96),
+        ops.select(failed, ops.nan, t98 + t95),
+        t82,
+        ops.select(failed, ops.nan, t96 + t94),
+        ops.select(failed, ops.nan, t95 - t98),
+        t82,
         t102,
-        t96,
         t103,
+        t59,
         t104,
-        t96,
-        ops.select(failed, ops.nan, t97 - t99),
-        ops.select(failed, ops.nan, t101 + t98),
-        t85,
-        ops.select(failed, ops.nan, t99 + t97),
-        ops.select(failed, ops.nan, t98 - t101),
-        t85,
         t105,
         t106,
-        t60,
-        t107,
-        t108,
-        t109,
-        ops.select(failed, ops.nan, t110),
-        ops.select(failed, ops.nan, t111),
-        t85,
+        ops.select(failed, ops.nan, t107),
+        ops.select(failed, ops.nan, t108),
+        t82,
+        t110,
+        t112,
+        t106,
         t113,
-        t115,
-        t109,
-        t116,
-        t117,
-        t109,
-        ops.select(failed, ops.nan, t110 - t112),
-        ops.select(failed, ops.nan, t114 + t111),
-        t85,
-        ops.select(failed, ops.nan, t112 + t110),
-        ops.select(failed, ops.nan, t111 - t114),
-        t85,
-        ops.select(failed, ops.nan, -t77),
-        ops.select(failed, ops.nan, -t81),
-        t85,
+        t114,
+        t106,
+        ops.select(failed, ops.nan, t107 - t109),
+        ops.select(failed, ops.nan, t111 + t108),
+        t82,
+        ops.select(failed, ops.nan, t109 + t107),
+        ops.select(failed, ops.nan, t108 - t111),
+        t82,
+        ops.select(failed, ops.nan, -t73),
+        ops.select(failed, ops.nan, -t78),
+        t82,
+        t57,
         t58,
         t59,
         t60,
         t61,
         t62,
-        t63,
-        ops.select(failed, ops.nan, t119),
+        ops.select(failed, ops.nan, t116),
+        ops.select(failed, ops.nan, t118),
+        t119,
+        t84,
+        t86,
+        t62,
+        t87,
+        t88,
+        t62,
+        ops.select(failed, ops.nan, t116 - t83),
+        ops.select(failed, ops.nan, t85 + t118),
+        t119,
+        ops.select(failed, ops.nan, t83 + t116),
+        ops.select(failed, ops.nan, t118 - t85),
+        t119,
+        t89,
+        t90,
+        t59,
+        t91,
+        t92,
+        t93,
+        ops.select(failed, ops.nan, t120),
         ops.select(failed, ops.nan, t121),
-        t122,
-        t87,
-        t89,
-        t63,
-        t90,
-        t91,
-        t63,
-        ops.select(failed, ops.nan, t119 - t86),
-        ops.select(failed, ops.nan, t88 + t121),
-        t122,
-        ops.select(failed, ops.nan, t86 + t119),
-        ops.select(failed, ops.nan, t121 - t88),
-        t122,
-        t92,
+        t119,
+        t97,
+        t99,
         t93,
-        t60,
-        t94,
-        t95,
-        t96,
-        ops.select(failed, ops.nan, t123),
-        ops.select(failed, ops.nan, t124),
-        t122,
         t100,
+        t101,
+        t93,
+        ops.select(failed, ops.nan, t120 - t96),
+        ops.select(failed, ops.nan, t98 + t121),
+        t119,
+        ops.select(failed, ops.nan, t96 + t120),
+        ops.select(failed, ops.nan, t121 - t98),
+        t119,
         t102,
-        t96,
         t103,
+        t59,
         t104,
-        t96,
-        ops.select(failed, ops.nan, t123 - t99),
-        ops.select(failed, ops.nan, t101 + t124),
-        t122,
-        ops.select(failed, ops.nan, t99 + t123),
-        ops.select(failed, ops.nan, t124 - t101),
-        t122,
         t105,
         t106,
-        t60,
-        t107,
-        t108,
-        t109,
-        ops.select(failed, ops.nan, t125),
-        ops.select(failed, ops.nan, t126),
-        t122,
+        ops.select(failed, ops.nan, t122),
+        ops.select(failed, ops.nan, t123),
+        t119,
+        t110,
+        t112,
+        t106,
         t113,
-        t115,
-        t109,
-        t116,
-        t117,
-        t109,
-        ops.select(failed, ops.nan, t125 - t112),
-        ops.select(failed, ops.nan, t114 + t126),
-        t122,
-        ops.select(failed, ops.nan, t112 + t125),
-        ops.select(failed, ops.nan, t126 - t114),
-        t122,
-        ops.select(failed, ops.nan, -t118),
-        ops.select(failed, ops.nan, -t120),
-        t122,
+        t114,
+        t106,
+        ops.select(failed, ops.nan, t122 - t109),
+        ops.select(failed, ops.nan, t111 + t123),
+        t119,
+        ops.select(failed, ops.nan, t109 + t122),
+        ops.select(failed, ops.nan, t123 - t111),
+        t119,
+        ops.select(failed, ops.nan, -t115),
+        ops.select(failed, ops.nan, -t117),
+        t119,
     )
 
 
@@ -623,7 +616,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 8),
+    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 12),
 )
 
 
@@ -669,10 +662,10 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     c_alpha1 = ops.cos(alpha1)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s3 = ops.sin(theta3)
-    c3 = ops.cos(theta3)
     s_alpha3 = ops.sin(alpha3)
     c_alpha3 = ops.cos(alpha3)
+    s3 = ops.sin(theta3)
+    c3 = ops.cos(theta3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
@@ -685,107 +678,104 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
     u_u = u_z * u_z + t7 * t7 + t9 * t9
-    v_z = t3 - L * s3
-    t10 = L * c3
-    t11 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10)
-    t12 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10)
-    v_v = v_z * v_z + t11 * t11 + t12 * t12
     size = f + e + L + l
-    t13 = size * size
-    t14 = ops.vanishing * ops.vanishing * t13
-    all_same = u_u + v_v <= t14
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t14
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    t15 = ops.select(same, t12, t9)
-    d_x = ops.select(same, t11, t7)
-    a_x = ops.select(all_same, whole, d_x)
-    t16 = ops.select(same, t9, t12)
-    t17 = ops.select(same, t7, t11)
-    t18 = a_x * t16 - t15 * t17
+    t10 = size * size
+    t11 = ops.vanishing * ops.vanishing
+    t12 = t10 * t11
+    same = u_u <= t12
+    t13 = L * c3
+    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
+    t15 = ops.select(same, t14, t9)
+    v_z = t3 - L * s3
+    t16 = ops.select(same, u_z, v_z)
+    t17 = ops.select(same, t9, t14)
     d_z = ops.select(same, v_z, u_z)
-    t19 = ops.select(same, u_z, v_z)
-    t20 = a_x * t19 - t17 * d_z
-    t21 = t15 * t18 + d_z * t20
-    t22 = over * t21
-    t23 = t15 * t19 - t16 * d_z
-    t24 = a_x * t18 - d_z * t23
-    t25 = over * t24
-    t26 = a_x * t20 + t15 * t23
-    n_z = over * t26
-    nu = t22 * t22 + t25 * t25 + n_z * n_z
-    in_line = nu <= t14
-    t27 = t17 * (d_x - t17) + t16 * (t15 - t16) + t19 * (d_z - t19)
-    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
+    t18 = t15 * t16 - t17 * d_z
+    t19 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
+    v_v = v_z * v_z + t19 * t19 + t14 * t14
+    all_same = u_u + v_v <= t12
+    whole = ops.select((size == 0.0), 1.0, size)
+    d_x = ops.select(same, t19, t7)
+    a_x = ops.select(all_same, whole, d_x)
+    t20 = ops.select(same, t7, t19)
+    t21 = a_x * t16 - t20 * d_z
+    t22 = a_x * t17 - t15 * t20
+    product_2 = t18 * t18 + t21 * t21 + t22 * t22
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t23 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t23 * 0.000244140625 <= ops.vanishing * t23
+    t24 = t15 * t22 + d_z * t21
+    t25 = a_x * t22 - d_z * t18
+    n_z = a_x * t21 + t15 * t18
+    t26 = t24 * t24 + t25 * t25 + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t26, product_2)
+    in_line = m_m <= t11 * (t10 * mu)
+    t27 = t20 * (d_x - t20) + t17 * (t15 - t17) + t16 * (d_z - t16)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t10 * ops.feasibility
     t29 = 0.9375 * (l * size)
     t30 = l * l
     g_1 = whole * d_z
     s_w = ops.sign(t15 * a_x)
     t31 = whole * (t15 + a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
-    t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
-    t34 = mu * 0.25
-    t35 = ops.select(all_same, 0.0, nu * (t33 * t33) + t34)
+    t33 = t27 * t27
+    t34 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t32, m_m) * t33)
+    t35 = ops.select(all_same, 0.0, mu * (1.0 + t34) * 0.25)
     t36 = t30 - t35
     unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
     t37 = ops.opposite(failed)
+    t38 = ops.opposite(in_line)
+    t39 = t37 & t38
     touching = ops.max(t36, 0.0) <= ops.vanishing * t29
-    t38 = t37 & ops.opposite(touching)
-    t39 = t37 | (t38 & ops.opposite(all_same))
-    t40 = ops.opposite(in_line)
-    t41 = t38 | (t39 & t40)
-    t42 = t41 & t40
-    over_2 = 1.0 / ops.select(t39 | t42, mu, 1.0)
-    n_z_2 = over_2 * t26
-    t43 = over_2 * t24
-    w_x = ops.select(in_line, g_1 * s_w, t15 * n_z_2 - d_z * t43)
-    t44 = over_2 * t21
-    nu_2 = t44 * t44 + t43 * t43 + n_z_2 * n_z_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t41 & in_line, t32, 1.0), 1.0 / ops.select(t42, mu * nu_2, 1.0))
-    t45 = ops.select(in_line, 0.0, mu * part_2 * t27 * 0.5)
-    t46 = ops.select(all_same, 0.0, nu_2 * (t45 * t45) + t34)
-    t47 = ops.select(t38, part_2 * ops.max(t30 - t46, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t47))
-    t48 = w_x * h
-    t49 = t44 * t45 + d_x * 0.5
-    t50 = t48 - t49
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t44))
-    t51 = h * w_y
-    t52 = t43 * t45 - t15 * 0.5
-    t53 = t51 + t52
-    w_z = ops.select(in_line, -t31, a_x * t43 + t15 * t44)
-    t54 = h * w_z
-    t55 = n_z_2 * t45 - d_z * 0.5
-    t56 = t54 + t55
-    A_11_above = t48 + t49
-    A_12_above = t51 - t52
-    A_13_above = t54 - t55
-    t57 = ops.select(failed, ops.nan, A_13_above - u_z)
-    t58 = ops.select(failed, ops.nan, A_11_above - t11)
-    t59 = ops.select(failed, ops.nan, A_12_above - t12)
-    t60 = ops.select(failed, ops.nan, A_13_above - v_z)
+    t40 = t37 & ops.opposite(touching)
+    t41 = t39 | t40 | (t40 & ops.opposite(all_same) & t38)
+    t42 = ops.select((t39 & slim) | (t41 & t38 & slim), mu, 1.0)
+    over = 1.0 / t42
+    m_x = ops.select(slim, over * (t15 * n_z - d_z * t25), t18)
+    w_w = ops.select(in_line, t32, ops.select(slim, over * t26, product_2))
+    part = 1.0 / ops.select(t41, w_w, 1.0)
+    t43 = mu * (1.0 + ops.select(in_line, 0.0, part * t33))
+    slack = ops.max(t30 - ops.select(all_same, 0.0, t43 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t40, part * slack, 1.0)))
+    t44 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t45 = ops.select(in_line, 0.0, part * t27 * 0.5)
+    t46 = t24 * t45 + d_x * 0.5
+    t47 = t44 - t46
+    t48 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
+    t49 = h * ops.select(in_line, g_1, -t48)
+    t50 = t25 * t45 - t15 * 0.5
+    t51 = t49 + t50
+    m_z = ops.select(slim, over * (a_x * t25 + t15 * t24), t22)
+    t52 = h * ops.select(in_line, -t31, m_z)
+    t53 = n_z * t45 - d_z * 0.5
+    t54 = t52 + t53
+    A_11_above = t44 + t46
+    A_12_above = t49 - t50
+    A_13_above = t52 - t53
+    t55 = ops.select(failed, ops.nan, A_13_above - u_z)
+    t56 = ops.select(failed, ops.nan, A_11_above - t19)
+    t57 = ops.select(failed, ops.nan, A_12_above - t14)
+    t58 = ops.select(failed, ops.nan, A_13_above - v_z)
     return (
-        ops.select(failed, ops.nan, -t50),
-        ops.select(failed, ops.nan, -t53),
-        ops.select(failed, ops.nan, -t56),
-        ops.select(failed, ops.nan, -(t7 + t50)),
-        ops.select(failed, ops.nan, -(t9 + t53)),
-        ops.select(failed, ops.nan, -(u_z + t56)),
-        ops.select(failed, ops.nan, -(t11 + t50)),
-        ops.select(failed, ops.nan, -(t12 + t53)),
-        ops.select(failed, ops.nan, -(v_z + t56)),
+        ops.select(failed, ops.nan, -t47),
+        ops.select(failed, ops.nan, -t51),
+        ops.select(failed, ops.nan, -t54),
+        ops.select(failed, ops.nan, -(t7 + t47)),
+        ops.select(failed, ops.nan, -(t9 + t51)),
+        ops.select(failed, ops.nan, -(u_z + t54)),
+        ops.select(failed, ops.nan, -(t19 + t47)),
+        ops.select(failed, ops.nan, -(t14 + t51)),
+        ops.select(failed, ops.nan, -(v_z + t54)),
         ops.select(failed, ops.nan, A_11_above),
         ops.select(failed, ops.nan, A_12_above),
         ops.select(failed, ops.nan, A_13_above),
         ops.select(failed, ops.nan, A_11_above - t7),
         ops.select(failed, ops.nan, A_12_above - t9),
+        t55,
+        t56,
         t57,
         t58,
-        t59,
-        t60,
     )
 
 
@@ -796,7 +786,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8),
+    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 12),
 )
 
 
@@ -840,10 +830,10 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s3 = ops.sin(theta3)
-    c3 = ops.cos(theta3)
     s_alpha3 = ops.sin(alpha3)
     c_alpha3 = ops.cos(alpha3)
+    s3 = ops.sin(theta3)
+    c3 = ops.cos(theta3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
@@ -857,106 +847,103 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
     t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
     u_u = u_z * u_z + t8 * t8 + t10 * t10
-    t11 = L * s3
-    v_z = t3 - t11
-    t12 = L * c3
-    t13 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
-    t14 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
-    v_v = v_z * v_z + t13 * t13 + t14 * t14
     size = f + e + L + l
-    t15 = size * size
-    t16 = ops.vanishing * ops.vanishing * t15
-    all_same = u_u + v_v <= t16
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t16
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    t17 = ops.select(same, t14, t10)
-    d_x = ops.select(same, t13, t8)
-    a_x = ops.select(all_same, whole, d_x)
-    t18 = ops.select(same, t10, t14)
-    t19 = ops.select(same, t8, t13)
-    t20 = a_x * t18 - t17 * t19
+    t11 = size * size
+    t12 = ops.vanishing * ops.vanishing
+    t13 = t11 * t12
+    same = u_u <= t13
+    t14 = L * c3
+    t15 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t14)
+    t16 = ops.select(same, t15, t10)
+    t17 = L * s3
+    v_z = t3 - t17
+    t18 = ops.select(same, u_z, v_z)
+    t19 = ops.select(same, t10, t15)
     d_z = ops.select(same, v_z, u_z)
-    t21 = ops.select(same, u_z, v_z)
-    t22 = a_x * t21 - t19 * d_z
-    t23 = t17 * t20 + d_z * t22
-    t24 = over * t23
-    t25 = t17 * t21 - t18 * d_z
-    t26 = a_x * t20 - d_z * t25
-    t27 = over * t26
-    t28 = a_x * t22 + t17 * t25
-    n_z = over * t28
-    nu = t24 * t24 + t27 * t27 + n_z * n_z
-    in_line = nu <= t16
-    t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
-    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
+    t20 = t16 * t18 - t19 * d_z
+    t21 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t14)
+    v_v = v_z * v_z + t21 * t21 + t15 * t15
+    all_same = u_u + v_v <= t13
+    whole = ops.select((size == 0.0), 1.0, size)
+    d_x = ops.select(same, t21, t8)
+    a_x = ops.select(all_same, whole, d_x)
+    t22 = ops.select(same, t8, t21)
+    t23 = a_x * t18 - t22 * d_z
+    t24 = a_x * t19 - t16 * t22
+    product_2 = t20 * t20 + t23 * t23 + t24 * t24
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t25 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t25 * 0.000244140625 <= ops.vanishing * t25
+    t26 = t16 * t24 + d_z * t23
+    t27 = a_x * t24 - d_z * t20
+    n_z = a_x * t23 + t16 * t20
+    t28 = t26 * t26 + t27 * t27 + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t28, product_2)
+    in_line = m_m <= t12 * (t11 * mu)
+    t29 = t22 * (d_x - t22) + t19 * (t16 - t19) + t18 * (d_z - t18)
+    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t11 * ops.feasibility
     t31 = 0.9375 * (l * size)
     t32 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(t17 * a_x)
-    t33 = whole * (t17 + a_x * s_w)
+    s_w = ops.sign(t16 * a_x)
+    t33 = whole * (t16 + a_x * s_w)
     t34 = 2.0 * (g_1 * g_1) + t33 * t33
-    part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
-    t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
-    t36 = mu * 0.25
-    t37 = ops.select(all_same, 0.0, nu * (t35 * t35) + t36)
+    t35 = t29 * t29
+    t36 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t34, m_m) * t35)
+    t37 = ops.select(all_same, 0.0, mu * (1.0 + t36) * 0.25)
     t38 = t32 - t37
     unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
     t39 = c_alpha1 * t3
     t40 = ops.opposite(failed)
+    t41 = ops.opposite(in_line)
+    t42 = t40 & t41
     touching = ops.max(t38, 0.0) <= ops.vanishing * t31
-    t41 = t40 & ops.opposite(touching)
-    t42 = t40 | (t41 & ops.opposite(all_same))
-    t43 = ops.opposite(in_line)
-    t44 = t41 | (t42 & t43)
-    t45 = t44 & t43
-    over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
-    n_z_2 = over_2 * t28
-    t46 = over_2 * t26
-    w_x = ops.select(in_line, g_1 * s_w, t17 * n_z_2 - d_z * t46)
-    t47 = over_2 * t23
-    nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t44 & in_line, t34, 1.0), 1.0 / ops.select(t45, mu * nu_2, 1.0))
-    t48 = ops.select(in_line, 0.0, mu * part_2 * t29 * 0.5)
-    t49 = ops.select(all_same, 0.0, nu_2 * (t48 * t48) + t36)
-    t50 = ops.select(t41, part_2 * ops.max(t32 - t49, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t50))
-    t51 = w_x * h
-    t52 = t47 * t48 + d_x * 0.5
-    t53 = t51 - t52
-    t54 = s_alpha1 * t3
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t47))
-    t55 = h * w_y
-    t56 = t46 * t48 - t17 * 0.5
-    t57 = t55 + t56
-    w_z = ops.select(in_line, -t33, a_x * t46 + t17 * t47)
-    t58 = h * w_z
-    t59 = n_z_2 * t48 - d_z * 0.5
-    t60 = t58 + t59
-    t61 = ops.select(failed, ops.nan, t39 * t53 + t54 * t57 + t5 * t60)
-    t62 = c_alpha2 * t4
-    t63 = s_alpha2 * t4
-    B_22 = t62 * (t8 + t53) + t63 * (t10 + t57) + t7 * (u_z + t60)
-    t64 = c_alpha3 * t11
-    t65 = s_alpha3 * t11
-    B_33 = t64 * (t13 + t53) + t65 * (t14 + t57) + t12 * (v_z + t60)
-    A_11_above = t51 + t52
-    A_12_above = t55 - t56
-    t66 = t58 - t59
-    t67 = t39 * A_11_above + t54 * A_12_above + t5 * t66
-    t68 = t62 * (t8 - A_11_above) + t63 * (t10 - A_12_above)
-    t69 = ops.select(failed, ops.nan, t68 + t7 * (u_z - t66))
-    t70 = t64 * (t13 - A_11_above) + t65 * (t14 - A_12_above)
-    t71 = ops.select(failed, ops.nan, t70 + t12 * (v_z - t66))
+    t43 = t40 & ops.opposite(touching)
+    t44 = t42 | t43 | (t43 & ops.opposite(all_same) & t41)
+    t45 = ops.select((t42 & slim) | (t44 & t41 & slim), mu, 1.0)
+    over = 1.0 / t45
+    m_x = ops.select(slim, over * (t16 * n_z - d_z * t27), t20)
+    w_w = ops.select(in_line, t34, ops.select(slim, over * t28, product_2))
+    part = 1.0 / ops.select(t44, w_w, 1.0)
+    t46 = mu * (1.0 + ops.select(in_line, 0.0, part * t35))
+    slack = ops.max(t32 - ops.select(all_same, 0.0, t46 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t43, part * slack, 1.0)))
+    t47 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t48 = ops.select(in_line, 0.0, part * t29 * 0.5)
+    t49 = t26 * t48 + d_x * 0.5
+    t50 = t47 - t49
+    t51 = s_alpha1 * t3
+    t52 = ops.select(slim, over * (a_x * n_z + d_z * t26), t23)
+    t53 = h * ops.select(in_line, g_1, -t52)
+    t54 = t27 * t48 - t16 * 0.5
+    t55 = t53 + t54
+    m_z = ops.select(slim, over * (a_x * t27 + t16 * t26), t24)
+    t56 = h * ops.select(in_line, -t33, m_z)
+    t57 = n_z * t48 - d_z * 0.5
+    t58 = t56 + t57
+    t59 = ops.select(failed, ops.nan, t39 * t50 + t51 * t55 + t5 * t58)
+    t60 = c_alpha2 * t4
+    t61 = s_alpha2 * t4
+    B_22 = t60 * (t8 + t50) + t61 * (t10 + t55) + t7 * (u_z + t58)
+    t62 = c_alpha3 * t17
+    t63 = s_alpha3 * t17
+    B_33 = t62 * (t21 + t50) + t63 * (t15 + t55) + t14 * (v_z + t58)
+    A_11_above = t47 + t49
+    A_12_above = t53 - t54
+    t64 = t56 - t57
+    t65 = t39 * A_11_above + t51 * A_12_above + t5 * t64
+    t66 = t60 * (t8 - A_11_above) + t61 * (t10 - A_12_above)
+    t67 = ops.select(failed, ops.nan, t66 + t7 * (u_z - t64))
+    t68 = t62 * (t21 - A_11_above) + t63 * (t15 - A_12_above)
+    t69 = ops.select(failed, ops.nan, t68 + t14 * (v_z - t64))
     return (
-        t61,
+        t59,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, B_33),
-        ops.select(failed, ops.nan, -t67),
+        ops.select(failed, ops.nan, -t65),
+        t67,
         t69,
-        t71,
     )
 
 
@@ -967,7 +954,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 8),
+    _runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 12),
 )
 
 
@@ -1011,10 +998,10 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s3 = ops.sin(theta3)
-    c3 = ops.cos(theta3)
     s_alpha3 = ops.sin(alpha3)
     c_alpha3 = ops.cos(alpha3)
+    s3 = ops.sin(theta3)
+    c3 = ops.cos(theta3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
@@ -1028,148 +1015,145 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
     t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
     u_u = u_z * u_z + t8 * t8 + t10 * t10
-    t11 = L * s3
-    v_z = t3 - t11
-    t12 = L * c3
-    t13 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
-    t14 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
-    v_v = v_z * v_z + t13 * t13 + t14 * t14
     size = f + e + L + l
-    t15 = size * size
-    t16 = ops.vanishing * ops.vanishing * t15
-    all_same = u_u + v_v <= t16
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t16
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    t17 = ops.select(same, t14, t10)
-    d_x = ops.select(same, t13, t8)
-    a_x = ops.select(all_same, whole, d_x)
-    t18 = ops.select(same, t10, t14)
-    t19 = ops.select(same, t8, t13)
-    t20 = a_x * t18 - t17 * t19
+    t11 = size * size
+    t12 = ops.vanishing * ops.vanishing
+    t13 = t11 * t12
+    same = u_u <= t13
+    t14 = L * c3
+    t15 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t14)
+    t16 = ops.select(same, t15, t10)
+    t17 = L * s3
+    v_z = t3 - t17
+    t18 = ops.select(same, u_z, v_z)
+    t19 = ops.select(same, t10, t15)
     d_z = ops.select(same, v_z, u_z)
-    t21 = ops.select(same, u_z, v_z)
-    t22 = a_x * t21 - t19 * d_z
-    t23 = t17 * t20 + d_z * t22
-    t24 = over * t23
-    t25 = t17 * t21 - t18 * d_z
-    t26 = a_x * t20 - d_z * t25
-    t27 = over * t26
-    t28 = a_x * t22 + t17 * t25
-    n_z = over * t28
-    nu = t24 * t24 + t27 * t27 + n_z * n_z
-    in_line = nu <= t16
-    t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
-    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
+    t20 = t16 * t18 - t19 * d_z
+    t21 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t14)
+    v_v = v_z * v_z + t21 * t21 + t15 * t15
+    all_same = u_u + v_v <= t13
+    whole = ops.select((size == 0.0), 1.0, size)
+    d_x = ops.select(same, t21, t8)
+    a_x = ops.select(all_same, whole, d_x)
+    t22 = ops.select(same, t8, t21)
+    t23 = a_x * t18 - t22 * d_z
+    t24 = a_x * t19 - t16 * t22
+    product_2 = t20 * t20 + t23 * t23 + t24 * t24
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t25 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t25 * 0.000244140625 <= ops.vanishing * t25
+    t26 = t16 * t24 + d_z * t23
+    t27 = a_x * t24 - d_z * t20
+    n_z = a_x * t23 + t16 * t20
+    t28 = t26 * t26 + t27 * t27 + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t28, product_2)
+    in_line = m_m <= t12 * (t11 * mu)
+    t29 = t22 * (d_x - t22) + t19 * (t16 - t19) + t18 * (d_z - t18)
+    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t11 * ops.feasibility
     t31 = 0.9375 * (l * size)
     t32 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(t17 * a_x)
-    t33 = whole * (t17 + a_x * s_w)
+    s_w = ops.sign(t16 * a_x)
+    t33 = whole * (t16 + a_x * s_w)
     t34 = 2.0 * (g_1 * g_1) + t33 * t33
-    part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
-    t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
-    t36 = mu * 0.25
-    t37 = ops.select(all_same, 0.0, nu * (t35 * t35) + t36)
+    t35 = t29 * t29
+    t36 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t34, m_m) * t35)
+    t37 = ops.select(all_same, 0.0, mu * (1.0 + t36) * 0.25)
     t38 = t32 - t37
     unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
     t39 = c_alpha1 * t3
     t40 = ops.opposite(failed)
+    t41 = ops.opposite(in_line)
+    t42 = t40 & t41
     touching = ops.max(t38, 0.0) <= ops.vanishing * t31
-    t41 = t40 & ops.opposite(touching)
-    t42 = t40 | (t41 & ops.opposite(all_same))
-    t43 = ops.opposite(in_line)
-    t44 = t41 | (t42 & t43)
-    t45 = t44 & t43
-    over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
-    n_z_2 = over_2 * t28
-    t46 = over_2 * t26
-    w_x = ops.select(in_line, g_1 * s_w, t17 * n_z_2 - d_z * t46)
-    t47 = over_2 * t23
-    nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
-    t48 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t44 & in_line, t34, 1.0), 1.0 / ops.select(t45, t48, 1.0))
-    t49 = ops.select(in_line, 0.0, mu * part_2 * t29 * 0.5)
-    t50 = ops.select(all_same, 0.0, nu_2 * (t49 * t49) + t36)
-    t51 = ops.select(t41, part_2 * ops.max(t32 - t50, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t51))
-    t52 = w_x * h
-    t53 = t47 * t49 + d_x * 0.5
-    t54 = t52 - t53
-    t55 = s_alpha1 * t3
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t47))
-    t56 = h * w_y
-    t57 = t46 * t49 - t17 * 0.5
-    t58 = t56 + t57
-    w_z = ops.select(in_line, -t33, a_x * t46 + t17 * t47)
-    t59 = h * w_z
-    t60 = n_z_2 * t49 - d_z * 0.5
-    t61 = t59 + t60
-    t62 = t39 * t54 + t55 * t58 + t5 * t61
-    t63 = t10 + t58
-    t64 = v_z + t61
-    t65 = u_z + t61
-    t66 = t14 + t58
-    t67 = ops.select(t40, t48 * h, 1.0)
-    t68 = ops.select(failed, ops.nan, -(t62 * (t63 * t64 - t65 * t66) / t67))
-    t69 = c_alpha2 * t4
-    t70 = t8 + t54
-    t71 = s_alpha2 * t4
-    t72 = t69 * t70 + t71 * t63 + t7 * t65
-    t73 = ops.select(failed, ops.nan, t72 * (t58 * t64 - t61 * t66) / t67)
-    t74 = c_alpha3 * t11
-    t75 = t13 + t54
-    t76 = s_alpha3 * t11
-    t77 = t74 * t75 + t76 * t66 + t12 * t64
-    t78 = ops.select(failed, ops.nan, -(t77 * (t58 * t65 - t61 * t63) / t67))
-    t79 = ops.select(failed, ops.nan, t62 * (t64 * t70 - t65 * t75) / t67)
-    t80 = ops.select(failed, ops.nan, -(t72 * (t54 * t64 - t61 * t75) / t67))
-    t81 = ops.select(failed, ops.nan, t77 * (t54 * t65 - t61 * t70) / t67)
-    t82 = ops.select(failed, ops.nan, -(t62 * (t66 * t70 - t63 * t75) / t67))
-    t83 = ops.select(failed, ops.nan, t72 * (t54 * t66 - t58 * t75) / t67)
-    t84 = ops.select(failed, ops.nan, -(t77 * (t54 * t63 - t58 * t70) / t67))
-    A_11_above = t52 + t53
-    A_12_above = t56 - t57
-    t85 = t59 - t60
-    t86 = t39 * A_11_above + t55 * A_12_above + t5 * t85
-    t87 = t10 - A_12_above
-    t88 = v_z - t85
-    t89 = u_z - t85
-    t90 = t14 - A_12_above
-    t91 = ops.select(failed, ops.nan, -(t86 * (t87 * t88 - t89 * t90) / t67))
-    t92 = t8 - A_11_above
-    t93 = t69 * t92 + t71 * t87 + t7 * t89
-    t94 = ops.select(failed, ops.nan, t93 * (A_12_above * t88 - t85 * t90) / t67)
-    t95 = t13 - A_11_above
-    t96 = t74 * t95 + t76 * t90 + t12 * t88
-    t97 = -(t96 * (A_12_above * t89 - t85 * t87) / t67)
-    t98 = ops.select(failed, ops.nan, t86 * (t88 * t92 - t89 * t95) / t67)
-    t99 = -(t93 * (A_11_above * t88 - t85 * t95) / t67)
-    t100 = ops.select(failed, ops.nan, t96 * (A_11_above * t89 - t85 * t92) / t67)
-    t101 = ops.select(failed, ops.nan, -(t86 * (t90 * t92 - t87 * t95) / t67))
-    t102 = t93 * (A_11_above * t90 - A_12_above * t95) / t67
-    t103 = t96 * (A_11_above * t87 - A_12_above * t92) / t67
+    t43 = t40 & ops.opposite(touching)
+    t44 = t42 | t43 | (t43 & ops.opposite(all_same) & t41)
+    t45 = ops.select((t42 & slim) | ((t40 | (t44 & t41)) & slim), mu, 1.0)
+    over = 1.0 / t45
+    m_x = ops.select(slim, over * (t16 * n_z - d_z * t27), t20)
+    m_m_2 = ops.select(slim, over * t28, product_2)
+    t46 = ops.select(t44, ops.select(in_line, t34, m_m_2), 1.0)
+    part = 1.0 / t46
+    t47 = mu * (1.0 + ops.select(in_line, 0.0, part * t35))
+    slack = ops.max(t32 - ops.select(all_same, 0.0, t47 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t43, part * slack, 1.0)))
+    t48 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t49 = ops.select(in_line, 0.0, part * t29 * 0.5)
+    t50 = t26 * t49 + d_x * 0.5
+    t51 = t48 - t50
+    t52 = s_alpha1 * t3
+    t53 = ops.select(slim, over * (a_x * n_z + d_z * t26), t23)
+    t54 = h * ops.select(in_line, g_1, -t53)
+    t55 = t27 * t49 - t16 * 0.5
+    t56 = t54 + t55
+    m_z = ops.select(slim, over * (a_x * t27 + t16 * t26), t24)
+    t57 = h * ops.select(in_line, -t33, m_z)
+    t58 = n_z * t49 - d_z * 0.5
+    t59 = t57 + t58
+    t60 = t39 * t51 + t52 * t56 + t5 * t59
+    t61 = t10 + t56
+    t62 = v_z + t59
+    t63 = u_z + t59
+    t64 = t15 + t56
+    t65 = ops.select(t40, m_m_2 * h, 1.0)
+    t66 = ops.select(failed, ops.nan, -(t60 * (t61 * t62 - t63 * t64) / t65))
+    t67 = c_alpha2 * t4
+    t68 = t8 + t51
+    t69 = s_alpha2 * t4
+    t70 = t67 * t68 + t69 * t61 + t7 * t63
+    t71 = ops.select(failed, ops.nan, t70 * (t56 * t62 - t59 * t64) / t65)
+    t72 = c_alpha3 * t17
+    t73 = t21 + t51
+    t74 = s_alpha3 * t17
+    t75 = t72 * t73 + t74 * t64 + t14 * t62
+    t76 = ops.select(failed, ops.nan, -(t75 * (t56 * t63 - t59 * t61) / t65))
+    t77 = ops.select(failed, ops.nan, t60 * (t62 * t68 - t63 * t73) / t65)
+    t78 = ops.select(failed, ops.nan, -(t70 * (t51 * t62 - t59 * t73) / t65))
+    t79 = ops.select(failed, ops.nan, t75 * (t51 * t63 - t59 * t68) / t65)
+    t80 = ops.select(failed, ops.nan, -(t60 * (t64 * t68 - t61 * t73) / t65))
+    t81 = ops.select(failed, ops.nan, t70 * (t51 * t64 - t56 * t73) / t65)
+    t82 = ops.select(failed, ops.nan, -(t75 * (t51 * t61 - t56 * t68) / t65))
+    A_11_above = t48 + t50
+    A_12_above = t54 - t55
+    t83 = t57 - t58
+    t84 = t39 * A_11_above + t52 * A_12_above + t5 * t83
+    t85 = t10 - A_12_above
+    t86 = v_z - t83
+    t87 = u_z - t83
+    t88 = t15 - A_12_above
+    t89 = ops.select(failed, ops.nan, -(t84 * (t85 * t86 - t87 * t88) / t65))
+    t90 = t8 - A_11_above
+    t91 = t67 * t90 + t69 * t85 + t7 * t87
+    t92 = ops.select(failed, ops.nan, t91 * (A_12_above * t86 - t83 * t88) / t65)
+    t93 = t21 - A_11_above
+    t94 = t72 * t93 + t74 * t88 + t14 * t86
+    t95 = -(t94 * (A_12_above * t87 - t83 * t85) / t65)
+    t96 = ops.select(failed, ops.nan, t84 * (t86 * t90 - t87 * t93) / t65)
+    t97 = -(t91 * (A_11_above * t86 - t83 * t93) / t65)
+    t98 = ops.select(failed, ops.nan, t94 * (A_11_above * t87 - t83 * t90) / t65)
+    t99 = ops.select(failed, ops.nan, -(t84 * (t88 * t90 - t85 * t93) / t65))
+    t100 = t91 * (A_11_above * t88 - A_12_above * t93) / t65
+    t101 = t94 * (A_11_above * t85 - A_12_above * t90) / t65
     return (
-        t68,
-        t73,
+        t66,
+        t71,
+        t76,
+        t77,
         t78,
         t79,
         t80,
         t81,
         t82,
-        t83,
-        t84,
-        t91,
-        t94,
+        t89,
+        t92,
+        ops.select(failed, ops.nan, t95),
+        t96,
         ops.select(failed, ops.nan, t97),
         t98,
-        ops.select(failed, ops.nan, t99),
-        t100,
-        t101,
-        ops.select(failed, ops.nan, t102),
-        ops.select(failed, ops.nan, -t103),
+        t99,
+        ops.select(failed, ops.nan, t100),
+        ops.select(failed, ops.nan, -t101),
     )
 
 
@@ -1180,7 +1164,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8),
+    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 12),
 )
 
 
@@ -1225,10 +1209,10 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s3 = ops.sin(theta3)
-    c3 = ops.cos(theta3)
     s_alpha3 = ops.sin(alpha3)
     c_alpha3 = ops.cos(alpha3)
+    s3 = ops.sin(theta3)
+    c3 = ops.cos(theta3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
@@ -1242,103 +1226,100 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
     t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
     u_u = u_z * u_z + t8 * t8 + t10 * t10
-    t11 = L * s3
-    v_z = t3 - t11
-    t12 = L * c3
-    t13 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
-    t14 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
-    v_v = v_z * v_z + t13 * t13 + t14 * t14
     size = f + e + L + l
-    t15 = size * size
-    t16 = ops.vanishing * ops.vanishing * t15
-    all_same = u_u + v_v <= t16
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t16
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    t17 = ops.select(same, t14, t10)
-    d_x = ops.select(same, t13, t8)
-    a_x = ops.select(all_same, whole, d_x)
-    t18 = ops.select(same, t10, t14)
-    t19 = ops.select(same, t8, t13)
-    t20 = a_x * t18 - t17 * t19
+    t11 = size * size
+    t12 = ops.vanishing * ops.vanishing
+    t13 = t11 * t12
+    same = u_u <= t13
+    t14 = L * c3
+    t15 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t14)
+    t16 = ops.select(same, t15, t10)
+    t17 = L * s3
+    v_z = t3 - t17
+    t18 = ops.select(same, u_z, v_z)
+    t19 = ops.select(same, t10, t15)
     d_z = ops.select(same, v_z, u_z)
-    t21 = ops.select(same, u_z, v_z)
-    t22 = a_x * t21 - t19 * d_z
-    t23 = t17 * t20 + d_z * t22
-    t24 = over * t23
-    t25 = t17 * t21 - t18 * d_z
-    t26 = a_x * t20 - d_z * t25
-    t27 = over * t26
-    t28 = a_x * t22 + t17 * t25
-    n_z = over * t28
-    nu = t24 * t24 + t27 * t27 + n_z * n_z
-    in_line = nu <= t16
-    t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
-    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
+    t20 = t16 * t18 - t19 * d_z
+    t21 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t14)
+    v_v = v_z * v_z + t21 * t21 + t15 * t15
+    all_same = u_u + v_v <= t13
+    whole = ops.select((size == 0.0), 1.0, size)
+    d_x = ops.select(same, t21, t8)
+    a_x = ops.select(all_same, whole, d_x)
+    t22 = ops.select(same, t8, t21)
+    t23 = a_x * t18 - t22 * d_z
+    t24 = a_x * t19 - t16 * t22
+    product_2 = t20 * t20 + t23 * t23 + t24 * t24
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t25 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t25 * 0.000244140625 <= ops.vanishing * t25
+    t26 = t16 * t24 + d_z * t23
+    t27 = a_x * t24 - d_z * t20
+    n_z = a_x * t23 + t16 * t20
+    t28 = t26 * t26 + t27 * t27 + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t28, product_2)
+    in_line = m_m <= t12 * (t11 * mu)
+    t29 = t22 * (d_x - t22) + t19 * (t16 - t19) + t18 * (d_z - t18)
+    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t11 * ops.feasibility
     t31 = 0.9375 * (l * size)
     t32 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(t17 * a_x)
-    t33 = whole * (t17 + a_x * s_w)
+    s_w = ops.sign(t16 * a_x)
+    t33 = whole * (t16 + a_x * s_w)
     t34 = 2.0 * (g_1 * g_1) + t33 * t33
-    part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
-    t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
-    t36 = mu * 0.25
-    t37 = ops.select(all_same, 0.0, nu * (t35 * t35) + t36)
+    t35 = t29 * t29
+    t36 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t34, m_m) * t35)
+    t37 = ops.select(all_same, 0.0, mu * (1.0 + t36) * 0.25)
     t38 = t32 - t37
     unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
     t39 = c_alpha1 * t3
     t40 = ops.opposite(failed)
+    t41 = ops.opposite(in_line)
+    t42 = t40 & t41
     touching = ops.max(t38, 0.0) <= ops.vanishing * t31
-    t41 = t40 & ops.opposite(touching)
-    t42 = t40 | (t41 & ops.opposite(all_same))
-    t43 = ops.opposite(in_line)
-    t44 = t41 | (t42 & t43)
-    t45 = t44 & t43
-    over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
-    n_z_2 = over_2 * t28
-    t46 = over_2 * t26
-    w_x = ops.select(in_line, g_1 * s_w, t17 * n_z_2 - d_z * t46)
-    t47 = over_2 * t23
-    nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
-    t48 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t44 & in_line, t34, 1.0), 1.0 / ops.select(t45, t48, 1.0))
-    t49 = ops.select(in_line, 0.0, mu * part_2 * t29 * 0.5)
-    t50 = ops.select(all_same, 0.0, nu_2 * (t49 * t49) + t36)
-    t51 = ops.select(t41, part_2 * ops.max(t32 - t50, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t51))
-    t52 = w_x * h
-    t53 = t47 * t49 + d_x * 0.5
-    t54 = t52 - t53
-    t55 = s_alpha1 * t3
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t47))
-    t56 = h * w_y
-    t57 = t46 * t49 - t17 * 0.5
-    t58 = t56 + t57
-    w_z = ops.select(in_line, -t33, a_x * t46 + t17 * t47)
-    t59 = h * w_z
-    t60 = n_z_2 * t49 - d_z * 0.5
-    t61 = t59 + t60
-    t62 = c_alpha2 * t4
-    t63 = s_alpha2 * t4
-    t64 = t62 * (t8 + t54) + t63 * (t10 + t58) + t7 * (u_z + t61)
-    t65 = c_alpha3 * t11
-    t66 = s_alpha3 * t11
-    t67 = t65 * (t13 + t54) + t66 * (t14 + t58) + t12 * (v_z + t61)
-    t68 = (t39 * t54 + t55 * t58 + t5 * t61) * t64 * t67
-    t69 = ops.select(t40, t48 * h, 1.0)
-    A_11_above = t52 + t53
-    A_12_above = t56 - t57
-    t70 = t59 - t60
-    t71 = t39 * A_11_above + t55 * A_12_above + t5 * t70
-    t72 = t62 * (t8 - A_11_above) + t63 * (t10 - A_12_above)
-    t73 = t65 * (t13 - A_11_above) + t66 * (t14 - A_12_above)
-    t74 = t71 * (t72 + t7 * (u_z - t70)) * (t73 + t12 * (v_z - t70))
+    t43 = t40 & ops.opposite(touching)
+    t44 = t42 | t43 | (t43 & ops.opposite(all_same) & t41)
+    t45 = ops.select((t42 & slim) | ((t40 | (t44 & t41)) & slim), mu, 1.0)
+    over = 1.0 / t45
+    m_x = ops.select(slim, over * (t16 * n_z - d_z * t27), t20)
+    m_m_2 = ops.select(slim, over * t28, product_2)
+    t46 = ops.select(t44, ops.select(in_line, t34, m_m_2), 1.0)
+    part = 1.0 / t46
+    t47 = mu * (1.0 + ops.select(in_line, 0.0, part * t35))
+    slack = ops.max(t32 - ops.select(all_same, 0.0, t47 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t43, part * slack, 1.0)))
+    t48 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t49 = ops.select(in_line, 0.0, part * t29 * 0.5)
+    t50 = t26 * t49 + d_x * 0.5
+    t51 = t48 - t50
+    t52 = s_alpha1 * t3
+    t53 = ops.select(slim, over * (a_x * n_z + d_z * t26), t23)
+    t54 = h * ops.select(in_line, g_1, -t53)
+    t55 = t27 * t49 - t16 * 0.5
+    t56 = t54 + t55
+    m_z = ops.select(slim, over * (a_x * t27 + t16 * t26), t24)
+    t57 = h * ops.select(in_line, -t33, m_z)
+    t58 = n_z * t49 - d_z * 0.5
+    t59 = t57 + t58
+    t60 = c_alpha2 * t4
+    t61 = s_alpha2 * t4
+    t62 = t60 * (t8 + t51) + t61 * (t10 + t56) + t7 * (u_z + t59)
+    t63 = c_alpha3 * t17
+    t64 = s_alpha3 * t17
+    t65 = t63 * (t21 + t51) + t64 * (t15 + t56) + t14 * (v_z + t59)
+    t66 = (t39 * t51 + t52 * t56 + t5 * t59) * t62 * t65
+    t67 = ops.select(t40, m_m_2 * h, 1.0)
+    A_11_above = t48 + t50
+    A_12_above = t54 - t55
+    t68 = t57 - t58
+    t69 = t39 * A_11_above + t52 * A_12_above + t5 * t68
+    t70 = t60 * (t8 - A_11_above) + t61 * (t10 - A_12_above)
+    t71 = t63 * (t21 - A_11_above) + t64 * (t15 - A_12_above)
+    t72 = t69 * (t70 + t7 * (u_z - t68)) * (t71 + t14 * (v_z - t68))
     return (
-        ops.select(failed, ops.nan, -(t68 / t69)),
-        ops.select(failed, ops.nan, -(t74 / t69)),
+        ops.select(failed, ops.nan, -(t66 / t67)),
+        ops.select(failed, ops.nan, -(t72 / t67)),
     )
 
 
@@ -1393,10 +1374,10 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s3 = ops.sin(theta3)
-    c3 = ops.cos(theta3)
     s_alpha3 = ops.sin(alpha3)
     c_alpha3 = ops.cos(alpha3)
+    s3 = ops.sin(theta3)
+    c3 = ops.cos(theta3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
@@ -1410,109 +1391,106 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t9 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t5
     t10 = t9 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t7)
     u_u = u_z * u_z + t8 * t8 + t10 * t10
-    t11 = L * s3
-    v_z = t3 - t11
-    t12 = L * c3
-    t13 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
-    t14 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
-    v_v = v_z * v_z + t13 * t13 + t14 * t14
     size = f + e + L + l
-    t15 = size * size
-    t16 = ops.vanishing * ops.vanishing * t15
-    all_same = u_u + v_v <= t16
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t16
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    t17 = ops.select(same, t14, t10)
-    d_x = ops.select(same, t13, t8)
-    a_x = ops.select(all_same, whole, d_x)
-    t18 = ops.select(same, t10, t14)
-    t19 = ops.select(same, t8, t13)
-    t20 = a_x * t18 - t17 * t19
+    t11 = size * size
+    t12 = ops.vanishing * ops.vanishing
+    t13 = t11 * t12
+    same = u_u <= t13
+    t14 = L * c3
+    t15 = t9 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t14)
+    t16 = ops.select(same, t15, t10)
+    t17 = L * s3
+    v_z = t3 - t17
+    t18 = ops.select(same, u_z, v_z)
+    t19 = ops.select(same, t10, t15)
     d_z = ops.select(same, v_z, u_z)
-    t21 = ops.select(same, u_z, v_z)
-    t22 = a_x * t21 - t19 * d_z
-    t23 = t17 * t20 + d_z * t22
-    t24 = over * t23
-    t25 = t17 * t21 - t18 * d_z
-    t26 = a_x * t20 - d_z * t25
-    t27 = over * t26
-    t28 = a_x * t22 + t17 * t25
-    n_z = over * t28
-    nu = t24 * t24 + t27 * t27 + n_z * n_z
-    in_line = nu <= t16
-    t29 = t19 * (d_x - t19) + t18 * (t17 - t18) + t21 * (d_z - t21)
-    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t15 * ops.feasibility
+    t20 = t16 * t18 - t19 * d_z
+    t21 = t6 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t14)
+    v_v = v_z * v_z + t21 * t21 + t15 * t15
+    all_same = u_u + v_v <= t13
+    whole = ops.select((size == 0.0), 1.0, size)
+    d_x = ops.select(same, t21, t8)
+    a_x = ops.select(all_same, whole, d_x)
+    t22 = ops.select(same, t8, t21)
+    t23 = a_x * t18 - t22 * d_z
+    t24 = a_x * t19 - t16 * t22
+    product_2 = t20 * t20 + t23 * t23 + t24 * t24
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t25 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t25 * 0.000244140625 <= ops.vanishing * t25
+    t26 = t16 * t24 + d_z * t23
+    t27 = a_x * t24 - d_z * t20
+    n_z = a_x * t23 + t16 * t20
+    t28 = t26 * t26 + t27 * t27 + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t28, product_2)
+    in_line = m_m <= t12 * (t11 * mu)
+    t29 = t22 * (d_x - t22) + t19 * (t16 - t19) + t18 * (d_z - t18)
+    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t11 * ops.feasibility
     t31 = 0.9375 * (l * size)
     t32 = l * l
     g_1 = whole * d_z
-    s_w = ops.sign(t17 * a_x)
-    t33 = whole * (t17 + a_x * s_w)
+    s_w = ops.sign(t16 * a_x)
+    t33 = whole * (t16 + a_x * s_w)
     t34 = 2.0 * (g_1 * g_1) + t33 * t33
-    part = ops.select(in_line, 1.0 / t34, 1.0 / (mu * nu))
-    t35 = ops.select(in_line, 0.0, mu * part * t29 * 0.5)
-    t36 = mu * 0.25
-    t37 = ops.select(all_same, 0.0, nu * (t35 * t35) + t36)
+    t35 = t29 * t29
+    t36 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t34, m_m) * t35)
+    t37 = ops.select(all_same, 0.0, mu * (1.0 + t36) * 0.25)
     t38 = t32 - t37
     unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
     t39 = c_alpha1 * t3
     t40 = ops.opposite(failed)
+    t41 = ops.opposite(in_line)
+    t42 = t40 & t41
     touching = ops.max(t38, 0.0) <= ops.vanishing * t31
-    t41 = t40 & ops.opposite(touching)
-    t42 = t40 | (t41 & ops.opposite(all_same))
-    t43 = ops.opposite(in_line)
-    t44 = t41 | (t42 & t43)
-    t45 = t44 & t43
-    over_2 = 1.0 / ops.select(t42 | t45, mu, 1.0)
-    n_z_2 = over_2 * t28
-    t46 = over_2 * t26
-    w_x = ops.select(in_line, g_1 * s_w, t17 * n_z_2 - d_z * t46)
-    t47 = over_2 * t23
-    nu_2 = t47 * t47 + t46 * t46 + n_z_2 * n_z_2
-    t48 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t44 & in_line, t34, 1.0), 1.0 / ops.select(t45, t48, 1.0))
-    t49 = ops.select(in_line, 0.0, mu * part_2 * t29 * 0.5)
-    t50 = ops.select(all_same, 0.0, nu_2 * (t49 * t49) + t36)
-    t51 = ops.select(t41, part_2 * ops.max(t32 - t50, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t51))
-    t52 = w_x * h
-    t53 = t47 * t49 + d_x * 0.5
-    t54 = t52 - t53
-    t55 = s_alpha1 * t3
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t47))
-    t56 = h * w_y
-    t57 = t46 * t49 - t17 * 0.5
-    t58 = t56 + t57
-    w_z = ops.select(in_line, -t33, a_x * t46 + t17 * t47)
-    t59 = h * w_z
-    t60 = n_z_2 * t49 - d_z * 0.5
-    t61 = t59 + t60
-    t62 = ops.select(failed, ops.nan, t39 * t54 + t55 * t58 + t5 * t61)
-    t63 = c_alpha2 * t4
-    t64 = s_alpha2 * t4
-    B_22 = t63 * (t8 + t54) + t64 * (t10 + t58) + t7 * (u_z + t61)
-    t65 = c_alpha3 * t11
-    t66 = s_alpha3 * t11
-    B_33 = t65 * (t13 + t54) + t66 * (t14 + t58) + t12 * (v_z + t61)
-    Delta = t48 * h
-    A_11_above = t52 + t53
-    A_12_above = t56 - t57
-    t67 = t59 - t60
-    t68 = t39 * A_11_above + t55 * A_12_above + t5 * t67
-    t69 = t63 * (t8 - A_11_above) + t64 * (t10 - A_12_above)
-    t70 = ops.select(failed, ops.nan, t69 + t7 * (u_z - t67))
-    t71 = t65 * (t13 - A_11_above) + t66 * (t14 - A_12_above)
-    t72 = ops.select(failed, ops.nan, t71 + t12 * (v_z - t67))
+    t43 = t40 & ops.opposite(touching)
+    t44 = t42 | t43 | (t43 & ops.opposite(all_same) & t41)
+    t45 = ops.select((t42 & slim) | ((t40 | (t44 & t41)) & slim), mu, 1.0)
+    over = 1.0 / t45
+    m_x = ops.select(slim, over * (t16 * n_z - d_z * t27), t20)
+    m_m_2 = ops.select(slim, over * t28, product_2)
+    t46 = ops.select(t44, ops.select(in_line, t34, m_m_2), 1.0)
+    part = 1.0 / t46
+    t47 = mu * (1.0 + ops.select(in_line, 0.0, part * t35))
+    slack = ops.max(t32 - ops.select(all_same, 0.0, t47 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t43, part * slack, 1.0)))
+    t48 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t49 = ops.select(in_line, 0.0, part * t29 * 0.5)
+    t50 = t26 * t49 + d_x * 0.5
+    t51 = t48 - t50
+    t52 = s_alpha1 * t3
+    t53 = ops.select(slim, over * (a_x * n_z + d_z * t26), t23)
+    t54 = h * ops.select(in_line, g_1, -t53)
+    t55 = t27 * t49 - t16 * 0.5
+    t56 = t54 + t55
+    m_z = ops.select(slim, over * (a_x * t27 + t16 * t26), t24)
+    t57 = h * ops.select(in_line, -t33, m_z)
+    t58 = n_z * t49 - d_z * 0.5
+    t59 = t57 + t58
+    t60 = ops.select(failed, ops.nan, t39 * t51 + t52 * t56 + t5 * t59)
+    t61 = c_alpha2 * t4
+    t62 = s_alpha2 * t4
+    B_22 = t61 * (t8 + t51) + t62 * (t10 + t56) + t7 * (u_z + t59)
+    t63 = c_alpha3 * t17
+    t64 = s_alpha3 * t17
+    B_33 = t63 * (t21 + t51) + t64 * (t15 + t56) + t14 * (v_z + t59)
+    Delta = m_m_2 * h
+    A_11_above = t48 + t50
+    A_12_above = t54 - t55
+    t65 = t57 - t58
+    t66 = t39 * A_11_above + t52 * A_12_above + t5 * t65
+    t67 = t61 * (t8 - A_11_above) + t62 * (t10 - A_12_above)
+    t68 = ops.select(failed, ops.nan, t67 + t7 * (u_z - t65))
+    t69 = t63 * (t21 - A_11_above) + t64 * (t15 - A_12_above)
+    t70 = ops.select(failed, ops.nan, t69 + t14 * (v_z - t65))
     return (
-        t62,
+        t60,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, B_33),
         ops.select(failed, ops.nan, -Delta),
-        ops.select(failed, ops.nan, -t68),
+        ops.select(failed, ops.nan, -t66),
+        t68,
         t70,
-        t72,
         ops.select(failed, ops.nan, Delta),
     )
 
@@ -1524,7 +1502,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 4)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 3), (4, 2), (5, 2), (6, 2), (7, 3)), 8),
+    _runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 3), (4, 2), (5, 2), (6, 2), (7, 3)), 12),
 )
 
 
@@ -1568,10 +1546,10 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     c_alpha1 = ops.cos(alpha1)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s3 = ops.sin(theta3)
-    c3 = ops.cos(theta3)
     s_alpha3 = ops.sin(alpha3)
     c_alpha3 = ops.cos(alpha3)
+    s3 = ops.sin(theta3)
+    c3 = ops.cos(theta3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
@@ -1584,130 +1562,127 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
     u_u = u_z * u_z + t7 * t7 + t9 * t9
-    v_z = t3 - L * s3
-    t10 = L * c3
-    t11 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10)
-    t12 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10)
-    v_v = v_z * v_z + t11 * t11 + t12 * t12
     size = f + e + L + l
-    t13 = size * size
-    t14 = ops.vanishing * ops.vanishing * t13
-    all_same = u_u + v_v <= t14
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t14
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    t15 = ops.select(same, t12, t9)
-    d_x = ops.select(same, t11, t7)
-    a_x = ops.select(all_same, whole, d_x)
-    t16 = ops.select(same, t9, t12)
-    t17 = ops.select(same, t7, t11)
-    t18 = a_x * t16 - t15 * t17
+    t10 = size * size
+    t11 = ops.vanishing * ops.vanishing
+    t12 = t10 * t11
+    same = u_u <= t12
+    t13 = L * c3
+    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
+    t15 = ops.select(same, t14, t9)
+    v_z = t3 - L * s3
+    t16 = ops.select(same, u_z, v_z)
+    t17 = ops.select(same, t9, t14)
     d_z = ops.select(same, v_z, u_z)
-    t19 = ops.select(same, u_z, v_z)
-    t20 = a_x * t19 - t17 * d_z
-    t21 = t15 * t18 + d_z * t20
-    t22 = over * t21
-    t23 = t15 * t19 - t16 * d_z
-    t24 = a_x * t18 - d_z * t23
-    t25 = over * t24
-    t26 = a_x * t20 + t15 * t23
-    n_z = over * t26
-    nu = t22 * t22 + t25 * t25 + n_z * n_z
-    in_line = nu <= t14
-    t27 = t17 * (d_x - t17) + t16 * (t15 - t16) + t19 * (d_z - t19)
-    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
+    t18 = t15 * t16 - t17 * d_z
+    t19 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
+    v_v = v_z * v_z + t19 * t19 + t14 * t14
+    all_same = u_u + v_v <= t12
+    whole = ops.select((size == 0.0), 1.0, size)
+    d_x = ops.select(same, t19, t7)
+    a_x = ops.select(all_same, whole, d_x)
+    t20 = ops.select(same, t7, t19)
+    t21 = a_x * t16 - t20 * d_z
+    t22 = a_x * t17 - t15 * t20
+    product_2 = t18 * t18 + t21 * t21 + t22 * t22
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t23 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t23 * 0.000244140625 <= ops.vanishing * t23
+    t24 = t15 * t22 + d_z * t21
+    t25 = a_x * t22 - d_z * t18
+    n_z = a_x * t21 + t15 * t18
+    t26 = t24 * t24 + t25 * t25 + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t26, product_2)
+    in_line = m_m <= t11 * (t10 * mu)
+    t27 = t20 * (d_x - t20) + t17 * (t15 - t17) + t16 * (d_z - t16)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t10 * ops.feasibility
     t29 = 0.9375 * (l * size)
     t30 = l * l
     g_1 = whole * d_z
     s_w = ops.sign(t15 * a_x)
     t31 = whole * (t15 + a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
-    t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
-    t34 = mu * 0.25
-    t35 = ops.select(all_same, 0.0, nu * (t33 * t33) + t34)
+    t33 = t27 * t27
+    t34 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t32, m_m) * t33)
+    t35 = ops.select(all_same, 0.0, mu * (1.0 + t34) * 0.25)
     t36 = t30 - t35
     unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
     t37 = ops.opposite(failed)
+    t38 = ops.opposite(in_line)
+    t39 = t37 & t38
     touching = ops.max(t36, 0.0) <= ops.vanishing * t29
-    t38 = t37 & ops.opposite(touching)
-    t39 = t37 | (t38 & ops.opposite(all_same))
-    t40 = ops.opposite(in_line)
-    t41 = t38 | (t39 & t40)
-    t42 = t41 & t40
-    over_2 = 1.0 / ops.select(t39 | t42, mu, 1.0)
-    n_z_2 = over_2 * t26
-    t43 = over_2 * t24
-    w_x = ops.select(in_line, g_1 * s_w, t15 * n_z_2 - d_z * t43)
-    t44 = over_2 * t21
-    nu_2 = t44 * t44 + t43 * t43 + n_z_2 * n_z_2
-    t45 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t41 & in_line, t32, 1.0), 1.0 / ops.select(t42, t45, 1.0))
-    t46 = ops.select(in_line, 0.0, mu * part_2 * t27 * 0.5)
-    t47 = ops.select(all_same, 0.0, nu_2 * (t46 * t46) + t34)
-    t48 = ops.select(t38, part_2 * ops.max(t30 - t47, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t48))
-    t49 = w_x * h
-    t50 = t44 * t46 + d_x * 0.5
-    t51 = t49 - t50
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t44))
-    t52 = h * w_y
-    t53 = t43 * t46 - t15 * 0.5
-    t54 = t52 + t53
-    w_z = ops.select(in_line, -t31, a_x * t43 + t15 * t44)
-    t55 = h * w_z
-    t56 = n_z_2 * t46 - d_z * 0.5
-    t57 = t55 + t56
-    t58 = t7 + t51
-    t59 = t9 + t54
-    t60 = u_z + t57
-    t61 = t51 * t51 + t54 * t54 + t57 * t57 + (t58 * t58 + t59 * t59 + t60 * t60)
-    t62 = t11 + t51
-    t63 = t12 + t54
-    t64 = v_z + t57
-    t65 = t51 * t59 - t54 * t58
-    t66 = t51 * t60 - t57 * t58
-    t67 = t51 * t63 - t54 * t62
-    t68 = t51 * t64 - t57 * t62
-    t69 = t65 * t65 + t66 * t66 + t67 * t67 + t68 * t68
-    t70 = t54 * t60 - t57 * t59
-    t71 = t54 * t64 - t57 * t63
-    t72 = t58 * t63 - t59 * t62
-    t73 = t58 * t64 - t60 * t62
-    t74 = t69 + t70 * t70 + t71 * t71 + t72 * t72 + t73 * t73
-    t75 = t59 * t64 - t60 * t63
-    t76 = (t61 + (t62 * t62 + t63 * t63 + t64 * t64)) * (t74 + t75 * t75)
-    t77 = ops.select(t37, 3.0 * (t45 * h), 1.0)
-    t78 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t37, t76, 1.0)) / t77)
-    A_11_above = t49 + t50
-    A_12_above = t52 - t53
-    t79 = A_11_above * A_11_above + A_12_above * A_12_above
-    t80 = t55 - t56
-    t81 = t7 - A_11_above
-    t82 = t9 - A_12_above
-    t83 = u_z - t80
-    t84 = t79 + t80 * t80 + (t81 * t81 + t82 * t82 + t83 * t83)
-    t85 = t11 - A_11_above
-    t86 = t12 - A_12_above
-    t87 = v_z - t80
-    t88 = A_11_above * t82 - A_12_above * t81
-    t89 = A_11_above * t83 - t80 * t81
-    t90 = A_11_above * t86 - A_12_above * t85
-    t91 = A_11_above * t87 - t80 * t85
-    t92 = t88 * t88 + t89 * t89 + t90 * t90 + t91 * t91
-    t93 = A_12_above * t83 - t80 * t82
-    t94 = A_12_above * t87 - t80 * t86
-    t95 = t81 * t86 - t82 * t85
-    t96 = t81 * t87 - t83 * t85
-    t97 = t92 + t93 * t93 + t94 * t94 + t95 * t95 + t96 * t96
-    t98 = t82 * t87 - t83 * t86
-    t99 = (t84 + (t85 * t85 + t86 * t86 + t87 * t87)) * (t97 + t98 * t98)
-    t100 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t37, t99, 1.0)) / t77)
+    t40 = t37 & ops.opposite(touching)
+    t41 = t39 | t40 | (t40 & ops.opposite(all_same) & t38)
+    t42 = ops.select((t39 & slim) | ((t37 | (t41 & t38)) & slim), mu, 1.0)
+    over = 1.0 / t42
+    m_x = ops.select(slim, over * (t15 * n_z - d_z * t25), t18)
+    m_m_2 = ops.select(slim, over * t26, product_2)
+    t43 = ops.select(t41, ops.select(in_line, t32, m_m_2), 1.0)
+    part = 1.0 / t43
+    t44 = mu * (1.0 + ops.select(in_line, 0.0, part * t33))
+    slack = ops.max(t30 - ops.select(all_same, 0.0, t44 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t40, part * slack, 1.0)))
+    t45 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t46 = ops.select(in_line, 0.0, part * t27 * 0.5)
+    t47 = t24 * t46 + d_x * 0.5
+    t48 = t45 - t47
+    t49 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
+    t50 = h * ops.select(in_line, g_1, -t49)
+    t51 = t25 * t46 - t15 * 0.5
+    t52 = t50 + t51
+    m_z = ops.select(slim, over * (a_x * t25 + t15 * t24), t22)
+    t53 = h * ops.select(in_line, -t31, m_z)
+    t54 = n_z * t46 - d_z * 0.5
+    t55 = t53 + t54
+    t56 = t7 + t48
+    t57 = t9 + t52
+    t58 = u_z + t55
+    t59 = t48 * t48 + t52 * t52 + t55 * t55 + (t56 * t56 + t57 * t57 + t58 * t58)
+    t60 = t19 + t48
+    t61 = t14 + t52
+    t62 = v_z + t55
+    t63 = t48 * t57 - t52 * t56
+    t64 = t48 * t58 - t55 * t56
+    t65 = t48 * t61 - t52 * t60
+    t66 = t48 * t62 - t55 * t60
+    t67 = t63 * t63 + t64 * t64 + t65 * t65 + t66 * t66
+    t68 = t52 * t58 - t55 * t57
+    t69 = t52 * t62 - t55 * t61
+    t70 = t56 * t61 - t57 * t60
+    t71 = t56 * t62 - t58 * t60
+    t72 = t67 + t68 * t68 + t69 * t69 + t70 * t70 + t71 * t71
+    t73 = t57 * t62 - t58 * t61
+    t74 = (t59 + (t60 * t60 + t61 * t61 + t62 * t62)) * (t72 + t73 * t73)
+    t75 = ops.select(t37, 3.0 * (m_m_2 * h), 1.0)
+    t76 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t37, t74, 1.0)) / t75)
+    A_11_above = t45 + t47
+    A_12_above = t50 - t51
+    t77 = A_11_above * A_11_above + A_12_above * A_12_above
+    t78 = t53 - t54
+    t79 = t7 - A_11_above
+    t80 = t9 - A_12_above
+    t81 = u_z - t78
+    t82 = t77 + t78 * t78 + (t79 * t79 + t80 * t80 + t81 * t81)
+    t83 = t19 - A_11_above
+    t84 = t14 - A_12_above
+    t85 = v_z - t78
+    t86 = A_11_above * t80 - A_12_above * t79
+    t87 = A_11_above * t81 - t78 * t79
+    t88 = A_11_above * t84 - A_12_above * t83
+    t89 = A_11_above * t85 - t78 * t83
+    t90 = t86 * t86 + t87 * t87 + t88 * t88 + t89 * t89
+    t91 = A_12_above * t81 - t78 * t80
+    t92 = A_12_above * t85 - t78 * t84
+    t93 = t79 * t84 - t80 * t83
+    t94 = t79 * t85 - t81 * t83
+    t95 = t90 + t91 * t91 + t92 * t92 + t93 * t93 + t94 * t94
+    t96 = t80 * t85 - t81 * t84
+    t97 = (t82 + (t83 * t83 + t84 * t84 + t85 * t85)) * (t95 + t96 * t96)
+    t98 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t37, t97, 1.0)) / t75)
     return (
-        t78,
-        t100,
+        t76,
+        t98,
     )
 
 
@@ -1779,49 +1754,49 @@ def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
     u_u = u_z * u_z + t7 * t7 + t9 * t9
-    v_z = t3 - L * s3
-    t10 = L * c3
-    t11 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10)
-    t12 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10)
-    v_v = v_z * v_z + t11 * t11 + t12 * t12
     size = f + e + L + l
-    t13 = size * size
-    t14 = ops.vanishing * ops.vanishing * t13
-    all_same = u_u + v_v <= t14
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t14
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    t15 = ops.select(same, t12, t9)
-    d_x = ops.select(same, t11, t7)
-    a_x = ops.select(all_same, whole, d_x)
-    t16 = ops.select(same, t9, t12)
-    t17 = ops.select(same, t7, t11)
-    t18 = a_x * t16 - t15 * t17
+    t10 = size * size
+    t11 = ops.vanishing * ops.vanishing
+    t12 = t10 * t11
+    same = u_u <= t12
+    t13 = L * c3
+    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
+    t15 = ops.select(same, t14, t9)
+    v_z = t3 - L * s3
+    t16 = ops.select(same, u_z, v_z)
+    t17 = ops.select(same, t9, t14)
     d_z = ops.select(same, v_z, u_z)
-    t19 = ops.select(same, u_z, v_z)
-    t20 = a_x * t19 - t17 * d_z
-    t21 = t15 * t18 + d_z * t20
-    t22 = over * t21
-    t23 = t15 * t19 - t16 * d_z
-    t24 = a_x * t18 - d_z * t23
-    t25 = over * t24
-    t26 = a_x * t20 + t15 * t23
-    n_z = over * t26
-    nu = t22 * t22 + t25 * t25 + n_z * n_z
-    in_line = nu <= t14
-    t27 = t17 * (d_x - t17) + t16 * (t15 - t16) + t19 * (d_z - t19)
-    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t13 * ops.feasibility
+    t18 = t15 * t16 - t17 * d_z
+    t19 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
+    v_v = v_z * v_z + t19 * t19 + t14 * t14
+    all_same = u_u + v_v <= t12
+    whole = ops.select((size == 0.0), 1.0, size)
+    d_x = ops.select(same, t19, t7)
+    a_x = ops.select(all_same, whole, d_x)
+    t20 = ops.select(same, t7, t19)
+    t21 = a_x * t16 - t20 * d_z
+    t22 = a_x * t17 - t15 * t20
+    product_2 = t18 * t18 + t21 * t21 + t22 * t22
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t23 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t23 * 0.000244140625 <= ops.vanishing * t23
+    t24 = t15 * t22 + d_z * t21
+    t25 = a_x * t22 - d_z * t18
+    n_z = a_x * t21 + t15 * t18
+    t26 = t24 * t24 + t25 * t25 + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t26, product_2)
+    in_line = m_m <= t11 * (t10 * mu)
+    t27 = t20 * (d_x - t20) + t17 * (t15 - t17) + t16 * (d_z - t16)
+    t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t10 * ops.feasibility
     t29 = 0.9375 * (l * size)
     t30 = l * l
     g_1 = whole * d_z
     s_w = ops.sign(t15 * a_x)
     t31 = whole * (t15 + a_x * s_w)
     t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    part = ops.select(in_line, 1.0 / t32, 1.0 / (mu * nu))
-    t33 = ops.select(in_line, 0.0, mu * part * t27 * 0.5)
-    t34 = mu * 0.25
-    t35 = ops.select(all_same, 0.0, nu * (t33 * t33) + t34)
+    t33 = t27 * t27
+    t34 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t32, m_m) * t33)
+    t35 = ops.select(all_same, 0.0, mu * (1.0 + t34) * 0.25)
     t36 = t30 - t35
     unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
@@ -1829,79 +1804,76 @@ def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     touching = ops.max(t36, 0.0) <= ops.vanishing * t29
     t38 = ops.opposite(failed)
     t39 = t38 & ops.opposite(touching)
-    t40 = t38 | (t39 & ops.opposite(all_same))
-    t41 = ops.opposite(in_line)
-    t42 = t39 | (t40 & t41)
-    t43 = t42 & t41
-    over_2 = 1.0 / ops.select(t40 | t43, mu, 1.0)
-    t44 = over_2 * t21
-    t45 = over_2 * t24
-    n_z_2 = over_2 * t26
-    nu_2 = t44 * t44 + t45 * t45 + n_z_2 * n_z_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t42 & in_line, t32, 1.0), 1.0 / ops.select(t43, mu * nu_2, 1.0))
-    t46 = ops.select(in_line, 0.0, mu * part_2 * t27 * 0.5)
-    t47 = ops.select(all_same, 0.0, nu_2 * (t46 * t46) + t34)
-    t48 = ops.select(t39, part_2 * ops.max(t30 - t47, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t48))
-    w_z = ops.select(in_line, -t31, a_x * t45 + t15 * t44)
-    t49 = h * w_z
-    t50 = n_z_2 * t46 - d_z * 0.5
-    t51 = t49 + t50
-    t52 = s_alpha3 * t51
-    t53 = t37 * t52
-    t54 = u_z + t51
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t44))
-    t55 = h * w_y
-    t56 = t45 * t46 - t15 * 0.5
-    t57 = t55 + t56
-    t58 = t54 * (t12 + t57)
-    t59 = c_alpha3 * t37
-    w_x = ops.select(in_line, g_1 * s_w, t15 * n_z_2 - d_z * t45)
-    t60 = w_x * h
-    t61 = t44 * t46 + d_x * 0.5
-    t62 = t60 - t61
-    t63 = v_z + t51
-    t64 = t54 * t63
-    t65 = t62 * t64
-    t66 = c_alpha1 * c_alpha2
-    t67 = s_alpha3 * t66
-    t68 = s_alpha1 * s_alpha2
-    t69 = c_alpha3 * t68
-    t70 = t64 * t57
-    t71 = s_alpha1 * c_alpha2
-    t72 = s_alpha3 * t71
-    t73 = t59 * t65 - t67 * t65 + t69 * t70 - t72 * t70
-    t74 = c_alpha3 * t51
-    t75 = t71 * t74
-    t76 = t63 * (t7 + t62)
-    t77 = t63 * (t9 + t57)
-    t78 = t73 - t75 * t76 + t66 * t76 * t52 - t68 * t74 * t77
-    t79 = t54 * (t11 + t62)
-    t80 = t78 + t77 * t53 + t75 * t79 - t37 * t74 * t79
-    t81 = ops.select(failed, ops.nan, t53 * t58 - (t80 + t71 * t52 * t58))
-    A_11_above = t60 + t61
-    t82 = t49 - t50
-    t83 = u_z - t82
-    t84 = v_z - t82
-    t85 = t83 * t84
-    t86 = A_11_above * t85
-    A_12_above = t55 - t56
-    t87 = t85 * A_12_above
-    t88 = t59 * t86 - t67 * t86 + t69 * t87 - t72 * t87
-    t89 = c_alpha3 * t82
-    t90 = t71 * t89
-    t91 = t84 * (t7 - A_11_above)
-    t92 = s_alpha3 * t82
-    t93 = t84 * (t9 - A_12_above)
-    t94 = t88 - t90 * t91 + t66 * t91 * t92 - t68 * t89 * t93
-    t95 = t37 * t92
-    t96 = t83 * (t11 - A_11_above)
-    t97 = t94 + t93 * t95 + t90 * t96 - t37 * t89 * t96
-    t98 = t83 * (t12 - A_12_above)
-    t99 = ops.select(failed, ops.nan, t97 + t71 * t92 * t98 - t95 * t98)
+    t40 = ops.opposite(in_line)
+    t41 = t38 & t40
+    t42 = t41 | t39 | (t39 & ops.opposite(all_same) & t40)
+    t43 = ops.select((t41 & slim) | (t42 & t40 & slim), mu, 1.0)
+    over = 1.0 / t43
+    w_w = ops.select(in_line, t32, ops.select(slim, over * t26, product_2))
+    part = 1.0 / ops.select(t42, w_w, 1.0)
+    t44 = mu * (1.0 + ops.select(in_line, 0.0, part * t33))
+    slack = ops.max(t30 - ops.select(all_same, 0.0, t44 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t39, part * slack, 1.0)))
+    m_z = ops.select(slim, over * (a_x * t25 + t15 * t24), t22)
+    t45 = h * ops.select(in_line, -t31, m_z)
+    t46 = ops.select(in_line, 0.0, part * t27 * 0.5)
+    t47 = n_z * t46 - d_z * 0.5
+    t48 = t45 + t47
+    t49 = s_alpha3 * t48
+    t50 = t37 * t49
+    t51 = u_z + t48
+    t52 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
+    t53 = h * ops.select(in_line, g_1, -t52)
+    t54 = t25 * t46 - t15 * 0.5
+    t55 = t53 + t54
+    t56 = t51 * (t14 + t55)
+    t57 = c_alpha3 * t37
+    m_x = ops.select(slim, over * (t15 * n_z - d_z * t25), t18)
+    t58 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t59 = t24 * t46 + d_x * 0.5
+    t60 = t58 - t59
+    t61 = v_z + t48
+    t62 = t51 * t61
+    t63 = t60 * t62
+    t64 = c_alpha1 * c_alpha2
+    t65 = s_alpha3 * t64
+    t66 = s_alpha1 * s_alpha2
+    t67 = c_alpha3 * t66
+    t68 = t62 * t55
+    t69 = s_alpha1 * c_alpha2
+    t70 = s_alpha3 * t69
+    t71 = t57 * t63 - t65 * t63 + t67 * t68 - t70 * t68
+    t72 = c_alpha3 * t48
+    t73 = t69 * t72
+    t74 = t61 * (t7 + t60)
+    t75 = t61 * (t9 + t55)
+    t76 = t71 - t73 * t74 + t64 * t74 * t49 - t66 * t72 * t75
+    t77 = t51 * (t19 + t60)
+    t78 = t76 + t75 * t50 + t73 * t77 - t37 * t72 * t77
+    t79 = ops.select(failed, ops.nan, t50 * t56 - (t78 + t69 * t49 * t56))
+    A_11_above = t58 + t59
+    t80 = t45 - t47
+    t81 = u_z - t80
+    t82 = v_z - t80
+    t83 = t81 * t82
+    t84 = A_11_above * t83
+    A_12_above = t53 - t54
+    t85 = t83 * A_12_above
+    t86 = t57 * t84 - t65 * t84 + t67 * t85 - t70 * t85
+    t87 = c_alpha3 * t80
+    t88 = t69 * t87
+    t89 = t82 * (t7 - A_11_above)
+    t90 = s_alpha3 * t80
+    t91 = t82 * (t9 - A_12_above)
+    t92 = t86 - t88 * t89 + t64 * t89 * t90 - t66 * t87 * t91
+    t93 = t37 * t90
+    t94 = t81 * (t19 - A_11_above)
+    t95 = t92 + t91 * t93 + t88 * t94 - t37 * t87 * t94
+    t96 = t81 * (t14 - A_12_above)
+    t97 = ops.select(failed, ops.nan, t95 + t69 * t90 * t96 - t93 * t96)
     return (
-        t81,
-        t99,
+        t79,
+        t97,
     )
 
 
@@ -1912,7 +1884,7 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 1)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 8),
+    _runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 12),
 )
 
 

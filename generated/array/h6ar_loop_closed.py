@@ -3,7 +3,7 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 95 compare and select, 84 add, 2 atan2, 27 divide, 125 multiply, 1 reduce to a turn, 6
+#   fk: 94 compare and select, 84 add, 2 atan2, 27 divide, 125 multiply, 1 reduce to a turn, 6
 #     sincos, 8 sqrt
 #   pose: 99 compare and select, 103 add, 27 divide, 166 multiply, 6 sincos, 8 sqrt
 #   skeleton: 133 compare and select, 136 add, 27 divide, 205 multiply, 6 sincos, 8 sqrt
@@ -306,7 +306,7 @@ def _fk(
     t90 = ops.select(failed, ops.nan, s1 * t86 + c1 * t89)
     t91 = ops.select(failed, ops.nan, s1 * t89 - c1 * t86)
     t92 = d1 + L1 * stheta2A - ctheta23A * t88 + stheta23A * t87
-    t93 = ops.select(failed, ops.nan, ops.wrap_cut(ops.atan2(-t81, t79)))
+    t93 = ops.select(failed, ops.nan, ops.atan2(-t81, t79))
     t94 = ops.wrap_cut(-ops.atan2(-t78, ops.select(t57, d, 1.0)))
     t95 = ops.select(failed, ops.nan, ops.wrap(principal))
     return (

@@ -2,15 +2,15 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 69 compare and select, 48 add, 16 divide, 72 multiply, 1 sqrt
-#   skeleton: 108 compare and select, 82 add, 18 divide, 71 multiply, 1 sqrt
-#   jacobian_parallel: 78 compare and select, 56 add, 16 divide, 72 multiply, 1 sqrt
-#   jacobian_serial: 66 compare and select, 42 add, 14 divide, 63 multiply, 1 sqrt
-#   jacobian: 81 compare and select, 74 add, 34 divide, 123 multiply, 1 sqrt
-#   determinant: 63 compare and select, 42 add, 16 divide, 68 multiply, 1 sqrt
-#   singularities: 68 compare and select, 42 add, 14 divide, 64 multiply, 1 sqrt
-#   condition_number: 67 compare and select, 106 add, 18 divide, 142 multiply, 3 sqrt
-#   constraint: 64 compare and select, 64 add, 22 divide, 96 multiply, 1 sqrt
+#   fk: 78 compare and select, 49 add, 15 divide, 71 multiply, 1 sqrt
+#   skeleton: 117 compare and select, 83 add, 17 divide, 71 multiply, 1 sqrt
+#   jacobian_parallel: 87 compare and select, 57 add, 15 divide, 71 multiply, 1 sqrt
+#   jacobian_serial: 73 compare and select, 43 add, 13 divide, 60 multiply, 1 sqrt
+#   jacobian: 91 compare and select, 75 add, 33 divide, 122 multiply, 1 sqrt
+#   determinant: 71 compare and select, 43 add, 15 divide, 65 multiply, 1 sqrt
+#   singularities: 76 compare and select, 43 add, 13 divide, 61 multiply, 1 sqrt
+#   condition_number: 77 compare and select, 107 add, 17 divide, 141 multiply, 3 sqrt
+#   constraint: 73 compare and select, 65 add, 21 divide, 95 multiply, 1 sqrt
 #   ik: 78 compare and select, 69 add, 5 divide, 47 multiply, 12 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
@@ -146,83 +146,80 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
     t5 = t4 * t4 + c3_y * c3_y
     u_u = t3 * t3 + t5
-    t6 = rho1 - rho3
-    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t7 = size * size
-    t8 = ops.vanishing * ops.vanishing * t7
+    t6 = size * size
+    t7 = ops.vanishing * ops.vanishing
+    t8 = t6 * t7
+    same = u_u <= t8
+    d_y = ops.select(same, c3_y, -c3_y)
+    t9 = rho1 - rho3
+    t10 = ops.select(same, t3, t9)
+    t11 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, t9, t3)
+    t13 = d_y * t10 - t11 * t12
+    v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t8
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    d_y = ops.select(same, c3_y, -c3_y)
     a_x = ops.select(all_same, whole, -t4)
-    t9 = ops.select(same, -c3_y, c3_y)
-    m_z = a_x * t9 + t4 * d_y
-    t10 = ops.select(same, t6, t3)
-    t11 = ops.select(same, t3, t6)
-    m_y = a_x * t11 + t4 * t10
-    t12 = d_y * m_z + t10 * m_y
-    t13 = over * t12
-    t14 = d_y * t11 - t9 * t10
-    t15 = a_x * m_z - t10 * t14
-    n_y = over * t15
-    t16 = a_x * m_y + d_y * t14
-    t17 = over * t16
-    nu = t13 * t13 + n_y * n_y + t17 * t17
-    in_line = nu <= t8
-    t18 = t9 * (d_y - t9) + t11 * (t10 - t11)
-    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    product_y = a_x * t10 + t4 * t12
+    product_z = a_x * t11 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t14 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t12 * product_y
+    n_y = a_x * product_z - t12 * t13
+    t16 = a_x * product_y + d_y * t13
+    t17 = t15 * t15 + n_y * n_y + t16 * t16
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
+    t18 = t11 * (d_y - t11) + t10 * (t12 - t10)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = l * size * 0.1875
     t21 = l * l
-    t22 = whole * t10
+    t22 = whole * t12
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
-    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t25 = mu * 0.25
-    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t24 = t18 * t18
+    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
+    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
     t27 = t21 - t26
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = invalid | unreachable
     t28 = ops.opposite(failed)
+    t29 = ops.opposite(in_line)
+    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t29 = t28 & ops.opposite(touching)
-    t30 = t28 | (t29 & ops.opposite(all_same))
-    t31 = ops.opposite(in_line)
-    t32 = t29 | (t30 & t31)
-    t33 = t32 & t31
-    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
-    t34 = over_2 * t16
-    n_y_2 = over_2 * t15
-    t35 = ops.select(in_line, t22 * s_w, d_y * t34 - t10 * n_y_2)
-    t36 = over_2 * t12
-    nu_2 = t36 * t36 + n_y_2 * n_y_2 + t34 * t34
-    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, mu * nu_2, 1.0))
-    t37 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t38 = ops.select(all_same, 0.0, nu_2 * (t37 * t37) + t25)
-    t39 = ops.select(t29, part_2 * ops.max(t21 - t38, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t39))
-    t40 = t35 * h
-    t41 = t4 * 0.5 - (c1_x + t36 * t37)
-    t42 = n_y_2 * t37 - d_y * 0.5
-    w_y = ops.select(in_line, -t22, a_x * t34 + t10 * t36)
-    t43 = h * w_y
-    t44 = t10 * 0.5 - (rho1 + t34 * t37)
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t36)
-    t45 = h * w_z
-    t46 = ops.status(invalid, unreachable, in_line)
+    t31 = t28 & ops.opposite(touching)
+    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
+    t33 = ops.select((t30 & slim) | (t32 & t29 & slim), mu, 1.0)
+    over = 1.0 / t33
+    w_w = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
+    part = 1.0 / ops.select(t32, w_w, 1.0)
+    t34 = ops.select(in_line, 0.0, part * t18 * 0.5)
+    t35 = c1_x - t4 * 0.5 + t15 * t34
+    t36 = ops.select(slim, over * (d_y * t16 - t12 * n_y), t13)
+    t37 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
+    slack = ops.max(t21 - ops.select(all_same, 0.0, t37 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
+    t38 = ops.select(in_line, t22 * s_w, t36) * h
+    t39 = n_y * t34 - d_y * 0.5
+    m_y = ops.select(slim, over * (a_x * t16 + t12 * t15), product_y)
+    t40 = h * ops.select(in_line, -t22, m_y)
+    t41 = t12 * 0.5 - (rho1 + t16 * t34)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
+    t42 = h * ops.select(in_line, -g_2, m_z)
+    t43 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t40 - t41),
-        ops.select(failed, ops.nan, -(t42 + t43)),
-        ops.select(failed, ops.nan, -(t44 + t45)),
-        ops.select(failed, ops.nan, -(t41 + t40)),
-        ops.select(failed, ops.nan, t43 - t42),
-        ops.select(failed, ops.nan, t45 - t44),
-        t46,
-        t46,
+        ops.select(failed, ops.nan, t35 + t38),
+        ops.select(failed, ops.nan, -(t39 + t40)),
+        ops.select(failed, ops.nan, -(t41 + t42)),
+        ops.select(failed, ops.nan, t35 - t38),
+        ops.select(failed, ops.nan, t40 - t39),
+        ops.select(failed, ops.nan, t42 - t41),
+        t43,
+        t43,
     )
 
 
@@ -233,7 +230,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 12),
 )
 
 
@@ -292,249 +289,245 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     c3_y = t8 - t9
     t10 = t6 * t6 + c3_y * c3_y
     u_u = t3 * t3 + t10
-    t11 = rho1 - rho3
-    v_v = t11 * t11 + t10
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t12 = size * size
-    t13 = ops.vanishing * ops.vanishing * t12
+    t11 = size * size
+    t12 = ops.vanishing * ops.vanishing
+    t13 = t11 * t12
+    same = u_u <= t13
+    d_y = ops.select(same, c3_y, -c3_y)
+    t14 = rho1 - rho3
+    t15 = ops.select(same, t3, t14)
+    t16 = ops.select(same, t14, t3)
+    t17 = ops.select(same, -c3_y, c3_y)
+    t18 = d_y * t15 - t16 * t17
+    v_v = t14 * t14 + t10
     all_same = u_u + v_v <= t13
     whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t13
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    d_y = ops.select(same, c3_y, -c3_y)
     a_x = ops.select(all_same, whole, -t6)
-    t14 = ops.select(same, -c3_y, c3_y)
-    m_z = a_x * t14 + t6 * d_y
-    t15 = ops.select(same, t11, t3)
-    t16 = ops.select(same, t3, t11)
-    m_y = a_x * t16 + t6 * t15
-    t17 = d_y * m_z + t15 * m_y
-    t18 = over * t17
-    t19 = d_y * t16 - t14 * t15
-    t20 = a_x * m_z - t15 * t19
-    n_y = over * t20
-    t21 = a_x * m_y + d_y * t19
-    t22 = over * t21
-    nu = t18 * t18 + n_y * n_y + t22 * t22
-    in_line = nu <= t13
-    t23 = t14 * (d_y - t14) + t16 * (t15 - t16)
-    t24 = ops.abs(ops.select(in_line, -t23, 0.0)) <= t12 * ops.feasibility
+    product_y = t15 * a_x + t6 * t16
+    product_z = t17 * a_x + t6 * d_y
+    product_2 = t18 * t18 + product_y * product_y + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t19 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t19 * 0.000244140625 <= ops.vanishing * t19
+    t20 = d_y * product_z + t16 * product_y
+    n_y = a_x * product_z - t16 * t18
+    t21 = a_x * product_y + d_y * t18
+    t22 = t20 * t20 + n_y * n_y + t21 * t21
+    m_m = ops.select(slim, 1.0 / mu * t22, product_2)
+    in_line = m_m <= t12 * (t11 * mu)
+    t23 = t17 * (d_y - t17) - t15 * (t15 - t16)
+    t24 = ops.abs(ops.select(in_line, -t23, 0.0)) <= t11 * ops.feasibility
     t25 = 0.234375 * (l * size)
     t26 = l * l
-    t27 = mu * t23
-    t28 = whole * t15
+    t27 = whole * t16
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t29 = 2.0 * (t28 * t28) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t29, 1.0 / (mu * nu))
-    t30 = ops.select(in_line, 0.0, t27 * part * 0.5)
-    t31 = mu * 0.25
-    t32 = ops.select(all_same, 0.0, nu * (t30 * t30) + t31)
-    t33 = t26 - t32
-    unreachable = ops.opposite(t24 & (-(ops.feasibility * t25) <= t33))
+    t28 = 2.0 * (t27 * t27) + g_2 * g_2
+    t29 = t23 * t23
+    t30 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t28, m_m) * t29)
+    t31 = ops.select(all_same, 0.0, mu * (1.0 + t30) * 0.25)
+    t32 = t26 - t31
+    unreachable = ops.opposite(t24 & (-(ops.feasibility * t25) <= t32))
     failed = ops.opposite(t2) | unreachable
-    t34 = ops.select(failed, ops.nan, f)
-    t35 = ops.select(failed, ops.nan, 0.0)
-    t36 = ops.select(failed, ops.nan, rho1)
-    t37 = e + c1_x
-    t38 = ops.opposite(failed)
-    touching = ops.max(t33, 0.0) <= ops.vanishing * t25
-    t39 = t38 & ops.opposite(touching)
-    t40 = t38 | (t39 & ops.opposite(all_same))
-    t41 = ops.opposite(in_line)
-    t42 = t39 | (t40 & t41)
-    t43 = t42 & t41
-    over_2 = 1.0 / ops.select(t40 | t43, mu, 1.0)
-    t44 = over_2 * t17
-    n_y_2 = over_2 * t20
-    t45 = over_2 * t21
-    nu_2 = t44 * t44 + n_y_2 * n_y_2 + t45 * t45
-    part_2 = ops.select(in_line, 1.0 / ops.select(t42 & in_line, t29, 1.0), 1.0 / ops.select(t43, mu * nu_2, 1.0))
-    t46 = ops.select(in_line, 0.0, t27 * part_2 * 0.5)
-    t47 = t6 * 0.5 - t44 * t46
-    t48 = ops.select(in_line, t28 * s_w, d_y * t45 - t15 * n_y_2)
-    t49 = ops.select(all_same, 0.0, nu_2 * (t46 * t46) + t31)
-    t50 = ops.select(t39, part_2 * ops.max(t26 - t49, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t50))
-    t51 = t48 * h
-    t52 = t47 - t51
-    t53 = ops.select(failed, ops.nan, t37 - t52)
-    t54 = n_y_2 * t46 - d_y * 0.5
-    w_y = ops.select(in_line, -t28, a_x * t45 + t15 * t44)
-    t55 = h * w_y
-    t56 = t54 + t55
-    t57 = ops.select(failed, ops.nan, -t56)
-    t58 = t45 * t46 - t15 * 0.5
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t44)
-    t59 = h * w_z
-    t60 = ops.select(failed, ops.nan, rho1 + (t58 - t59))
-    t61 = ops.select(failed, ops.nan, t4)
-    t62 = ops.select(failed, ops.nan, -t4)
-    t63 = ops.select(failed, ops.nan, -t5)
-    t64 = ops.select(failed, ops.nan, t9)
-    t65 = ops.select(failed, ops.nan, rho2)
-    t66 = c1_x - t4
-    t67 = t66 - t52
-    t68 = ops.select(failed, ops.nan, t67)
-    t69 = t7 * 0.25
-    t70 = ops.select(failed, ops.nan, -(t5 + t69))
-    t71 = e * 0.25
-    t72 = t9 - t71
-    t73 = ops.select(failed, ops.nan, t72)
-    t74 = ops.select(failed, ops.nan, t69 - t5)
-    t75 = t9 + t71
-    t76 = ops.select(failed, ops.nan, t75)
-    t77 = ops.select(failed, ops.nan, t67 - t69)
-    t78 = t8 - t71
-    t79 = ops.select(failed, ops.nan, t69 + t67)
-    t80 = t8 + t71
-    t81 = ops.select(failed, ops.nan, -t9)
-    t82 = ops.select(failed, ops.nan, rho3)
-    t83 = ops.select(failed, ops.nan, -t75)
-    t84 = ops.select(failed, ops.nan, -t72)
-    t85 = t47 + t51
-    t86 = ops.select(failed, ops.nan, t37 - t85)
-    t87 = t54 - t55
-    t88 = ops.select(failed, ops.nan, -t87)
-    t89 = ops.select(failed, ops.nan, rho1 + (t58 + t59))
-    t90 = t66 - t85
-    t91 = ops.select(failed, ops.nan, t90)
-    t92 = ops.select(failed, ops.nan, t90 - t69)
-    t93 = ops.select(failed, ops.nan, t69 + t90)
+    t33 = ops.select(failed, ops.nan, f)
+    t34 = ops.select(failed, ops.nan, 0.0)
+    t35 = ops.select(failed, ops.nan, rho1)
+    t36 = e + c1_x
+    t37 = ops.opposite(failed)
+    t38 = ops.opposite(in_line)
+    t39 = t37 & t38
+    touching = ops.max(t32, 0.0) <= ops.vanishing * t25
+    t40 = t37 & ops.opposite(touching)
+    t41 = t39 | t40 | (t40 & ops.opposite(all_same) & t38)
+    t42 = ops.select((t39 & slim) | (t41 & t38 & slim), mu, 1.0)
+    over = 1.0 / t42
+    w_w = ops.select(in_line, t28, ops.select(slim, over * t22, product_2))
+    part = 1.0 / ops.select(t41, w_w, 1.0)
+    t43 = ops.select(in_line, 0.0, t23 * part * 0.5)
+    t44 = t6 * 0.5 - t20 * t43
+    t45 = ops.select(slim, over * (d_y * t21 - t16 * n_y), t18)
+    t46 = mu * (1.0 + ops.select(in_line, 0.0, part * t29))
+    slack = ops.max(t26 - ops.select(all_same, 0.0, t46 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t40, part * slack, 1.0)))
+    t47 = ops.select(in_line, t27 * s_w, t45) * h
+    t48 = t44 - t47
+    t49 = ops.select(failed, ops.nan, t36 - t48)
+    t50 = n_y * t43 - d_y * 0.5
+    m_y = ops.select(slim, over * (a_x * t21 + t16 * t20), product_y)
+    t51 = h * ops.select(in_line, -t27, m_y)
+    t52 = t50 + t51
+    t53 = ops.select(failed, ops.nan, -t52)
+    t54 = t21 * t43 - t16 * 0.5
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t20), product_z)
+    t55 = h * ops.select(in_line, -g_2, m_z)
+    t56 = ops.select(failed, ops.nan, rho1 + (t54 - t55))
+    t57 = ops.select(failed, ops.nan, t4)
+    t58 = ops.select(failed, ops.nan, -t4)
+    t59 = ops.select(failed, ops.nan, -t5)
+    t60 = ops.select(failed, ops.nan, t9)
+    t61 = ops.select(failed, ops.nan, rho2)
+    t62 = c1_x - t4
+    t63 = t62 - t48
+    t64 = ops.select(failed, ops.nan, t63)
+    t65 = t7 * 0.25
+    t66 = ops.select(failed, ops.nan, -(t5 + t65))
+    t67 = e * 0.25
+    t68 = t9 - t67
+    t69 = ops.select(failed, ops.nan, t68)
+    t70 = ops.select(failed, ops.nan, t65 - t5)
+    t71 = t9 + t67
+    t72 = ops.select(failed, ops.nan, t71)
+    t73 = ops.select(failed, ops.nan, t63 - t65)
+    t74 = t8 - t67
+    t75 = ops.select(failed, ops.nan, t65 + t63)
+    t76 = t8 + t67
+    t77 = ops.select(failed, ops.nan, -t9)
+    t78 = ops.select(failed, ops.nan, rho3)
+    t79 = ops.select(failed, ops.nan, -t71)
+    t80 = ops.select(failed, ops.nan, -t68)
+    t81 = t44 + t47
+    t82 = ops.select(failed, ops.nan, t36 - t81)
+    t83 = t50 - t51
+    t84 = ops.select(failed, ops.nan, -t83)
+    t85 = ops.select(failed, ops.nan, rho1 + (t54 + t55))
+    t86 = t62 - t81
+    t87 = ops.select(failed, ops.nan, t86)
+    t88 = ops.select(failed, ops.nan, t86 - t65)
+    t89 = ops.select(failed, ops.nan, t65 + t86)
     return (
+        t33,
+        t34,
+        t34,
+        t33,
         t34,
         t35,
-        t35,
-        t34,
-        t35,
-        t36,
+        t49,
         t53,
+        t56,
+        t33,
         t57,
+        t35,
+        t33,
+        t58,
+        t35,
+        t49,
+        ops.select(failed, ops.nan, t4 - t52),
+        t56,
+        t49,
+        ops.select(failed, ops.nan, -(t4 + t52)),
+        t56,
+        t59,
         t60,
         t34,
+        t59,
+        t60,
         t61,
-        t36,
-        t34,
-        t62,
-        t36,
-        t53,
-        ops.select(failed, ops.nan, t4 - t56),
-        t60,
-        t53,
-        ops.select(failed, ops.nan, -(t4 + t56)),
-        t60,
-        t63,
         t64,
-        t35,
-        t63,
-        t64,
-        t65,
-        t68,
-        ops.select(failed, ops.nan, t8 - t56),
-        t60,
+        ops.select(failed, ops.nan, t8 - t52),
+        t56,
+        t66,
+        t69,
+        t61,
         t70,
+        t72,
+        t61,
         t73,
-        t65,
-        t74,
-        t76,
-        t65,
+        ops.select(failed, ops.nan, t74 - t52),
+        t56,
+        t75,
+        ops.select(failed, ops.nan, t76 - t52),
+        t56,
+        t59,
         t77,
-        ops.select(failed, ops.nan, t78 - t56),
-        t60,
-        t79,
-        ops.select(failed, ops.nan, t80 - t56),
-        t60,
-        t63,
-        t81,
-        t35,
-        t63,
-        t81,
-        t82,
-        t68,
-        ops.select(failed, ops.nan, -(t8 + t56)),
-        t60,
-        t74,
-        t83,
-        t82,
+        t34,
+        t59,
+        t77,
+        t78,
+        t64,
+        ops.select(failed, ops.nan, -(t8 + t52)),
+        t56,
         t70,
-        t84,
-        t82,
         t79,
-        ops.select(failed, ops.nan, -(t80 + t56)),
-        t60,
-        t77,
-        ops.select(failed, ops.nan, -(t78 + t56)),
-        t60,
-        ops.select(failed, ops.nan, c1_x - t52),
+        t78,
+        t66,
+        t80,
+        t78,
+        t75,
+        ops.select(failed, ops.nan, -(t76 + t52)),
+        t56,
+        t73,
+        ops.select(failed, ops.nan, -(t74 + t52)),
+        t56,
+        ops.select(failed, ops.nan, c1_x - t48),
+        t53,
+        t56,
+        t33,
+        t34,
+        t34,
+        t33,
+        t34,
+        t35,
+        t82,
+        t84,
+        t85,
+        t33,
         t57,
+        t35,
+        t33,
+        t58,
+        t35,
+        t82,
+        ops.select(failed, ops.nan, t4 - t83),
+        t85,
+        t82,
+        ops.select(failed, ops.nan, -(t4 + t83)),
+        t85,
+        t59,
         t60,
         t34,
-        t35,
-        t35,
-        t34,
-        t35,
-        t36,
-        t86,
-        t88,
-        t89,
-        t34,
+        t59,
+        t60,
         t61,
-        t36,
-        t34,
-        t62,
-        t36,
-        t86,
-        ops.select(failed, ops.nan, t4 - t87),
-        t89,
-        t86,
-        ops.select(failed, ops.nan, -(t4 + t87)),
-        t89,
-        t63,
-        t64,
-        t35,
-        t63,
-        t64,
-        t65,
-        t91,
-        ops.select(failed, ops.nan, t8 - t87),
-        t89,
+        t87,
+        ops.select(failed, ops.nan, t8 - t83),
+        t85,
+        t66,
+        t69,
+        t61,
         t70,
-        t73,
-        t65,
-        t74,
-        t76,
-        t65,
-        t92,
-        ops.select(failed, ops.nan, t78 - t87),
-        t89,
-        t93,
-        ops.select(failed, ops.nan, t80 - t87),
-        t89,
-        t63,
-        t81,
-        t35,
-        t63,
-        t81,
-        t82,
-        t91,
-        ops.select(failed, ops.nan, -(t8 + t87)),
-        t89,
-        t74,
-        t83,
-        t82,
-        t70,
-        t84,
-        t82,
-        t93,
-        ops.select(failed, ops.nan, -(t80 + t87)),
-        t89,
-        t92,
-        ops.select(failed, ops.nan, -(t78 + t87)),
-        t89,
-        ops.select(failed, ops.nan, c1_x - t85),
+        t72,
+        t61,
         t88,
+        ops.select(failed, ops.nan, t74 - t83),
+        t85,
         t89,
+        ops.select(failed, ops.nan, t76 - t83),
+        t85,
+        t59,
+        t77,
+        t34,
+        t59,
+        t77,
+        t78,
+        t87,
+        ops.select(failed, ops.nan, -(t8 + t83)),
+        t85,
+        t70,
+        t79,
+        t78,
+        t66,
+        t80,
+        t78,
+        t89,
+        ops.select(failed, ops.nan, -(t76 + t83)),
+        t85,
+        t88,
+        ops.select(failed, ops.nan, -(t74 + t83)),
+        t85,
+        ops.select(failed, ops.nan, c1_x - t81),
+        t84,
+        t85,
     )
 
 
@@ -545,7 +538,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (3, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (69, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 8),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (3, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (69, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 12),
 )
 
 
@@ -590,100 +583,97 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
     t5 = t4 * t4 + c3_y * c3_y
     u_u = t3 * t3 + t5
-    t6 = rho1 - rho3
-    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t7 = size * size
-    t8 = ops.vanishing * ops.vanishing * t7
+    t6 = size * size
+    t7 = ops.vanishing * ops.vanishing
+    t8 = t6 * t7
+    same = u_u <= t8
+    d_y = ops.select(same, c3_y, -c3_y)
+    t9 = rho1 - rho3
+    t10 = ops.select(same, t3, t9)
+    t11 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, t9, t3)
+    t13 = d_y * t10 - t11 * t12
+    v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t8
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    d_y = ops.select(same, c3_y, -c3_y)
     a_x = ops.select(all_same, whole, -t4)
-    t9 = ops.select(same, -c3_y, c3_y)
-    m_z = a_x * t9 + t4 * d_y
-    t10 = ops.select(same, t6, t3)
-    t11 = ops.select(same, t3, t6)
-    m_y = a_x * t11 + t4 * t10
-    t12 = d_y * m_z + t10 * m_y
-    t13 = over * t12
-    t14 = d_y * t11 - t9 * t10
-    t15 = a_x * m_z - t10 * t14
-    n_y = over * t15
-    t16 = a_x * m_y + d_y * t14
-    t17 = over * t16
-    nu = t13 * t13 + n_y * n_y + t17 * t17
-    in_line = nu <= t8
-    t18 = t9 * (d_y - t9) + t11 * (t10 - t11)
-    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    product_y = a_x * t10 + t4 * t12
+    product_z = a_x * t11 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t14 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t12 * product_y
+    n_y = a_x * product_z - t12 * t13
+    t16 = a_x * product_y + d_y * t13
+    t17 = t15 * t15 + n_y * n_y + t16 * t16
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
+    t18 = t11 * (d_y - t11) + t10 * (t12 - t10)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
     t21 = l * l
-    t22 = whole * t10
+    t22 = whole * t12
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
-    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t25 = mu * 0.25
-    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t24 = t18 * t18
+    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
+    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
     t27 = t21 - t26
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
     t28 = ops.opposite(failed)
+    t29 = ops.opposite(in_line)
+    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t29 = t28 & ops.opposite(touching)
-    t30 = t28 | (t29 & ops.opposite(all_same))
-    t31 = ops.opposite(in_line)
-    t32 = t29 | (t30 & t31)
-    t33 = t32 & t31
-    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
-    t34 = over_2 * t12
-    n_y_2 = over_2 * t15
-    t35 = over_2 * t16
-    nu_2 = t34 * t34 + n_y_2 * n_y_2 + t35 * t35
-    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, mu * nu_2, 1.0))
-    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t37 = t4 * 0.5 - t34 * t36
-    t38 = ops.select(in_line, t22 * s_w, d_y * t35 - t10 * n_y_2)
-    t39 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t25)
-    t40 = ops.select(t29, part_2 * ops.max(t21 - t39, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t40))
-    t41 = t38 * h
-    t42 = t37 - t41
-    t43 = n_y_2 * t36 - d_y * 0.5
-    w_y = ops.select(in_line, -t22, a_x * t35 + t10 * t34)
-    t44 = h * w_y
-    t45 = t43 + t44
-    t46 = t35 * t36 - t10 * 0.5
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t34)
-    t47 = h * w_z
-    A_13 = t46 - t47
-    t48 = ops.select(failed, ops.nan, t4 - t42)
-    t49 = t37 + t41
-    t50 = t43 - t44
-    A_13_above = t46 + t47
-    t51 = ops.select(failed, ops.nan, t4 - t49)
+    t31 = t28 & ops.opposite(touching)
+    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
+    t33 = ops.select((t30 & slim) | (t32 & t29 & slim), mu, 1.0)
+    over = 1.0 / t33
+    w_w = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
+    part = 1.0 / ops.select(t32, w_w, 1.0)
+    t34 = ops.select(in_line, 0.0, part * t18 * 0.5)
+    t35 = t4 * 0.5 - t15 * t34
+    t36 = ops.select(slim, over * (d_y * t16 - t12 * n_y), t13)
+    t37 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
+    slack = ops.max(t21 - ops.select(all_same, 0.0, t37 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
+    t38 = ops.select(in_line, t22 * s_w, t36) * h
+    t39 = t35 - t38
+    t40 = n_y * t34 - d_y * 0.5
+    m_y = ops.select(slim, over * (a_x * t16 + t12 * t15), product_y)
+    t41 = h * ops.select(in_line, -t22, m_y)
+    t42 = t40 + t41
+    t43 = t16 * t34 - t12 * 0.5
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
+    t44 = h * ops.select(in_line, -g_2, m_z)
+    A_13 = t43 - t44
+    t45 = ops.select(failed, ops.nan, t4 - t39)
+    t46 = t35 + t38
+    t47 = t40 - t41
+    A_13_above = t43 + t44
+    t48 = ops.select(failed, ops.nan, t4 - t46)
     return (
+        ops.select(failed, ops.nan, -t39),
         ops.select(failed, ops.nan, -t42),
-        ops.select(failed, ops.nan, -t45),
         ops.select(failed, ops.nan, A_13),
-        t48,
-        ops.select(failed, ops.nan, c3_y - t45),
+        t45,
+        ops.select(failed, ops.nan, c3_y - t42),
         ops.select(failed, ops.nan, t3 + A_13),
-        t48,
-        ops.select(failed, ops.nan, -(c3_y + t45)),
-        ops.select(failed, ops.nan, t6 + A_13),
-        ops.select(failed, ops.nan, -t49),
-        ops.select(failed, ops.nan, -t50),
+        t45,
+        ops.select(failed, ops.nan, -(c3_y + t42)),
+        ops.select(failed, ops.nan, t9 + A_13),
+        ops.select(failed, ops.nan, -t46),
+        ops.select(failed, ops.nan, -t47),
         ops.select(failed, ops.nan, A_13_above),
-        t51,
-        ops.select(failed, ops.nan, c3_y - t50),
+        t48,
+        ops.select(failed, ops.nan, c3_y - t47),
         ops.select(failed, ops.nan, t3 + A_13_above),
-        t51,
-        ops.select(failed, ops.nan, -(c3_y + t50)),
-        ops.select(failed, ops.nan, t6 + A_13_above),
+        t48,
+        ops.select(failed, ops.nan, -(c3_y + t47)),
+        ops.select(failed, ops.nan, t9 + A_13_above),
     )
 
 
@@ -694,7 +684,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 12),
 )
 
 
@@ -737,74 +727,72 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
     t5 = t4 * t4 + c3_y * c3_y
     u_u = t3 * t3 + t5
-    t6 = rho1 - rho3
-    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t7 = size * size
-    t8 = ops.vanishing * ops.vanishing * t7
+    t6 = size * size
+    t7 = ops.vanishing * ops.vanishing
+    t8 = t6 * t7
+    same = u_u <= t8
+    t9 = rho1 - rho3
+    t10 = ops.select(same, t3, t9)
+    d_y = ops.select(same, c3_y, -c3_y)
+    t11 = ops.select(same, t9, t3)
+    t12 = ops.select(same, -c3_y, c3_y)
+    t13 = t10 * d_y - t11 * t12
+    v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t8
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    d_y = ops.select(same, c3_y, -c3_y)
     a_x = ops.select(all_same, whole, -t4)
-    t9 = ops.select(same, -c3_y, c3_y)
-    m_z = a_x * t9 + t4 * d_y
-    t10 = ops.select(same, t6, t3)
-    t11 = ops.select(same, t3, t6)
-    m_y = a_x * t11 + t4 * t10
-    t12 = d_y * m_z + t10 * m_y
-    t13 = over * t12
-    t14 = t11 * d_y - t10 * t9
-    t15 = a_x * m_z - t10 * t14
-    n_y = over * t15
-    t16 = a_x * m_y + d_y * t14
-    t17 = over * t16
-    nu = t13 * t13 + n_y * n_y + t17 * t17
-    in_line = nu <= t8
-    t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
-    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    product_y = a_x * t10 + t4 * t11
+    product_z = a_x * t12 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t14 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t11 * product_y
+    n_y = a_x * product_z - t11 * t13
+    t16 = a_x * product_y + d_y * t13
+    t17 = t15 * t15 + n_y * n_y + t16 * t16
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
+    t18 = t12 * (d_y - t12) - t10 * (t10 - t11)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
     t21 = l * l
-    t22 = whole * t10
+    t22 = whole * t11
     g_2 = whole * (d_y + a_x * ops.sign(a_x * d_y))
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
-    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t25 = mu * 0.25
-    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t24 = t18 * t18
+    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
+    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
     t27 = t21 - t26
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
     t28 = ops.opposite(failed)
+    t29 = ops.opposite(in_line)
+    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t29 = t28 & ops.opposite(touching)
-    t30 = t28 | (t29 & ops.opposite(all_same))
-    t31 = ops.opposite(in_line)
-    t32 = t29 | (t30 & t31)
-    t33 = t32 & t31
-    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
-    t34 = over_2 * t16
-    t35 = over_2 * t12
-    n_y_2 = over_2 * t15
-    nu_2 = t35 * t35 + n_y_2 * n_y_2 + t34 * t34
-    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, mu * nu_2, 1.0))
-    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t37 = t34 * t36 - t10 * 0.5
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t35)
-    t38 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t25)
-    t39 = ops.select(t29, part_2 * ops.max(t21 - t38, 0.0), 1.0)
-    t40 = w_z * ops.select(touching, 0.0, ops.sqrt(t39))
-    A_13 = t37 - t40
-    A_13_above = t37 + t40
+    t31 = t28 & ops.opposite(touching)
+    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
+    t33 = ops.select((t30 & slim) | (t32 & t29 & slim), mu, 1.0)
+    over = 1.0 / t33
+    w_w = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
+    part = 1.0 / ops.select(t32, w_w, 1.0)
+    t34 = t16 * ops.select(in_line, 0.0, part * t18 * 0.5)
+    t35 = t34 - t11 * 0.5
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
+    t36 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
+    slack = ops.max(t21 - ops.select(all_same, 0.0, t36 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
+    t37 = ops.select(in_line, -g_2, m_z) * h
+    A_13 = t35 - t37
+    A_13_above = t35 + t37
     return (
         ops.select(failed, ops.nan, A_13),
         ops.select(failed, ops.nan, t3 + A_13),
-        ops.select(failed, ops.nan, t6 + A_13),
+        ops.select(failed, ops.nan, t9 + A_13),
         ops.select(failed, ops.nan, A_13_above),
         ops.select(failed, ops.nan, t3 + A_13_above),
-        ops.select(failed, ops.nan, t6 + A_13_above),
+        ops.select(failed, ops.nan, t9 + A_13_above),
     )
 
 
@@ -815,7 +803,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 12),
 )
 
 
@@ -858,133 +846,130 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
     t5 = t4 * t4 + c3_y * c3_y
     u_u = t3 * t3 + t5
-    t6 = rho1 - rho3
-    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t7 = size * size
-    t8 = ops.vanishing * ops.vanishing * t7
+    t6 = size * size
+    t7 = ops.vanishing * ops.vanishing
+    t8 = t6 * t7
+    same = u_u <= t8
+    t9 = rho1 - rho3
+    t10 = ops.select(same, t3, t9)
+    d_y = ops.select(same, c3_y, -c3_y)
+    t11 = ops.select(same, t9, t3)
+    t12 = ops.select(same, -c3_y, c3_y)
+    t13 = t10 * d_y - t11 * t12
+    v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t8
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    d_y = ops.select(same, c3_y, -c3_y)
     a_x = ops.select(all_same, whole, -t4)
-    t9 = ops.select(same, -c3_y, c3_y)
-    m_z = a_x * t9 + t4 * d_y
-    t10 = ops.select(same, t6, t3)
-    t11 = ops.select(same, t3, t6)
-    m_y = a_x * t11 + t4 * t10
-    t12 = d_y * m_z + t10 * m_y
-    t13 = over * t12
-    t14 = t11 * d_y - t10 * t9
-    t15 = a_x * m_z - t10 * t14
-    n_y = over * t15
-    t16 = a_x * m_y + d_y * t14
-    t17 = over * t16
-    nu = t13 * t13 + n_y * n_y + t17 * t17
-    in_line = nu <= t8
-    t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
-    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    product_y = a_x * t10 + t4 * t11
+    product_z = a_x * t12 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t14 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t11 * product_y
+    n_y = a_x * product_z - t11 * t13
+    t16 = a_x * product_y + d_y * t13
+    t17 = t15 * t15 + n_y * n_y + t16 * t16
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
+    t18 = t12 * (d_y - t12) - t10 * (t10 - t11)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
     t21 = l * l
-    t22 = whole * t10
+    t22 = whole * t11
     s_w = ops.sign(a_x * d_y)
     g_2 = whole * (d_y + a_x * s_w)
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
-    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t25 = mu * 0.25
-    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t24 = t18 * t18
+    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
+    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
     t27 = t21 - t26
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
     t28 = ops.opposite(failed)
+    t29 = ops.opposite(in_line)
+    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t29 = t28 & ops.opposite(touching)
-    t30 = t28 | (t29 & ops.opposite(all_same))
-    t31 = ops.opposite(in_line)
-    t32 = t29 | (t30 & t31)
-    t33 = t32 & t31
-    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
-    t34 = over_2 * t16
-    t35 = over_2 * t12
-    n_y_2 = over_2 * t15
-    nu_2 = t35 * t35 + n_y_2 * n_y_2 + t34 * t34
-    t36 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, t36, 1.0))
-    t37 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t38 = t34 * t37 - t10 * 0.5
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t35)
-    t39 = ops.select(all_same, 0.0, nu_2 * (t37 * t37) + t25)
-    t40 = ops.select(t29, part_2 * ops.max(t21 - t39, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t40))
-    t41 = w_z * h
-    A_13 = t38 - t41
-    t42 = n_y_2 * t37 - d_y * 0.5
-    w_y = ops.select(in_line, -t22, a_x * t34 + t10 * t35)
-    t43 = h * w_y
-    t44 = t42 + t43
-    A_22 = c3_y - t44
-    A_33 = t6 + A_13
+    t31 = t28 & ops.opposite(touching)
+    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
+    t33 = ops.select((t30 & slim) | ((t28 | (t32 & t29)) & slim), mu, 1.0)
+    over = 1.0 / t33
+    m_m_2 = ops.select(slim, over * t17, product_2)
+    t34 = ops.select(t32, ops.select(in_line, t23, m_m_2), 1.0)
+    part = 1.0 / t34
+    t35 = ops.select(in_line, 0.0, part * t18 * 0.5)
+    t36 = t16 * t35 - t11 * 0.5
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
+    t37 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
+    slack = ops.max(t21 - ops.select(all_same, 0.0, t37 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
+    t38 = ops.select(in_line, -g_2, m_z) * h
+    A_13 = t36 - t38
+    t39 = n_y * t35 - d_y * 0.5
+    m_y = ops.select(slim, over * (a_x * t16 + t11 * t15), product_y)
+    t40 = h * ops.select(in_line, -t22, m_y)
+    t41 = t39 + t40
+    A_22 = c3_y - t41
+    A_33 = t9 + A_13
     A_23 = t3 + A_13
-    t45 = c3_y + t44
-    t46 = ops.select(t28, t36 * h, 1.0)
-    t47 = ops.select(failed, ops.nan, -(A_13 * (A_22 * A_33 + A_23 * t45) / t46))
-    t48 = ops.select(failed, ops.nan, -(A_23 * (t44 * A_33 - A_13 * t45) / t46))
-    t49 = ops.select(failed, ops.nan, A_33 * (t44 * A_23 + A_13 * A_22) / t46)
-    t50 = t4 * 0.5 - t35 * t37
-    t51 = ops.select(in_line, t22 * s_w, d_y * t34 - t10 * n_y_2)
-    t52 = h * t51
-    t53 = t50 - t52
-    A_21 = t4 - t53
-    t54 = ops.select(failed, ops.nan, A_13 * (A_33 * A_21 - A_23 * A_21) / t46)
-    t55 = A_13 * A_21
-    t56 = ops.select(failed, ops.nan, A_23 * (A_33 * t53 + t55) / t46)
-    t57 = ops.select(failed, ops.nan, -(A_33 * (t55 + A_23 * t53) / t46))
-    t58 = ops.select(failed, ops.nan, A_13 * (t45 * A_21 + A_22 * A_21) / t46)
-    t59 = t44 * A_21
-    t60 = ops.select(failed, ops.nan, A_23 * (t45 * t53 + t59) / t46)
-    t61 = ops.select(failed, ops.nan, -(A_33 * (t59 - A_22 * t53) / t46))
-    A_13_above = t38 + t41
-    t62 = t42 - t43
-    A_22_above = c3_y - t62
-    A_33_above = t6 + A_13_above
+    t42 = c3_y + t41
+    t43 = ops.select(t28, m_m_2 * h, 1.0)
+    t44 = ops.select(failed, ops.nan, -(A_13 * (A_22 * A_33 + A_23 * t42) / t43))
+    t45 = ops.select(failed, ops.nan, -(A_23 * (t41 * A_33 - A_13 * t42) / t43))
+    t46 = ops.select(failed, ops.nan, A_33 * (t41 * A_23 + A_13 * A_22) / t43)
+    t47 = t4 * 0.5 - t15 * t35
+    t48 = ops.select(slim, over * (d_y * t16 - t11 * n_y), t13)
+    t49 = h * ops.select(in_line, t22 * s_w, t48)
+    t50 = t47 - t49
+    A_21 = t4 - t50
+    t51 = ops.select(failed, ops.nan, A_13 * (A_33 * A_21 - A_23 * A_21) / t43)
+    t52 = A_13 * A_21
+    t53 = ops.select(failed, ops.nan, A_23 * (A_33 * t50 + t52) / t43)
+    t54 = ops.select(failed, ops.nan, -(A_33 * (t52 + A_23 * t50) / t43))
+    t55 = ops.select(failed, ops.nan, A_13 * (t42 * A_21 + A_22 * A_21) / t43)
+    t56 = t41 * A_21
+    t57 = ops.select(failed, ops.nan, A_23 * (t42 * t50 + t56) / t43)
+    t58 = ops.select(failed, ops.nan, -(A_33 * (t56 - A_22 * t50) / t43))
+    A_13_above = t36 + t38
+    t59 = t39 - t40
+    A_22_above = c3_y - t59
+    A_33_above = t9 + A_13_above
     A_23_above = t3 + A_13_above
-    t63 = c3_y + t62
-    t64 = A_13_above * (A_22_above * A_33_above + A_23_above * t63)
-    t65 = A_23_above * (t62 * A_33_above - A_13_above * t63)
-    t66 = A_33_above * (t62 * A_23_above + A_13_above * A_22_above)
-    t67 = t50 + t52
-    A_21_above = t4 - t67
-    t68 = A_33_above * A_21_above - A_23_above * A_21_above
-    t69 = ops.select(failed, ops.nan, -(A_13_above * t68 / t46))
-    t70 = A_13_above * A_21_above
-    t71 = -(A_23_above * (A_33_above * t67 + t70) / t46)
-    t72 = ops.select(failed, ops.nan, A_33_above * (t70 + A_23_above * t67) / t46)
-    t73 = A_13_above * (t63 * A_21_above + A_22_above * A_21_above)
-    t74 = t62 * A_21_above
-    t75 = ops.select(failed, ops.nan, -(A_23_above * (t63 * t67 + t74) / t46))
-    t76 = ops.select(failed, ops.nan, A_33_above * (t74 - A_22_above * t67) / t46)
+    t60 = c3_y + t59
+    t61 = A_13_above * (A_22_above * A_33_above + A_23_above * t60)
+    t62 = A_23_above * (t59 * A_33_above - A_13_above * t60)
+    t63 = A_33_above * (t59 * A_23_above + A_13_above * A_22_above)
+    t64 = t47 + t49
+    A_21_above = t4 - t64
+    t65 = A_33_above * A_21_above - A_23_above * A_21_above
+    t66 = ops.select(failed, ops.nan, -(A_13_above * t65 / t43))
+    t67 = A_13_above * A_21_above
+    t68 = -(A_23_above * (A_33_above * t64 + t67) / t43)
+    t69 = ops.select(failed, ops.nan, A_33_above * (t67 + A_23_above * t64) / t43)
+    t70 = A_13_above * (t60 * A_21_above + A_22_above * A_21_above)
+    t71 = t59 * A_21_above
+    t72 = ops.select(failed, ops.nan, -(A_23_above * (t60 * t64 + t71) / t43))
+    t73 = ops.select(failed, ops.nan, A_33_above * (t71 - A_22_above * t64) / t43)
     return (
-        t47,
-        t48,
-        t49,
+        t44,
+        t45,
+        t46,
+        t51,
+        t53,
         t54,
-        t56,
+        t55,
         t57,
         t58,
-        t60,
-        t61,
-        ops.select(failed, ops.nan, t64 / t46),
-        ops.select(failed, ops.nan, t65 / t46),
-        ops.select(failed, ops.nan, -(t66 / t46)),
+        ops.select(failed, ops.nan, t61 / t43),
+        ops.select(failed, ops.nan, t62 / t43),
+        ops.select(failed, ops.nan, -(t63 / t43)),
+        t66,
+        ops.select(failed, ops.nan, t68),
         t69,
-        ops.select(failed, ops.nan, t71),
+        ops.select(failed, ops.nan, -(t70 / t43)),
         t72,
-        ops.select(failed, ops.nan, -(t73 / t46)),
-        t75,
-        t76,
+        t73,
     )
 
 
@@ -995,7 +980,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), (), 8),
+    _runtime.Size((0, 1, 2, 3, 4, 5), (), 12),
 )
 
 
@@ -1039,75 +1024,72 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
     t5 = t4 * t4 + c3_y * c3_y
     u_u = t3 * t3 + t5
-    t6 = rho1 - rho3
-    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t7 = size * size
-    t8 = ops.vanishing * ops.vanishing * t7
+    t6 = size * size
+    t7 = ops.vanishing * ops.vanishing
+    t8 = t6 * t7
+    same = u_u <= t8
+    t9 = rho1 - rho3
+    t10 = ops.select(same, t3, t9)
+    d_y = ops.select(same, c3_y, -c3_y)
+    t11 = ops.select(same, t9, t3)
+    t12 = ops.select(same, -c3_y, c3_y)
+    t13 = t10 * d_y - t11 * t12
+    v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t8
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    d_y = ops.select(same, c3_y, -c3_y)
     a_x = ops.select(all_same, whole, -t4)
-    t9 = ops.select(same, -c3_y, c3_y)
-    m_z = a_x * t9 + t4 * d_y
-    t10 = ops.select(same, t6, t3)
-    t11 = ops.select(same, t3, t6)
-    m_y = a_x * t11 + t4 * t10
-    t12 = d_y * m_z + t10 * m_y
-    t13 = over * t12
-    t14 = t11 * d_y - t10 * t9
-    t15 = a_x * m_z - t10 * t14
-    n_y = over * t15
-    t16 = a_x * m_y + d_y * t14
-    t17 = over * t16
-    nu = t13 * t13 + n_y * n_y + t17 * t17
-    in_line = nu <= t8
-    t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
-    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    product_y = a_x * t10 + t4 * t11
+    product_z = a_x * t12 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t14 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t11 * product_y
+    n_y = a_x * product_z - t11 * t13
+    t16 = a_x * product_y + d_y * t13
+    t17 = t15 * t15 + n_y * n_y + t16 * t16
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
+    t18 = t12 * (d_y - t12) - t10 * (t10 - t11)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
     t21 = l * l
-    t22 = whole * t10
+    t22 = whole * t11
     g_2 = whole * (d_y + a_x * ops.sign(a_x * d_y))
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
-    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t25 = mu * 0.25
-    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t24 = t18 * t18
+    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
+    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
     t27 = t21 - t26
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
     t28 = ops.opposite(failed)
+    t29 = ops.opposite(in_line)
+    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t29 = t28 & ops.opposite(touching)
-    t30 = t28 | (t29 & ops.opposite(all_same))
-    t31 = ops.opposite(in_line)
-    t32 = t29 | (t30 & t31)
-    t33 = t32 & t31
-    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
-    t34 = over_2 * t16
-    t35 = over_2 * t12
-    n_y_2 = over_2 * t15
-    nu_2 = t35 * t35 + n_y_2 * n_y_2 + t34 * t34
-    t36 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, t36, 1.0))
-    t37 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t38 = t34 * t37 - t10 * 0.5
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t35)
-    t39 = ops.select(all_same, 0.0, nu_2 * (t37 * t37) + t25)
-    t40 = ops.select(t29, part_2 * ops.max(t21 - t39, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t40))
-    t41 = w_z * h
-    A_13 = t38 - t41
-    t42 = ops.select(t28, t36 * h, 1.0)
-    t43 = ops.select(failed, ops.nan, -(A_13 * (t3 + A_13) * (t6 + A_13) / t42))
-    A_13_above = t38 + t41
-    t44 = A_13_above * (t3 + A_13_above) * (t6 + A_13_above)
+    t31 = t28 & ops.opposite(touching)
+    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
+    t33 = ops.select((t30 & slim) | ((t28 | (t32 & t29)) & slim), mu, 1.0)
+    over = 1.0 / t33
+    m_m_2 = ops.select(slim, over * t17, product_2)
+    t34 = ops.select(t32, ops.select(in_line, t23, m_m_2), 1.0)
+    part = 1.0 / t34
+    t35 = t16 * ops.select(in_line, 0.0, part * t18 * 0.5)
+    t36 = t35 - t11 * 0.5
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
+    t37 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
+    slack = ops.max(t21 - ops.select(all_same, 0.0, t37 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
+    t38 = ops.select(in_line, -g_2, m_z) * h
+    A_13 = t36 - t38
+    t39 = ops.select(t28, m_m_2 * h, 1.0)
+    t40 = ops.select(failed, ops.nan, -(A_13 * (t3 + A_13) * (t9 + A_13) / t39))
+    A_13_above = t36 + t38
+    t41 = A_13_above * (t3 + A_13_above) * (t9 + A_13_above)
     return (
-        t43,
-        ops.select(failed, ops.nan, t44 / t42),
+        t40,
+        ops.select(failed, ops.nan, t41 / t39),
     )
 
 
@@ -1118,7 +1100,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", (2,)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), (), 8),
+    _runtime.Size((0, 1, 2, 3, 4, 5), (), 12),
 )
 
 
@@ -1161,78 +1143,75 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
     t5 = t4 * t4 + c3_y * c3_y
     u_u = t3 * t3 + t5
-    t6 = rho1 - rho3
-    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t7 = size * size
-    t8 = ops.vanishing * ops.vanishing * t7
+    t6 = size * size
+    t7 = ops.vanishing * ops.vanishing
+    t8 = t6 * t7
+    same = u_u <= t8
+    t9 = rho1 - rho3
+    t10 = ops.select(same, t3, t9)
+    d_y = ops.select(same, c3_y, -c3_y)
+    t11 = ops.select(same, t9, t3)
+    t12 = ops.select(same, -c3_y, c3_y)
+    t13 = t10 * d_y - t11 * t12
+    v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t8
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    d_y = ops.select(same, c3_y, -c3_y)
     a_x = ops.select(all_same, whole, -t4)
-    t9 = ops.select(same, -c3_y, c3_y)
-    m_z = a_x * t9 + t4 * d_y
-    t10 = ops.select(same, t6, t3)
-    t11 = ops.select(same, t3, t6)
-    m_y = a_x * t11 + t4 * t10
-    t12 = d_y * m_z + t10 * m_y
-    t13 = over * t12
-    t14 = t11 * d_y - t10 * t9
-    t15 = a_x * m_z - t10 * t14
-    n_y = over * t15
-    t16 = a_x * m_y + d_y * t14
-    t17 = over * t16
-    nu = t13 * t13 + n_y * n_y + t17 * t17
-    in_line = nu <= t8
-    t18 = t9 * (d_y - t9) - t11 * (t11 - t10)
-    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    product_y = a_x * t10 + t4 * t11
+    product_z = a_x * t12 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t14 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t11 * product_y
+    n_y = a_x * product_z - t11 * t13
+    t16 = a_x * product_y + d_y * t13
+    t17 = t15 * t15 + n_y * n_y + t16 * t16
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
+    t18 = t12 * (d_y - t12) - t10 * (t10 - t11)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
     t21 = l * l
-    t22 = whole * t10
+    t22 = whole * t11
     g_2 = whole * (d_y + a_x * ops.sign(a_x * d_y))
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
-    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t25 = mu * 0.25
-    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t24 = t18 * t18
+    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
+    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
     t27 = t21 - t26
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
     t28 = ops.opposite(failed)
+    t29 = ops.opposite(in_line)
+    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t29 = t28 & ops.opposite(touching)
-    t30 = t28 | (t29 & ops.opposite(all_same))
-    t31 = ops.opposite(in_line)
-    t32 = t29 | (t30 & t31)
-    t33 = t32 & t31
-    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
-    t34 = over_2 * t16
-    t35 = over_2 * t12
-    n_y_2 = over_2 * t15
-    nu_2 = t35 * t35 + n_y_2 * n_y_2 + t34 * t34
-    t36 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, t36, 1.0))
-    t37 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t38 = t34 * t37 - t10 * 0.5
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t35)
-    t39 = ops.select(all_same, 0.0, nu_2 * (t37 * t37) + t25)
-    t40 = ops.select(t29, part_2 * ops.max(t21 - t39, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t40))
-    t41 = w_z * h
-    A_13 = t38 - t41
-    Delta = t36 * h
-    A_13_above = t38 + t41
+    t31 = t28 & ops.opposite(touching)
+    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
+    t33 = ops.select((t30 & slim) | ((t28 | (t32 & t29)) & slim), mu, 1.0)
+    over = 1.0 / t33
+    m_m_2 = ops.select(slim, over * t17, product_2)
+    t34 = ops.select(t32, ops.select(in_line, t23, m_m_2), 1.0)
+    part = 1.0 / t34
+    t35 = t16 * ops.select(in_line, 0.0, part * t18 * 0.5)
+    t36 = t35 - t11 * 0.5
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
+    t37 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
+    slack = ops.max(t21 - ops.select(all_same, 0.0, t37 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
+    t38 = ops.select(in_line, -g_2, m_z) * h
+    A_13 = t36 - t38
+    Delta = m_m_2 * h
+    A_13_above = t36 + t38
     return (
         ops.select(failed, ops.nan, A_13),
         ops.select(failed, ops.nan, t3 + A_13),
-        ops.select(failed, ops.nan, t6 + A_13),
+        ops.select(failed, ops.nan, t9 + A_13),
         ops.select(failed, ops.nan, -Delta),
         ops.select(failed, ops.nan, A_13_above),
         ops.select(failed, ops.nan, t3 + A_13_above),
-        ops.select(failed, ops.nan, t6 + A_13_above),
+        ops.select(failed, ops.nan, t9 + A_13_above),
         ops.select(failed, ops.nan, Delta),
     )
 
@@ -1244,7 +1223,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 4)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 8),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 12),
 )
 
 
@@ -1287,130 +1266,127 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
     t5 = t4 * t4 + c3_y * c3_y
     u_u = t3 * t3 + t5
-    t6 = rho1 - rho3
-    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t7 = size * size
-    t8 = ops.vanishing * ops.vanishing * t7
+    t6 = size * size
+    t7 = ops.vanishing * ops.vanishing
+    t8 = t6 * t7
+    same = u_u <= t8
+    d_y = ops.select(same, c3_y, -c3_y)
+    t9 = rho1 - rho3
+    t10 = ops.select(same, t3, t9)
+    t11 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, t9, t3)
+    t13 = d_y * t10 - t11 * t12
+    v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t8
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    d_y = ops.select(same, c3_y, -c3_y)
     a_x = ops.select(all_same, whole, -t4)
-    t9 = ops.select(same, -c3_y, c3_y)
-    m_z = a_x * t9 + t4 * d_y
-    t10 = ops.select(same, t6, t3)
-    t11 = ops.select(same, t3, t6)
-    m_y = a_x * t11 + t4 * t10
-    t12 = d_y * m_z + t10 * m_y
-    t13 = over * t12
-    t14 = d_y * t11 - t9 * t10
-    t15 = a_x * m_z - t10 * t14
-    n_y = over * t15
-    t16 = a_x * m_y + d_y * t14
-    t17 = over * t16
-    nu = t13 * t13 + n_y * n_y + t17 * t17
-    in_line = nu <= t8
-    t18 = t9 * (d_y - t9) + t11 * (t10 - t11)
-    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    product_y = a_x * t10 + t4 * t12
+    product_z = a_x * t11 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t14 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t12 * product_y
+    n_y = a_x * product_z - t12 * t13
+    t16 = a_x * product_y + d_y * t13
+    t17 = t15 * t15 + n_y * n_y + t16 * t16
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
+    t18 = t11 * (d_y - t11) + t10 * (t12 - t10)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
     t21 = l * l
-    t22 = whole * t10
+    t22 = whole * t12
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
-    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t25 = mu * 0.25
-    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t24 = t18 * t18
+    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
+    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
     t27 = t21 - t26
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
     t28 = ops.opposite(failed)
+    t29 = ops.opposite(in_line)
+    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t29 = t28 & ops.opposite(touching)
-    t30 = t28 | (t29 & ops.opposite(all_same))
-    t31 = ops.opposite(in_line)
-    t32 = t29 | (t30 & t31)
-    t33 = t32 & t31
-    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
-    t34 = over_2 * t12
-    n_y_2 = over_2 * t15
-    t35 = over_2 * t16
-    nu_2 = t34 * t34 + n_y_2 * n_y_2 + t35 * t35
-    t36 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, t36, 1.0))
-    t37 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t38 = t4 * 0.5 - t34 * t37
-    t39 = ops.select(in_line, t22 * s_w, d_y * t35 - t10 * n_y_2)
-    t40 = ops.select(all_same, 0.0, nu_2 * (t37 * t37) + t25)
-    t41 = ops.select(t29, part_2 * ops.max(t21 - t40, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t41))
-    t42 = t39 * h
-    t43 = t38 - t42
-    t44 = n_y_2 * t37 - d_y * 0.5
-    w_y = ops.select(in_line, -t22, a_x * t35 + t10 * t34)
-    t45 = h * w_y
-    t46 = t44 + t45
-    t47 = t35 * t37 - t10 * 0.5
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t34)
-    t48 = h * w_z
-    A_13 = t47 - t48
-    A_21 = t4 - t43
-    t49 = A_21 * A_21
-    A_22 = c3_y - t46
+    t31 = t28 & ops.opposite(touching)
+    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
+    t33 = ops.select((t30 & slim) | ((t28 | (t32 & t29)) & slim), mu, 1.0)
+    over = 1.0 / t33
+    m_m_2 = ops.select(slim, over * t17, product_2)
+    t34 = ops.select(t32, ops.select(in_line, t23, m_m_2), 1.0)
+    part = 1.0 / t34
+    t35 = ops.select(in_line, 0.0, part * t18 * 0.5)
+    t36 = t4 * 0.5 - t15 * t35
+    t37 = ops.select(slim, over * (d_y * t16 - t12 * n_y), t13)
+    t38 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
+    slack = ops.max(t21 - ops.select(all_same, 0.0, t38 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
+    t39 = ops.select(in_line, t22 * s_w, t37) * h
+    t40 = t36 - t39
+    t41 = n_y * t35 - d_y * 0.5
+    m_y = ops.select(slim, over * (a_x * t16 + t12 * t15), product_y)
+    t42 = h * ops.select(in_line, -t22, m_y)
+    t43 = t41 + t42
+    t44 = t16 * t35 - t12 * 0.5
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
+    t45 = h * ops.select(in_line, -g_2, m_z)
+    A_13 = t44 - t45
+    A_21 = t4 - t40
+    t46 = A_21 * A_21
+    A_22 = c3_y - t43
     A_23 = t3 + A_13
-    t50 = t43 * t43 + t46 * t46 + A_13 * A_13 + (t49 + A_22 * A_22 + A_23 * A_23)
-    t51 = c3_y + t46
-    A_33 = t6 + A_13
-    t52 = t46 * A_21
-    t53 = t43 * A_22 - t52
-    t54 = A_13 * A_21
-    t55 = t43 * A_23 + t54
-    t56 = t52 + t43 * t51
-    t57 = t54 + t43 * A_33
-    t58 = t53 * t53 + t55 * t55 + t56 * t56 + t57 * t57
-    t59 = t46 * A_23 + A_13 * A_22
-    t60 = t46 * A_33 - A_13 * t51
-    t61 = A_21 * t51 + A_21 * A_22
-    t62 = A_21 * A_33 - A_21 * A_23
-    t63 = t58 + t59 * t59 + t60 * t60 + t61 * t61 + t62 * t62
-    t64 = A_22 * A_33 + A_23 * t51
-    t65 = (t50 + (t49 + t51 * t51 + A_33 * A_33)) * (t63 + t64 * t64)
-    t66 = ops.select(t28, 3.0 * (t36 * h), 1.0)
-    t67 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t28, t65, 1.0)) / t66)
-    t68 = t38 + t42
-    t69 = t44 - t45
-    A_13_above = t47 + t48
-    square1_above = t68 * t68 + t69 * t69 + A_13_above * A_13_above
-    A_21_above = t4 - t68
-    t70 = A_21_above * A_21_above
-    A_22_above = c3_y - t69
+    t47 = t40 * t40 + t43 * t43 + A_13 * A_13 + (t46 + A_22 * A_22 + A_23 * A_23)
+    t48 = c3_y + t43
+    A_33 = t9 + A_13
+    t49 = t43 * A_21
+    t50 = t40 * A_22 - t49
+    t51 = A_13 * A_21
+    t52 = t40 * A_23 + t51
+    t53 = t49 + t40 * t48
+    t54 = t51 + t40 * A_33
+    t55 = t50 * t50 + t52 * t52 + t53 * t53 + t54 * t54
+    t56 = t43 * A_23 + A_13 * A_22
+    t57 = t43 * A_33 - A_13 * t48
+    t58 = A_21 * t48 + A_21 * A_22
+    t59 = A_21 * A_33 - A_21 * A_23
+    t60 = t55 + t56 * t56 + t57 * t57 + t58 * t58 + t59 * t59
+    t61 = A_22 * A_33 + A_23 * t48
+    t62 = (t47 + (t46 + t48 * t48 + A_33 * A_33)) * (t60 + t61 * t61)
+    t63 = ops.select(t28, 3.0 * (m_m_2 * h), 1.0)
+    t64 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t28, t62, 1.0)) / t63)
+    t65 = t36 + t39
+    t66 = t41 - t42
+    A_13_above = t44 + t45
+    square1_above = t65 * t65 + t66 * t66 + A_13_above * A_13_above
+    A_21_above = t4 - t65
+    t67 = A_21_above * A_21_above
+    A_22_above = c3_y - t66
     A_23_above = t3 + A_13_above
-    square2_above = t70 + A_22_above * A_22_above + A_23_above * A_23_above
-    t71 = c3_y + t69
-    A_33_above = t6 + A_13_above
-    t72 = square1_above + square2_above + (t70 + t71 * t71 + A_33_above * A_33_above)
-    t73 = t69 * A_21_above
-    t74 = t68 * A_22_above - t73
-    t75 = A_13_above * A_21_above
-    t76 = t68 * A_23_above + t75
-    t77 = t73 + t68 * t71
-    t78 = t75 + t68 * A_33_above
-    t79 = t74 * t74 + t76 * t76 + t77 * t77 + t78 * t78
-    t80 = t69 * A_23_above + A_13_above * A_22_above
-    t81 = t69 * A_33_above - A_13_above * t71
-    t82 = A_21_above * t71 + A_21_above * A_22_above
-    t83 = A_21_above * A_33_above - A_21_above * A_23_above
-    t84 = t79 + t80 * t80 + t81 * t81 + t82 * t82 + t83 * t83
-    t85 = A_22_above * A_33_above + A_23_above * t71
-    t86 = ops.select(t28, t72 * (t84 + t85 * t85), 1.0)
-    t87 = ops.select(failed, ops.nan, ops.sqrt(t86) / t66)
+    square2_above = t67 + A_22_above * A_22_above + A_23_above * A_23_above
+    t68 = c3_y + t66
+    A_33_above = t9 + A_13_above
+    t69 = square1_above + square2_above + (t67 + t68 * t68 + A_33_above * A_33_above)
+    t70 = t66 * A_21_above
+    t71 = t65 * A_22_above - t70
+    t72 = A_13_above * A_21_above
+    t73 = t65 * A_23_above + t72
+    t74 = t70 + t65 * t68
+    t75 = t72 + t65 * A_33_above
+    t76 = t71 * t71 + t73 * t73 + t74 * t74 + t75 * t75
+    t77 = t66 * A_23_above + A_13_above * A_22_above
+    t78 = t66 * A_33_above - A_13_above * t68
+    t79 = A_21_above * t68 + A_21_above * A_22_above
+    t80 = A_21_above * A_33_above - A_21_above * A_23_above
+    t81 = t76 + t77 * t77 + t78 * t78 + t79 * t79 + t80 * t80
+    t82 = A_22_above * A_33_above + A_23_above * t68
+    t83 = ops.select(t28, t69 * (t81 + t82 * t82), 1.0)
+    t84 = ops.select(failed, ops.nan, ops.sqrt(t83) / t63)
     return (
-        t67,
-        t87,
+        t64,
+        t84,
     )
 
 
@@ -1465,96 +1441,93 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
     t5 = t4 * t4 + c3_y * c3_y
     u_u = t3 * t3 + t5
-    t6 = rho1 - rho3
-    v_v = t6 * t6 + t5
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t7 = size * size
-    t8 = ops.vanishing * ops.vanishing * t7
+    t6 = size * size
+    t7 = ops.vanishing * ops.vanishing
+    t8 = t6 * t7
+    same = u_u <= t8
+    d_y = ops.select(same, c3_y, -c3_y)
+    t9 = rho1 - rho3
+    t10 = ops.select(same, t3, t9)
+    t11 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, t9, t3)
+    t13 = d_y * t10 - t11 * t12
+    v_v = t9 * t9 + t5
     all_same = u_u + v_v <= t8
     whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t8
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
-    d_y = ops.select(same, c3_y, -c3_y)
     a_x = ops.select(all_same, whole, -t4)
-    t9 = ops.select(same, -c3_y, c3_y)
-    m_z = a_x * t9 + t4 * d_y
-    t10 = ops.select(same, t6, t3)
-    t11 = ops.select(same, t3, t6)
-    m_y = a_x * t11 + t4 * t10
-    t12 = d_y * m_z + t10 * m_y
-    t13 = over * t12
-    t14 = d_y * t11 - t9 * t10
-    t15 = a_x * m_z - t10 * t14
-    n_y = over * t15
-    t16 = a_x * m_y + d_y * t14
-    t17 = over * t16
-    nu = t13 * t13 + n_y * n_y + t17 * t17
-    in_line = nu <= t8
-    t18 = t9 * (d_y - t9) + t11 * (t10 - t11)
-    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t7 * ops.feasibility
+    product_y = a_x * t10 + t4 * t12
+    product_z = a_x * t11 + t4 * d_y
+    product_2 = t13 * t13 + product_y * product_y + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t14 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t14 * 0.000244140625 <= ops.vanishing * t14
+    t15 = d_y * product_z + t12 * product_y
+    n_y = a_x * product_z - t12 * t13
+    t16 = a_x * product_y + d_y * t13
+    t17 = t15 * t15 + n_y * n_y + t16 * t16
+    m_m = ops.select(slim, 1.0 / mu * t17, product_2)
+    in_line = m_m <= t7 * (t6 * mu)
+    t18 = t11 * (d_y - t11) + t10 * (t12 - t10)
+    t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
     t21 = l * l
-    t22 = whole * t10
+    t22 = whole * t12
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t23, 1.0 / (mu * nu))
-    t24 = ops.select(in_line, 0.0, mu * part * t18 * 0.5)
-    t25 = mu * 0.25
-    t26 = ops.select(all_same, 0.0, nu * (t24 * t24) + t25)
+    t24 = t18 * t18
+    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
+    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
     t27 = t21 - t26
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
     t28 = ops.opposite(failed)
+    t29 = ops.opposite(in_line)
+    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t29 = t28 & ops.opposite(touching)
-    t30 = t28 | (t29 & ops.opposite(all_same))
-    t31 = ops.opposite(in_line)
-    t32 = t29 | (t30 & t31)
-    t33 = t32 & t31
-    over_2 = 1.0 / ops.select(t30 | t33, mu, 1.0)
-    t34 = over_2 * t12
-    n_y_2 = over_2 * t15
-    t35 = over_2 * t16
-    nu_2 = t34 * t34 + n_y_2 * n_y_2 + t35 * t35
-    part_2 = ops.select(in_line, 1.0 / ops.select(t32 & in_line, t23, 1.0), 1.0 / ops.select(t33, mu * nu_2, 1.0))
-    t36 = ops.select(in_line, 0.0, mu * part_2 * t18 * 0.5)
-    t37 = t4 * 0.5 - t34 * t36
-    t38 = ops.select(in_line, t22 * s_w, d_y * t35 - t10 * n_y_2)
-    t39 = ops.select(all_same, 0.0, nu_2 * (t36 * t36) + t25)
-    t40 = ops.select(t29, part_2 * ops.max(t21 - t39, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t40))
-    t41 = t38 * h
-    t42 = t37 - t41
-    t43 = t35 * t36 - t10 * 0.5
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t34)
-    t44 = h * w_z
-    A_13 = t43 - t44
+    t31 = t28 & ops.opposite(touching)
+    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
+    t33 = ops.select((t30 & slim) | (t32 & t29 & slim), mu, 1.0)
+    over = 1.0 / t33
+    w_w = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
+    part = 1.0 / ops.select(t32, w_w, 1.0)
+    t34 = ops.select(in_line, 0.0, part * t18 * 0.5)
+    t35 = t4 * 0.5 - t15 * t34
+    t36 = ops.select(slim, over * (d_y * t16 - t12 * n_y), t13)
+    t37 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
+    slack = ops.max(t21 - ops.select(all_same, 0.0, t37 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
+    t38 = ops.select(in_line, t22 * s_w, t36) * h
+    t39 = t35 - t38
+    t40 = t16 * t34 - t12 * 0.5
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
+    t41 = h * ops.select(in_line, -g_2, m_z)
+    A_13 = t40 - t41
     A_23 = t3 + A_13
-    A_33 = t6 + A_13
-    t45 = (t4 - t42) * (1.7320508075688772 * A_13)
-    t46 = 1.7320508075688772 * t42 * A_23 * A_33 * 0.5 + A_33 * t45 * 0.25
-    t47 = n_y_2 * t36 - d_y * 0.5
-    w_y = ops.select(in_line, -t22, a_x * t35 + t10 * t34)
-    t48 = h * w_y
-    t49 = t47 + t48
-    t50 = 0.75 * A_13
-    t51 = t46 - A_33 * (c3_y - t49) * t50 + A_23 * t45 * 0.25
-    t52 = ops.select(failed, ops.nan, t51 - A_23 * t50 * (c3_y + t49))
-    t53 = t37 + t41
-    A_13_above = t43 + t44
+    A_33 = t9 + A_13
+    t42 = (t4 - t39) * (1.7320508075688772 * A_13)
+    t43 = 1.7320508075688772 * t39 * A_23 * A_33 * 0.5 + A_33 * t42 * 0.25
+    t44 = 0.75 * A_13
+    t45 = n_y * t34 - d_y * 0.5
+    m_y = ops.select(slim, over * (a_x * t16 + t12 * t15), product_y)
+    t46 = h * ops.select(in_line, -t22, m_y)
+    t47 = t45 + t46
+    t48 = t43 - A_33 * t44 * (c3_y - t47) + A_23 * t42 * 0.25
+    t49 = ops.select(failed, ops.nan, t48 - A_23 * t44 * (c3_y + t47))
+    t50 = t35 + t38
+    A_13_above = t40 + t41
     A_23_above = t3 + A_13_above
-    A_33_above = t6 + A_13_above
-    t54 = 1.7320508075688772 * t53 * A_23_above * A_33_above
-    t55 = (t4 - t53) * (1.7320508075688772 * A_13_above)
-    t56 = t47 - t48
-    t57 = 0.75 * A_13_above
-    t58 = t54 * 0.5 + A_33_above * t55 * 0.25 - A_33_above * (c3_y - t56) * t57
-    t59 = t58 + A_23_above * t55 * 0.25 - A_23_above * t57 * (c3_y + t56)
+    A_33_above = t9 + A_13_above
+    t51 = 1.7320508075688772 * t50 * A_23_above * A_33_above
+    t52 = (t4 - t50) * (1.7320508075688772 * A_13_above)
+    t53 = 0.75 * A_13_above
+    t54 = t45 - t46
+    t55 = t51 * 0.5 + A_33_above * t52 * 0.25 - A_33_above * t53 * (c3_y - t54)
+    t56 = t55 + A_23_above * t52 * 0.25 - A_23_above * t53 * (c3_y + t54)
     return (
-        t52,
-        ops.select(failed, ops.nan, t59),
+        t49,
+        ops.select(failed, ops.nan, t56),
     )
 
 
@@ -1565,7 +1538,7 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 1)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 3), (1, 3)), 8),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 3), (1, 3)), 12),
 )
 
 

@@ -2,15 +2,15 @@
 # derivations/orthoglide.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 65 compare and select, 38 add, 12 divide, 69 multiply, 1 sqrt
-#   skeleton: 82 compare and select, 51 add, 13 divide, 69 multiply, 1 sqrt
-#   jacobian_parallel: 70 compare and select, 43 add, 12 divide, 69 multiply, 1 sqrt
-#   jacobian_serial: 64 compare and select, 41 add, 12 divide, 69 multiply, 1 sqrt
-#   jacobian: 77 compare and select, 61 add, 30 divide, 112 multiply, 1 sqrt
-#   determinant: 61 compare and select, 41 add, 14 divide, 74 multiply, 1 sqrt
-#   singularities: 66 compare and select, 41 add, 12 divide, 70 multiply, 1 sqrt
-#   condition_number: 63 compare and select, 93 add, 14 divide, 127 multiply, 3 sqrt
-#   constraint: 60 compare and select, 45 add, 12 divide, 77 multiply, 1 sqrt
+#   fk: 74 compare and select, 39 add, 11 divide, 68 multiply, 1 sqrt
+#   skeleton: 91 compare and select, 52 add, 12 divide, 68 multiply, 1 sqrt
+#   jacobian_parallel: 79 compare and select, 44 add, 11 divide, 68 multiply, 1 sqrt
+#   jacobian_serial: 73 compare and select, 42 add, 11 divide, 68 multiply, 1 sqrt
+#   jacobian: 87 compare and select, 62 add, 29 divide, 111 multiply, 1 sqrt
+#   determinant: 71 compare and select, 42 add, 13 divide, 73 multiply, 1 sqrt
+#   singularities: 76 compare and select, 42 add, 11 divide, 69 multiply, 1 sqrt
+#   condition_number: 73 compare and select, 94 add, 13 divide, 126 multiply, 3 sqrt
+#   constraint: 69 compare and select, 46 add, 11 divide, 76 multiply, 1 sqrt
 #   ik: 74 compare and select, 51 add, 1 divide, 47 multiply, 12 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
 """Orthoglide.
@@ -131,82 +131,79 @@ def _fk(ops, rho1, rho2, rho3, L):
     invalid = ops.opposite(t1)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
-    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing * t3
-    all_same = u_u + v_v <= t4
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t4
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
+    t4 = ops.vanishing * ops.vanishing
+    t5 = t3 * t4
+    same = u_u <= t5
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, whole, -rho1)
-    t5 = ops.select(same, rho2, 0.0)
-    m_z = a_x * t5 + rho1 * d_y
-    d_z = ops.select(same, rho3, 0.0)
     t6 = ops.select(same, 0.0, rho3)
-    t7 = a_x * t6 + rho1 * d_z
-    t8 = d_y * m_z + d_z * t7
-    t9 = over * t8
-    m_x = d_y * t6 - d_z * t5
-    t10 = a_x * m_z - d_z * m_x
-    n_y = over * t10
-    t11 = a_x * t7 + d_y * m_x
-    n_z = over * t11
-    nu = t9 * t9 + n_y * n_y + n_z * n_z
-    in_line = nu <= t4
-    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t7 = ops.select(same, rho2, 0.0)
+    d_z = ops.select(same, rho3, 0.0)
+    product_x = d_y * t6 - t7 * d_z
+    v_v = t2 + rho3 * rho3
+    all_same = u_u + v_v <= t5
+    whole = ops.select((size == 0.0), 1.0, size)
+    a_x = ops.select(all_same, whole, -rho1)
+    t8 = a_x * t6 + rho1 * d_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t9 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
+    t11 = t10 * t10 + n_y * n_y + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
+    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 0.1875
     t15 = L * L
-    g_1 = d_z * whole
+    g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
-    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
-    t18 = mu * 0.25
-    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t17 = t12 * t12
+    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
+    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
     t20 = t15 - t19
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = invalid | unreachable
     t21 = ops.opposite(failed)
+    t22 = ops.opposite(in_line)
+    t23 = t21 & t22
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t22 = t21 & ops.opposite(touching)
-    t23 = t21 | (t22 & ops.opposite(all_same))
-    t24 = ops.opposite(in_line)
-    t25 = t22 | (t23 & t24)
-    t26 = t25 & t24
-    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
-    n_z_2 = over_2 * t11
-    n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
-    t27 = over_2 * t8
-    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
-    t28 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
-    t29 = ops.select(all_same, 0.0, nu_2 * (t28 * t28) + t18)
-    t30 = ops.select(t22, part_2 * ops.max(t15 - t29, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t30))
-    t31 = w_x * h
-    t32 = rho1 * 0.5 - (rho1 + t27 * t28)
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
-    t33 = w_y * h
-    t34 = n_y_2 * t28 - d_y * 0.5
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
-    t35 = w_z * h
-    t36 = n_z_2 * t28 - d_z * 0.5
-    t37 = ops.status(invalid, unreachable, in_line)
+    t24 = t21 & ops.opposite(touching)
+    t25 = t23 | t24 | (t24 & ops.opposite(all_same) & t22)
+    t26 = ops.select((t23 & slim) | (t25 & t22 & slim), mu, 1.0)
+    over = 1.0 / t26
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    w_w = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
+    part = 1.0 / ops.select(t25, w_w, 1.0)
+    t27 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
+    slack = ops.max(t15 - ops.select(all_same, 0.0, t27 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t24, part * slack, 1.0)))
+    t28 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t29 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t30 = t10 * t29 + (rho1 - rho1 * 0.5)
+    t31 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
+    t32 = h * ops.select(in_line, g_1, -t31)
+    t33 = n_y * t29 - d_y * 0.5
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t34 = h * ops.select(in_line, -g_2, m_z)
+    t35 = n_z * t29 - d_z * 0.5
+    t36 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t31 - t32),
-        ops.select(failed, ops.nan, t33 - t34),
-        ops.select(failed, ops.nan, t35 - t36),
-        ops.select(failed, ops.nan, -(t31 + t32)),
-        ops.select(failed, ops.nan, -(t33 + t34)),
-        ops.select(failed, ops.nan, -(t35 + t36)),
-        t37,
-        t37,
+        ops.select(failed, ops.nan, t28 + t30),
+        ops.select(failed, ops.nan, t32 - t33),
+        ops.select(failed, ops.nan, t34 - t35),
+        ops.select(failed, ops.nan, t30 - t28),
+        ops.select(failed, ops.nan, -(t32 + t33)),
+        ops.select(failed, ops.nan, -(t34 + t35)),
+        t36,
+        t36,
     )
 
 
@@ -217,7 +214,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8),
+    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 12),
 )
 
 
@@ -266,43 +263,43 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
-    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing * t3
-    all_same = u_u + v_v <= t4
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t4
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
+    t4 = ops.vanishing * ops.vanishing
+    t5 = t3 * t4
+    same = u_u <= t5
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, whole, -rho1)
-    t5 = ops.select(same, rho2, 0.0)
-    m_z = a_x * t5 + rho1 * d_y
-    d_z = ops.select(same, rho3, 0.0)
     t6 = ops.select(same, 0.0, rho3)
-    t7 = a_x * t6 + rho1 * d_z
-    t8 = d_y * m_z + d_z * t7
-    t9 = over * t8
-    m_x = d_y * t6 - d_z * t5
-    t10 = a_x * m_z - d_z * m_x
-    n_y = over * t10
-    t11 = a_x * t7 + d_y * m_x
-    n_z = over * t11
-    nu = t9 * t9 + n_y * n_y + n_z * n_z
-    in_line = nu <= t4
-    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    d_z = ops.select(same, rho3, 0.0)
+    t7 = ops.select(same, rho2, 0.0)
+    product_x = d_y * t6 - d_z * t7
+    v_v = t2 + rho3 * rho3
+    all_same = u_u + v_v <= t5
+    whole = ops.select((size == 0.0), 1.0, size)
+    a_x = ops.select(all_same, whole, -rho1)
+    t8 = t6 * a_x + rho1 * d_z
+    product_z = t7 * a_x + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t9 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
+    t11 = t10 * t10 + n_y * n_y + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
+    t12 = t7 * (d_y - t7) - t6 * (t6 - d_z)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = d_z * whole
+    g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
-    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
-    t18 = mu * 0.25
-    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t17 = t12 * t12
+    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
+    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
     t20 = t15 - t19
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
@@ -312,45 +309,42 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     t24 = ops.select(failed, ops.nan, t23)
     t25 = ops.select(failed, ops.nan, -t23)
     t26 = ops.opposite(failed)
+    t27 = ops.opposite(in_line)
+    t28 = t26 & t27
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t27 = t26 & ops.opposite(touching)
-    t28 = t26 | (t27 & ops.opposite(all_same))
-    t29 = ops.opposite(in_line)
-    t30 = t27 | (t28 & t29)
-    t31 = t30 & t29
-    over_2 = 1.0 / ops.select(t28 | t31, mu, 1.0)
-    n_z_2 = over_2 * t11
-    n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
-    t32 = over_2 * t8
-    nu_2 = t32 * t32 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t30 & in_line, t16, 1.0), 1.0 / ops.select(t31, mu * nu_2, 1.0))
-    t33 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
-    t34 = ops.select(all_same, 0.0, nu_2 * (t33 * t33) + t18)
-    t35 = ops.select(t27, part_2 * ops.max(t15 - t34, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t35))
-    t36 = w_x * h
-    t37 = t32 * t33 - rho1 * 0.5
-    t38 = rho1 + (t36 + t37)
-    t39 = ops.select(failed, ops.nan, t38)
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t32))
-    t40 = w_y * h
-    t41 = n_y_2 * t33 - d_y * 0.5
-    A_12 = t40 - t41
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t32)
-    t42 = w_z * h
-    t43 = n_z_2 * t33 - d_z * 0.5
-    A_13 = t42 - t43
-    t44 = ops.select(failed, ops.nan, A_13)
-    t45 = ops.select(failed, ops.nan, rho2)
-    t46 = ops.select(failed, ops.nan, A_12)
-    t47 = ops.select(failed, ops.nan, rho3)
-    t48 = rho1 - (t36 - t37)
-    t49 = ops.select(failed, ops.nan, t48)
-    t50 = t40 + t41
-    t51 = t42 + t43
-    t52 = ops.select(failed, ops.nan, -t51)
-    t53 = ops.select(failed, ops.nan, -t50)
+    t29 = t26 & ops.opposite(touching)
+    t30 = t28 | t29 | (t29 & ops.opposite(all_same) & t27)
+    t31 = ops.select((t28 & slim) | (t30 & t27 & slim), mu, 1.0)
+    over = 1.0 / t31
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    w_w = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
+    part = 1.0 / ops.select(t30, w_w, 1.0)
+    t32 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
+    slack = ops.max(t15 - ops.select(all_same, 0.0, t32 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t29, part * slack, 1.0)))
+    t33 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t34 = ops.select(in_line, 0.0, t12 * part * 0.5)
+    t35 = rho1 * 0.5 - t10 * t34
+    t36 = rho1 + (t33 - t35)
+    t37 = ops.select(failed, ops.nan, t36)
+    t38 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
+    t39 = h * ops.select(in_line, g_1, -t38)
+    t40 = n_y * t34 - d_y * 0.5
+    A_12 = t39 - t40
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t41 = h * ops.select(in_line, -g_2, m_z)
+    t42 = n_z * t34 - d_z * 0.5
+    A_13 = t41 - t42
+    t43 = ops.select(failed, ops.nan, A_13)
+    t44 = ops.select(failed, ops.nan, rho2)
+    t45 = ops.select(failed, ops.nan, A_12)
+    t46 = ops.select(failed, ops.nan, rho3)
+    t47 = rho1 - (t33 + t35)
+    t48 = ops.select(failed, ops.nan, t47)
+    t49 = t39 + t40
+    t50 = t41 + t42
+    t51 = ops.select(failed, ops.nan, -t50)
+    t52 = ops.select(failed, ops.nan, -t49)
     return (
         t21,
         t21,
@@ -364,51 +358,51 @@ def _skeleton(ops, rho1, rho2, rho3, L):
         t22,
         t25,
         t21,
-        t39,
+        t37,
         ops.select(failed, ops.nan, t23 + A_12),
-        t44,
-        t39,
+        t43,
+        t37,
         ops.select(failed, ops.nan, A_12 - t23),
+        t43,
+        t21,
+        t21,
+        t21,
+        t21,
         t44,
         t21,
         t21,
-        t21,
-        t21,
-        t45,
-        t21,
-        t21,
-        t45,
+        t44,
         t24,
         t21,
-        t45,
+        t44,
         t25,
-        t39,
-        t46,
+        t37,
+        t45,
         ops.select(failed, ops.nan, t23 + A_13),
-        t39,
-        t46,
+        t37,
+        t45,
         ops.select(failed, ops.nan, A_13 - t23),
         t21,
         t21,
         t21,
         t21,
         t21,
-        t47,
+        t46,
         t24,
         t21,
-        t47,
+        t46,
         t25,
         t21,
-        t47,
-        ops.select(failed, ops.nan, t23 + t38),
         t46,
-        t44,
-        ops.select(failed, ops.nan, t38 - t23),
-        t46,
-        t44,
-        t39,
-        t46,
-        t44,
+        ops.select(failed, ops.nan, t23 + t36),
+        t45,
+        t43,
+        ops.select(failed, ops.nan, t36 - t23),
+        t45,
+        t43,
+        t37,
+        t45,
+        t43,
         t21,
         t21,
         t21,
@@ -421,51 +415,51 @@ def _skeleton(ops, rho1, rho2, rho3, L):
         t22,
         t25,
         t21,
-        t49,
+        t48,
+        ops.select(failed, ops.nan, t23 - t49),
+        t51,
+        t48,
+        ops.select(failed, ops.nan, -(t23 + t49)),
+        t51,
+        t21,
+        t21,
+        t21,
+        t21,
+        t44,
+        t21,
+        t21,
+        t44,
+        t24,
+        t21,
+        t44,
+        t25,
+        t48,
+        t52,
         ops.select(failed, ops.nan, t23 - t50),
+        t48,
         t52,
-        t49,
         ops.select(failed, ops.nan, -(t23 + t50)),
-        t52,
         t21,
         t21,
         t21,
         t21,
-        t45,
         t21,
-        t21,
-        t45,
+        t46,
         t24,
         t21,
-        t45,
-        t25,
-        t49,
-        t53,
-        ops.select(failed, ops.nan, t23 - t51),
-        t49,
-        t53,
-        ops.select(failed, ops.nan, -(t23 + t51)),
-        t21,
-        t21,
-        t21,
-        t21,
-        t21,
-        t47,
-        t24,
-        t21,
-        t47,
+        t46,
         t25,
         t21,
-        t47,
-        ops.select(failed, ops.nan, t23 + t48),
-        t53,
+        t46,
+        ops.select(failed, ops.nan, t23 + t47),
         t52,
-        ops.select(failed, ops.nan, t48 - t23),
-        t53,
+        t51,
+        ops.select(failed, ops.nan, t47 - t23),
         t52,
-        t49,
-        t53,
+        t51,
+        t48,
         t52,
+        t51,
     )
 
 
@@ -476,7 +470,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 19, 3)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((3, 1), (6, 1), (7, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (22, 1), (25, 1), (26, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (41, 1), (42, 1), (44, 1), (45, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (60, 1), (63, 1), (64, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (79, 1), (82, 1), (83, 1), (85, 1), (86, 1), (87, 1), (88, 1), (89, 1), (90, 1), (91, 1), (92, 1), (98, 1), (99, 1), (101, 1), (102, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (110, 1), (111, 1), (112, 1), (113, 1)), 8),
+    _runtime.Size((0, 1, 2, 3), ((3, 1), (6, 1), (7, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (22, 1), (25, 1), (26, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (41, 1), (42, 1), (44, 1), (45, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (60, 1), (63, 1), (64, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (79, 1), (82, 1), (83, 1), (85, 1), (86, 1), (87, 1), (88, 1), (89, 1), (90, 1), (91, 1), (92, 1), (98, 1), (99, 1), (101, 1), (102, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (110, 1), (111, 1), (112, 1), (113, 1)), 12),
 )
 
 
@@ -517,103 +511,100 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
-    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing * t3
-    all_same = u_u + v_v <= t4
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t4
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
+    t4 = ops.vanishing * ops.vanishing
+    t5 = t3 * t4
+    same = u_u <= t5
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, whole, -rho1)
-    t5 = ops.select(same, rho2, 0.0)
-    m_z = a_x * t5 + rho1 * d_y
-    d_z = ops.select(same, rho3, 0.0)
     t6 = ops.select(same, 0.0, rho3)
-    t7 = a_x * t6 + rho1 * d_z
-    t8 = d_y * m_z + d_z * t7
-    t9 = over * t8
-    m_x = d_y * t6 - d_z * t5
-    t10 = a_x * m_z - d_z * m_x
-    n_y = over * t10
-    t11 = a_x * t7 + d_y * m_x
-    n_z = over * t11
-    nu = t9 * t9 + n_y * n_y + n_z * n_z
-    in_line = nu <= t4
-    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t7 = ops.select(same, rho2, 0.0)
+    d_z = ops.select(same, rho3, 0.0)
+    product_x = d_y * t6 - t7 * d_z
+    v_v = t2 + rho3 * rho3
+    all_same = u_u + v_v <= t5
+    whole = ops.select((size == 0.0), 1.0, size)
+    a_x = ops.select(all_same, whole, -rho1)
+    t8 = a_x * t6 + rho1 * d_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t9 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
+    t11 = t10 * t10 + n_y * n_y + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
+    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = d_z * whole
+    g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
-    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
-    t18 = mu * 0.25
-    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t17 = t12 * t12
+    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
+    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
     t20 = t15 - t19
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
     t21 = ops.opposite(failed)
+    t22 = ops.opposite(in_line)
+    t23 = t21 & t22
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t22 = t21 & ops.opposite(touching)
-    t23 = t21 | (t22 & ops.opposite(all_same))
-    t24 = ops.opposite(in_line)
-    t25 = t22 | (t23 & t24)
-    t26 = t25 & t24
-    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
-    n_z_2 = over_2 * t11
-    n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
-    t27 = over_2 * t8
-    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
-    t28 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
-    t29 = ops.select(all_same, 0.0, nu_2 * (t28 * t28) + t18)
-    t30 = ops.select(t22, part_2 * ops.max(t15 - t29, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t30))
-    t31 = w_x * h
-    t32 = t27 * t28 - rho1 * 0.5
-    A_11 = t31 + t32
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
-    t33 = w_y * h
-    t34 = n_y_2 * t28 - d_y * 0.5
-    A_12 = t33 - t34
-    t35 = ops.select(failed, ops.nan, A_12)
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
-    t36 = w_z * h
-    t37 = n_z_2 * t28 - d_z * 0.5
-    A_13 = t36 - t37
-    t38 = ops.select(failed, ops.nan, A_13)
-    t39 = ops.select(failed, ops.nan, rho1 + A_11)
-    t40 = t31 - t32
-    t41 = t33 + t34
-    t42 = ops.select(failed, ops.nan, -t41)
-    t43 = t36 + t37
-    t44 = ops.select(failed, ops.nan, -t43)
-    t45 = ops.select(failed, ops.nan, rho1 - t40)
+    t24 = t21 & ops.opposite(touching)
+    t25 = t23 | t24 | (t24 & ops.opposite(all_same) & t22)
+    t26 = ops.select((t23 & slim) | (t25 & t22 & slim), mu, 1.0)
+    over = 1.0 / t26
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    w_w = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
+    part = 1.0 / ops.select(t25, w_w, 1.0)
+    t27 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
+    slack = ops.max(t15 - ops.select(all_same, 0.0, t27 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t24, part * slack, 1.0)))
+    t28 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t29 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t30 = rho1 * 0.5 - t10 * t29
+    A_11 = t28 - t30
+    t31 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
+    t32 = h * ops.select(in_line, g_1, -t31)
+    t33 = n_y * t29 - d_y * 0.5
+    A_12 = t32 - t33
+    t34 = ops.select(failed, ops.nan, A_12)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t35 = h * ops.select(in_line, -g_2, m_z)
+    t36 = n_z * t29 - d_z * 0.5
+    A_13 = t35 - t36
+    t37 = ops.select(failed, ops.nan, A_13)
+    t38 = ops.select(failed, ops.nan, rho1 + A_11)
+    t39 = t28 + t30
+    t40 = t32 + t33
+    t41 = ops.select(failed, ops.nan, -t40)
+    t42 = t35 + t36
+    t43 = ops.select(failed, ops.nan, -t42)
+    t44 = ops.select(failed, ops.nan, rho1 - t39)
     return (
         ops.select(failed, ops.nan, A_11),
-        t35,
+        t34,
+        t37,
         t38,
-        t39,
         ops.select(failed, ops.nan, A_12 - rho2),
+        t37,
         t38,
-        t39,
-        t35,
+        t34,
         ops.select(failed, ops.nan, A_13 - rho3),
-        ops.select(failed, ops.nan, -t40),
-        t42,
+        ops.select(failed, ops.nan, -t39),
+        t41,
+        t43,
         t44,
-        t45,
-        ops.select(failed, ops.nan, -(rho2 + t41)),
+        ops.select(failed, ops.nan, -(rho2 + t40)),
+        t43,
         t44,
-        t45,
-        t42,
-        ops.select(failed, ops.nan, -(rho3 + t43)),
+        t41,
+        ops.select(failed, ops.nan, -(rho3 + t42)),
     )
 
 
@@ -624,7 +615,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8),
+    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 12),
 )
 
 
@@ -663,83 +654,80 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
-    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing * t3
-    all_same = u_u + v_v <= t4
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t4
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
+    t4 = ops.vanishing * ops.vanishing
+    t5 = t3 * t4
+    same = u_u <= t5
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, whole, -rho1)
-    t5 = ops.select(same, rho2, 0.0)
-    m_z = a_x * t5 + rho1 * d_y
-    d_z = ops.select(same, rho3, 0.0)
     t6 = ops.select(same, 0.0, rho3)
-    t7 = a_x * t6 + rho1 * d_z
-    t8 = d_y * m_z + d_z * t7
-    t9 = over * t8
-    m_x = d_y * t6 - d_z * t5
-    t10 = a_x * m_z - d_z * m_x
-    n_y = over * t10
-    t11 = a_x * t7 + d_y * m_x
-    n_z = over * t11
-    nu = t9 * t9 + n_y * n_y + n_z * n_z
-    in_line = nu <= t4
-    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t7 = ops.select(same, rho2, 0.0)
+    d_z = ops.select(same, rho3, 0.0)
+    product_x = d_y * t6 - t7 * d_z
+    v_v = t2 + rho3 * rho3
+    all_same = u_u + v_v <= t5
+    whole = ops.select((size == 0.0), 1.0, size)
+    a_x = ops.select(all_same, whole, -rho1)
+    t8 = a_x * t6 + rho1 * d_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t9 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
+    t11 = t10 * t10 + n_y * n_y + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
+    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = d_z * whole
+    g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
-    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
-    t18 = mu * 0.25
-    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t17 = t12 * t12
+    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
+    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
     t20 = t15 - t19
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
     t21 = ops.opposite(failed)
+    t22 = ops.opposite(in_line)
+    t23 = t21 & t22
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t22 = t21 & ops.opposite(touching)
-    t23 = t21 | (t22 & ops.opposite(all_same))
-    t24 = ops.opposite(in_line)
-    t25 = t22 | (t23 & t24)
-    t26 = t25 & t24
-    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
-    n_z_2 = over_2 * t11
-    n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
-    t27 = over_2 * t8
-    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
-    t28 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
-    t29 = ops.select(all_same, 0.0, nu_2 * (t28 * t28) + t18)
-    t30 = ops.select(t22, part_2 * ops.max(t15 - t29, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t30))
-    t31 = w_x * h
-    t32 = t27 * t28 - rho1 * 0.5
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
-    t33 = w_y * h
-    t34 = n_y_2 * t28 - d_y * 0.5
-    t35 = ops.select(failed, ops.nan, t33 - t34 - rho2)
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
-    t36 = w_z * h
-    t37 = n_z_2 * t28 - d_z * 0.5
-    t38 = ops.select(failed, ops.nan, t36 - t37 - rho3)
-    t39 = ops.select(failed, ops.nan, -(rho2 + (t33 + t34)))
-    t40 = ops.select(failed, ops.nan, -(rho3 + (t36 + t37)))
+    t24 = t21 & ops.opposite(touching)
+    t25 = t23 | t24 | (t24 & ops.opposite(all_same) & t22)
+    t26 = ops.select((t23 & slim) | (t25 & t22 & slim), mu, 1.0)
+    over = 1.0 / t26
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    w_w = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
+    part = 1.0 / ops.select(t25, w_w, 1.0)
+    t27 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
+    slack = ops.max(t15 - ops.select(all_same, 0.0, t27 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t24, part * slack, 1.0)))
+    t28 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t29 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t30 = rho1 * 0.5 - t10 * t29
+    t31 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
+    t32 = h * ops.select(in_line, g_1, -t31)
+    t33 = n_y * t29 - d_y * 0.5
+    t34 = ops.select(failed, ops.nan, t32 - t33 - rho2)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t35 = h * ops.select(in_line, -g_2, m_z)
+    t36 = n_z * t29 - d_z * 0.5
+    t37 = ops.select(failed, ops.nan, t35 - t36 - rho3)
+    t38 = ops.select(failed, ops.nan, -(rho2 + (t32 + t33)))
+    t39 = ops.select(failed, ops.nan, -(rho3 + (t35 + t36)))
     return (
-        ops.select(failed, ops.nan, t31 + t32),
-        t35,
+        ops.select(failed, ops.nan, t28 - t30),
+        t34,
+        t37,
+        ops.select(failed, ops.nan, -(t28 + t30)),
         t38,
-        ops.select(failed, ops.nan, t32 - t31),
         t39,
-        t40,
     )
 
 
@@ -750,7 +738,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 3)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8),
+    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 12),
 )
 
 
@@ -789,129 +777,126 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
-    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing * t3
-    all_same = u_u + v_v <= t4
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t4
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
+    t4 = ops.vanishing * ops.vanishing
+    t5 = t3 * t4
+    same = u_u <= t5
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, whole, -rho1)
-    t5 = ops.select(same, rho2, 0.0)
-    m_z = a_x * t5 + rho1 * d_y
-    d_z = ops.select(same, rho3, 0.0)
     t6 = ops.select(same, 0.0, rho3)
-    t7 = a_x * t6 + rho1 * d_z
-    t8 = d_y * m_z + d_z * t7
-    t9 = over * t8
-    m_x = d_y * t6 - d_z * t5
-    t10 = a_x * m_z - d_z * m_x
-    n_y = over * t10
-    t11 = a_x * t7 + d_y * m_x
-    n_z = over * t11
-    nu = t9 * t9 + n_y * n_y + n_z * n_z
-    in_line = nu <= t4
-    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t7 = ops.select(same, rho2, 0.0)
+    d_z = ops.select(same, rho3, 0.0)
+    product_x = d_y * t6 - t7 * d_z
+    v_v = t2 + rho3 * rho3
+    all_same = u_u + v_v <= t5
+    whole = ops.select((size == 0.0), 1.0, size)
+    a_x = ops.select(all_same, whole, -rho1)
+    t8 = a_x * t6 + rho1 * d_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t9 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
+    t11 = t10 * t10 + n_y * n_y + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
+    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = d_z * whole
+    g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
-    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
-    t18 = mu * 0.25
-    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t17 = t12 * t12
+    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
+    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
     t20 = t15 - t19
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
     t21 = ops.opposite(failed)
+    t22 = ops.opposite(in_line)
+    t23 = t21 & t22
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t22 = t21 & ops.opposite(touching)
-    t23 = t21 | (t22 & ops.opposite(all_same))
-    t24 = ops.opposite(in_line)
-    t25 = t22 | (t23 & t24)
-    t26 = t25 & t24
-    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
-    n_z_2 = over_2 * t11
-    n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
-    t27 = over_2 * t8
-    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    t28 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, t28, 1.0))
-    t29 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
-    t30 = ops.select(all_same, 0.0, nu_2 * (t29 * t29) + t18)
-    t31 = ops.select(t22, part_2 * ops.max(t15 - t30, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t31))
-    t32 = w_x * h
-    t33 = t27 * t29 - rho1 * 0.5
-    A_11 = t32 + t33
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
-    t34 = w_y * h
-    t35 = n_y_2 * t29 - d_y * 0.5
-    t36 = t34 - t35
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
-    t37 = w_z * h
-    t38 = n_z_2 * t29 - d_z * 0.5
-    t39 = t37 - t38
-    t40 = t36 * t39
-    t41 = rho2 - t36
-    t42 = rho3 - t39
-    t43 = ops.select(t21, t28 * h, 1.0)
-    t44 = ops.select(failed, ops.nan, -(A_11 * (t40 - t41 * t42) / t43))
-    t45 = ops.select(failed, ops.nan, -(t41 * (t40 + t36 * t42) / t43))
-    t46 = ops.select(failed, ops.nan, -(t42 * (t40 + t39 * t41) / t43))
+    t24 = t21 & ops.opposite(touching)
+    t25 = t23 | t24 | (t24 & ops.opposite(all_same) & t22)
+    t26 = ops.select((t23 & slim) | ((t21 | (t25 & t22)) & slim), mu, 1.0)
+    over = 1.0 / t26
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    m_m_2 = ops.select(slim, over * t11, product_2)
+    t27 = ops.select(t25, ops.select(in_line, t16, m_m_2), 1.0)
+    part = 1.0 / t27
+    t28 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
+    slack = ops.max(t15 - ops.select(all_same, 0.0, t28 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t24, part * slack, 1.0)))
+    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t30 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t31 = rho1 * 0.5 - t10 * t30
+    A_11 = t29 - t31
+    t32 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
+    t33 = h * ops.select(in_line, g_1, -t32)
+    t34 = n_y * t30 - d_y * 0.5
+    t35 = t33 - t34
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t36 = h * ops.select(in_line, -g_2, m_z)
+    t37 = n_z * t30 - d_z * 0.5
+    t38 = t36 - t37
+    t39 = t35 * t38
+    t40 = rho2 - t35
+    t41 = rho3 - t38
+    t42 = ops.select(t21, m_m_2 * h, 1.0)
+    t43 = ops.select(failed, ops.nan, -(A_11 * (t39 - t40 * t41) / t42))
+    t44 = ops.select(failed, ops.nan, -(t40 * (t39 + t35 * t41) / t42))
+    t45 = ops.select(failed, ops.nan, -(t41 * (t39 + t38 * t40) / t42))
     A_21 = rho1 + A_11
-    t47 = t39 * A_21
-    t48 = ops.select(failed, ops.nan, A_11 * (t47 + t42 * A_21) / t43)
-    t49 = ops.select(failed, ops.nan, t41 * (t47 + A_11 * t42) / t43)
-    t50 = ops.select(failed, ops.nan, -(t42 * (t47 - A_11 * t39) / t43))
-    t51 = t36 * A_21
-    t52 = ops.select(failed, ops.nan, A_11 * (t51 + t41 * A_21) / t43)
-    t53 = ops.select(failed, ops.nan, -(t41 * (t51 - A_11 * t36) / t43))
-    t54 = ops.select(failed, ops.nan, t42 * (t51 + A_11 * t41) / t43)
-    t55 = t32 - t33
-    t56 = t34 + t35
-    t57 = t37 + t38
-    t58 = t56 * t57
-    t59 = rho2 + t56
-    t60 = rho3 + t57
-    t61 = ops.select(failed, ops.nan, -(t55 * (t58 - t59 * t60) / t43))
-    t62 = ops.select(failed, ops.nan, t59 * (t58 - t56 * t60) / t43)
-    t63 = ops.select(failed, ops.nan, t60 * (t58 - t57 * t59) / t43)
-    A_21_inner = rho1 - t55
-    t64 = t57 * A_21_inner
-    t65 = ops.select(failed, ops.nan, -(t55 * (t64 - t60 * A_21_inner) / t43))
-    t66 = ops.select(failed, ops.nan, t59 * (t64 + t55 * t60) / t43)
-    t67 = ops.select(failed, ops.nan, -(t60 * (t64 + t55 * t57) / t43))
-    t68 = t56 * A_21_inner
-    t69 = ops.select(failed, ops.nan, -(t55 * (t68 - t59 * A_21_inner) / t43))
-    t70 = ops.select(failed, ops.nan, -(t59 * (t68 + t55 * t56) / t43))
-    t71 = ops.select(failed, ops.nan, t60 * (t68 + t55 * t59) / t43)
+    t46 = t38 * A_21
+    t47 = ops.select(failed, ops.nan, A_11 * (t46 + t41 * A_21) / t42)
+    t48 = ops.select(failed, ops.nan, t40 * (t46 + A_11 * t41) / t42)
+    t49 = ops.select(failed, ops.nan, -(t41 * (t46 - A_11 * t38) / t42))
+    t50 = t35 * A_21
+    t51 = ops.select(failed, ops.nan, A_11 * (t50 + t40 * A_21) / t42)
+    t52 = ops.select(failed, ops.nan, -(t40 * (t50 - A_11 * t35) / t42))
+    t53 = ops.select(failed, ops.nan, t41 * (t50 + A_11 * t40) / t42)
+    t54 = t29 + t31
+    t55 = t33 + t34
+    t56 = t36 + t37
+    t57 = t55 * t56
+    t58 = rho2 + t55
+    t59 = rho3 + t56
+    t60 = ops.select(failed, ops.nan, -(t54 * (t57 - t58 * t59) / t42))
+    t61 = ops.select(failed, ops.nan, t58 * (t57 - t55 * t59) / t42)
+    t62 = ops.select(failed, ops.nan, t59 * (t57 - t56 * t58) / t42)
+    A_21_inner = rho1 - t54
+    t63 = t56 * A_21_inner
+    t64 = ops.select(failed, ops.nan, -(t54 * (t63 - t59 * A_21_inner) / t42))
+    t65 = ops.select(failed, ops.nan, t58 * (t63 + t54 * t59) / t42)
+    t66 = ops.select(failed, ops.nan, -(t59 * (t63 + t54 * t56) / t42))
+    t67 = t55 * A_21_inner
+    t68 = ops.select(failed, ops.nan, -(t54 * (t67 - t58 * A_21_inner) / t42))
+    t69 = ops.select(failed, ops.nan, -(t58 * (t67 + t54 * t55) / t42))
+    t70 = ops.select(failed, ops.nan, t59 * (t67 + t54 * t58) / t42)
     return (
+        t43,
         t44,
         t45,
-        t46,
+        t47,
         t48,
         t49,
-        t50,
+        t51,
         t52,
         t53,
-        t54,
+        t60,
         t61,
         t62,
-        t63,
+        t64,
         t65,
         t66,
-        t67,
+        t68,
         t69,
         t70,
-        t71,
     )
 
 
@@ -922,7 +907,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 3)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), (), 8),
+    _runtime.Size((0, 1, 2, 3), (), 12),
 )
 
 
@@ -962,79 +947,76 @@ def _determinant(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
-    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing * t3
-    all_same = u_u + v_v <= t4
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t4
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
+    t4 = ops.vanishing * ops.vanishing
+    t5 = t3 * t4
+    same = u_u <= t5
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, whole, -rho1)
-    t5 = ops.select(same, rho2, 0.0)
-    m_z = a_x * t5 + rho1 * d_y
-    d_z = ops.select(same, rho3, 0.0)
     t6 = ops.select(same, 0.0, rho3)
-    t7 = a_x * t6 + rho1 * d_z
-    t8 = d_y * m_z + d_z * t7
-    t9 = over * t8
-    m_x = d_y * t6 - d_z * t5
-    t10 = a_x * m_z - d_z * m_x
-    n_y = over * t10
-    t11 = a_x * t7 + d_y * m_x
-    n_z = over * t11
-    nu = t9 * t9 + n_y * n_y + n_z * n_z
-    in_line = nu <= t4
-    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t7 = ops.select(same, rho2, 0.0)
+    d_z = ops.select(same, rho3, 0.0)
+    product_x = d_y * t6 - t7 * d_z
+    v_v = t2 + rho3 * rho3
+    all_same = u_u + v_v <= t5
+    whole = ops.select((size == 0.0), 1.0, size)
+    a_x = ops.select(all_same, whole, -rho1)
+    t8 = a_x * t6 + rho1 * d_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t9 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
+    t11 = t10 * t10 + n_y * n_y + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
+    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = d_z * whole
+    g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
-    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
-    t18 = mu * 0.25
-    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t17 = t12 * t12
+    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
+    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
     t20 = t15 - t19
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
     t21 = ops.opposite(failed)
+    t22 = ops.opposite(in_line)
+    t23 = t21 & t22
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t22 = t21 & ops.opposite(touching)
-    t23 = t21 | (t22 & ops.opposite(all_same))
-    t24 = ops.opposite(in_line)
-    t25 = t22 | (t23 & t24)
-    t26 = t25 & t24
-    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
-    n_z_2 = over_2 * t11
-    n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
-    t27 = over_2 * t8
-    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    t28 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, t28, 1.0))
-    t29 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
-    t30 = ops.select(all_same, 0.0, nu_2 * (t29 * t29) + t18)
-    t31 = ops.select(t22, part_2 * ops.max(t15 - t30, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t31))
-    t32 = w_x * h
-    t33 = t27 * t29 - rho1 * 0.5
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
-    t34 = w_y * h
-    t35 = n_y_2 * t29 - d_y * 0.5
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
-    t36 = w_z * h
-    t37 = n_z_2 * t29 - d_z * 0.5
-    t38 = (t32 + t33) * (rho2 - (t34 - t35)) * (rho3 - (t36 - t37))
-    t39 = ops.select(t21, t28 * h, 1.0)
-    t40 = (t32 - t33) * (rho2 + (t34 + t35)) * (rho3 + (t36 + t37))
+    t24 = t21 & ops.opposite(touching)
+    t25 = t23 | t24 | (t24 & ops.opposite(all_same) & t22)
+    t26 = ops.select((t23 & slim) | ((t21 | (t25 & t22)) & slim), mu, 1.0)
+    over = 1.0 / t26
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    m_m_2 = ops.select(slim, over * t11, product_2)
+    t27 = ops.select(t25, ops.select(in_line, t16, m_m_2), 1.0)
+    part = 1.0 / t27
+    t28 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
+    slack = ops.max(t15 - ops.select(all_same, 0.0, t28 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t24, part * slack, 1.0)))
+    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t30 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t31 = rho1 * 0.5 - t10 * t30
+    t32 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
+    t33 = h * ops.select(in_line, g_1, -t32)
+    t34 = n_y * t30 - d_y * 0.5
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t35 = h * ops.select(in_line, -g_2, m_z)
+    t36 = n_z * t30 - d_z * 0.5
+    t37 = (t29 - t31) * (rho2 - (t33 - t34)) * (rho3 - (t35 - t36))
+    t38 = ops.select(t21, m_m_2 * h, 1.0)
+    t39 = (t29 + t31) * (rho2 + (t33 + t34)) * (rho3 + (t35 + t36))
     return (
-        ops.select(failed, ops.nan, t38 / t39),
-        ops.select(failed, ops.nan, t40 / t39),
+        ops.select(failed, ops.nan, t37 / t38),
+        ops.select(failed, ops.nan, t39 / t38),
     )
 
 
@@ -1045,7 +1027,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("det", (2,)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), (), 8),
+    _runtime.Size((0, 1, 2, 3), (), 12),
 )
 
 
@@ -1084,86 +1066,83 @@ def _singularities(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
-    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing * t3
-    all_same = u_u + v_v <= t4
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t4
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
+    t4 = ops.vanishing * ops.vanishing
+    t5 = t3 * t4
+    same = u_u <= t5
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, whole, -rho1)
-    t5 = ops.select(same, rho2, 0.0)
-    m_z = a_x * t5 + rho1 * d_y
-    d_z = ops.select(same, rho3, 0.0)
     t6 = ops.select(same, 0.0, rho3)
-    t7 = a_x * t6 + rho1 * d_z
-    t8 = d_y * m_z + d_z * t7
-    t9 = over * t8
-    m_x = d_y * t6 - d_z * t5
-    t10 = a_x * m_z - d_z * m_x
-    n_y = over * t10
-    t11 = a_x * t7 + d_y * m_x
-    n_z = over * t11
-    nu = t9 * t9 + n_y * n_y + n_z * n_z
-    in_line = nu <= t4
-    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t7 = ops.select(same, rho2, 0.0)
+    d_z = ops.select(same, rho3, 0.0)
+    product_x = d_y * t6 - t7 * d_z
+    v_v = t2 + rho3 * rho3
+    all_same = u_u + v_v <= t5
+    whole = ops.select((size == 0.0), 1.0, size)
+    a_x = ops.select(all_same, whole, -rho1)
+    t8 = a_x * t6 + rho1 * d_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t9 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
+    t11 = t10 * t10 + n_y * n_y + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
+    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = d_z * whole
+    g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
-    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
-    t18 = mu * 0.25
-    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t17 = t12 * t12
+    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
+    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
     t20 = t15 - t19
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
     t21 = ops.opposite(failed)
+    t22 = ops.opposite(in_line)
+    t23 = t21 & t22
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t22 = t21 & ops.opposite(touching)
-    t23 = t21 | (t22 & ops.opposite(all_same))
-    t24 = ops.opposite(in_line)
-    t25 = t22 | (t23 & t24)
-    t26 = t25 & t24
-    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
-    n_z_2 = over_2 * t11
-    n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
-    t27 = over_2 * t8
-    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    t28 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, t28, 1.0))
-    t29 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
-    t30 = ops.select(all_same, 0.0, nu_2 * (t29 * t29) + t18)
-    t31 = ops.select(t22, part_2 * ops.max(t15 - t30, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t31))
-    t32 = w_x * h
-    t33 = t27 * t29 - rho1 * 0.5
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
-    t34 = w_y * h
-    t35 = n_y_2 * t29 - d_y * 0.5
-    t36 = ops.select(failed, ops.nan, t34 - t35 - rho2)
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
-    t37 = w_z * h
-    t38 = n_z_2 * t29 - d_z * 0.5
-    t39 = ops.select(failed, ops.nan, t37 - t38 - rho3)
-    Delta = t28 * h
-    t40 = ops.select(failed, ops.nan, -(rho2 + (t34 + t35)))
-    t41 = ops.select(failed, ops.nan, -(rho3 + (t37 + t38)))
+    t24 = t21 & ops.opposite(touching)
+    t25 = t23 | t24 | (t24 & ops.opposite(all_same) & t22)
+    t26 = ops.select((t23 & slim) | ((t21 | (t25 & t22)) & slim), mu, 1.0)
+    over = 1.0 / t26
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    m_m_2 = ops.select(slim, over * t11, product_2)
+    t27 = ops.select(t25, ops.select(in_line, t16, m_m_2), 1.0)
+    part = 1.0 / t27
+    t28 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
+    slack = ops.max(t15 - ops.select(all_same, 0.0, t28 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t24, part * slack, 1.0)))
+    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t30 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t31 = rho1 * 0.5 - t10 * t30
+    t32 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
+    t33 = h * ops.select(in_line, g_1, -t32)
+    t34 = n_y * t30 - d_y * 0.5
+    t35 = ops.select(failed, ops.nan, t33 - t34 - rho2)
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t36 = h * ops.select(in_line, -g_2, m_z)
+    t37 = n_z * t30 - d_z * 0.5
+    t38 = ops.select(failed, ops.nan, t36 - t37 - rho3)
+    Delta = m_m_2 * h
+    t39 = ops.select(failed, ops.nan, -(rho2 + (t33 + t34)))
+    t40 = ops.select(failed, ops.nan, -(rho3 + (t36 + t37)))
     return (
-        ops.select(failed, ops.nan, t32 + t33),
-        t36,
-        t39,
+        ops.select(failed, ops.nan, t29 - t31),
+        t35,
+        t38,
         ops.select(failed, ops.nan, Delta),
-        ops.select(failed, ops.nan, t33 - t32),
+        ops.select(failed, ops.nan, -(t29 + t31)),
+        t39,
         t40,
-        t41,
         ops.select(failed, ops.nan, -Delta),
     )
 
@@ -1175,7 +1154,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 4)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 8),
+    _runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 12),
 )
 
 
@@ -1214,129 +1193,126 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
-    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing * t3
-    all_same = u_u + v_v <= t4
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t4
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
+    t4 = ops.vanishing * ops.vanishing
+    t5 = t3 * t4
+    same = u_u <= t5
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, whole, -rho1)
-    t5 = ops.select(same, rho2, 0.0)
-    m_z = a_x * t5 + rho1 * d_y
-    d_z = ops.select(same, rho3, 0.0)
     t6 = ops.select(same, 0.0, rho3)
-    t7 = a_x * t6 + rho1 * d_z
-    t8 = d_y * m_z + d_z * t7
-    t9 = over * t8
-    m_x = d_y * t6 - d_z * t5
-    t10 = a_x * m_z - d_z * m_x
-    n_y = over * t10
-    t11 = a_x * t7 + d_y * m_x
-    n_z = over * t11
-    nu = t9 * t9 + n_y * n_y + n_z * n_z
-    in_line = nu <= t4
-    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t7 = ops.select(same, rho2, 0.0)
+    d_z = ops.select(same, rho3, 0.0)
+    product_x = d_y * t6 - t7 * d_z
+    v_v = t2 + rho3 * rho3
+    all_same = u_u + v_v <= t5
+    whole = ops.select((size == 0.0), 1.0, size)
+    a_x = ops.select(all_same, whole, -rho1)
+    t8 = a_x * t6 + rho1 * d_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t9 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
+    t11 = t10 * t10 + n_y * n_y + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
+    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = d_z * whole
+    g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
-    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
-    t18 = mu * 0.25
-    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t17 = t12 * t12
+    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
+    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
     t20 = t15 - t19
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
     t21 = ops.opposite(failed)
+    t22 = ops.opposite(in_line)
+    t23 = t21 & t22
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t22 = t21 & ops.opposite(touching)
-    t23 = t21 | (t22 & ops.opposite(all_same))
-    t24 = ops.opposite(in_line)
-    t25 = t22 | (t23 & t24)
-    t26 = t25 & t24
-    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
-    n_z_2 = over_2 * t11
-    n_y_2 = over_2 * t10
-    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
-    t27 = over_2 * t8
-    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    t28 = mu * nu_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, t28, 1.0))
-    t29 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
-    t30 = ops.select(all_same, 0.0, nu_2 * (t29 * t29) + t18)
-    t31 = ops.select(t22, part_2 * ops.max(t15 - t30, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t31))
-    t32 = w_x * h
-    t33 = t27 * t29 - rho1 * 0.5
-    A_11 = t32 + t33
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
-    t34 = w_y * h
-    t35 = n_y_2 * t29 - d_y * 0.5
-    t36 = t34 - t35
-    t37 = t36 * t36
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
-    t38 = w_z * h
-    t39 = n_z_2 * t29 - d_z * 0.5
-    t40 = t38 - t39
-    t41 = t40 * t40
+    t24 = t21 & ops.opposite(touching)
+    t25 = t23 | t24 | (t24 & ops.opposite(all_same) & t22)
+    t26 = ops.select((t23 & slim) | ((t21 | (t25 & t22)) & slim), mu, 1.0)
+    over = 1.0 / t26
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    m_m_2 = ops.select(slim, over * t11, product_2)
+    t27 = ops.select(t25, ops.select(in_line, t16, m_m_2), 1.0)
+    part = 1.0 / t27
+    t28 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
+    slack = ops.max(t15 - ops.select(all_same, 0.0, t28 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t24, part * slack, 1.0)))
+    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t30 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t31 = rho1 * 0.5 - t10 * t30
+    A_11 = t29 - t31
+    t32 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
+    t33 = h * ops.select(in_line, g_1, -t32)
+    t34 = n_y * t30 - d_y * 0.5
+    t35 = t33 - t34
+    t36 = t35 * t35
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t37 = h * ops.select(in_line, -g_2, m_z)
+    t38 = n_z * t30 - d_z * 0.5
+    t39 = t37 - t38
+    t40 = t39 * t39
     A_21 = rho1 + A_11
-    t42 = A_21 * A_21
-    t43 = rho2 - t36
-    t44 = A_11 * A_11 + t37 + t41 + (t41 + t42 + t43 * t43)
-    t45 = rho3 - t40
-    t46 = t36 * A_21
-    t47 = A_11 * t36 - t46
-    t48 = t40 * A_21
-    t49 = A_11 * t40 - t48
-    t50 = t46 + A_11 * t43
-    t51 = t48 + A_11 * t45
-    t52 = t47 * t47 + t49 * t49 + t50 * t50 + t51 * t51
-    t53 = t36 * t40
-    t54 = t53 - t43 * t45
-    t55 = t53 + t36 * t45
-    t56 = t53 + t40 * t43
-    t57 = t46 + A_21 * t43
-    t58 = t52 + t54 * t54 + t55 * t55 + t56 * t56 + t57 * t57
-    t59 = t48 + A_21 * t45
-    t60 = (t44 + (t37 + t42 + t45 * t45)) * (t58 + t59 * t59)
-    t61 = ops.select(t21, 3.0 * (t28 * h), 1.0)
-    t62 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t21, t60, 1.0)) / t61)
-    t63 = t32 - t33
-    t64 = t34 + t35
-    t65 = t64 * t64
-    t66 = t38 + t39
-    t67 = t66 * t66
-    A_21_inner = rho1 - t63
-    t68 = A_21_inner * A_21_inner
-    t69 = rho2 + t64
-    t70 = t63 * t63 + t65 + t67 + (t67 + t68 + t69 * t69)
-    t71 = rho3 + t66
-    t72 = t64 * A_21_inner
-    t73 = t63 * t64 + t72
-    t74 = t66 * A_21_inner
-    t75 = t63 * t66 + t74
-    t76 = t72 + t63 * t69
-    t77 = t74 + t63 * t71
-    t78 = t73 * t73 + t75 * t75 + t76 * t76 + t77 * t77
-    t79 = t64 * t66
-    t80 = t79 - t69 * t71
-    t81 = t79 - t64 * t71
-    t82 = t79 - t66 * t69
-    t83 = t72 - A_21_inner * t69
-    t84 = t78 + t80 * t80 + t81 * t81 + t82 * t82 + t83 * t83
-    t85 = t74 - A_21_inner * t71
-    t86 = (t70 + (t65 + t68 + t71 * t71)) * (t84 + t85 * t85)
-    t87 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t21, t86, 1.0)) / t61)
+    t41 = A_21 * A_21
+    t42 = rho2 - t35
+    t43 = A_11 * A_11 + t36 + t40 + (t40 + t41 + t42 * t42)
+    t44 = rho3 - t39
+    t45 = t35 * A_21
+    t46 = A_11 * t35 - t45
+    t47 = t39 * A_21
+    t48 = A_11 * t39 - t47
+    t49 = t45 + A_11 * t42
+    t50 = t47 + A_11 * t44
+    t51 = t46 * t46 + t48 * t48 + t49 * t49 + t50 * t50
+    t52 = t35 * t39
+    t53 = t52 - t42 * t44
+    t54 = t52 + t35 * t44
+    t55 = t52 + t39 * t42
+    t56 = t45 + A_21 * t42
+    t57 = t51 + t53 * t53 + t54 * t54 + t55 * t55 + t56 * t56
+    t58 = t47 + A_21 * t44
+    t59 = (t43 + (t36 + t41 + t44 * t44)) * (t57 + t58 * t58)
+    t60 = ops.select(t21, 3.0 * (m_m_2 * h), 1.0)
+    t61 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t21, t59, 1.0)) / t60)
+    t62 = t29 + t31
+    t63 = t33 + t34
+    t64 = t63 * t63
+    t65 = t37 + t38
+    t66 = t65 * t65
+    A_21_inner = rho1 - t62
+    t67 = A_21_inner * A_21_inner
+    t68 = rho2 + t63
+    t69 = t62 * t62 + t64 + t66 + (t66 + t67 + t68 * t68)
+    t70 = rho3 + t65
+    t71 = t63 * A_21_inner
+    t72 = t62 * t63 + t71
+    t73 = t65 * A_21_inner
+    t74 = t62 * t65 + t73
+    t75 = t71 + t62 * t68
+    t76 = t73 + t62 * t70
+    t77 = t72 * t72 + t74 * t74 + t75 * t75 + t76 * t76
+    t78 = t63 * t65
+    t79 = t78 - t68 * t70
+    t80 = t78 - t63 * t70
+    t81 = t78 - t65 * t68
+    t82 = t71 - A_21_inner * t68
+    t83 = t77 + t79 * t79 + t80 * t80 + t81 * t81 + t82 * t82
+    t84 = t73 - A_21_inner * t70
+    t85 = (t69 + (t64 + t67 + t70 * t70)) * (t83 + t84 * t84)
+    t86 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t21, t85, 1.0)) / t60)
     return (
-        t62,
-        t87,
+        t61,
+        t86,
     )
 
 
@@ -1387,83 +1363,80 @@ def _constraint(ops, rho1, rho2, rho3, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
-    v_v = t2 + rho3 * rho3
     size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
     t3 = size * size
-    t4 = ops.vanishing * ops.vanishing * t3
-    all_same = u_u + v_v <= t4
-    whole = ops.select((size == 0.0), 1.0, size)
-    same = u_u <= t4
-    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
-    over = 1.0 / mu
+    t4 = ops.vanishing * ops.vanishing
+    t5 = t3 * t4
+    same = u_u <= t5
     d_y = ops.select(same, 0.0, rho2)
-    a_x = ops.select(all_same, whole, -rho1)
-    t5 = ops.select(same, rho2, 0.0)
-    m_z = a_x * t5 + rho1 * d_y
-    d_z = ops.select(same, rho3, 0.0)
     t6 = ops.select(same, 0.0, rho3)
-    t7 = a_x * t6 + rho1 * d_z
-    t8 = d_y * m_z + d_z * t7
-    t9 = over * t8
-    m_x = d_y * t6 - d_z * t5
-    t10 = a_x * m_z - d_z * m_x
-    n_y = over * t10
-    t11 = a_x * t7 + d_y * m_x
-    n_z = over * t11
-    nu = t9 * t9 + n_y * n_y + n_z * n_z
-    in_line = nu <= t4
-    t12 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    t7 = ops.select(same, rho2, 0.0)
+    d_z = ops.select(same, rho3, 0.0)
+    product_x = d_y * t6 - t7 * d_z
+    v_v = t2 + rho3 * rho3
+    all_same = u_u + v_v <= t5
+    whole = ops.select((size == 0.0), 1.0, size)
+    a_x = ops.select(all_same, whole, -rho1)
+    t8 = a_x * t6 + rho1 * d_z
+    product_z = a_x * t7 + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
+    t9 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t9 * 0.000244140625 <= ops.vanishing * t9
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
+    t11 = t10 * t10 + n_y * n_y + n_z * n_z
+    m_m = ops.select(slim, 1.0 / mu * t11, product_2)
+    in_line = m_m <= t4 * (t3 * mu)
+    t12 = t7 * (d_y - t7) + t6 * (d_z - t6)
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
-    g_1 = d_z * whole
+    g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    part = ops.select(in_line, 1.0 / t16, 1.0 / (mu * nu))
-    t17 = ops.select(in_line, 0.0, mu * part * t12 * 0.5)
-    t18 = mu * 0.25
-    t19 = ops.select(all_same, 0.0, nu * (t17 * t17) + t18)
+    t17 = t12 * t12
+    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
+    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
     t20 = t15 - t19
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
-    t21 = ops.opposite(failed)
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
+    t21 = ops.opposite(failed)
     t22 = t21 & ops.opposite(touching)
-    t23 = t21 | (t22 & ops.opposite(all_same))
-    t24 = ops.opposite(in_line)
-    t25 = t22 | (t23 & t24)
-    t26 = t25 & t24
-    over_2 = 1.0 / ops.select(t23 | t26, mu, 1.0)
-    n_z_2 = over_2 * t11
-    t27 = over_2 * t8
-    w_y = ops.select(in_line, g_1, -(a_x * n_z_2 + d_z * t27))
-    n_y_2 = over_2 * t10
-    nu_2 = t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    part_2 = ops.select(in_line, 1.0 / ops.select(t25 & in_line, t16, 1.0), 1.0 / ops.select(t26, mu * nu_2, 1.0))
-    t28 = ops.select(in_line, 0.0, mu * part_2 * t12 * 0.5)
-    t29 = ops.select(all_same, 0.0, nu_2 * (t28 * t28) + t18)
-    t30 = ops.select(t22, part_2 * ops.max(t15 - t29, 0.0), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t30))
-    t31 = w_y * h
-    t32 = n_y_2 * t28 - d_y * 0.5
-    t33 = t31 - t32
-    w_z = ops.select(in_line, -g_2, a_x * n_y_2 + d_y * t27)
-    t34 = w_z * h
-    t35 = n_z_2 * t28 - d_z * 0.5
-    t36 = t34 - t35
-    w_x = ops.select(in_line, s_w * g_1, d_y * n_z_2 - d_z * n_y_2)
-    t37 = w_x * h
-    t38 = t27 * t28 - rho1 * 0.5
-    A_11 = t37 + t38
-    t39 = t33 * t36 * (rho1 + A_11) - A_11 * (rho2 - t33) * (rho3 - t36)
-    t40 = t37 - t38
-    t41 = t31 + t32
-    t42 = t34 + t35
-    t43 = t40 * (rho2 + t41) * (rho3 + t42) + t41 * t42 * (rho1 - t40)
+    t23 = ops.opposite(in_line)
+    t24 = t21 & t23
+    t25 = t24 | t22 | (t22 & ops.opposite(all_same) & t23)
+    t26 = ops.select((t24 & slim) | (t25 & t23 & slim), mu, 1.0)
+    over = 1.0 / t26
+    w_w = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
+    part = 1.0 / ops.select(t25, w_w, 1.0)
+    t27 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
+    slack = ops.max(t15 - ops.select(all_same, 0.0, t27 * 0.25), 0.0)
+    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t22, part * slack, 1.0)))
+    t28 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
+    t29 = h * ops.select(in_line, g_1, -t28)
+    t30 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t31 = n_y * t30 - d_y * 0.5
+    t32 = t29 - t31
+    m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    t33 = h * ops.select(in_line, -g_2, m_z)
+    t34 = n_z * t30 - d_z * 0.5
+    t35 = t33 - t34
+    m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    t36 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t37 = rho1 * 0.5 - t10 * t30
+    A_11 = t36 - t37
+    t38 = t32 * t35 * (rho1 + A_11) - A_11 * (rho2 - t32) * (rho3 - t35)
+    t39 = t36 + t37
+    t40 = t29 + t31
+    t41 = t33 + t34
+    t42 = t39 * (rho2 + t40) * (rho3 + t41) + t40 * t41 * (rho1 - t39)
     return (
-        ops.select(failed, ops.nan, t39),
-        ops.select(failed, ops.nan, t43),
+        ops.select(failed, ops.nan, t38),
+        ops.select(failed, ops.nan, t42),
     )
 
 
@@ -1474,7 +1447,7 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 1)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((0, 3), (1, 3)), 8),
+    _runtime.Size((0, 1, 2, 3), ((0, 3), (1, 3)), 12),
 )
 
 

@@ -10,7 +10,7 @@
 #   singularities: 1 sincos
 #   jacobian_space: 4 add, 8 multiply, 2 sincos
 #   jacobian_body: 4 add, 8 multiply, 2 sincos
-#   ik: 28 add, 64 compare and select, 5 atan2, 5 divide, 39 multiply, 1 sincos, 3 sqrt
+#   ik: 28 add, 63 compare and select, 5 atan2, 5 divide, 39 multiply, 1 sincos, 3 sqrt
 """SCARA arm (RRPR).
 
 Two links of lengths l1 and l2 turn in a horizontal plane at the height h.  At their end a
@@ -630,35 +630,34 @@ def _ik(ops, x_x, x_y, x_z, x_yaw, l1, l2, h):
     s2 = ops.select(no_link_elbow, 0.0, area_elbow * t27)
     c2 = ops.select(no_link_elbow, 1.0, -(t27 * (t20 - t21)))
     t28 = ops.atan2(s2, ops.select(t8, c2, 1.0))
-    t29 = ops.select(failed, ops.nan, ops.wrap_cut(t28))
-    t30 = ops.select(failed, ops.nan, h - x_z)
-    t31 = c1 * c2 - s1 * s2
-    t32 = c1 * s2 + s1 * c2
-    t33 = ops.select(t8, c_x_yaw * t31 + s_x_yaw * t32, 1.0)
-    t34 = ops.atan2(s_x_yaw * t31 - c_x_yaw * t32, t33)
-    t35 = ops.select(failed, ops.nan, ops.wrap_cut(-t34))
+    t29 = ops.select(failed, ops.nan, h - x_z)
+    t30 = c1 * c2 - s1 * s2
+    t31 = c1 * s2 + s1 * c2
+    t32 = ops.select(t8, c_x_yaw * t30 + s_x_yaw * t31, 1.0)
+    t33 = ops.atan2(s_x_yaw * t30 - c_x_yaw * t31, t32)
+    t34 = ops.select(failed, ops.nan, ops.wrap_cut(-t33))
     s1_right = t18 + t23
     c1_right = t24 - t25
-    t36 = ops.atan2(s1_right, ops.select(t8, c1_right, 1.0))
-    t37 = ops.select(failed, ops.nan, ops.wrap_cut(t36))
-    t38 = ops.select(failed, ops.nan, ops.wrap_cut(-t28))
-    t39 = c2 * c1_right + s2 * s1_right
-    t40 = s2 * c1_right - c2 * s1_right
-    t41 = ops.select(t8, c_x_yaw * t39 - s_x_yaw * t40, 1.0)
-    t42 = ops.atan2(s_x_yaw * t39 + c_x_yaw * t40, t41)
-    t43 = ops.select(failed, ops.nan, ops.wrap_cut(-t42))
-    t44 = ops.status(invalid, unreachable, no_link_elbow | folded_elbow)
+    t35 = ops.atan2(s1_right, ops.select(t8, c1_right, 1.0))
+    t36 = ops.select(failed, ops.nan, ops.wrap_cut(t35))
+    t37 = ops.select(failed, ops.nan, ops.wrap_cut(-t28))
+    t38 = c2 * c1_right + s2 * s1_right
+    t39 = s2 * c1_right - c2 * s1_right
+    t40 = ops.select(t8, c_x_yaw * t38 - s_x_yaw * t39, 1.0)
+    t41 = ops.atan2(s_x_yaw * t38 + c_x_yaw * t39, t40)
+    t42 = ops.select(failed, ops.nan, ops.wrap_cut(-t41))
+    t43 = ops.status(invalid, unreachable, no_link_elbow | folded_elbow)
     return (
         ops.select(failed, ops.nan, t26),
+        ops.select(failed, ops.nan, t28),
         t29,
-        t30,
-        t35,
+        t34,
+        t36,
         t37,
-        t38,
-        t30,
+        t29,
+        t42,
         t43,
-        t44,
-        t44,
+        t43,
     )
 
 

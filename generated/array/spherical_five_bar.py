@@ -2,13 +2,13 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 101 compare and select, 75 add, 16 divide, 116 multiply, 7 sincos, 7 sqrt
-#   skeleton: 109 compare and select, 78 add, 14 divide, 118 multiply, 7 sincos, 7 sqrt
-#   jacobian_parallel: 112 compare and select, 84 add, 14 divide, 118 multiply, 7 sincos, 7 sqrt
-#   jacobian_serial: 98 compare and select, 84 add, 14 divide, 130 multiply, 7 sincos, 7 sqrt
-#   jacobian: 107 compare and select, 102 add, 26 divide, 168 multiply, 7 sincos, 7 sqrt
-#   singularities: 100 compare and select, 84 add, 14 divide, 132 multiply, 7 sincos, 7 sqrt
-#   condition_number: 107 compare and select, 128 add, 22 divide, 177 multiply, 7 sincos, 11 sqrt
+#   fk: 117 compare and select, 76 add, 17 divide, 119 multiply, 7 sincos, 7 sqrt
+#   skeleton: 124 compare and select, 79 add, 17 divide, 119 multiply, 7 sincos, 7 sqrt
+#   jacobian_parallel: 127 compare and select, 85 add, 17 divide, 119 multiply, 7 sincos, 7 sqrt
+#   jacobian_serial: 113 compare and select, 85 add, 17 divide, 131 multiply, 7 sincos, 7 sqrt
+#   jacobian: 123 compare and select, 103 add, 29 divide, 168 multiply, 7 sincos, 7 sqrt
+#   singularities: 116 compare and select, 85 add, 17 divide, 132 multiply, 7 sincos, 7 sqrt
+#   condition_number: 123 compare and select, 129 add, 25 divide, 177 multiply, 7 sincos, 11 sqrt
 #   ik: 149 compare and select, 107 add, 4 atan2, 14 divide, 133 multiply, 5 sincos, 14 sqrt
 #   workspace_contains: 53 compare and select, 26 add, 8 divide, 31 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -125,8 +125,8 @@ def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c_alpha2 = ops.cos(alpha2)
     s1 = ops.sin(theta1)
     c1 = ops.cos(theta1)
-    s_beta2_half = ops.sin(beta2 * 0.5)
     s_beta1_half = ops.sin(beta1 * 0.5)
+    s_beta2_half = ops.sin(beta2 * 0.5)
     t1 = ops.finite(r, gamma, alpha1, alpha2, beta1, beta2)
     t2 = t1 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     t3 = t2 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
@@ -144,125 +144,131 @@ def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t11 = c1_z - s2 * t5
     u_u = t8 * t8 + t10 * t10 + t11 * t11
     t12 = r * r
-    t13 = ops.vanishing * ops.vanishing * t12
-    same = u_u <= t13
-    t14 = r * 2.0
-    r_2 = ops.abs(s_beta2_half) * t14
-    t15 = ops.select(same, r, r_2)
+    t13 = ops.vanishing * ops.vanishing
+    t14 = t12 * t13
+    same = u_u <= t14
+    t15 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t15
+    t16 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t13
+    all_same = u_u + v_v <= t14
     whole = ops.select((r == 0.0), 1.0, r)
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
-    r_1 = ops.abs(s_beta1_half) * t14
-    t16 = D - r_1
-    t17 = t15 - t16
-    t18 = D + r_1
-    t19 = t18 - t15
-    t20 = t15 + t16
-    t21 = ops.select(same, r_2, r)
-    t22 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t21) * 0.5)
+    r_1 = ops.abs(s_beta1_half) * t15
+    t17 = D - r_1
+    t18 = t16 - t17
+    t19 = D + r_1
+    t20 = t19 - t16
+    t21 = t16 + t17
+    t22 = ops.select(same, r_2, r)
+    t23 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t22) * 0.5)
+    t24 = ops.select(same, c1_y, t10)
+    t25 = ops.select(same, t11, c1_z)
+    t26 = ops.select(same, c1_z, t11)
+    t27 = ops.select(same, t10, c1_y)
+    product_x = t24 * t25 - t26 * t27
+    t28 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, whole, -t28)
+    t29 = ops.select(same, t8, c1_x)
+    product_y = t25 * a_x + t26 * t29
+    t30 = product_x * product_x + product_y * product_y
+    t31 = t27 * a_x + t24 * t29
+    product_2 = t30 + t31 * t31
+    t32 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t32 * 0.000244140625 <= ops.vanishing * t32
     over = 1.0 / mu
-    t23 = ops.select(same, c1_y, t10)
-    t24 = ops.select(same, c1_x, t8)
-    a_x = ops.select(all_same, whole, -t24)
-    t25 = ops.select(same, t10, c1_y)
-    t26 = ops.select(same, t8, c1_x)
-    t27 = a_x * t25 + t23 * t26
-    t28 = ops.select(same, c1_z, t11)
-    t29 = ops.select(same, t11, c1_z)
-    m_y = a_x * t29 + t26 * t28
-    t30 = t23 * t27 + t28 * m_y
-    t31 = over * t30
-    m_x = t23 * t29 - t25 * t28
-    t32 = a_x * t27 - t28 * m_x
-    t33 = over * t32
-    t34 = a_x * m_y + t23 * m_x
-    t35 = over * t34
-    nu = t31 * t31 + t33 * t33 + t35 * t35
-    t36 = ops.select(same, r_2 * r_2, t12)
-    in_line = nu <= t13
-    t37 = whole * t28
-    s_w = ops.sign(-(t23 * a_x))
-    t38 = whole * (t23 - a_x * s_w)
+    t33 = t24 * t31 + t26 * product_y
+    t34 = a_x * t31 - t26 * product_x
+    t35 = a_x * product_y + t24 * product_x
+    t36 = t33 * t33 + t34 * t34 + t35 * t35
+    m_m = ops.select(slim, over * t36, product_2)
+    in_line = m_m <= t13 * (t12 * mu)
+    t37 = whole * t26
+    s_w = ops.sign(-(t24 * a_x))
+    t38 = whole * (t24 - a_x * s_w)
     t39 = 2.0 * (t37 * t37) + t38 * t38
-    length_n = ops.sqrt(ops.select(in_line, over * t39, nu))
-    t40 = a_x * t26 - t23 * t25 - t28 * t29
-    t41 = length_n * (1.0 / (length_a * length_n)) * t40
-    outer = ops.max(t19, 0.0)
-    inner = ops.max(t20, 0.0)
+    nu = over * ops.select(in_line, t39, m_m)
+    beside_a = ops.sqrt(nu)
+    outer = ops.max(t20, 0.0)
+    inner = ops.max(t21, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t17, 0.0)
-    t42 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t43 = t41 + ops.select(all_same, 0.0, t42)
-    t44 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t44)
-    left = nu - t36 + t43 * t43 + rho * rho
-    t45 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t46 = left + t45
-    t47 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (-t22 <= t46)
-    t48 = t45 - left
-    unreachable = ops.opposite(t47 & (-t22 <= t48))
+    slack = ops.max(t18, 0.0)
+    t40 = ops.sqrt(outer * inner * slack * (t16 + t19))
+    rho = ops.select(all_same, r_1, share * t40)
+    t41 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    t42 = ops.select(same, r_2 * r_2, t12)
+    t43 = t42 - ops.select(in_line, 0.0, nu) - rho * rho
+    t44 = a_x * t29 - t24 * t27 - t25 * t26
+    t45 = beside_a * (1.0 / (length_a * beside_a)) * t44
+    t46 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t47 = t45 + ops.select(all_same, 0.0, t46)
+    t48 = t43 - t47 * t47
+    t49 = t41 - t48
+    t50 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (-t23 <= t49)
+    t51 = t48 + t41
+    unreachable = ops.opposite(t50 & (-t23 <= t51))
     failed = invalid | unreachable
-    t49 = ops.opposite(failed)
-    flat = ops.max(t46, 0.0) + ops.max(t48, 0.0) <= ops.vanishing * (r * t21)
-    t50 = flat | in_line
-    t51 = t49 & ops.opposite(t50)
-    t52 = t49 | (t51 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t52, mu, 1.0)
-    t53 = over_2 * t34
-    t54 = over_2 * t32
-    w_x = ops.select(in_line, -(t37 * s_w), t23 * t53 - t28 * t54)
-    t55 = ops.opposite(all_same)
-    t56 = t49 & t55
-    length_a_2 = ops.sqrt(ops.select(t49 | (t56 & t55), mu, 1.0))
-    t57 = over_2 * t30
-    nu_2 = t57 * t57 + t54 * t54 + t53 * t53
-    t58 = ops.select(t52, ops.select(in_line, over_2 * t39, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t58)
-    t59 = ops.select(t49, length_a_2 * length_n_2, 1.0)
-    part = 1.0 / t59
+    t52 = ops.opposite(failed)
+    t53 = ops.opposite(in_line)
+    flat = ops.max(t49, 0.0) + ops.max(t51, 0.0) <= ops.vanishing * (r * t22)
+    t54 = flat | in_line
+    t55 = t52 & ops.opposite(t54)
+    t56 = t55 & t53
+    t57 = t52 | t56
+    t58 = t52 | (t52 & t53 & slim) | t56 | (t57 & t53 & slim)
+    over_2 = 1.0 / ops.select(t58, mu, 1.0)
+    m_x = ops.select(slim, over_2 * (t24 * t35 - t26 * t34), product_x)
+    t59 = ops.opposite(all_same)
+    t60 = t52 & t59
+    length_a_2 = ops.sqrt(ops.select(t52 | (t60 & t59), mu, 1.0))
+    w_w = ops.select(in_line, t39, ops.select(slim, over_2 * t36, product_2))
+    nu_2 = over_2 * w_w
+    beside_a_2 = ops.sqrt(ops.select(t57, nu_2, 1.0))
+    t61 = ops.select(t52, length_a_2 * beside_a_2, 1.0)
+    part = 1.0 / t61
     D_2 = ops.select(all_same, 0.0, length_a_2)
-    t60 = D_2 + r_1
-    outer_2 = ops.max(t60 - t15, 0.0)
-    t61 = D_2 - r_1
-    inner_2 = ops.max(t15 + t61, 0.0)
-    share_2 = 1.0 / ops.select(t56, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t61, 0.0)
-    t62 = ops.select(t56, outer_2 * inner_2 * slack_2 * (t15 + t60), 1.0)
-    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t62))
-    over_a = length_n_2 * part
-    t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
-    along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
-    t64 = over_a * t40 + along
-    left_2 = nu_2 - t36 + t64 * t64 + rho_2 * rho_2
-    t65 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t65, 0.0)
-    lower = ops.max(t65 - left_2, 0.0)
-    half = rho_2 / ops.select(t51, upper + lower, 1.0)
-    t66 = ops.sqrt(ops.select(t51, upper * lower, 1.0))
-    h = part * ops.select(t50, rho_2, 2.0 * half * t66)
-    t67 = w_x * h
-    Y = ops.select(t50, 0.0, length_a_2 * part * half * (upper - lower))
+    t62 = D_2 + r_1
+    outer_2 = ops.max(t62 - t16, 0.0)
+    t63 = D_2 - r_1
+    inner_2 = ops.max(t16 + t63, 0.0)
+    share_2 = 1.0 / ops.select(t60, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t16 - t63, 0.0)
+    t64 = ops.select(t60, outer_2 * inner_2 * slack_2 * (t16 + t62), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
+    t65 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
+    t66 = t42 - ops.select(in_line, 0.0, nu_2) - rho_2 * rho_2
+    over_a = beside_a_2 * part
+    t67 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    along = ops.select(all_same, 0.0, D_2 * 0.5 + t67 * 0.5)
+    t68 = over_a * t44 + along
+    t69 = t66 - t68 * t68
+    upper = ops.max(t65 - t69, 0.0)
+    lower = ops.max(t69 + t65, 0.0)
+    half = rho_2 / ops.select(t55, upper + lower, 1.0)
+    t70 = ops.sqrt(ops.select(t55, upper * lower, 1.0))
+    h = part * ops.select(t54, rho_2, 2.0 * half * t70)
+    t71 = ops.select(in_line, -(t37 * s_w), m_x) * h
+    Y = ops.select(t54, 0.0, part * over_a * half * (upper - lower))
     X = over_a * along
-    t68 = t57 * Y - (c1_x - t24 * X)
-    w_y = ops.select(in_line, -t37, a_x * t53 + t28 * t57)
-    t69 = w_y * h
-    t70 = t54 * Y - (c1_y - t23 * X)
-    w_z = ops.select(in_line, t38, -(a_x * t54 + t23 * t57))
-    t71 = w_z * h
-    t72 = t53 * Y - (c1_z - t28 * X)
-    t73 = ops.status(invalid, unreachable, in_line)
+    t72 = t33 * Y - (c1_x - t28 * X)
+    m_y = ops.select(slim, over_2 * (a_x * t35 + t26 * t33), product_y)
+    t73 = ops.select(in_line, -t37, m_y) * h
+    t74 = t34 * Y - (c1_y - t24 * X)
+    t75 = ops.select(slim, over_2 * (a_x * t34 + t24 * t33), t31)
+    t76 = ops.select(in_line, t38, -t75) * h
+    t77 = t35 * Y - (c1_z - t26 * X)
+    t78 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t67 - t68),
-        ops.select(failed, ops.nan, t69 - t70),
         ops.select(failed, ops.nan, t71 - t72),
-        ops.select(failed, ops.nan, -(t68 + t67)),
-        ops.select(failed, ops.nan, -(t70 + t69)),
+        ops.select(failed, ops.nan, t73 - t74),
+        ops.select(failed, ops.nan, t76 - t77),
         ops.select(failed, ops.nan, -(t72 + t71)),
-        t73,
-        t73,
+        ops.select(failed, ops.nan, -(t74 + t73)),
+        ops.select(failed, ops.nan, -(t77 + t76)),
+        t78,
+        t78,
     )
 
 
@@ -273,7 +279,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8),
+    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 12),
 )
 
 
@@ -351,167 +357,171 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t14 = c1_z - c2_z
     u_u = t10 * t10 + t13 * t13 + t14 * t14
     t15 = r * r
-    t16 = ops.vanishing * ops.vanishing * t15
-    same = u_u <= t16
-    t17 = r * 2.0
-    r_2 = ops.abs(s_beta2_half) * t17
-    t18 = ops.select(same, r, r_2)
-    r_1 = ops.abs(s_beta1_half) * t17
+    t16 = ops.vanishing * ops.vanishing
+    t17 = t15 * t16
+    same = u_u <= t17
+    t18 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t18
+    t19 = ops.select(same, r, r_2)
+    r_1 = ops.abs(s_beta1_half) * t18
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t16
+    all_same = u_u + v_v <= t17
     whole = ops.select((r == 0.0), 1.0, r)
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
-    t19 = r_1 - D
-    t20 = t18 + t19
-    t21 = r_1 + D
-    t22 = t21 - t18
-    t23 = t18 - t19
-    t24 = ops.select(same, r_2, r)
-    t25 = 0.625 * (r * (r * 2.2737367544323206e-13 + t24))
-    t26 = -(ops.feasibility * t25)
-    over = 1.0 / mu
-    t27 = ops.select(same, c1_y, t13)
-    t28 = ops.select(same, c1_x, t10)
-    a_x = ops.select(all_same, whole, -t28)
-    t29 = ops.select(same, t13, c1_y)
-    t30 = ops.select(same, t10, c1_x)
-    t31 = a_x * t29 + t27 * t30
-    t32 = ops.select(same, c1_z, t14)
-    t33 = ops.select(same, t14, c1_z)
-    m_y = a_x * t33 + t30 * t32
-    t34 = t27 * t31 + t32 * m_y
-    t35 = over * t34
-    m_x = t27 * t33 - t29 * t32
-    t36 = a_x * t31 - t32 * m_x
-    t37 = over * t36
-    t38 = a_x * m_y + t27 * m_x
-    t39 = over * t38
-    nu = t35 * t35 + t37 * t37 + t39 * t39
-    t40 = ops.select(same, r_2 * r_2, t15)
-    in_line = nu <= t16
-    t41 = whole * t32
-    s_w = ops.sign(-(t27 * a_x))
-    t42 = whole * (t27 - a_x * s_w)
+    t20 = r_1 - D
+    t21 = t19 + t20
+    t22 = r_1 + D
+    t23 = t22 - t19
+    t24 = t19 - t20
+    t25 = ops.select(same, r_2, r)
+    t26 = 0.625 * (r * (r * 2.2737367544323206e-13 + t25))
+    t27 = -(ops.feasibility * t26)
+    t28 = ops.select(same, c1_y, t13)
+    t29 = ops.select(same, t14, c1_z)
+    t30 = ops.select(same, c1_z, t14)
+    t31 = ops.select(same, t13, c1_y)
+    product_x = t28 * t29 - t30 * t31
+    t32 = ops.select(same, c1_x, t10)
+    a_x = ops.select(all_same, whole, -t32)
+    t33 = ops.select(same, t10, c1_x)
+    product_y = t29 * a_x + t30 * t33
+    t34 = product_x * product_x + product_y * product_y
+    t35 = t31 * a_x + t28 * t33
+    product_2 = t34 + t35 * t35
+    t36 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t36 * 0.000244140625 <= ops.vanishing * t36
+    t37 = t28 * t35 + t30 * product_y
+    t38 = a_x * t35 - t30 * product_x
+    t39 = a_x * product_y + t28 * product_x
+    t40 = t37 * t37 + t38 * t38 + t39 * t39
+    m_m = ops.select(slim, 1.0 / mu * t40, product_2)
+    in_line = m_m <= t16 * (t15 * mu)
+    t41 = whole * t30
+    s_w = ops.sign(-(t28 * a_x))
+    t42 = whole * (t28 - a_x * s_w)
     t43 = 2.0 * (t41 * t41) + t42 * t42
-    length_n = ops.sqrt(ops.select(in_line, over * t43, nu))
-    t44 = a_x * t30 - t27 * t29 - t32 * t33
-    t45 = length_n * (1.0 / (length_a * length_n)) * t44
-    outer = ops.max(t22, 0.0)
-    inner = ops.max(t23, 0.0)
+    nu = ops.select(in_line, t43, m_m) / mu
+    t44 = ops.select(same, r_2 * r_2, t15)
+    beside_a = ops.sqrt(nu)
+    t45 = a_x * t33 - t28 * t31 - t29 * t30
+    t46 = beside_a * (1.0 / (length_a * beside_a)) * t45
+    outer = ops.max(t23, 0.0)
+    inner = ops.max(t24, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t20, 0.0)
-    t46 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t47 = t45 + ops.select(all_same, 0.0, t46)
-    t48 = ops.sqrt(outer * inner * slack * (t18 + t21))
-    rho = ops.select(all_same, r_1, share * t48)
-    left = nu - t40 + t47 * t47 + rho * rho
-    t49 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t50 = left + t49
-    t51 = (t4 <= t20) & (t4 <= t22) & (t4 <= t23) & (t26 <= t50)
-    t52 = t49 - left
-    failed = invalid | ops.opposite(t51 & (t26 <= t52))
-    t53 = ops.select(failed, ops.nan, 0.0)
-    t54 = ops.select(failed, ops.nan, c1_x)
-    t55 = ops.select(failed, ops.nan, c1_y)
-    t56 = ops.select(failed, ops.nan, c1_z)
-    t57 = ops.select(failed, ops.nan, t8)
-    t58 = ops.select(failed, ops.nan, t12)
-    t59 = ops.select(failed, ops.nan, -t9)
-    t60 = ops.select(failed, ops.nan, c2_y)
-    t61 = ops.select(failed, ops.nan, c2_z)
-    t62 = ops.opposite(failed)
-    flat = ops.max(t50, 0.0) + ops.max(t52, 0.0) <= ops.vanishing * (r * t24)
-    t63 = flat | in_line
-    t64 = t62 & ops.opposite(t63)
-    t65 = t62 | (t64 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t65, mu, 1.0)
-    t66 = over_2 * t34
-    t67 = over_2 * t36
-    t68 = over_2 * t38
-    nu_2 = t66 * t66 + t67 * t67 + t68 * t68
-    t69 = ops.select(t65, ops.select(in_line, over_2 * t43, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t69)
+    slack = ops.max(t21, 0.0)
+    t47 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t48 = t46 + ops.select(all_same, 0.0, t47)
+    t49 = ops.select(in_line, 0.0, nu) - t44 + t48 * t48
+    t50 = ops.sqrt(outer * inner * slack * (t19 + t22))
+    rho = ops.select(all_same, r_1, share * t50)
+    left = t49 + rho * rho
+    t51 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    t52 = left + t51
+    t53 = (t4 <= t21) & (t4 <= t23) & (t4 <= t24) & (t27 <= t52)
+    t54 = t51 - left
+    failed = invalid | ops.opposite(t53 & (t27 <= t54))
+    t55 = ops.select(failed, ops.nan, 0.0)
+    t56 = ops.select(failed, ops.nan, c1_x)
+    t57 = ops.select(failed, ops.nan, c1_y)
+    t58 = ops.select(failed, ops.nan, c1_z)
+    t59 = ops.select(failed, ops.nan, t8)
+    t60 = ops.select(failed, ops.nan, t12)
+    t61 = ops.select(failed, ops.nan, -t9)
+    t62 = ops.select(failed, ops.nan, c2_y)
+    t63 = ops.select(failed, ops.nan, c2_z)
+    t64 = ops.opposite(failed)
+    flat = ops.max(t52, 0.0) + ops.max(t54, 0.0) <= ops.vanishing * (r * t25)
+    t65 = flat | in_line
+    t66 = t64 & ops.opposite(t65)
+    t67 = ops.opposite(in_line)
+    t68 = t64 | (t66 & t67)
+    t69 = ops.select((t64 & t67 & slim) | (t68 & t67 & slim), mu, 1.0)
+    over = 1.0 / t69
+    w_w = ops.select(in_line, t43, ops.select(slim, over * t40, product_2))
+    nu_2 = w_w / ops.select(t68, mu, 1.0)
+    beside_a_2 = ops.sqrt(ops.select(t68, nu_2, 1.0))
     t70 = ops.opposite(all_same)
-    t71 = t62 & t70
-    length_a_2 = ops.sqrt(ops.select(t62 | (t71 & t70), mu, 1.0))
-    t72 = ops.select(t62, length_a_2 * length_n_2, 1.0)
+    t71 = t64 & t70
+    length_a_2 = ops.sqrt(ops.select(t64 | (t71 & t70), mu, 1.0))
+    t72 = ops.select(t64, length_a_2 * beside_a_2, 1.0)
     part = 1.0 / t72
-    over_a = length_n_2 * part
+    over_a = beside_a_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
     t73 = r_1 + D_2
-    outer_2 = ops.max(t73 - t18, 0.0)
+    outer_2 = ops.max(t73 - t19, 0.0)
     t74 = r_1 - D_2
-    inner_2 = ops.max(t18 - t74, 0.0)
+    inner_2 = ops.max(t19 - t74, 0.0)
     share_2 = 1.0 / ops.select(t71, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t18 + t74, 0.0)
+    slack_2 = ops.max(t19 + t74, 0.0)
     t75 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
     along = ops.select(all_same, 0.0, D_2 * 0.5 + t75 * 0.5)
     X = over_a * along
-    t76 = ops.select(t71, outer_2 * inner_2 * slack_2 * (t18 + t73), 1.0)
+    t76 = ops.select(t71, outer_2 * inner_2 * slack_2 * (t19 + t73), 1.0)
     rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t76))
-    t77 = over_a * t44 + along
-    left_2 = nu_2 - t40 + t77 * t77 + rho_2 * rho_2
-    t78 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t78, 0.0)
-    lower = ops.max(t78 - left_2, 0.0)
-    half = rho_2 / ops.select(t64, upper + lower, 1.0)
-    Y = ops.select(t63, 0.0, length_a_2 * part * half * (upper - lower))
-    t79 = t28 * X + t66 * Y
-    w_x = ops.select(in_line, -(t41 * s_w), t27 * t68 - t32 * t67)
-    t80 = ops.sqrt(ops.select(t64, upper * lower, 1.0))
-    h = part * ops.select(t63, rho_2, 2.0 * half * t80)
-    t81 = w_x * h
-    t82 = ops.select(failed, ops.nan, c1_x - (t79 - t81))
-    t83 = t27 * X + t67 * Y
-    w_y = ops.select(in_line, -t41, a_x * t68 + t32 * t66)
-    t84 = w_y * h
-    t85 = ops.select(failed, ops.nan, c1_y - (t83 - t84))
-    t86 = t32 * X + t68 * Y
-    w_z = ops.select(in_line, t42, -(a_x * t67 + t27 * t66))
-    t87 = w_z * h
-    t88 = ops.select(failed, ops.nan, c1_z - (t86 - t87))
-    t89 = ops.select(failed, ops.nan, c1_x - (t79 + t81))
-    t90 = ops.select(failed, ops.nan, c1_y - (t83 + t84))
-    t91 = ops.select(failed, ops.nan, c1_z - (t86 + t87))
+    t77 = over_a * t45 + along
+    t78 = ops.select(in_line, 0.0, nu_2) - t44 + t77 * t77
+    left_2 = t78 + rho_2 * rho_2
+    t79 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
+    upper = ops.max(left_2 + t79, 0.0)
+    lower = ops.max(t79 - left_2, 0.0)
+    half = rho_2 / ops.select(t66, upper + lower, 1.0)
+    Y = ops.select(t65, 0.0, part * over_a * half * (upper - lower))
+    t80 = t32 * X + t37 * Y
+    m_x = ops.select(slim, over * (t28 * t39 - t30 * t38), product_x)
+    t81 = ops.sqrt(ops.select(t66, upper * lower, 1.0))
+    h = part * ops.select(t65, rho_2, 2.0 * half * t81)
+    t82 = ops.select(in_line, -(t41 * s_w), m_x) * h
+    t83 = ops.select(failed, ops.nan, c1_x - (t80 - t82))
+    t84 = t28 * X + t38 * Y
+    m_y = ops.select(slim, over * (a_x * t39 + t30 * t37), product_y)
+    t85 = ops.select(in_line, -t41, m_y) * h
+    t86 = ops.select(failed, ops.nan, c1_y - (t84 - t85))
+    t87 = t30 * X + t39 * Y
+    t88 = ops.select(slim, over * (a_x * t38 + t28 * t37), t35)
+    t89 = ops.select(in_line, t42, -t88) * h
+    t90 = ops.select(failed, ops.nan, c1_z - (t87 - t89))
+    t91 = ops.select(failed, ops.nan, c1_x - (t80 + t82))
+    t92 = ops.select(failed, ops.nan, c1_y - (t84 + t85))
+    t93 = ops.select(failed, ops.nan, c1_z - (t87 + t89))
     return (
-        t53,
-        t53,
-        t53,
-        t54,
-        t53,
-        t53,
-        t54,
+        t55,
+        t55,
+        t55,
+        t56,
+        t55,
         t55,
         t56,
         t57,
         t58,
-        t53,
         t59,
         t60,
-        t61,
-        t82,
-        t85,
-        t88,
-        t53,
-        t53,
-        t53,
-        t54,
-        t53,
-        t53,
-        t54,
         t55,
-        t56,
-        t57,
-        t58,
-        t53,
-        t59,
-        t60,
         t61,
-        t89,
+        t62,
+        t63,
+        t83,
+        t86,
         t90,
+        t55,
+        t55,
+        t55,
+        t56,
+        t55,
+        t55,
+        t56,
+        t57,
+        t58,
+        t59,
+        t60,
+        t55,
+        t61,
+        t62,
+        t63,
         t91,
+        t92,
+        t93,
     )
 
 
@@ -522,7 +532,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 6, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 8),
+    _runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 12),
 )
 
 
@@ -588,140 +598,144 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     t11 = c1_z - s2 * t5
     u_u = t8 * t8 + t10 * t10 + t11 * t11
     t12 = r * r
-    t13 = ops.vanishing * ops.vanishing * t12
-    same = u_u <= t13
-    t14 = r * 2.0
-    r_2 = ops.abs(s_beta2_half) * t14
-    t15 = ops.select(same, r, r_2)
+    t13 = ops.vanishing * ops.vanishing
+    t14 = t12 * t13
+    same = u_u <= t14
+    t15 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t15
+    t16 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t13
+    all_same = u_u + v_v <= t14
     whole = ops.select((r == 0.0), 1.0, r)
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
-    r_1 = ops.abs(s_beta1_half) * t14
-    t16 = D - r_1
-    t17 = t15 - t16
-    t18 = D + r_1
-    t19 = t18 - t15
-    t20 = t15 + t16
-    t21 = ops.select(same, r_2, r)
-    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
-    t23 = -(ops.feasibility * t22)
-    over = 1.0 / mu
-    t24 = ops.select(same, c1_y, t10)
-    t25 = ops.select(same, c1_x, t8)
-    a_x = ops.select(all_same, whole, -t25)
-    t26 = ops.select(same, t10, c1_y)
-    t27 = ops.select(same, t8, c1_x)
-    t28 = a_x * t26 + t24 * t27
-    t29 = ops.select(same, c1_z, t11)
-    t30 = ops.select(same, t11, c1_z)
-    m_y = a_x * t30 + t27 * t29
-    t31 = t24 * t28 + t29 * m_y
-    t32 = over * t31
-    m_x = t24 * t30 - t26 * t29
-    t33 = a_x * t28 - t29 * m_x
-    t34 = over * t33
-    t35 = a_x * m_y + t24 * m_x
-    t36 = over * t35
-    nu = t32 * t32 + t34 * t34 + t36 * t36
-    t37 = ops.select(same, r_2 * r_2, t12)
-    in_line = nu <= t13
-    t38 = whole * t29
-    s_w = ops.sign(-(t24 * a_x))
-    t39 = whole * (t24 - a_x * s_w)
+    r_1 = ops.abs(s_beta1_half) * t15
+    t17 = D - r_1
+    t18 = t16 - t17
+    t19 = D + r_1
+    t20 = t19 - t16
+    t21 = t16 + t17
+    t22 = ops.select(same, r_2, r)
+    t23 = 0.625 * (r * (r * 2.2737367544323206e-13 + t22))
+    t24 = -(ops.feasibility * t23)
+    t25 = ops.select(same, c1_y, t10)
+    t26 = ops.select(same, t11, c1_z)
+    t27 = ops.select(same, c1_z, t11)
+    t28 = ops.select(same, t10, c1_y)
+    product_x = t25 * t26 - t27 * t28
+    t29 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, whole, -t29)
+    t30 = ops.select(same, t8, c1_x)
+    product_y = t26 * a_x + t27 * t30
+    t31 = product_x * product_x + product_y * product_y
+    t32 = t28 * a_x + t25 * t30
+    product_2 = t31 + t32 * t32
+    t33 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t33 * 0.000244140625 <= ops.vanishing * t33
+    t34 = t25 * t32 + t27 * product_y
+    t35 = a_x * t32 - t27 * product_x
+    t36 = a_x * product_y + t25 * product_x
+    t37 = t34 * t34 + t35 * t35 + t36 * t36
+    m_m = ops.select(slim, 1.0 / mu * t37, product_2)
+    in_line = m_m <= t13 * (t12 * mu)
+    t38 = whole * t27
+    s_w = ops.sign(-(t25 * a_x))
+    t39 = whole * (t25 - a_x * s_w)
     t40 = 2.0 * (t38 * t38) + t39 * t39
-    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
-    t41 = a_x * t27 - t24 * t26 - t29 * t30
-    t42 = length_n * (1.0 / (length_a * length_n)) * t41
-    outer = ops.max(t19, 0.0)
-    inner = ops.max(t20, 0.0)
+    nu = ops.select(in_line, t40, m_m) / mu
+    t41 = ops.select(same, r_2 * r_2, t12)
+    beside_a = ops.sqrt(nu)
+    t42 = a_x * t30 - t25 * t28 - t26 * t27
+    t43 = beside_a * (1.0 / (length_a * beside_a)) * t42
+    outer = ops.max(t20, 0.0)
+    inner = ops.max(t21, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t17, 0.0)
-    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t44 = t42 + ops.select(all_same, 0.0, t43)
-    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t45)
-    left = nu - t37 + t44 * t44 + rho * rho
-    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t47 = left + t46
-    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
-    t49 = t46 - left
-    failed = invalid | ops.opposite(t48 & (t23 <= t49))
-    t50 = ops.opposite(failed)
-    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
-    t51 = flat | in_line
-    t52 = t50 & ops.opposite(t51)
-    t53 = t50 | (t52 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t53, mu, 1.0)
-    t54 = over_2 * t31
-    t55 = over_2 * t33
-    t56 = over_2 * t35
-    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
-    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t57)
+    slack = ops.max(t18, 0.0)
+    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t45 = t43 + ops.select(all_same, 0.0, t44)
+    t46 = ops.select(in_line, 0.0, nu) - t41 + t45 * t45
+    t47 = ops.sqrt(outer * inner * slack * (t16 + t19))
+    rho = ops.select(all_same, r_1, share * t47)
+    left = t46 + rho * rho
+    t48 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    t49 = left + t48
+    t50 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t49)
+    t51 = t48 - left
+    failed = invalid | ops.opposite(t50 & (t24 <= t51))
+    t52 = ops.opposite(failed)
+    flat = ops.max(t49, 0.0) + ops.max(t51, 0.0) <= ops.vanishing * (r * t22)
+    t53 = flat | in_line
+    t54 = t52 & ops.opposite(t53)
+    t55 = ops.opposite(in_line)
+    t56 = t52 | (t54 & t55)
+    t57 = ops.select((t52 & t55 & slim) | (t56 & t55 & slim), mu, 1.0)
+    over = 1.0 / t57
+    w_w = ops.select(in_line, t40, ops.select(slim, over * t37, product_2))
+    nu_2 = w_w / ops.select(t56, mu, 1.0)
+    beside_a_2 = ops.sqrt(ops.select(t56, nu_2, 1.0))
     t58 = ops.opposite(all_same)
-    t59 = t50 & t58
-    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
-    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    t59 = t52 & t58
+    length_a_2 = ops.sqrt(ops.select(t52 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t52, length_a_2 * beside_a_2, 1.0)
     part = 1.0 / t60
-    over_a = length_n_2 * part
+    over_a = beside_a_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
     t61 = D_2 + r_1
-    outer_2 = ops.max(t61 - t15, 0.0)
+    outer_2 = ops.max(t61 - t16, 0.0)
     t62 = D_2 - r_1
-    inner_2 = ops.max(t15 + t62, 0.0)
+    inner_2 = ops.max(t16 + t62, 0.0)
     share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t62, 0.0)
+    slack_2 = ops.max(t16 - t62, 0.0)
     t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
     along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t16 + t61), 1.0)
     rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
-    t65 = over_a * t41 + along
-    left_2 = nu_2 - t37 + t65 * t65 + rho_2 * rho_2
-    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t66, 0.0)
-    lower = ops.max(t66 - left_2, 0.0)
-    half = rho_2 / ops.select(t52, upper + lower, 1.0)
-    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
-    t67 = t25 * X + t54 * Y
-    w_x = ops.select(in_line, -(t38 * s_w), t24 * t56 - t29 * t55)
-    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
-    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
-    t69 = w_x * h
-    t70 = t67 - t69
-    t71 = t24 * X + t55 * Y
-    w_y = ops.select(in_line, -t38, a_x * t56 + t29 * t54)
-    t72 = w_y * h
-    t73 = t71 - t72
-    t74 = t29 * X + t56 * Y
-    w_z = ops.select(in_line, t39, -(a_x * t55 + t24 * t54))
-    t75 = w_z * h
-    t76 = t74 - t75
-    t77 = t67 + t69
-    t78 = t71 + t72
-    t79 = t74 + t75
+    t65 = over_a * t42 + along
+    t66 = ops.select(in_line, 0.0, nu_2) - t41 + t65 * t65
+    left_2 = t66 + rho_2 * rho_2
+    t67 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
+    upper = ops.max(left_2 + t67, 0.0)
+    lower = ops.max(t67 - left_2, 0.0)
+    half = rho_2 / ops.select(t54, upper + lower, 1.0)
+    Y = ops.select(t53, 0.0, part * over_a * half * (upper - lower))
+    t68 = t29 * X + t34 * Y
+    m_x = ops.select(slim, over * (t25 * t36 - t27 * t35), product_x)
+    t69 = ops.sqrt(ops.select(t54, upper * lower, 1.0))
+    h = part * ops.select(t53, rho_2, 2.0 * half * t69)
+    t70 = ops.select(in_line, -(t38 * s_w), m_x) * h
+    t71 = t68 - t70
+    t72 = t25 * X + t35 * Y
+    m_y = ops.select(slim, over * (a_x * t36 + t27 * t34), product_y)
+    t73 = ops.select(in_line, -t38, m_y) * h
+    t74 = t72 - t73
+    t75 = t27 * X + t36 * Y
+    t76 = ops.select(slim, over * (a_x * t35 + t25 * t34), t32)
+    t77 = ops.select(in_line, t39, -t76) * h
+    t78 = t75 - t77
+    t79 = t68 + t70
+    t80 = t72 + t73
+    t81 = t75 + t77
     return (
-        ops.select(failed, ops.nan, c1_x - t70),
-        ops.select(failed, ops.nan, c1_y - t73),
-        ops.select(failed, ops.nan, c1_z - t76),
-        ops.select(failed, ops.nan, -t70),
-        ops.select(failed, ops.nan, -t73),
-        ops.select(failed, ops.nan, -t76),
-        ops.select(failed, ops.nan, t8 - t70),
-        ops.select(failed, ops.nan, t10 - t73),
-        ops.select(failed, ops.nan, t11 - t76),
-        ops.select(failed, ops.nan, c1_x - t77),
-        ops.select(failed, ops.nan, c1_y - t78),
-        ops.select(failed, ops.nan, c1_z - t79),
-        ops.select(failed, ops.nan, -t77),
+        ops.select(failed, ops.nan, c1_x - t71),
+        ops.select(failed, ops.nan, c1_y - t74),
+        ops.select(failed, ops.nan, c1_z - t78),
+        ops.select(failed, ops.nan, -t71),
+        ops.select(failed, ops.nan, -t74),
         ops.select(failed, ops.nan, -t78),
+        ops.select(failed, ops.nan, t8 - t71),
+        ops.select(failed, ops.nan, t10 - t74),
+        ops.select(failed, ops.nan, t11 - t78),
+        ops.select(failed, ops.nan, c1_x - t79),
+        ops.select(failed, ops.nan, c1_y - t80),
+        ops.select(failed, ops.nan, c1_z - t81),
         ops.select(failed, ops.nan, -t79),
-        ops.select(failed, ops.nan, t8 - t77),
-        ops.select(failed, ops.nan, t10 - t78),
-        ops.select(failed, ops.nan, t11 - t79),
+        ops.select(failed, ops.nan, -t80),
+        ops.select(failed, ops.nan, -t81),
+        ops.select(failed, ops.nan, t8 - t79),
+        ops.select(failed, ops.nan, t10 - t80),
+        ops.select(failed, ops.nan, t11 - t81),
     )
 
 
@@ -732,7 +746,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8),
+    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 12),
 )
 
 
@@ -798,129 +812,133 @@ def _jacobian_serial(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     t11 = c2_z - c1_z
     u_u = t8 * t8 + t10 * t10 + t11 * t11
     t12 = r * r
-    t13 = ops.vanishing * ops.vanishing * t12
-    same = u_u <= t13
-    t14 = r * 2.0
-    r_2 = ops.abs(s_beta2_half) * t14
-    t15 = ops.select(same, r, r_2)
+    t13 = ops.vanishing * ops.vanishing
+    t14 = t12 * t13
+    same = u_u <= t14
+    t15 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t15
+    t16 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t13
+    all_same = u_u + v_v <= t14
     whole = ops.select((r == 0.0), 1.0, r)
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
-    r_1 = ops.abs(s_beta1_half) * t14
-    t16 = D - r_1
-    t17 = t15 - t16
-    t18 = D + r_1
-    t19 = t18 - t15
-    t20 = t15 + t16
-    t21 = ops.select(same, r_2, r)
-    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
-    t23 = -(ops.feasibility * t22)
-    over = 1.0 / mu
-    t24 = ops.select(same, c1_y, t10)
-    t25 = ops.select(same, c1_x, t8)
-    a_x = ops.select(all_same, whole, -t25)
-    t26 = ops.select(same, t10, c1_y)
-    t27 = ops.select(same, t8, c1_x)
-    t28 = a_x * t26 + t24 * t27
-    t29 = ops.select(same, c1_z, -t11)
-    t30 = ops.select(same, -t11, c1_z)
-    m_y = a_x * t30 + t27 * t29
-    t31 = t24 * t28 + t29 * m_y
-    t32 = over * t31
-    m_x = t24 * t30 - t26 * t29
-    t33 = a_x * t28 - t29 * m_x
-    t34 = over * t33
-    t35 = a_x * m_y + t24 * m_x
-    t36 = over * t35
-    nu = t32 * t32 + t34 * t34 + t36 * t36
-    t37 = ops.select(same, r_2 * r_2, t12)
-    in_line = nu <= t13
-    t38 = whole * t29
-    s_w = ops.sign(-(t24 * a_x))
-    t39 = whole * (t24 - a_x * s_w)
+    r_1 = ops.abs(s_beta1_half) * t15
+    t17 = D - r_1
+    t18 = t16 - t17
+    t19 = D + r_1
+    t20 = t19 - t16
+    t21 = t16 + t17
+    t22 = ops.select(same, r_2, r)
+    t23 = 0.625 * (r * (r * 2.2737367544323206e-13 + t22))
+    t24 = -(ops.feasibility * t23)
+    t25 = ops.select(same, c1_y, t10)
+    t26 = ops.select(same, -t11, c1_z)
+    t27 = ops.select(same, c1_z, -t11)
+    t28 = ops.select(same, t10, c1_y)
+    product_x = t25 * t26 - t27 * t28
+    t29 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, whole, -t29)
+    t30 = ops.select(same, t8, c1_x)
+    product_y = t26 * a_x + t27 * t30
+    t31 = product_x * product_x + product_y * product_y
+    t32 = t28 * a_x + t25 * t30
+    product_2 = t31 + t32 * t32
+    t33 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t33 * 0.000244140625 <= ops.vanishing * t33
+    t34 = t25 * t32 + t27 * product_y
+    t35 = a_x * t32 - t27 * product_x
+    t36 = a_x * product_y + t25 * product_x
+    t37 = t34 * t34 + t35 * t35 + t36 * t36
+    m_m = ops.select(slim, 1.0 / mu * t37, product_2)
+    in_line = m_m <= t13 * (t12 * mu)
+    t38 = whole * t27
+    s_w = ops.sign(-(t25 * a_x))
+    t39 = whole * (t25 - a_x * s_w)
     t40 = 2.0 * (t38 * t38) + t39 * t39
-    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
-    t41 = a_x * t27 - t24 * t26 - t29 * t30
-    t42 = length_n * (1.0 / (length_a * length_n)) * t41
-    outer = ops.max(t19, 0.0)
-    inner = ops.max(t20, 0.0)
+    nu = ops.select(in_line, t40, m_m) / mu
+    t41 = ops.select(same, r_2 * r_2, t12)
+    beside_a = ops.sqrt(nu)
+    t42 = a_x * t30 - t25 * t28 - t26 * t27
+    t43 = beside_a * (1.0 / (length_a * beside_a)) * t42
+    outer = ops.max(t20, 0.0)
+    inner = ops.max(t21, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t17, 0.0)
-    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t44 = t42 + ops.select(all_same, 0.0, t43)
-    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t45)
-    left = nu - t37 + t44 * t44 + rho * rho
-    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t47 = left + t46
-    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
-    t49 = t46 - left
-    failed = invalid | ops.opposite(t48 & (t23 <= t49))
-    t50 = ops.opposite(failed)
-    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
-    t51 = flat | in_line
-    t52 = t50 & ops.opposite(t51)
-    t53 = t50 | (t52 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t53, mu, 1.0)
-    t54 = over_2 * t31
-    t55 = over_2 * t33
-    t56 = over_2 * t35
-    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
-    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t57)
+    slack = ops.max(t18, 0.0)
+    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t45 = t43 + ops.select(all_same, 0.0, t44)
+    t46 = ops.select(in_line, 0.0, nu) - t41 + t45 * t45
+    t47 = ops.sqrt(outer * inner * slack * (t16 + t19))
+    rho = ops.select(all_same, r_1, share * t47)
+    left = t46 + rho * rho
+    t48 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    t49 = left + t48
+    t50 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t49)
+    t51 = t48 - left
+    failed = invalid | ops.opposite(t50 & (t24 <= t51))
+    t52 = ops.opposite(failed)
+    flat = ops.max(t49, 0.0) + ops.max(t51, 0.0) <= ops.vanishing * (r * t22)
+    t53 = flat | in_line
+    t54 = t52 & ops.opposite(t53)
+    t55 = ops.opposite(in_line)
+    t56 = t52 | (t54 & t55)
+    t57 = ops.select((t52 & t55 & slim) | (t56 & t55 & slim), mu, 1.0)
+    over = 1.0 / t57
+    w_w = ops.select(in_line, t40, ops.select(slim, over * t37, product_2))
+    nu_2 = w_w / ops.select(t56, mu, 1.0)
+    beside_a_2 = ops.sqrt(ops.select(t56, nu_2, 1.0))
     t58 = ops.opposite(all_same)
-    t59 = t50 & t58
-    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
-    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    t59 = t52 & t58
+    length_a_2 = ops.sqrt(ops.select(t52 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t52, length_a_2 * beside_a_2, 1.0)
     part = 1.0 / t60
-    over_a = length_n_2 * part
+    over_a = beside_a_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
     t61 = D_2 + r_1
-    outer_2 = ops.max(t61 - t15, 0.0)
+    outer_2 = ops.max(t61 - t16, 0.0)
     t62 = D_2 - r_1
-    inner_2 = ops.max(t15 + t62, 0.0)
+    inner_2 = ops.max(t16 + t62, 0.0)
     share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t62, 0.0)
+    slack_2 = ops.max(t16 - t62, 0.0)
     t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
     along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t16 + t61), 1.0)
     rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
-    t65 = over_a * t41 + along
-    left_2 = nu_2 - t37 + t65 * t65 + rho_2 * rho_2
-    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t66, 0.0)
-    lower = ops.max(t66 - left_2, 0.0)
-    half = rho_2 / ops.select(t52, upper + lower, 1.0)
-    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
-    t67 = t24 * X + t55 * Y
-    w_y = ops.select(in_line, -t38, a_x * t56 + t29 * t54)
-    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
-    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
-    t69 = w_y * h
-    t70 = t67 - t69
-    t71 = t29 * X + t56 * Y
-    w_z = ops.select(in_line, t39, -(a_x * t55 + t24 * t54))
-    t72 = w_z * h
-    t73 = t71 - t72
-    t74 = ops.select(failed, ops.nan, c1_z * t70 - c1_y * t73)
-    t75 = s_gamma * c2_z
-    t76 = t25 * X + t54 * Y
-    w_x = ops.select(in_line, -(t38 * s_w), t24 * t56 - t29 * t55)
-    t77 = w_x * h
-    t78 = c_gamma * c2_z
-    B_22 = t75 * (t8 - (t76 - t77)) - t78 * (t10 - t70) - t6 * (t11 + t73)
-    t79 = t67 + t69
-    t80 = t71 + t72
-    t81 = ops.select(failed, ops.nan, c1_z * t79 - c1_y * t80)
-    B_22_below = t75 * (t8 - (t76 + t77)) - t78 * (t10 - t79) - t6 * (t11 + t80)
+    t65 = over_a * t42 + along
+    t66 = ops.select(in_line, 0.0, nu_2) - t41 + t65 * t65
+    left_2 = t66 + rho_2 * rho_2
+    t67 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
+    upper = ops.max(left_2 + t67, 0.0)
+    lower = ops.max(t67 - left_2, 0.0)
+    half = rho_2 / ops.select(t54, upper + lower, 1.0)
+    Y = ops.select(t53, 0.0, part * over_a * half * (upper - lower))
+    t68 = t25 * X + t35 * Y
+    m_y = ops.select(slim, over * (a_x * t36 + t27 * t34), product_y)
+    t69 = ops.sqrt(ops.select(t54, upper * lower, 1.0))
+    h = part * ops.select(t53, rho_2, 2.0 * half * t69)
+    t70 = ops.select(in_line, -t38, m_y) * h
+    t71 = t68 - t70
+    t72 = t27 * X + t36 * Y
+    t73 = ops.select(slim, over * (a_x * t35 + t25 * t34), t32)
+    t74 = ops.select(in_line, t39, -t73) * h
+    t75 = t72 - t74
+    t76 = ops.select(failed, ops.nan, c1_z * t71 - c1_y * t75)
+    t77 = s_gamma * c2_z
+    t78 = t29 * X + t34 * Y
+    m_x = ops.select(slim, over * (t25 * t36 - t27 * t35), product_x)
+    t79 = ops.select(in_line, -(t38 * s_w), m_x) * h
+    t80 = c_gamma * c2_z
+    B_22 = t77 * (t8 - (t78 - t79)) - t80 * (t10 - t71) - t6 * (t11 + t75)
+    t81 = t68 + t70
+    t82 = t72 + t74
+    t83 = ops.select(failed, ops.nan, c1_z * t81 - c1_y * t82)
+    B_22_below = t77 * (t8 - (t78 + t79)) - t80 * (t10 - t81) - t6 * (t11 + t82)
     return (
-        t74,
+        t76,
         ops.select(failed, ops.nan, B_22),
-        t81,
+        t83,
         ops.select(failed, ops.nan, B_22_below),
     )
 
@@ -932,7 +950,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 8),
+    _runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 12),
 )
 
 
@@ -998,166 +1016,170 @@ def _jacobian(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t11 = c2_z - c1_z
     u_u = t8 * t8 + t10 * t10 + t11 * t11
     t12 = r * r
-    t13 = ops.vanishing * ops.vanishing * t12
-    same = u_u <= t13
-    t14 = r * 2.0
-    r_2 = ops.abs(s_beta2_half) * t14
-    t15 = ops.select(same, r, r_2)
+    t13 = ops.vanishing * ops.vanishing
+    t14 = t12 * t13
+    same = u_u <= t14
+    t15 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t15
+    t16 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t13
+    all_same = u_u + v_v <= t14
     whole = ops.select((r == 0.0), 1.0, r)
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
-    r_1 = ops.abs(s_beta1_half) * t14
-    t16 = D - r_1
-    t17 = t15 - t16
-    t18 = D + r_1
-    t19 = t18 - t15
-    t20 = t15 + t16
-    t21 = ops.select(same, r_2, r)
-    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
-    t23 = -(ops.feasibility * t22)
-    over = 1.0 / mu
-    t24 = ops.select(same, c1_y, t10)
-    t25 = ops.select(same, c1_x, t8)
-    a_x = ops.select(all_same, whole, -t25)
-    t26 = ops.select(same, t10, c1_y)
-    t27 = ops.select(same, t8, c1_x)
-    t28 = a_x * t26 + t24 * t27
-    t29 = ops.select(same, c1_z, -t11)
-    t30 = ops.select(same, -t11, c1_z)
-    m_y = a_x * t30 + t27 * t29
-    t31 = t24 * t28 + t29 * m_y
-    t32 = over * t31
-    m_x = t24 * t30 - t26 * t29
-    t33 = a_x * t28 - t29 * m_x
-    t34 = over * t33
-    t35 = a_x * m_y + t24 * m_x
-    t36 = over * t35
-    nu = t32 * t32 + t34 * t34 + t36 * t36
-    t37 = ops.select(same, r_2 * r_2, t12)
-    in_line = nu <= t13
-    t38 = whole * t29
-    s_w = ops.sign(-(t24 * a_x))
-    t39 = whole * (t24 - a_x * s_w)
+    r_1 = ops.abs(s_beta1_half) * t15
+    t17 = D - r_1
+    t18 = t16 - t17
+    t19 = D + r_1
+    t20 = t19 - t16
+    t21 = t16 + t17
+    t22 = ops.select(same, r_2, r)
+    t23 = 0.625 * (r * (r * 2.2737367544323206e-13 + t22))
+    t24 = -(ops.feasibility * t23)
+    t25 = ops.select(same, c1_y, t10)
+    t26 = ops.select(same, -t11, c1_z)
+    t27 = ops.select(same, c1_z, -t11)
+    t28 = ops.select(same, t10, c1_y)
+    product_x = t25 * t26 - t27 * t28
+    t29 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, whole, -t29)
+    t30 = ops.select(same, t8, c1_x)
+    product_y = t26 * a_x + t27 * t30
+    t31 = product_x * product_x + product_y * product_y
+    t32 = t28 * a_x + t25 * t30
+    product_2 = t31 + t32 * t32
+    t33 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t33 * 0.000244140625 <= ops.vanishing * t33
+    t34 = t25 * t32 + t27 * product_y
+    t35 = a_x * t32 - t27 * product_x
+    t36 = a_x * product_y + t25 * product_x
+    t37 = t34 * t34 + t35 * t35 + t36 * t36
+    m_m = ops.select(slim, 1.0 / mu * t37, product_2)
+    in_line = m_m <= t13 * (t12 * mu)
+    t38 = whole * t27
+    s_w = ops.sign(-(t25 * a_x))
+    t39 = whole * (t25 - a_x * s_w)
     t40 = 2.0 * (t38 * t38) + t39 * t39
-    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
-    t41 = a_x * t27 - t24 * t26 - t29 * t30
-    t42 = length_n * (1.0 / (length_a * length_n)) * t41
-    outer = ops.max(t19, 0.0)
-    inner = ops.max(t20, 0.0)
+    nu = ops.select(in_line, t40, m_m) / mu
+    t41 = ops.select(same, r_2 * r_2, t12)
+    beside_a = ops.sqrt(nu)
+    t42 = a_x * t30 - t25 * t28 - t26 * t27
+    t43 = beside_a * (1.0 / (length_a * beside_a)) * t42
+    outer = ops.max(t20, 0.0)
+    inner = ops.max(t21, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t17, 0.0)
-    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t44 = t42 + ops.select(all_same, 0.0, t43)
-    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t45)
-    left = nu - t37 + t44 * t44 + rho * rho
-    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t47 = left + t46
-    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
-    t49 = t46 - left
-    failed = invalid | ops.opposite(t48 & (t23 <= t49))
-    t50 = ops.opposite(failed)
-    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
-    t51 = flat | in_line
-    t52 = t50 & ops.opposite(t51)
-    t53 = t50 | (t52 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t53, mu, 1.0)
-    t54 = over_2 * t31
-    t55 = over_2 * t33
-    t56 = over_2 * t35
-    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
-    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t57)
+    slack = ops.max(t18, 0.0)
+    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t45 = t43 + ops.select(all_same, 0.0, t44)
+    t46 = ops.select(in_line, 0.0, nu) - t41 + t45 * t45
+    t47 = ops.sqrt(outer * inner * slack * (t16 + t19))
+    rho = ops.select(all_same, r_1, share * t47)
+    left = t46 + rho * rho
+    t48 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    t49 = left + t48
+    t50 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t49)
+    t51 = t48 - left
+    failed = invalid | ops.opposite(t50 & (t24 <= t51))
+    t52 = ops.opposite(failed)
+    flat = ops.max(t49, 0.0) + ops.max(t51, 0.0) <= ops.vanishing * (r * t22)
+    t53 = flat | in_line
+    t54 = t52 & ops.opposite(t53)
+    t55 = ops.opposite(in_line)
+    t56 = t52 | (t54 & t55)
+    t57 = (t52 & t55 & slim) | ((t52 | (t56 & t55)) & slim)
+    over = 1.0 / ops.select(t57, mu, 1.0)
+    m_m_2 = ops.select(slim, over * t37, product_2)
+    nu_2 = ops.select(in_line, t40, m_m_2) / ops.select(t56, mu, 1.0)
+    beside_a_2 = ops.sqrt(ops.select(t56, nu_2, 1.0))
     t58 = ops.opposite(all_same)
-    t59 = t50 & t58
-    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
-    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    t59 = t52 & t58
+    length_a_2 = ops.sqrt(ops.select(t52 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t52, length_a_2 * beside_a_2, 1.0)
     part = 1.0 / t60
-    over_a = length_n_2 * part
+    over_a = beside_a_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
     t61 = D_2 + r_1
-    outer_2 = ops.max(t61 - t15, 0.0)
+    outer_2 = ops.max(t61 - t16, 0.0)
     t62 = D_2 - r_1
-    inner_2 = ops.max(t15 + t62, 0.0)
+    inner_2 = ops.max(t16 + t62, 0.0)
     share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t62, 0.0)
+    slack_2 = ops.max(t16 - t62, 0.0)
     t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
     along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t16 + t61), 1.0)
     rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
-    t65 = over_a * t41 + along
-    left_2 = nu_2 - t37 + t65 * t65 + rho_2 * rho_2
-    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t66, 0.0)
-    lower = ops.max(t66 - left_2, 0.0)
-    half = rho_2 / ops.select(t52, upper + lower, 1.0)
-    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
-    t67 = t24 * X + t55 * Y
-    w_y = ops.select(in_line, -t38, a_x * t56 + t29 * t54)
-    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
-    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
-    t69 = w_y * h
-    t70 = t67 - t69
-    t71 = t29 * X + t56 * Y
-    w_z = ops.select(in_line, t39, -(a_x * t55 + t24 * t54))
-    t72 = w_z * h
-    t73 = t71 - t72
-    B_11 = c1_z * t70 - c1_y * t73
-    A_02 = c1_y - t70
-    t74 = t11 + t73
-    A_03 = c1_z - t73
-    A_22 = t10 - t70
-    t75 = ops.select(t50, mu * nu_2 * h, 1.0)
-    t76 = ops.select(failed, ops.nan, B_11 * (A_02 * t74 + A_03 * A_22) / t75)
-    t77 = s_gamma * c2_z
-    t78 = t25 * X + t54 * Y
-    w_x = ops.select(in_line, -(t38 * s_w), t24 * t56 - t29 * t55)
-    t79 = w_x * h
-    t80 = t78 - t79
-    A_21 = t8 - t80
-    t81 = c_gamma * c2_z
-    B_22 = t77 * A_21 - t81 * A_22 - t6 * t74
-    t82 = ops.select(failed, ops.nan, -(B_22 * (t73 * A_02 - t70 * A_03) / t75))
-    A_01 = c1_x - t80
-    t83 = ops.select(failed, ops.nan, -(B_11 * (t74 * A_01 + A_03 * A_21) / t75))
-    t84 = ops.select(failed, ops.nan, B_22 * (t73 * A_01 - A_03 * t80) / t75)
-    t85 = ops.select(failed, ops.nan, -(B_11 * (A_22 * A_01 - A_02 * A_21) / t75))
-    t86 = ops.select(failed, ops.nan, -(B_22 * (t70 * A_01 - A_02 * t80) / t75))
-    t87 = t67 + t69
-    t88 = t71 + t72
-    B_11_below = c1_z * t87 - c1_y * t88
-    A_02_below = c1_y - t87
-    t89 = t11 + t88
-    A_03_below = c1_z - t88
-    A_22_below = t10 - t87
-    t90 = B_11_below * (A_02_below * t89 + A_03_below * A_22_below)
-    t91 = t78 + t79
-    A_21_below = t8 - t91
-    B_22_below = t77 * A_21_below - t81 * A_22_below - t6 * t89
-    t92 = B_22_below * (t88 * A_02_below - t87 * A_03_below)
-    A_01_below = c1_x - t91
-    t93 = B_11_below * (t89 * A_01_below + A_03_below * A_21_below)
-    t94 = B_22_below * (t88 * A_01_below - A_03_below * t91)
-    t95 = A_22_below * A_01_below - A_02_below * A_21_below
-    t96 = ops.select(failed, ops.nan, B_11_below * t95 / t75)
-    t97 = B_22_below * (t87 * A_01_below - A_02_below * t91)
+    t65 = over_a * t42 + along
+    t66 = ops.select(in_line, 0.0, nu_2) - t41 + t65 * t65
+    left_2 = t66 + rho_2 * rho_2
+    t67 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
+    upper = ops.max(left_2 + t67, 0.0)
+    lower = ops.max(t67 - left_2, 0.0)
+    half = rho_2 / ops.select(t54, upper + lower, 1.0)
+    Y = ops.select(t53, 0.0, part * over_a * half * (upper - lower))
+    t68 = t25 * X + t35 * Y
+    m_y = ops.select(slim, over * (a_x * t36 + t27 * t34), product_y)
+    t69 = ops.sqrt(ops.select(t54, upper * lower, 1.0))
+    h = part * ops.select(t53, rho_2, 2.0 * half * t69)
+    t70 = ops.select(in_line, -t38, m_y) * h
+    t71 = t68 - t70
+    t72 = t27 * X + t36 * Y
+    t73 = ops.select(slim, over * (a_x * t35 + t25 * t34), t32)
+    t74 = ops.select(in_line, t39, -t73) * h
+    t75 = t72 - t74
+    B_11 = c1_z * t71 - c1_y * t75
+    A_02 = c1_y - t71
+    t76 = t11 + t75
+    A_03 = c1_z - t75
+    A_22 = t10 - t71
+    t77 = ops.select(t52, m_m_2 * h, 1.0)
+    t78 = ops.select(failed, ops.nan, B_11 * (A_02 * t76 + A_03 * A_22) / t77)
+    t79 = s_gamma * c2_z
+    t80 = t29 * X + t34 * Y
+    m_x = ops.select(slim, over * (t25 * t36 - t27 * t35), product_x)
+    t81 = ops.select(in_line, -(t38 * s_w), m_x) * h
+    t82 = t80 - t81
+    A_21 = t8 - t82
+    t83 = c_gamma * c2_z
+    B_22 = t79 * A_21 - t83 * A_22 - t6 * t76
+    t84 = ops.select(failed, ops.nan, -(B_22 * (t75 * A_02 - t71 * A_03) / t77))
+    A_01 = c1_x - t82
+    t85 = ops.select(failed, ops.nan, -(B_11 * (t76 * A_01 + A_03 * A_21) / t77))
+    t86 = ops.select(failed, ops.nan, B_22 * (t75 * A_01 - A_03 * t82) / t77)
+    t87 = ops.select(failed, ops.nan, -(B_11 * (A_22 * A_01 - A_02 * A_21) / t77))
+    t88 = ops.select(failed, ops.nan, -(B_22 * (t71 * A_01 - A_02 * t82) / t77))
+    t89 = t68 + t70
+    t90 = t72 + t74
+    B_11_below = c1_z * t89 - c1_y * t90
+    A_02_below = c1_y - t89
+    t91 = t11 + t90
+    A_03_below = c1_z - t90
+    A_22_below = t10 - t89
+    t92 = B_11_below * (A_02_below * t91 + A_03_below * A_22_below)
+    t93 = t80 + t81
+    A_21_below = t8 - t93
+    B_22_below = t79 * A_21_below - t83 * A_22_below - t6 * t91
+    t94 = B_22_below * (t90 * A_02_below - t89 * A_03_below)
+    A_01_below = c1_x - t93
+    t95 = B_11_below * (t91 * A_01_below + A_03_below * A_21_below)
+    t96 = B_22_below * (t90 * A_01_below - A_03_below * t93)
+    t97 = A_22_below * A_01_below - A_02_below * A_21_below
+    t98 = ops.select(failed, ops.nan, B_11_below * t97 / t77)
+    t99 = B_22_below * (t89 * A_01_below - A_02_below * t93)
     return (
-        t76,
-        t82,
-        t83,
+        t78,
         t84,
         t85,
         t86,
-        ops.select(failed, ops.nan, -(t90 / t75)),
-        ops.select(failed, ops.nan, t92 / t75),
-        ops.select(failed, ops.nan, t93 / t75),
-        ops.select(failed, ops.nan, -(t94 / t75)),
-        t96,
-        ops.select(failed, ops.nan, t97 / t75),
+        t87,
+        t88,
+        ops.select(failed, ops.nan, -(t92 / t77)),
+        ops.select(failed, ops.nan, t94 / t77),
+        ops.select(failed, ops.nan, t95 / t77),
+        ops.select(failed, ops.nan, -(t96 / t77)),
+        t98,
+        ops.select(failed, ops.nan, t99 / t77),
     )
 
 
@@ -1168,7 +1190,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("J", (2, 3, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1)), 8),
+    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1)), 12),
 )
 
 
@@ -1235,131 +1257,135 @@ def _singularities(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t11 = c2_z - c1_z
     u_u = t8 * t8 + t10 * t10 + t11 * t11
     t12 = r * r
-    t13 = ops.vanishing * ops.vanishing * t12
-    same = u_u <= t13
-    t14 = r * 2.0
-    r_2 = ops.abs(s_beta2_half) * t14
-    t15 = ops.select(same, r, r_2)
+    t13 = ops.vanishing * ops.vanishing
+    t14 = t12 * t13
+    same = u_u <= t14
+    t15 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t15
+    t16 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t13
+    all_same = u_u + v_v <= t14
     whole = ops.select((r == 0.0), 1.0, r)
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
-    r_1 = ops.abs(s_beta1_half) * t14
-    t16 = D - r_1
-    t17 = t15 - t16
-    t18 = D + r_1
-    t19 = t18 - t15
-    t20 = t15 + t16
-    t21 = ops.select(same, r_2, r)
-    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
-    t23 = -(ops.feasibility * t22)
-    over = 1.0 / mu
-    t24 = ops.select(same, c1_y, t10)
-    t25 = ops.select(same, c1_x, t8)
-    a_x = ops.select(all_same, whole, -t25)
-    t26 = ops.select(same, t10, c1_y)
-    t27 = ops.select(same, t8, c1_x)
-    t28 = a_x * t26 + t24 * t27
-    t29 = ops.select(same, c1_z, -t11)
-    t30 = ops.select(same, -t11, c1_z)
-    m_y = a_x * t30 + t27 * t29
-    t31 = t24 * t28 + t29 * m_y
-    t32 = over * t31
-    m_x = t24 * t30 - t26 * t29
-    t33 = a_x * t28 - t29 * m_x
-    t34 = over * t33
-    t35 = a_x * m_y + t24 * m_x
-    t36 = over * t35
-    nu = t32 * t32 + t34 * t34 + t36 * t36
-    t37 = ops.select(same, r_2 * r_2, t12)
-    in_line = nu <= t13
-    t38 = whole * t29
-    s_w = ops.sign(-(t24 * a_x))
-    t39 = whole * (t24 - a_x * s_w)
+    r_1 = ops.abs(s_beta1_half) * t15
+    t17 = D - r_1
+    t18 = t16 - t17
+    t19 = D + r_1
+    t20 = t19 - t16
+    t21 = t16 + t17
+    t22 = ops.select(same, r_2, r)
+    t23 = 0.625 * (r * (r * 2.2737367544323206e-13 + t22))
+    t24 = -(ops.feasibility * t23)
+    t25 = ops.select(same, c1_y, t10)
+    t26 = ops.select(same, -t11, c1_z)
+    t27 = ops.select(same, c1_z, -t11)
+    t28 = ops.select(same, t10, c1_y)
+    product_x = t25 * t26 - t27 * t28
+    t29 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, whole, -t29)
+    t30 = ops.select(same, t8, c1_x)
+    product_y = t26 * a_x + t27 * t30
+    t31 = product_x * product_x + product_y * product_y
+    t32 = t28 * a_x + t25 * t30
+    product_2 = t31 + t32 * t32
+    t33 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t33 * 0.000244140625 <= ops.vanishing * t33
+    t34 = t25 * t32 + t27 * product_y
+    t35 = a_x * t32 - t27 * product_x
+    t36 = a_x * product_y + t25 * product_x
+    t37 = t34 * t34 + t35 * t35 + t36 * t36
+    m_m = ops.select(slim, 1.0 / mu * t37, product_2)
+    in_line = m_m <= t13 * (t12 * mu)
+    t38 = whole * t27
+    s_w = ops.sign(-(t25 * a_x))
+    t39 = whole * (t25 - a_x * s_w)
     t40 = 2.0 * (t38 * t38) + t39 * t39
-    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
-    t41 = a_x * t27 - t24 * t26 - t29 * t30
-    t42 = length_n * (1.0 / (length_a * length_n)) * t41
-    outer = ops.max(t19, 0.0)
-    inner = ops.max(t20, 0.0)
+    nu = ops.select(in_line, t40, m_m) / mu
+    t41 = ops.select(same, r_2 * r_2, t12)
+    beside_a = ops.sqrt(nu)
+    t42 = a_x * t30 - t25 * t28 - t26 * t27
+    t43 = beside_a * (1.0 / (length_a * beside_a)) * t42
+    outer = ops.max(t20, 0.0)
+    inner = ops.max(t21, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t17, 0.0)
-    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t44 = t42 + ops.select(all_same, 0.0, t43)
-    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t45)
-    left = nu - t37 + t44 * t44 + rho * rho
-    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t47 = left + t46
-    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
-    t49 = t46 - left
-    failed = invalid | ops.opposite(t48 & (t23 <= t49))
-    t50 = ops.opposite(failed)
-    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
-    t51 = flat | in_line
-    t52 = t50 & ops.opposite(t51)
-    t53 = t50 | (t52 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t53, mu, 1.0)
-    t54 = over_2 * t31
-    t55 = over_2 * t33
-    t56 = over_2 * t35
-    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
-    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t57)
+    slack = ops.max(t18, 0.0)
+    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t45 = t43 + ops.select(all_same, 0.0, t44)
+    t46 = ops.select(in_line, 0.0, nu) - t41 + t45 * t45
+    t47 = ops.sqrt(outer * inner * slack * (t16 + t19))
+    rho = ops.select(all_same, r_1, share * t47)
+    left = t46 + rho * rho
+    t48 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    t49 = left + t48
+    t50 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t49)
+    t51 = t48 - left
+    failed = invalid | ops.opposite(t50 & (t24 <= t51))
+    t52 = ops.opposite(failed)
+    flat = ops.max(t49, 0.0) + ops.max(t51, 0.0) <= ops.vanishing * (r * t22)
+    t53 = flat | in_line
+    t54 = t52 & ops.opposite(t53)
+    t55 = ops.opposite(in_line)
+    t56 = t52 | (t54 & t55)
+    t57 = (t52 & t55 & slim) | ((t52 | (t56 & t55)) & slim)
+    over = 1.0 / ops.select(t57, mu, 1.0)
+    m_m_2 = ops.select(slim, over * t37, product_2)
+    nu_2 = ops.select(in_line, t40, m_m_2) / ops.select(t56, mu, 1.0)
+    beside_a_2 = ops.sqrt(ops.select(t56, nu_2, 1.0))
     t58 = ops.opposite(all_same)
-    t59 = t50 & t58
-    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
-    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    t59 = t52 & t58
+    length_a_2 = ops.sqrt(ops.select(t52 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t52, length_a_2 * beside_a_2, 1.0)
     part = 1.0 / t60
-    over_a = length_n_2 * part
+    over_a = beside_a_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
     t61 = D_2 + r_1
-    outer_2 = ops.max(t61 - t15, 0.0)
+    outer_2 = ops.max(t61 - t16, 0.0)
     t62 = D_2 - r_1
-    inner_2 = ops.max(t15 + t62, 0.0)
+    inner_2 = ops.max(t16 + t62, 0.0)
     share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t62, 0.0)
+    slack_2 = ops.max(t16 - t62, 0.0)
     t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
     along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t16 + t61), 1.0)
     rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
-    t65 = over_a * t41 + along
-    left_2 = nu_2 - t37 + t65 * t65 + rho_2 * rho_2
-    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t66, 0.0)
-    lower = ops.max(t66 - left_2, 0.0)
-    half = rho_2 / ops.select(t52, upper + lower, 1.0)
-    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
-    t67 = t24 * X + t55 * Y
-    w_y = ops.select(in_line, -t38, a_x * t56 + t29 * t54)
-    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
-    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
-    t69 = w_y * h
-    t70 = t67 - t69
-    t71 = t29 * X + t56 * Y
-    w_z = ops.select(in_line, t39, -(a_x * t55 + t24 * t54))
-    t72 = w_z * h
-    t73 = t71 - t72
-    t74 = ops.select(failed, ops.nan, c1_z * t70 - c1_y * t73)
-    t75 = s_gamma * c2_z
-    t76 = t25 * X + t54 * Y
-    w_x = ops.select(in_line, -(t38 * s_w), t24 * t56 - t29 * t55)
-    t77 = w_x * h
-    t78 = c_gamma * c2_z
-    B_22 = t75 * (t8 - (t76 - t77)) - t78 * (t10 - t70) - t6 * (t11 + t73)
-    Delta = mu * nu_2 * h
-    t79 = t67 + t69
-    t80 = t71 + t72
-    t81 = ops.select(failed, ops.nan, c1_z * t79 - c1_y * t80)
-    B_22_below = t75 * (t8 - (t76 + t77)) - t78 * (t10 - t79) - t6 * (t11 + t80)
+    t65 = over_a * t42 + along
+    t66 = ops.select(in_line, 0.0, nu_2) - t41 + t65 * t65
+    left_2 = t66 + rho_2 * rho_2
+    t67 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
+    upper = ops.max(left_2 + t67, 0.0)
+    lower = ops.max(t67 - left_2, 0.0)
+    half = rho_2 / ops.select(t54, upper + lower, 1.0)
+    Y = ops.select(t53, 0.0, part * over_a * half * (upper - lower))
+    t68 = t25 * X + t35 * Y
+    m_y = ops.select(slim, over * (a_x * t36 + t27 * t34), product_y)
+    t69 = ops.sqrt(ops.select(t54, upper * lower, 1.0))
+    h = part * ops.select(t53, rho_2, 2.0 * half * t69)
+    t70 = ops.select(in_line, -t38, m_y) * h
+    t71 = t68 - t70
+    t72 = t27 * X + t36 * Y
+    t73 = ops.select(slim, over * (a_x * t35 + t25 * t34), t32)
+    t74 = ops.select(in_line, t39, -t73) * h
+    t75 = t72 - t74
+    t76 = ops.select(failed, ops.nan, c1_z * t71 - c1_y * t75)
+    t77 = s_gamma * c2_z
+    t78 = t29 * X + t34 * Y
+    m_x = ops.select(slim, over * (t25 * t36 - t27 * t35), product_x)
+    t79 = ops.select(in_line, -(t38 * s_w), m_x) * h
+    t80 = c_gamma * c2_z
+    B_22 = t77 * (t8 - (t78 - t79)) - t80 * (t10 - t71) - t6 * (t11 + t75)
+    Delta = m_m_2 * h
+    t81 = t68 + t70
+    t82 = t72 + t74
+    t83 = ops.select(failed, ops.nan, c1_z * t81 - c1_y * t82)
+    B_22_below = t77 * (t8 - (t78 + t79)) - t80 * (t10 - t81) - t6 * (t11 + t82)
     return (
-        t74,
+        t76,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, Delta),
-        t81,
+        t83,
         ops.select(failed, ops.nan, B_22_below),
         ops.select(failed, ops.nan, -Delta),
     )
@@ -1372,7 +1398,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 8),
+    _runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 12),
 )
 
 
@@ -1437,182 +1463,186 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     t11 = c1_z - s2 * t5
     u_u = t8 * t8 + t10 * t10 + t11 * t11
     t12 = r * r
-    t13 = ops.vanishing * ops.vanishing * t12
-    same = u_u <= t13
-    t14 = r * 2.0
-    r_2 = ops.abs(s_beta2_half) * t14
-    t15 = ops.select(same, r, r_2)
+    t13 = ops.vanishing * ops.vanishing
+    t14 = t12 * t13
+    same = u_u <= t14
+    t15 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t15
+    t16 = ops.select(same, r, r_2)
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t13
+    all_same = u_u + v_v <= t14
     whole = ops.select((r == 0.0), 1.0, r)
     mu = ops.select(all_same, whole * whole, ops.select(same, v_v, u_u))
     length_a = ops.sqrt(mu)
     D = ops.select(all_same, 0.0, length_a)
-    r_1 = ops.abs(s_beta1_half) * t14
-    t16 = D - r_1
-    t17 = t15 - t16
-    t18 = D + r_1
-    t19 = t18 - t15
-    t20 = t15 + t16
-    t21 = ops.select(same, r_2, r)
-    t22 = 0.625 * (r * (r * 2.2737367544323206e-13 + t21))
-    t23 = -(ops.feasibility * t22)
-    over = 1.0 / mu
-    t24 = ops.select(same, c1_y, t10)
-    t25 = ops.select(same, c1_x, t8)
-    a_x = ops.select(all_same, whole, -t25)
-    t26 = ops.select(same, t10, c1_y)
-    t27 = ops.select(same, t8, c1_x)
-    t28 = a_x * t26 + t24 * t27
-    t29 = ops.select(same, c1_z, t11)
-    t30 = ops.select(same, t11, c1_z)
-    m_y = a_x * t30 + t27 * t29
-    t31 = t24 * t28 + t29 * m_y
-    t32 = over * t31
-    m_x = t24 * t30 - t26 * t29
-    t33 = a_x * t28 - t29 * m_x
-    t34 = over * t33
-    t35 = a_x * m_y + t24 * m_x
-    t36 = over * t35
-    nu = t32 * t32 + t34 * t34 + t36 * t36
-    t37 = ops.select(same, r_2 * r_2, t12)
-    in_line = nu <= t13
-    t38 = whole * t29
-    s_w = ops.sign(-(t24 * a_x))
-    t39 = whole * (t24 - a_x * s_w)
+    r_1 = ops.abs(s_beta1_half) * t15
+    t17 = D - r_1
+    t18 = t16 - t17
+    t19 = D + r_1
+    t20 = t19 - t16
+    t21 = t16 + t17
+    t22 = ops.select(same, r_2, r)
+    t23 = 0.625 * (r * (r * 2.2737367544323206e-13 + t22))
+    t24 = -(ops.feasibility * t23)
+    t25 = ops.select(same, c1_y, t10)
+    t26 = ops.select(same, t11, c1_z)
+    t27 = ops.select(same, c1_z, t11)
+    t28 = ops.select(same, t10, c1_y)
+    product_x = t25 * t26 - t27 * t28
+    t29 = ops.select(same, c1_x, t8)
+    a_x = ops.select(all_same, whole, -t29)
+    t30 = ops.select(same, t8, c1_x)
+    product_y = t26 * a_x + t27 * t30
+    t31 = product_x * product_x + product_y * product_y
+    t32 = t28 * a_x + t25 * t30
+    product_2 = t31 + t32 * t32
+    t33 = mu * ops.select(same, u_u, v_v)
+    slim = product_2 - t33 * 0.000244140625 <= ops.vanishing * t33
+    t34 = t25 * t32 + t27 * product_y
+    t35 = a_x * t32 - t27 * product_x
+    t36 = a_x * product_y + t25 * product_x
+    t37 = t34 * t34 + t35 * t35 + t36 * t36
+    m_m = ops.select(slim, 1.0 / mu * t37, product_2)
+    in_line = m_m <= t13 * (t12 * mu)
+    t38 = whole * t27
+    s_w = ops.sign(-(t25 * a_x))
+    t39 = whole * (t25 - a_x * s_w)
     t40 = 2.0 * (t38 * t38) + t39 * t39
-    length_n = ops.sqrt(ops.select(in_line, over * t40, nu))
-    t41 = a_x * t27 - t24 * t26 - t29 * t30
-    t42 = length_n * (1.0 / (length_a * length_n)) * t41
-    outer = ops.max(t19, 0.0)
-    inner = ops.max(t20, 0.0)
+    nu = ops.select(in_line, t40, m_m) / mu
+    t41 = ops.select(same, r_2 * r_2, t12)
+    beside_a = ops.sqrt(nu)
+    t42 = a_x * t30 - t25 * t28 - t26 * t27
+    t43 = beside_a * (1.0 / (length_a * beside_a)) * t42
+    outer = ops.max(t20, 0.0)
+    inner = ops.max(t21, 0.0)
     share = 1.0 / (outer + inner)
-    slack = ops.max(t17, 0.0)
-    t43 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    t44 = t42 + ops.select(all_same, 0.0, t43)
-    t45 = ops.sqrt(outer * inner * slack * (t15 + t18))
-    rho = ops.select(all_same, r_1, share * t45)
-    left = nu - t37 + t44 * t44 + rho * rho
-    t46 = 2.0 * ops.select(in_line, 0.0, length_n) * rho
-    t47 = left + t46
-    t48 = (t4 <= t17) & (t4 <= t19) & (t4 <= t20) & (t23 <= t47)
-    t49 = t46 - left
-    failed = invalid | ops.opposite(t48 & (t23 <= t49))
-    t50 = ops.opposite(failed)
-    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t21)
-    t51 = flat | in_line
-    t52 = t50 & ops.opposite(t51)
-    t53 = t50 | (t52 & ops.opposite(in_line))
-    over_2 = 1.0 / ops.select(t53, mu, 1.0)
-    t54 = over_2 * t31
-    t55 = over_2 * t33
-    t56 = over_2 * t35
-    nu_2 = t54 * t54 + t55 * t55 + t56 * t56
-    t57 = ops.select(t53, ops.select(in_line, over_2 * t40, nu_2), 1.0)
-    length_n_2 = ops.sqrt(t57)
+    slack = ops.max(t18, 0.0)
+    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t45 = t43 + ops.select(all_same, 0.0, t44)
+    t46 = ops.select(in_line, 0.0, nu) - t41 + t45 * t45
+    t47 = ops.sqrt(outer * inner * slack * (t16 + t19))
+    rho = ops.select(all_same, r_1, share * t47)
+    left = t46 + rho * rho
+    t48 = 2.0 * ops.select(in_line, 0.0, beside_a) * rho
+    t49 = left + t48
+    t50 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (t24 <= t49)
+    t51 = t48 - left
+    failed = invalid | ops.opposite(t50 & (t24 <= t51))
+    t52 = ops.opposite(failed)
+    flat = ops.max(t49, 0.0) + ops.max(t51, 0.0) <= ops.vanishing * (r * t22)
+    t53 = flat | in_line
+    t54 = t52 & ops.opposite(t53)
+    t55 = ops.opposite(in_line)
+    t56 = t52 | (t54 & t55)
+    t57 = (t52 & t55 & slim) | ((t52 | (t56 & t55)) & slim)
+    over = 1.0 / ops.select(t57, mu, 1.0)
+    m_m_2 = ops.select(slim, over * t37, product_2)
+    nu_2 = ops.select(in_line, t40, m_m_2) / ops.select(t56, mu, 1.0)
+    beside_a_2 = ops.sqrt(ops.select(t56, nu_2, 1.0))
     t58 = ops.opposite(all_same)
-    t59 = t50 & t58
-    length_a_2 = ops.sqrt(ops.select(t50 | (t59 & t58), mu, 1.0))
-    t60 = ops.select(t50, length_a_2 * length_n_2, 1.0)
+    t59 = t52 & t58
+    length_a_2 = ops.sqrt(ops.select(t52 | (t59 & t58), mu, 1.0))
+    t60 = ops.select(t52, length_a_2 * beside_a_2, 1.0)
     part = 1.0 / t60
-    over_a = length_n_2 * part
+    over_a = beside_a_2 * part
     D_2 = ops.select(all_same, 0.0, length_a_2)
     t61 = D_2 + r_1
-    outer_2 = ops.max(t61 - t15, 0.0)
+    outer_2 = ops.max(t61 - t16, 0.0)
     t62 = D_2 - r_1
-    inner_2 = ops.max(t15 + t62, 0.0)
+    inner_2 = ops.max(t16 + t62, 0.0)
     share_2 = 1.0 / ops.select(t59, outer_2 + inner_2, 1.0)
-    slack_2 = ops.max(t15 - t62, 0.0)
+    slack_2 = ops.max(t16 - t62, 0.0)
     t63 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
     along = ops.select(all_same, 0.0, D_2 * 0.5 + t63 * 0.5)
     X = over_a * along
-    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t15 + t61), 1.0)
+    t64 = ops.select(t59, outer_2 * inner_2 * slack_2 * (t16 + t61), 1.0)
     rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t64))
-    t65 = over_a * t41 + along
-    left_2 = nu_2 - t37 + t65 * t65 + rho_2 * rho_2
-    t66 = 2.0 * ops.select(in_line, 0.0, length_n_2) * rho_2
-    upper = ops.max(left_2 + t66, 0.0)
-    lower = ops.max(t66 - left_2, 0.0)
-    half = rho_2 / ops.select(t52, upper + lower, 1.0)
-    Y = ops.select(t51, 0.0, length_a_2 * part * half * (upper - lower))
-    t67 = t25 * X + t54 * Y
-    w_x = ops.select(in_line, -(t38 * s_w), t24 * t56 - t29 * t55)
-    t68 = ops.sqrt(ops.select(t52, upper * lower, 1.0))
-    h = part * ops.select(t51, rho_2, 2.0 * half * t68)
-    t69 = w_x * h
-    t70 = t67 - t69
-    A_01 = c1_x - t70
-    t71 = t24 * X + t55 * Y
-    w_y = ops.select(in_line, -t38, a_x * t56 + t29 * t54)
-    t72 = w_y * h
-    t73 = t71 - t72
-    A_02 = c1_y - t73
-    t74 = t29 * X + t56 * Y
-    w_z = ops.select(in_line, t39, -(a_x * t55 + t24 * t54))
-    t75 = w_z * h
-    t76 = t74 - t75
-    A_03 = c1_z - t76
-    t77 = ops.select(t50, A_01 * A_01 + A_02 * A_02 + A_03 * A_03, 1.0)
-    strut = ops.sqrt(t77)
-    t78 = ops.select(t50, strut, 1.0)
-    radial_x = A_01 / t78
-    radial_y = A_02 / t78
-    radial_z = A_03 / t78
-    t79 = t70 * radial_x + t73 * radial_y + t76 * radial_z
-    t80 = t70 - radial_x * t79
-    t81 = t73 - radial_y * t79
-    t82 = t76 - radial_z * t79
-    square1 = t80 * t80 + t81 * t81 + t82 * t82
-    A_21 = t8 - t70
-    A_22 = t10 - t73
-    A_23 = t11 - t76
+    t65 = over_a * t42 + along
+    t66 = ops.select(in_line, 0.0, nu_2) - t41 + t65 * t65
+    left_2 = t66 + rho_2 * rho_2
+    t67 = 2.0 * ops.select(in_line, 0.0, beside_a_2) * rho_2
+    upper = ops.max(left_2 + t67, 0.0)
+    lower = ops.max(t67 - left_2, 0.0)
+    half = rho_2 / ops.select(t54, upper + lower, 1.0)
+    Y = ops.select(t53, 0.0, part * over_a * half * (upper - lower))
+    t68 = t29 * X + t34 * Y
+    m_x = ops.select(slim, over * (t25 * t36 - t27 * t35), product_x)
+    t69 = ops.sqrt(ops.select(t54, upper * lower, 1.0))
+    h = part * ops.select(t53, rho_2, 2.0 * half * t69)
+    t70 = ops.select(in_line, -(t38 * s_w), m_x) * h
+    t71 = t68 - t70
+    A_01 = c1_x - t71
+    t72 = t25 * X + t35 * Y
+    m_y = ops.select(slim, over * (a_x * t36 + t27 * t34), product_y)
+    t73 = ops.select(in_line, -t38, m_y) * h
+    t74 = t72 - t73
+    A_02 = c1_y - t74
+    t75 = t27 * X + t36 * Y
+    t76 = ops.select(slim, over * (a_x * t35 + t25 * t34), t32)
+    t77 = ops.select(in_line, t39, -t76) * h
+    t78 = t75 - t77
+    A_03 = c1_z - t78
+    t79 = ops.select(t52, A_01 * A_01 + A_02 * A_02 + A_03 * A_03, 1.0)
+    strut = ops.sqrt(t79)
+    t80 = ops.select(t52, strut, 1.0)
+    radial_x = A_01 / t80
+    radial_y = A_02 / t80
+    radial_z = A_03 / t80
+    t81 = t71 * radial_x + t74 * radial_y + t78 * radial_z
+    t82 = t71 - radial_x * t81
+    t83 = t74 - radial_y * t81
+    t84 = t78 - radial_z * t81
+    square1 = t82 * t82 + t83 * t83 + t84 * t84
+    A_21 = t8 - t71
+    A_22 = t10 - t74
+    A_23 = t11 - t78
     off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23
     t2_x = A_21 - radial_x * off2
     t2_y = A_22 - radial_y * off2
     t2_z = A_23 - radial_z * off2
     square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z
-    t83 = square1 - square2
-    t84 = t80 * t2_x + t81 * t2_y + t82 * t2_z
-    t85 = ops.select(t50, t83 * t83, 1.0) + 4.0 * ops.select(t50, t84 * t84, 1.0)
-    t86 = square1 + square2 + ops.sqrt(ops.select(t50, t85, 1.0))
-    t87 = ops.select(t50, 2.0 * (mu * nu_2 * h), 1.0)
-    t88 = ops.select(failed, ops.nan, strut * t86 / t87)
-    t89 = t67 + t69
-    A_01_below = c1_x - t89
-    t90 = t71 + t72
-    A_02_below = c1_y - t90
-    t91 = A_01_below * A_01_below + A_02_below * A_02_below
-    t92 = t74 + t75
-    A_03_below = c1_z - t92
-    t93 = ops.select(t50, t91 + A_03_below * A_03_below, 1.0)
-    strut_below = ops.sqrt(t93)
-    t94 = ops.select(t50, strut_below, 1.0)
-    radial_x_below = A_01_below / t94
-    radial_y_below = A_02_below / t94
-    radial_z_below = A_03_below / t94
-    t95 = t89 * radial_x_below + t90 * radial_y_below + t92 * radial_z_below
-    t96 = t89 - radial_x_below * t95
-    t97 = t90 - radial_y_below * t95
-    t98 = t92 - radial_z_below * t95
-    square1_below = t96 * t96 + t97 * t97 + t98 * t98
-    A_21_below = t8 - t89
-    A_22_below = t10 - t90
-    t99 = radial_x_below * A_21_below + radial_y_below * A_22_below
-    A_23_below = t11 - t92
-    off2_below = t99 + radial_z_below * A_23_below
+    t85 = square1 - square2
+    t86 = t82 * t2_x + t83 * t2_y + t84 * t2_z
+    t87 = ops.select(t52, t85 * t85, 1.0) + 4.0 * ops.select(t52, t86 * t86, 1.0)
+    t88 = square1 + square2 + ops.sqrt(ops.select(t52, t87, 1.0))
+    t89 = ops.select(t52, 2.0 * (m_m_2 * h), 1.0)
+    t90 = ops.select(failed, ops.nan, strut * t88 / t89)
+    t91 = t68 + t70
+    A_01_below = c1_x - t91
+    t92 = t72 + t73
+    A_02_below = c1_y - t92
+    t93 = A_01_below * A_01_below + A_02_below * A_02_below
+    t94 = t75 + t77
+    A_03_below = c1_z - t94
+    t95 = ops.select(t52, t93 + A_03_below * A_03_below, 1.0)
+    strut_below = ops.sqrt(t95)
+    t96 = ops.select(t52, strut_below, 1.0)
+    radial_x_below = A_01_below / t96
+    radial_y_below = A_02_below / t96
+    radial_z_below = A_03_below / t96
+    t97 = t91 * radial_x_below + t92 * radial_y_below + t94 * radial_z_below
+    t98 = t91 - radial_x_below * t97
+    t99 = t92 - radial_y_below * t97
+    t100 = t94 - radial_z_below * t97
+    square1_below = t98 * t98 + t99 * t99 + t100 * t100
+    A_21_below = t8 - t91
+    A_22_below = t10 - t92
+    t101 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    A_23_below = t11 - t94
+    off2_below = t101 + radial_z_below * A_23_below
     t2_x_below = A_21_below - radial_x_below * off2_below
     t2_y_below = A_22_below - radial_y_below * off2_below
-    t100 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t102 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
     t2_z_below = A_23_below - radial_z_below * off2_below
-    square2_below = t100 + t2_z_below * t2_z_below
-    t101 = square1_below - square2_below
-    t102 = t96 * t2_x_below + t97 * t2_y_below + t98 * t2_z_below
-    t103 = ops.select(t50, t101 * t101, 1.0) + 4.0 * ops.select(t50, t102 * t102, 1.0)
-    t104 = square1_below + square2_below + ops.sqrt(ops.select(t50, t103, 1.0))
-    t105 = ops.select(failed, ops.nan, strut_below * t104 / t87)
+    square2_below = t102 + t2_z_below * t2_z_below
+    t103 = square1_below - square2_below
+    t104 = t98 * t2_x_below + t99 * t2_y_below + t100 * t2_z_below
+    t105 = ops.select(t52, t103 * t103, 1.0) + 4.0 * ops.select(t52, t104 * t104, 1.0)
+    t106 = square1_below + square2_below + ops.sqrt(ops.select(t52, t105, 1.0))
+    t107 = ops.select(failed, ops.nan, strut_below * t106 / t89)
     return (
-        t88,
-        t105,
+        t90,
+        t107,
     )
 
 

@@ -13,7 +13,7 @@
 #   determinant: 2 add, 10 multiply, 3 sincos, 1 sqrt
 #   singularities: 3 add, 11 multiply, 4 sincos, 1 sqrt
 #   arm_angle: 10 compare and select, 8 add, 1 atan2, 2 divide, 17 multiply, 3 sincos, 4 sqrt
-#   ik: 197 compare and select, 153 add, 13 atan2, 13 divide, 246 multiply, 1 sincos, 18 sqrt
+#   ik: 196 compare and select, 153 add, 13 atan2, 13 divide, 246 multiply, 1 sincos, 18 sqrt
 """Seven-joint arm with a spherical shoulder and wrist (SRS).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder, and those of theta5, theta6 and
@@ -1289,7 +1289,7 @@ def _ik(
     t139 = y_plane_x * s_shoulder_down_front_noflip + R1_22 * c_shoulder_down_front_noflip
     t140 = ops.atan2(t137 + s_shoulder_down_front_noflip * t138, ops.select(t41, t139, 1.0))
     t141 = ops.select(failed, ops.nan, ops.wrap_cut(t140))
-    t142 = ops.select(failed, ops.nan, ops.wrap_cut(t79))
+    t142 = ops.select(failed, ops.nan, t79)
     t143 = T13 * (t81 - t27 * c_bearing_down_front_noflip)
     t144 = T23 * (t82 + t37 * c_bearing_down_front_noflip)
     t145 = T33 * (t84 - c_polar * c_bearing_down_front_noflip)

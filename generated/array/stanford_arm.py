@@ -11,7 +11,7 @@
 #   singularities: 2 sincos
 #   jacobian_space: 14 add, 43 multiply, 4 sincos
 #   jacobian_body: 14 add, 41 multiply, 4 sincos
-#   ik: 189 compare and select, 100 add, 16 atan2, 8 divide, 148 multiply, 15 sqrt
+#   ik: 187 compare and select, 100 add, 16 atan2, 8 divide, 148 multiply, 15 sqrt
 """Stanford arm.
 
 A vertical base axis (theta1), a horizontal shoulder (theta2), a boom that slides through it
@@ -758,7 +758,7 @@ def _ik(
     t30 = T34 * t29
     c2 = ops.select(on_axis_boom, 1.0, t30)
     t31 = ops.atan2(s2, ops.select(t17, c2, 1.0))
-    t32 = ops.select(failed, ops.nan, ops.wrap_cut(t31))
+    t32 = ops.select(failed, ops.nan, t31)
     t33 = ops.select(failed, ops.nan, r_boom_2)
     t34 = below1_2 - above1_2
     t35 = 1.0 / (h1 * (below1_2 + above1_2))
@@ -881,7 +881,7 @@ def _ik(
     t121 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_left_out_flip - t109))
     t122 = ops.select(failed, ops.nan, ops.wrap_cut(-t113))
     t123 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_left_out_flip - t119))
-    t124 = ops.select(failed, ops.nan, ops.wrap_cut(t71))
+    t124 = ops.select(failed, ops.nan, t71)
     t125 = c2_right_back_noflip_2 * R1_13_left_out_noflip
     t126 = t44 - t125
     aligned_wrist_left_back_noflip = ops.sqrt(t99 + t126 * t126) <= t47

@@ -3,17 +3,27 @@
  * derivations/delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 45 compare and select, 64 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
- *   fk where nothing vanishes: 62 add, 27 compare and select, 7 divide, 77 multiply, 6 sincos, 1
+ *   fk: 52 compare and select, 67 add, 8 divide, 93 multiply, 6 sincos, 1 sqrt
+ *   fk where nothing vanishes: 60 add, 29 compare and select, 7 divide, 71 multiply, 6 sincos, 1
  *     sqrt
- *   skeleton: 44 compare and select, 179 add, 14 divide, 86 multiply, 6 sincos, 1 sqrt
- *   jacobian_parallel: 44 compare and select, 85 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
- *   jacobian_serial: 44 compare and select, 85 add, 8 divide, 110 multiply, 6 sincos, 1 sqrt
- *   jacobian: 44 compare and select, 115 add, 26 divide, 165 multiply, 6 sincos, 1 sqrt
- *   determinant: 44 compare and select, 81 add, 10 divide, 115 multiply, 6 sincos, 1 sqrt
- *   singularities: 44 compare and select, 87 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
- *   condition_number: 44 compare and select, 119 add, 10 divide, 162 multiply, 6 sincos, 3 sqrt
- *   constraint: 44 compare and select, 91 add, 8 divide, 148 multiply, 6 sincos, 1 sqrt
+ *   skeleton: 51 compare and select, 182 add, 14 divide, 93 multiply, 6 sincos, 1 sqrt
+ *   jacobian_parallel: 51 compare and select, 88 add, 8 divide, 93 multiply, 6 sincos, 1 sqrt
+ *   jacobian_parallel where nothing vanishes: 81 add, 28 compare and select, 7 divide, 71
+ *     multiply, 6 sincos, 1 sqrt
+ *   jacobian_serial: 51 compare and select, 88 add, 8 divide, 117 multiply, 6 sincos, 1 sqrt
+ *   jacobian_serial where nothing vanishes: 81 add, 28 compare and select, 7 divide, 95 multiply,
+ *     6 sincos, 1 sqrt
+ *   jacobian: 51 compare and select, 118 add, 26 divide, 172 multiply, 6 sincos, 1 sqrt
+ *   determinant: 51 compare and select, 84 add, 10 divide, 122 multiply, 6 sincos, 1 sqrt
+ *   determinant where nothing vanishes: 77 add, 28 compare and select, 9 divide, 100 multiply, 6
+ *     sincos, 1 sqrt
+ *   singularities: 51 compare and select, 90 add, 8 divide, 118 multiply, 6 sincos, 1 sqrt
+ *   singularities where nothing vanishes: 83 add, 28 compare and select, 7 divide, 96 multiply, 6
+ *     sincos, 1 sqrt
+ *   condition_number: 51 compare and select, 122 add, 10 divide, 169 multiply, 6 sincos, 3 sqrt
+ *   constraint: 51 compare and select, 94 add, 8 divide, 155 multiply, 6 sincos, 1 sqrt
+ *   constraint where nothing vanishes: 87 add, 28 compare and select, 7 divide, 123 multiply, 6
+ *     sincos, 1 sqrt
  *   ik: 139 compare and select, 130 add, 6 atan2, 13 divide, 151 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
  */
@@ -63,84 +73,88 @@ CF_INLINE void delta_fk_whole_kernel(const int single, const real_t one,
     const real_t u_u = t8 + cf_rounded(single, one, t12 * t12);
     const real_t size = f + e + L + l;
     const real_t t13 = size * size;
-    const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t13;
-    const int same = u_u <= t14;
-    const real_t t15 = cf_rounded(single, one, e * c_alpha3) - cf_rounded(single, one, f * c_alpha3);
-    const real_t t16 = L * c3;
-    const real_t t17 = t15 - cf_rounded(single, one, c_alpha3 * t16);
-    const real_t t18 = t4 - t17;
-    const real_t d_x = cf_rarely(single, same, t18, t7);
-    const real_t v_z = t1 - cf_rounded(single, one, L * s3);
-    const real_t t19 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t18 * t18);
+    const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t15 = t13 * t14;
+    const int same = u_u <= t15;
+    const real_t t16 = cf_rounded(single, one, e * c_alpha3) - cf_rounded(single, one, f * c_alpha3);
+    const real_t t17 = L * c3;
+    const real_t t18 = t16 - cf_rounded(single, one, c_alpha3 * t17);
+    const real_t t19 = t4 - t18;
+    const real_t d_x = cf_rarely(single, same, t19, t7);
     const real_t t20 = cf_rounded(single, one, e * s_alpha3) - cf_rounded(single, one, f * s_alpha3);
-    const real_t t21 = t20 - cf_rounded(single, one, s_alpha3 * t16);
+    const real_t t21 = t20 - cf_rounded(single, one, s_alpha3 * t17);
     const real_t t22 = t10 - t21;
-    const real_t v_v = t19 + cf_rounded(single, one, t22 * t22);
-    const int all_same = u_u + v_v <= t14;
-    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t t23 = cf_rarely(single, same, t22, t12);
+    const real_t v_z = t1 - cf_rounded(single, one, L * s3);
+    const real_t t24 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t19 * t19);
+    const real_t v_v = t24 + cf_rounded(single, one, t22 * t22);
+    const int all_same = u_u + v_v <= t15;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
     const real_t a_x = cf_rarely(single, all_same, whole, d_x);
-    const real_t t24 = cf_rarely(single, same, t12, t22);
-    const real_t t25 = cf_rarely(single, same, t7, t18);
-    const real_t t26 = cf_rounded(single, one, a_x * t24) - cf_rounded(single, one, t23 * t25);
+    const real_t t25 = cf_rarely(single, same, t12, t22);
+    const real_t t26 = cf_rarely(single, same, t7, t19);
+    const real_t t27 = cf_rounded(single, one, a_x * t25) - cf_rounded(single, one, t23 * t26);
     const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t27 = cf_rarely(single, same, u_z, v_z);
-    const real_t t28 = cf_rounded(single, one, a_x * t27) - cf_rounded(single, one, t25 * d_z);
-    const real_t t29 = cf_rounded(single, one, t23 * t26) + cf_rounded(single, one, d_z * t28);
-    const real_t t30 = over * t29;
-    const real_t t31 = cf_rounded(single, one, t23 * t27) - cf_rounded(single, one, t24 * d_z);
-    const real_t t32 = cf_rounded(single, one, a_x * t26) - cf_rounded(single, one, d_z * t31);
-    const real_t t33 = over * t32;
-    const real_t t34 = cf_rounded(single, one, t30 * t30) + cf_rounded(single, one, t33 * t33);
-    const real_t t35 = cf_rounded(single, one, a_x * t28) + cf_rounded(single, one, t23 * t31);
-    const real_t n_z = over * t35;
-    const real_t nu = t34 + cf_rounded(single, one, n_z * n_z);
-    const int in_line = nu <= t14;
+    const real_t t28 = cf_rarely(single, same, u_z, v_z);
+    const real_t t29 = cf_rounded(single, one, a_x * t28) - cf_rounded(single, one, t26 * d_z);
+    const real_t t30 = cf_rounded(single, one, t23 * t27) + cf_rounded(single, one, d_z * t29);
+    const real_t t31 = cf_rounded(single, one, t23 * t28) - cf_rounded(single, one, t25 * d_z);
+    const real_t t32 = cf_rounded(single, one, t31 * t31) + cf_rounded(single, one, t29 * t29);
+    const real_t product_2 = t32 + cf_rounded(single, one, t27 * t27);
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t33 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t34 = product_2 - t33 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t34 <= CLOSEDFORM_VANISHING * t33;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t35 = cf_rounded(single, one, a_x * t27) - cf_rounded(single, one, d_z * t31);
+    const real_t t36 = cf_rounded(single, one, t30 * t30) + cf_rounded(single, one, t35 * t35);
+    const real_t n_z = cf_rounded(single, one, a_x * t29) + cf_rounded(single, one, t23 * t31);
+    const real_t t37 = over * (t36 + cf_rounded(single, one, n_z * n_z));
+    const real_t m_m = cf_rarely(single, slim, t37, product_2);
+    const int in_line = m_m <= t14 * (t13 * mu);
     const real_t g_1 = whole * d_z;
     const real_t s_w = cf_sign(t23 * a_x);
-    const real_t t36 = whole * (t23 + a_x * s_w);
-    const real_t t37 = CLOSEDFORM_C(2.0) * (g_1 * g_1) + cf_rounded(single, one, t36 * t36);
-    const real_t t38 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t37), t38);
-    const real_t t39 = cf_rounded(single, one, t25 * (d_x - t25)) + cf_rounded(single, one, t24 * (t23 - t24));
-    const real_t t40 = t39 + cf_rounded(single, one, t27 * (d_z - t27));
-    const real_t t41 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t40 * CLOSEDFORM_C(0.5));
-    const real_t t42 = d_x * CLOSEDFORM_C(0.5) - (t4 - t30 * t41);
-    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t23 * n_z - d_z * t33);
-    const real_t t43 = cf_rounded(single, one, nu * (t41 * t41)) + mu * CLOSEDFORM_C(0.25);
-    const real_t t44 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t43);
-    const real_t t45 = cf_rounded(single, one, l * l) - t44;
-    const real_t slack = cf_max(t45, CLOSEDFORM_C(0.0));
-    const real_t t46 = l * size * CLOSEDFORM_C(0.75);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t46, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t47 = w_x * h;
-    const int t48 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t50 = t49 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t51 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int invalid = !(t50 & t51);
-    const real_t t52 = cf_rarely(single, in_line, -t40, CLOSEDFORM_C(0.0));
-    const int t53 = cf_abs(t52) <= t13 * CLOSEDFORM_FEASIBILITY;
-    const int t54 = t53 & (-(CLOSEDFORM_FEASIBILITY * t46) <= t45);
-    const int unreachable = !t54;
-    const real_t t55 = cf_poison(single, invalid | unreachable);
-    const real_t t56 = t23 * CLOSEDFORM_C(0.5) - (t10 + t33 * t41);
-    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t30));
-    const real_t t57 = h * w_y;
-    const real_t t58 = d_z * CLOSEDFORM_C(0.5) - (t1 + n_z * t41);
-    const real_t w_z = cf_rarely(single, in_line, -t36, a_x * t33 + t23 * t30);
-    const real_t t59 = h * w_z;
-    const real_t t60 = cf_status(single, invalid, unreachable, in_line);
-    p[0] = t42 - t47 + t55;
-    p[1] = t56 - t57 + t55;
-    p[2] = t58 - t59 + t55;
-    p[3] = t47 + t42 + t55;
-    p[4] = t57 + t56 + t55;
-    p[5] = t59 + t58 + t55;
-    status[0] = t60;
-    status[1] = t60;
+    const real_t t38 = whole * (t23 + a_x * s_w);
+    const real_t t39 = CLOSEDFORM_C(2.0) * (g_1 * g_1) + cf_rounded(single, one, t38 * t38);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, cf_rarely(single, in_line, t39, m_m));
+    const real_t t40 = cf_rounded(single, one, t26 * (d_x - t26)) + cf_rounded(single, one, t25 * (t23 - t25));
+    const real_t t41 = t40 + cf_rounded(single, one, t28 * (d_z - t28));
+    const real_t t42 = cf_select(in_line, CLOSEDFORM_C(0.0), part * t41 * CLOSEDFORM_C(0.5));
+    const real_t t43 = d_x * CLOSEDFORM_C(0.5) - (t4 - t30 * t42);
+    const real_t m_x = cf_rarely(single, slim, over * (t23 * n_z - d_z * t35), t31);
+    const real_t t44 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), cf_rounded(single, one, part * (t41 * t41)));
+    const real_t t45 = mu * (CLOSEDFORM_C(1.0) + t44) * CLOSEDFORM_C(0.25);
+    const real_t t46 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t45);
+    const real_t t47 = cf_rounded(single, one, l * l) - t46;
+    const real_t slack = cf_max(t47, CLOSEDFORM_C(0.0));
+    const real_t t48 = l * size * CLOSEDFORM_C(0.75);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t48, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t49 = cf_rarely(single, in_line, g_1 * s_w, m_x) * h;
+    const int t50 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t51 = t50 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t53 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int invalid = !(t52 & t53);
+    const real_t t54 = cf_rarely(single, in_line, -t41, CLOSEDFORM_C(0.0));
+    const int t55 = cf_abs(t54) <= t13 * CLOSEDFORM_FEASIBILITY;
+    const int t56 = t55 & (-(CLOSEDFORM_FEASIBILITY * t48) <= t47);
+    const int unreachable = !t56;
+    const real_t t57 = cf_poison(single, invalid | unreachable);
+    const real_t t58 = t23 * CLOSEDFORM_C(0.5) - (t10 + t35 * t42);
+    const real_t t59 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t30), t29);
+    const real_t t60 = h * cf_rarely(single, in_line, g_1, -t59);
+    const real_t t61 = d_z * CLOSEDFORM_C(0.5) - (t1 + n_z * t42);
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * t35 + t23 * t30), t27);
+    const real_t t62 = h * cf_rarely(single, in_line, -t38, m_z);
+    const real_t t63 = cf_status(single, invalid, unreachable, in_line);
+    p[0] = t43 - t49 + t57;
+    p[1] = t58 - t60 + t57;
+    p[2] = t61 - t62 + t57;
+    p[3] = t49 + t43 + t57;
+    p[4] = t60 + t58 + t57;
+    p[5] = t62 + t61 + t57;
+    status[0] = t63;
+    status[1] = t63;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -191,74 +205,71 @@ CF_INLINE void delta_fk_common_kernel(const int single, const real_t one,
     const real_t t4 = cf_rounded(single, one, e * c_alpha2) - cf_rounded(single, one, f * c_alpha2);
     const real_t t5 = L * c2;
     const real_t t6 = t3 - (t4 - cf_rounded(single, one, c_alpha2 * t5));
-    const real_t t7 = cf_rounded(single, one, L * s1);
-    const real_t u_z = t7 - cf_rounded(single, one, L * s2);
-    const real_t t8 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t6 * t6);
-    const real_t t9 = cf_rounded(single, one, e * s_alpha1) - cf_rounded(single, one, f * s_alpha1);
-    const real_t t10 = t9 - cf_rounded(single, one, s_alpha1 * t2);
-    const real_t t11 = cf_rounded(single, one, e * s_alpha2) - cf_rounded(single, one, f * s_alpha2);
-    const real_t t12 = t10 - (t11 - cf_rounded(single, one, s_alpha2 * t5));
-    const real_t u_u = t8 + cf_rounded(single, one, t12 * t12);
+    const real_t t7 = cf_rounded(single, one, e * s_alpha1) - cf_rounded(single, one, f * s_alpha1);
+    const real_t t8 = t7 - cf_rounded(single, one, s_alpha1 * t2);
+    const real_t t9 = cf_rounded(single, one, e * s_alpha2) - cf_rounded(single, one, f * s_alpha2);
+    const real_t t10 = t8 - (t9 - cf_rounded(single, one, s_alpha2 * t5));
+    const real_t t11 = cf_rounded(single, one, e * s_alpha3) - cf_rounded(single, one, f * s_alpha3);
+    const real_t t12 = L * c3;
+    const real_t t13 = t11 - cf_rounded(single, one, s_alpha3 * t12);
+    const real_t t14 = t8 - t13;
+    const real_t t15 = cf_rounded(single, one, e * c_alpha3) - cf_rounded(single, one, f * c_alpha3);
+    const real_t t16 = t15 - cf_rounded(single, one, c_alpha3 * t12);
+    const real_t t17 = t3 - t16;
+    const real_t m_z = cf_rounded(single, one, t6 * t14) - cf_rounded(single, one, t10 * t17);
+    const real_t t18 = cf_rounded(single, one, L * s1);
+    const real_t u_z = t18 - cf_rounded(single, one, L * s2);
+    const real_t v_z = t18 - cf_rounded(single, one, L * s3);
+    const real_t t19 = cf_rounded(single, one, v_z * t6) - cf_rounded(single, one, u_z * t17);
+    const real_t t20 = cf_rounded(single, one, v_z * t10) - cf_rounded(single, one, u_z * t14);
+    const real_t t21 = cf_rounded(single, one, t20 * t20) + cf_rounded(single, one, t19 * t19);
+    const real_t product_2 = t21 + cf_rounded(single, one, m_z * m_z);
+    const real_t t22 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t6 * t6);
+    const real_t u_u = t22 + cf_rounded(single, one, t10 * t10);
     const real_t size = f + e + L + l;
-    const real_t t13 = size * size;
-    const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t13;
-    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t14, u_u);
-    const real_t t15 = cf_rounded(single, one, e * s_alpha3) - cf_rounded(single, one, f * s_alpha3);
-    const real_t t16 = L * c3;
-    const real_t t17 = t15 - cf_rounded(single, one, s_alpha3 * t16);
-    const real_t t18 = t10 - t17;
-    const real_t t19 = cf_rounded(single, one, e * c_alpha3) - cf_rounded(single, one, f * c_alpha3);
-    const real_t t20 = t19 - cf_rounded(single, one, c_alpha3 * t16);
-    const real_t t21 = t3 - t20;
-    const real_t t22 = cf_rounded(single, one, t6 * t18) - cf_rounded(single, one, t12 * t21);
-    const real_t v_z = t7 - cf_rounded(single, one, L * s3);
-    const real_t t23 = cf_rounded(single, one, v_z * t6) - cf_rounded(single, one, u_z * t21);
-    const real_t t24 = cf_rounded(single, one, t12 * t22) + cf_rounded(single, one, u_z * t23);
-    const real_t t25 = over * t24;
-    const real_t t26 = cf_rounded(single, one, v_z * t12) - cf_rounded(single, one, u_z * t18);
-    const real_t t27 = cf_rounded(single, one, t6 * t22) - cf_rounded(single, one, u_z * t26);
-    const real_t t28 = over * t27;
-    const real_t t29 = cf_rounded(single, one, t25 * t25) + cf_rounded(single, one, t28 * t28);
-    const real_t t30 = cf_rounded(single, one, t6 * t23) + cf_rounded(single, one, t12 * t26);
-    const real_t n_z = over * t30;
-    const real_t nu = t29 + cf_rounded(single, one, n_z * n_z);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t14) | (nu <= t14), u_u * nu);
-    const real_t t31 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t21 * (t6 - t21));
-    const real_t t32 = t31 + cf_rounded(single, one, t18 * (t12 - t18));
-    const real_t t33 = u_u * part * t32 * CLOSEDFORM_C(0.5);
-    const real_t t34 = t6 * CLOSEDFORM_C(0.5) - (t3 - t25 * t33);
-    const real_t t35 = cf_rounded(single, one, nu * (t33 * t33)) + u_u * CLOSEDFORM_C(0.25);
-    const real_t t36 = cf_rounded(single, one, l * l) - t35;
-    const real_t slack = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t t23 = size * size;
+    const real_t t24 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t25 = t23 * t24;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t25) | (product_2 <= t24 * (t23 * u_u)), product_2);
+    const real_t t26 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t17 * (t6 - t17));
+    const real_t t27 = t26 + cf_rounded(single, one, t14 * (t10 - t14));
+    const real_t t28 = part * t27 * CLOSEDFORM_C(0.5);
+    const real_t t29 = t6 * CLOSEDFORM_C(0.5) - (t3 - (t10 * m_z + u_z * t19) * t28);
+    const real_t t30 = CLOSEDFORM_C(1.0) + cf_rounded(single, one, part * (t27 * t27));
+    const real_t t31 = cf_rounded(single, one, l * l) - u_u * t30 * CLOSEDFORM_C(0.25);
+    const real_t slack = cf_max(t31, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t37 = (t12 * n_z - u_z * t28) * h;
-    const int t38 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t39 = t38 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t40 = t39 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t41 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const int invalid = !(t40 & t41);
-    const int t42 = cf_abs(CLOSEDFORM_C(0.0)) <= t13 * CLOSEDFORM_FEASIBILITY;
-    const real_t t43 = l * size * CLOSEDFORM_C(0.75);
-    const int t44 = t42 & (-(CLOSEDFORM_FEASIBILITY * t43) <= t36);
-    const int unreachable = !t44;
-    const real_t t45 = cf_poison(single, invalid | unreachable);
-    const real_t t46 = h * (t6 * n_z + u_z * t25);
-    const real_t t47 = t12 * CLOSEDFORM_C(0.5) - (t10 + t28 * t33);
-    const real_t t48 = h * (t6 * t28 + t12 * t25);
-    const real_t t49 = n_z * t33 + (t7 - u_z * CLOSEDFORM_C(0.5));
-    const real_t t50 = cf_status(single, invalid, unreachable, 0);
-    const real_t t51 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t21 * t21);
-    const real_t t52 = u_u + (t51 + cf_rounded(single, one, t18 * t18));
-    const int t53 = (u_u <= t14) | (t52 <= t14) | (nu <= t14) | (slack <= CLOSEDFORM_VANISHING * t43);
-    p[0] = t34 - t37 + t45;
-    p[1] = t46 + t47 + t45;
-    p[2] = -(t48 + t49) + t45;
-    p[3] = t37 + t34 + t45;
-    p[4] = t47 - t46 + t45;
-    p[5] = t48 - t49 + t45;
-    status[0] = t50;
-    status[1] = t50;
-    rare[0] = (t53) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t32 = t20 * h;
+    const int t33 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t34 = t33 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t35 = t34 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t36 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int invalid = !(t35 & t36);
+    const int t37 = cf_abs(CLOSEDFORM_C(0.0)) <= t23 * CLOSEDFORM_FEASIBILITY;
+    const real_t t38 = l * size * CLOSEDFORM_C(0.75);
+    const int t39 = t37 & (-(CLOSEDFORM_FEASIBILITY * t38) <= t31);
+    const int unreachable = !t39;
+    const real_t t40 = cf_poison(single, invalid | unreachable);
+    const real_t t41 = t19 * h;
+    const real_t t42 = t10 * CLOSEDFORM_C(0.5) - (t8 + t28 * (t6 * m_z - u_z * t20));
+    const real_t t43 = m_z * h;
+    const real_t t44 = t28 * (t6 * t19 + t10 * t20) + (t18 - u_z * CLOSEDFORM_C(0.5));
+    const real_t t45 = cf_status(single, invalid, unreachable, 0);
+    const real_t t46 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t17 * t17);
+    const real_t v_v = t46 + cf_rounded(single, one, t14 * t14);
+    const real_t t47 = u_u * v_v;
+    const real_t t48 = product_2 - t47 * CLOSEDFORM_C(0.000244140625);
+    const int t49 = (u_u <= t25) | (u_u + v_v <= t25) | (t48 <= CLOSEDFORM_VANISHING * t47);
+    const int t50 = t49 | (product_2 <= t24 * (t23 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t38);
+    p[0] = t29 - t32 + t40;
+    p[1] = t41 + t42 + t40;
+    p[2] = -(t43 + t44) + t40;
+    p[3] = t32 + t29 + t40;
+    p[4] = t42 - t41 + t40;
+    p[5] = t43 - t44 + t40;
+    status[0] = t45;
+    status[1] = t45;
+    rare[0] = (t50) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void delta_fk_common_batch(size_t n, const delta_params *params,
@@ -345,7 +356,7 @@ void delta_fk(const delta_params *params, const real_t q[3],
     delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -386,7 +397,7 @@ void delta_fk_batch(size_t n, const delta_params *params,
     uint8_t *status, size_t status_stride)
 {
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         delta_fk_other_sizes(n, params, q, q_stride, p, p_stride, status, status_stride);
         return;
     }
@@ -430,10 +441,10 @@ CF_INLINE void delta_skeleton_kernel(const int single, const delta_params *param
     const real_t c2 = cosines[2];
     const real_t s_alpha2 = sines[3];
     const real_t c_alpha2 = cosines[3];
-    const real_t s3 = sines[4];
-    const real_t c3 = cosines[4];
-    const real_t s_alpha3 = sines[5];
-    const real_t c_alpha3 = cosines[5];
+    const real_t s_alpha3 = sines[4];
+    const real_t c_alpha3 = cosines[4];
+    const real_t s3 = sines[5];
+    const real_t c3 = cosines[5];
     const real_t t1 = f * c_alpha1;
     const int t2 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
     const int t3 = t2 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
@@ -460,549 +471,257 @@ CF_INLINE void delta_skeleton_kernel(const int single, const delta_params *param
     const real_t t23 = t22 + s_alpha2 * t14;
     const real_t t24 = t20 - (t21 - t23);
     const real_t u_u = u_z * u_z + t16 * t16 + t24 * t24;
-    const real_t t25 = L * s3;
-    const real_t v_z = t6 - t25;
-    const real_t t26 = e * c_alpha3;
-    const real_t t27 = f * c_alpha3;
-    const real_t t28 = L * c3;
-    const real_t t29 = t27 + c_alpha3 * t28;
-    const real_t t30 = t11 - (t26 - t29);
-    const real_t t31 = e * s_alpha3;
-    const real_t t32 = f * s_alpha3;
-    const real_t t33 = t32 + s_alpha3 * t28;
-    const real_t t34 = t20 - (t31 - t33);
-    const real_t v_v = v_z * v_z + t30 * t30 + t34 * t34;
     const real_t size = f + e + L + l;
-    const real_t t35 = size * size;
-    const real_t t36 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t35;
-    const int all_same = u_u + v_v <= t36;
-    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t36;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t37 = cf_rarely(single, same, t34, t24);
-    const real_t d_x = cf_rarely(single, same, t30, t16);
-    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
-    const real_t t38 = cf_rarely(single, same, t24, t34);
-    const real_t t39 = cf_rarely(single, same, t16, t30);
-    const real_t t40 = a_x * t38 - t37 * t39;
+    const real_t t25 = size * size;
+    const real_t t26 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t27 = t25 * t26;
+    const int same = u_u <= t27;
+    const real_t t28 = e * s_alpha3;
+    const real_t t29 = f * s_alpha3;
+    const real_t t30 = L * c3;
+    const real_t t31 = t29 + s_alpha3 * t30;
+    const real_t t32 = t20 - (t28 - t31);
+    const real_t t33 = cf_rarely(single, same, t32, t24);
+    const real_t t34 = L * s3;
+    const real_t v_z = t6 - t34;
+    const real_t t35 = cf_rarely(single, same, u_z, v_z);
     const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t41 = cf_rarely(single, same, u_z, v_z);
-    const real_t t42 = a_x * t41 - t39 * d_z;
-    const real_t t43 = over * (t37 * t40 + d_z * t42);
-    const real_t t44 = t37 * t41 - t38 * d_z;
-    const real_t t45 = over * (a_x * t40 - d_z * t44);
-    const real_t n_z = over * (a_x * t42 + t37 * t44);
-    const real_t nu = t43 * t43 + t45 * t45 + n_z * n_z;
-    const int in_line = nu <= t36;
-    const real_t t46 = t39 * (d_x - t39) + t38 * (t37 - t38) + t41 * (d_z - t41);
-    const real_t t47 = cf_rarely(single, in_line, -t46, CLOSEDFORM_C(0.0));
-    const int t48 = cf_abs(t47) <= t35 * CLOSEDFORM_FEASIBILITY;
-    const real_t t49 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(t37 * a_x);
-    const real_t t50 = whole * (t37 + a_x * s_w);
-    const real_t t51 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t50 * t50);
-    const real_t t52 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, t51, t52);
-    const real_t t53 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * t46 * part * CLOSEDFORM_C(0.5));
-    const real_t t54 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t53 * t53) + mu * CLOSEDFORM_C(0.25));
-    const real_t t55 = l * l - t54;
-    const int t56 = t48 & (-(CLOSEDFORM_FEASIBILITY * t49) <= t55);
-    const real_t t57 = cf_poison(single, (!(t4 & t5)) | (!t56));
-    const real_t t58 = t1 + t57;
-    const real_t t59 = t18 + t57;
-    const real_t t60 = CLOSEDFORM_C(0.0) + t57;
-    const real_t t61 = t10 + t57;
-    const real_t t62 = t19 + t57;
-    const real_t t63 = -t6 + t57;
-    const real_t t64 = t43 * t53 + d_x * CLOSEDFORM_C(0.5);
-    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t37 * n_z - d_z * t45);
-    const real_t slack = cf_max(t55, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t49, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t65 = w_x * h;
-    const real_t t66 = t11 - (t64 - t65);
-    const real_t t67 = t8 - t66;
-    const real_t t68 = t45 * t53 - t37 * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t43));
-    const real_t t69 = h * w_y;
-    const real_t t70 = t20 + (t68 + t69);
-    const real_t t71 = t17 - t70;
-    const real_t t72 = n_z * t53 - d_z * CLOSEDFORM_C(0.5);
-    const real_t w_z = cf_rarely(single, in_line, -t50, a_x * t45 + t37 * t43);
-    const real_t t73 = h * w_z;
-    const real_t t74 = -(t6 + (t72 + t73)) + t57;
-    const real_t t75 = t17 * CLOSEDFORM_C(0.5);
-    const real_t t76 = t10 - t75 + t57;
-    const real_t t77 = t8 * CLOSEDFORM_C(0.5);
-    const real_t t78 = t77 + t19 + t57;
-    const real_t t79 = t75 + t10 + t57;
-    const real_t t80 = t19 - t77 + t57;
-    const real_t t81 = t13 + t57;
-    const real_t t82 = t22 + t57;
-    const real_t t83 = t15 + t57;
-    const real_t t84 = t23 + t57;
-    const real_t t85 = -t7 + t57;
-    const real_t t86 = t12 - t66;
-    const real_t t87 = t21 - t70;
-    const real_t t88 = t21 * CLOSEDFORM_C(0.5);
-    const real_t t89 = t15 - t88 + t57;
-    const real_t t90 = t12 * CLOSEDFORM_C(0.5);
-    const real_t t91 = t90 + t23 + t57;
-    const real_t t92 = t88 + t15 + t57;
-    const real_t t93 = t23 - t90 + t57;
-    const real_t t94 = t27 + t57;
-    const real_t t95 = t32 + t57;
-    const real_t t96 = t29 + t57;
-    const real_t t97 = t33 + t57;
-    const real_t t98 = -t25 + t57;
-    const real_t t99 = t26 - t66;
-    const real_t t100 = t31 - t70;
-    const real_t t101 = t31 * CLOSEDFORM_C(0.5);
-    const real_t t102 = t29 - t101 + t57;
-    const real_t t103 = t26 * CLOSEDFORM_C(0.5);
-    const real_t t104 = t103 + t33 + t57;
-    const real_t t105 = t101 + t29 + t57;
-    const real_t t106 = t33 - t103 + t57;
-    const real_t t107 = t11 - (t64 + t65);
-    const real_t t108 = t8 - t107;
-    const real_t t109 = t20 + (t68 - t69);
-    const real_t t110 = t17 - t109;
-    const real_t t111 = -(t6 + (t72 - t73)) + t57;
-    const real_t t112 = t12 - t107;
-    const real_t t113 = t21 - t109;
-    const real_t t114 = t26 - t107;
-    const real_t t115 = t31 - t109;
-    points[0] = t58;
-    points[1] = t59;
-    points[2] = t60;
-    points[3] = t61;
-    points[4] = t62;
-    points[5] = t63;
-    points[6] = t67 + t57;
-    points[7] = t71 + t57;
-    points[8] = t74;
-    points[9] = t76;
-    points[10] = t78;
-    points[11] = t63;
-    points[12] = t79;
-    points[13] = t80;
-    points[14] = t63;
-    points[15] = t67 - t75 + t57;
-    points[16] = t77 + t71 + t57;
-    points[17] = t74;
-    points[18] = t75 + t67 + t57;
-    points[19] = t71 - t77 + t57;
-    points[20] = t74;
-    points[21] = t81;
-    points[22] = t82;
-    points[23] = t60;
-    points[24] = t83;
-    points[25] = t84;
-    points[26] = t85;
-    points[27] = t86 + t57;
-    points[28] = t87 + t57;
-    points[29] = t74;
-    points[30] = t89;
-    points[31] = t91;
-    points[32] = t85;
-    points[33] = t92;
-    points[34] = t93;
-    points[35] = t85;
-    points[36] = t86 - t88 + t57;
-    points[37] = t90 + t87 + t57;
-    points[38] = t74;
-    points[39] = t88 + t86 + t57;
-    points[40] = t87 - t90 + t57;
-    points[41] = t74;
-    points[42] = t94;
-    points[43] = t95;
-    points[44] = t60;
-    points[45] = t96;
-    points[46] = t97;
-    points[47] = t98;
-    points[48] = t99 + t57;
-    points[49] = t100 + t57;
-    points[50] = t74;
-    points[51] = t102;
-    points[52] = t104;
-    points[53] = t98;
-    points[54] = t105;
-    points[55] = t106;
-    points[56] = t98;
-    points[57] = t99 - t101 + t57;
-    points[58] = t103 + t100 + t57;
-    points[59] = t74;
-    points[60] = t101 + t99 + t57;
-    points[61] = t100 - t103 + t57;
-    points[62] = t74;
-    points[63] = -t66 + t57;
-    points[64] = -t70 + t57;
-    points[65] = t74;
-    points[66] = t58;
-    points[67] = t59;
-    points[68] = t60;
-    points[69] = t61;
-    points[70] = t62;
-    points[71] = t63;
-    points[72] = t108 + t57;
-    points[73] = t110 + t57;
-    points[74] = t111;
-    points[75] = t76;
-    points[76] = t78;
-    points[77] = t63;
-    points[78] = t79;
-    points[79] = t80;
-    points[80] = t63;
-    points[81] = t108 - t75 + t57;
-    points[82] = t77 + t110 + t57;
-    points[83] = t111;
-    points[84] = t75 + t108 + t57;
-    points[85] = t110 - t77 + t57;
-    points[86] = t111;
-    points[87] = t81;
-    points[88] = t82;
-    points[89] = t60;
-    points[90] = t83;
-    points[91] = t84;
-    points[92] = t85;
-    points[93] = t112 + t57;
-    points[94] = t113 + t57;
-    points[95] = t111;
-    points[96] = t89;
-    points[97] = t91;
-    points[98] = t85;
-    points[99] = t92;
-    points[100] = t93;
-    points[101] = t85;
-    points[102] = t112 - t88 + t57;
-    points[103] = t90 + t113 + t57;
-    points[104] = t111;
-    points[105] = t88 + t112 + t57;
-    points[106] = t113 - t90 + t57;
-    points[107] = t111;
-    points[108] = t94;
-    points[109] = t95;
-    points[110] = t60;
-    points[111] = t96;
-    points[112] = t97;
-    points[113] = t98;
-    points[114] = t114 + t57;
-    points[115] = t115 + t57;
-    points[116] = t111;
-    points[117] = t102;
-    points[118] = t104;
-    points[119] = t98;
-    points[120] = t105;
-    points[121] = t106;
-    points[122] = t98;
-    points[123] = t114 - t101 + t57;
-    points[124] = t103 + t115 + t57;
-    points[125] = t111;
-    points[126] = t101 + t114 + t57;
-    points[127] = t115 - t103 + t57;
-    points[128] = t111;
-    points[129] = -t107 + t57;
-    points[130] = -t109 + t57;
-    points[131] = t111;
-}
-
-/* The same for one posture; operations that repeat are the lanes of vectors. */
-CF_INLINE void delta_skeleton_lanes(const delta_params *params, const real_t q[3],
-    const real_t *sines, const real_t *cosines,
-    real_t points[132])
-{
-    const real_t f = params->f;
-    const real_t e = params->e;
-    const real_t L = params->L;
-    const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
-    const real_t theta1 = q[0];
-    const real_t theta2 = q[1];
-    const real_t theta3 = q[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s1 = sines[1];
-    const real_t c1 = cosines[1];
-    const real_t s2 = sines[2];
-    const real_t c2 = cosines[2];
-    const real_t s_alpha2 = sines[3];
-    const real_t c_alpha2 = cosines[3];
-    const real_t s3 = sines[4];
-    const real_t c3 = cosines[4];
-    const real_t s_alpha3 = sines[5];
-    const real_t c_alpha3 = cosines[5];
-    const int t1 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t4 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t size = f + e + L + l;
-    const real_t t5 = size * size;
-    const real_t t6 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t5;
+    const real_t t36 = cf_rarely(single, same, t24, t32);
+    const real_t t37 = t33 * t35 - d_z * t36;
+    const real_t t38 = e * c_alpha3;
+    const real_t t39 = f * c_alpha3;
+    const real_t t40 = t39 + c_alpha3 * t30;
+    const real_t t41 = t11 - (t38 - t40);
+    const real_t v_v = v_z * v_z + t41 * t41 + t32 * t32;
+    const int all_same = u_u + v_v <= t27;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const real_t t7 = CLOSEDFORM_C(0.9375) * (l * size);
-    real_t t8_lanes[4], t9_lanes[4], t10_lanes[4], t11_lanes[4], t12_lanes[4], t13_lanes[4], t14_lanes[4], t15_lanes[4], t16_lanes[4], c1_z_lanes[4], t17_lanes[4], t18_lanes[4], t19_lanes[4], t20_lanes[4], t21_lanes[4], t22_lanes[4];
-    const real_t t23_of[4] = { c_alpha1, c_alpha2, c_alpha3, c_alpha3 };
-    real_t t23[4];
-    cf_side_by_side(4, t23_of, t23);
-    const real_t t24_of[4] = { s1, s2, s3, s3 };
-    real_t t24[4];
-    cf_side_by_side(4, t24_of, t24);
-    const real_t t25_of[4] = { c1, c2, c3, c3 };
-    real_t t25[4];
-    cf_side_by_side(4, t25_of, t25);
-    const real_t t26_of[4] = { s_alpha1, s_alpha2, s_alpha3, s_alpha3 };
-    real_t t26[4];
-    cf_side_by_side(4, t26_of, t26);
-    for (size_t k = 0; k < 4; ++k) {
-        const real_t t27 = f * t23[k];
-        t8_lanes[k] = t27;
-        const real_t t28 = L * t24[k];
-        t9_lanes[k] = t28;
-        const real_t t29 = e * t23[k];
-        t10_lanes[k] = t29;
-        const real_t t30 = L * t25[k];
-        const real_t t31 = t27 + t23[k] * t30;
-        t11_lanes[k] = t31;
-        t12_lanes[k] = t29 - t31;
-        const real_t t32 = e * t26[k];
-        t13_lanes[k] = t32;
-        const real_t t33 = f * t26[k];
-        t14_lanes[k] = t33;
-        const real_t t34 = t33 + t26[k] * t30;
-        t15_lanes[k] = t34;
-        t16_lanes[k] = t32 - t34;
-        c1_z_lanes[k] = -t28;
-        const real_t t35 = t32 * CLOSEDFORM_C(0.5);
-        t17_lanes[k] = t35;
-        t18_lanes[k] = t31 - t35;
-        const real_t t36 = t29 * CLOSEDFORM_C(0.5);
-        t19_lanes[k] = t36;
-        t20_lanes[k] = t36 + t34;
-        t21_lanes[k] = t35 + t31;
-        t22_lanes[k] = t34 - t36;
-    }
-    const real_t u_z = t9_lanes[0] - t9_lanes[1];
-    const real_t t37 = t12_lanes[0] - t12_lanes[1];
-    const real_t t38 = t16_lanes[0] - t16_lanes[1];
-    const real_t u_u = u_z * u_z + t37 * t37 + t38 * t38;
-    const real_t v_z = t9_lanes[0] - t9_lanes[2];
-    const real_t t39 = t12_lanes[0] - t12_lanes[2];
-    const real_t t40 = t16_lanes[0] - t16_lanes[2];
-    const real_t v_v = v_z * v_z + t39 * t39 + t40 * t40;
-    const int all_same = u_u + v_v <= t6;
-    const int same = u_u <= t6;
-    const real_t mu = cf_rarely(1, all_same, whole * whole, cf_rarely(1, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(1, mu);
-    const real_t t41 = cf_rarely(1, same, t40, t38);
-    const real_t d_x = cf_rarely(1, same, t39, t37);
-    const real_t a_x = cf_rarely(1, all_same, whole, d_x);
-    const real_t t42 = cf_rarely(1, same, t38, t40);
-    const real_t t43 = cf_rarely(1, same, t37, t39);
-    const real_t t44 = a_x * t42 - t41 * t43;
-    const real_t d_z = cf_rarely(1, same, v_z, u_z);
-    const real_t t45 = cf_rarely(1, same, u_z, v_z);
-    const real_t t46 = a_x * t45 - t43 * d_z;
-    const real_t t47 = over * (t41 * t44 + d_z * t46);
-    const real_t t48 = t41 * t45 - t42 * d_z;
-    const real_t t49 = over * (a_x * t44 - d_z * t48);
-    const real_t n_z = over * (a_x * t46 + t41 * t48);
-    const real_t nu = t47 * t47 + t49 * t49 + n_z * n_z;
-    const int in_line = nu <= t6;
-    const real_t t50 = t43 * (d_x - t43) + t42 * (t41 - t42) + t45 * (d_z - t45);
-    const real_t t51 = cf_rarely(1, in_line, -t50, CLOSEDFORM_C(0.0));
-    const int t52 = cf_abs(t51) <= t5 * CLOSEDFORM_FEASIBILITY;
+    const real_t d_x = cf_rarely(single, same, t41, t16);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t42 = cf_rarely(single, same, t16, t41);
+    const real_t t43 = t35 * a_x - d_z * t42;
+    const real_t t44 = t36 * a_x - t33 * t42;
+    const real_t product_2 = t37 * t37 + t43 * t43 + t44 * t44;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t45 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t46 = product_2 - t45 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t46 <= CLOSEDFORM_VANISHING * t45;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t47 = t33 * t44 + d_z * t43;
+    const real_t t48 = a_x * t44 - d_z * t37;
+    const real_t n_z = a_x * t43 + t33 * t37;
+    const real_t m_m = cf_rarely(single, slim, over * (t47 * t47 + t48 * t48 + n_z * n_z), product_2);
+    const int in_line = m_m <= t26 * (t25 * mu);
+    const real_t t49 = t42 * (d_x - t42) + t36 * (t33 - t36) - t35 * (t35 - d_z);
+    const real_t t50 = cf_rarely(single, in_line, -t49, CLOSEDFORM_C(0.0));
+    const int t51 = cf_abs(t50) <= t25 * CLOSEDFORM_FEASIBILITY;
+    const real_t t52 = CLOSEDFORM_C(0.9375) * (l * size);
     const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(t41 * a_x);
-    const real_t t53 = whole * (t41 + a_x * s_w);
-    const real_t t54 = CLOSEDFORM_C(1.0) / cf_nonzero(1, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t53 * t53);
-    const real_t t55 = CLOSEDFORM_C(1.0) / cf_divisor(1, in_line, mu * nu);
-    const real_t part = cf_rarely(1, in_line, t54, t55);
-    const real_t t56 = cf_rarely(1, in_line, CLOSEDFORM_C(0.0), mu * t50 * part * CLOSEDFORM_C(0.5));
-    const real_t t57 = cf_rarely(1, all_same, CLOSEDFORM_C(0.0), nu * (t56 * t56) + mu * CLOSEDFORM_C(0.25));
-    const real_t t58 = l * l - t57;
-    const int t59 = t52 & (-(CLOSEDFORM_FEASIBILITY * t7) <= t58);
-    const real_t t60 = cf_poison(0, (!(t3 & t4)) | (!t59));
-    const real_t t61 = CLOSEDFORM_C(0.0) + t60;
-    const real_t t62 = t47 * t56 + d_x * CLOSEDFORM_C(0.5);
-    const real_t w_x = cf_rarely(1, in_line, g_1 * s_w, t41 * n_z - d_z * t49);
-    const real_t slack = cf_max(t58, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t7, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t63 = w_x * h;
-    const real_t t64 = t12_lanes[0] - (t62 - t63);
-    const real_t t65 = t49 * t56 - t41 * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(1, in_line, g_1, -(a_x * n_z + d_z * t47));
-    const real_t t66 = h * w_y;
-    const real_t t67 = t16_lanes[0] + (t65 + t66);
-    const real_t t68 = n_z * t56 - d_z * CLOSEDFORM_C(0.5);
-    const real_t w_z = cf_rarely(1, in_line, -t53, a_x * t49 + t41 * t47);
-    const real_t t69 = h * w_z;
-    const real_t t70 = -(t9_lanes[0] + (t68 + t69)) + t60;
-    const real_t t71 = t12_lanes[0] - (t62 + t63);
-    const real_t t72 = t16_lanes[0] + (t65 - t66);
-    const real_t t73 = -(t9_lanes[0] + (t68 - t69)) + t60;
-    real_t t74_lanes[4], t75_lanes[4], t76_lanes[4], t77_lanes[4], t78_lanes[4], t79_lanes[4], t80_lanes[4], t81_lanes[4], t82_lanes[4], t83_lanes[4], t84_lanes[4], t85_lanes[4], t86_lanes[4], t87_lanes[4], t88_lanes[4], t89_lanes[4], t90_lanes[4], t91_lanes[4], t92_lanes[4], t93_lanes[4], t94_lanes[4];
-    for (size_t k = 0; k < 4; ++k) {
-        t74_lanes[k] = t8_lanes[k] + t60;
-        t75_lanes[k] = t14_lanes[k] + t60;
-        t76_lanes[k] = t11_lanes[k] + t60;
-        t77_lanes[k] = t15_lanes[k] + t60;
-        t78_lanes[k] = c1_z_lanes[k] + t60;
-        const real_t t95 = t10_lanes[k] - t64;
-        t79_lanes[k] = t95 + t60;
-        const real_t t96 = t13_lanes[k] - t67;
-        t80_lanes[k] = t96 + t60;
-        t81_lanes[k] = t18_lanes[k] + t60;
-        t82_lanes[k] = t20_lanes[k] + t60;
-        t83_lanes[k] = t21_lanes[k] + t60;
-        t84_lanes[k] = t22_lanes[k] + t60;
-        t85_lanes[k] = t95 - t17_lanes[k] + t60;
-        t86_lanes[k] = t19_lanes[k] + t96 + t60;
-        t87_lanes[k] = t17_lanes[k] + t95 + t60;
-        t88_lanes[k] = t96 - t19_lanes[k] + t60;
-        const real_t t97 = t10_lanes[k] - t71;
-        t89_lanes[k] = t97 + t60;
-        const real_t t98 = t13_lanes[k] - t72;
-        t90_lanes[k] = t98 + t60;
-        t91_lanes[k] = t97 - t17_lanes[k] + t60;
-        t92_lanes[k] = t19_lanes[k] + t98 + t60;
-        t93_lanes[k] = t17_lanes[k] + t97 + t60;
-        t94_lanes[k] = t98 - t19_lanes[k] + t60;
-    }
-    points[0] = t74_lanes[0];
-    points[1] = t75_lanes[0];
-    points[2] = t61;
-    points[3] = t76_lanes[0];
-    points[4] = t77_lanes[0];
-    points[5] = t78_lanes[0];
-    points[6] = t79_lanes[0];
-    points[7] = t80_lanes[0];
-    points[8] = t70;
-    points[9] = t81_lanes[0];
-    points[10] = t82_lanes[0];
-    points[11] = t78_lanes[0];
-    points[12] = t83_lanes[0];
-    points[13] = t84_lanes[0];
-    points[14] = t78_lanes[0];
-    points[15] = t85_lanes[0];
-    points[16] = t86_lanes[0];
-    points[17] = t70;
-    points[18] = t87_lanes[0];
-    points[19] = t88_lanes[0];
-    points[20] = t70;
-    points[21] = t74_lanes[1];
-    points[22] = t75_lanes[1];
-    points[23] = t61;
-    points[24] = t76_lanes[1];
-    points[25] = t77_lanes[1];
-    points[26] = t78_lanes[1];
-    points[27] = t79_lanes[1];
-    points[28] = t80_lanes[1];
-    points[29] = t70;
-    points[30] = t81_lanes[1];
-    points[31] = t82_lanes[1];
-    points[32] = t78_lanes[1];
-    points[33] = t83_lanes[1];
-    points[34] = t84_lanes[1];
-    points[35] = t78_lanes[1];
-    points[36] = t85_lanes[1];
-    points[37] = t86_lanes[1];
-    points[38] = t70;
-    points[39] = t87_lanes[1];
-    points[40] = t88_lanes[1];
-    points[41] = t70;
-    points[42] = t74_lanes[2];
-    points[43] = t75_lanes[2];
-    points[44] = t61;
-    points[45] = t76_lanes[2];
-    points[46] = t77_lanes[2];
-    points[47] = t78_lanes[2];
-    points[48] = t79_lanes[2];
-    points[49] = t80_lanes[2];
-    points[50] = t70;
-    points[51] = t81_lanes[2];
-    points[52] = t82_lanes[2];
-    points[53] = t78_lanes[2];
-    points[54] = t83_lanes[2];
-    points[55] = t84_lanes[2];
-    points[56] = t78_lanes[2];
-    points[57] = t85_lanes[2];
-    points[58] = t86_lanes[2];
-    points[59] = t70;
-    points[60] = t87_lanes[2];
-    points[61] = t88_lanes[2];
-    points[62] = t70;
-    points[63] = -t64 + t60;
-    points[64] = -t67 + t60;
-    points[65] = t70;
-    points[66] = t74_lanes[0];
-    points[67] = t75_lanes[0];
-    points[68] = t61;
-    points[69] = t76_lanes[0];
-    points[70] = t77_lanes[0];
-    points[71] = t78_lanes[0];
-    points[72] = t89_lanes[0];
-    points[73] = t90_lanes[0];
-    points[74] = t73;
-    points[75] = t81_lanes[0];
-    points[76] = t82_lanes[0];
-    points[77] = t78_lanes[0];
-    points[78] = t83_lanes[0];
-    points[79] = t84_lanes[0];
-    points[80] = t78_lanes[0];
-    points[81] = t91_lanes[0];
-    points[82] = t92_lanes[0];
-    points[83] = t73;
-    points[84] = t93_lanes[0];
-    points[85] = t94_lanes[0];
-    points[86] = t73;
-    points[87] = t74_lanes[1];
-    points[88] = t75_lanes[1];
-    points[89] = t61;
-    points[90] = t76_lanes[1];
-    points[91] = t77_lanes[1];
-    points[92] = t78_lanes[1];
-    points[93] = t89_lanes[1];
-    points[94] = t90_lanes[1];
-    points[95] = t73;
-    points[96] = t81_lanes[1];
-    points[97] = t82_lanes[1];
-    points[98] = t78_lanes[1];
-    points[99] = t83_lanes[1];
-    points[100] = t84_lanes[1];
-    points[101] = t78_lanes[1];
-    points[102] = t91_lanes[1];
-    points[103] = t92_lanes[1];
-    points[104] = t73;
-    points[105] = t93_lanes[1];
-    points[106] = t94_lanes[1];
-    points[107] = t73;
-    points[108] = t74_lanes[2];
-    points[109] = t75_lanes[2];
-    points[110] = t61;
-    points[111] = t76_lanes[2];
-    points[112] = t77_lanes[2];
-    points[113] = t78_lanes[2];
-    points[114] = t89_lanes[2];
-    points[115] = t90_lanes[2];
-    points[116] = t73;
-    points[117] = t81_lanes[2];
-    points[118] = t82_lanes[2];
-    points[119] = t78_lanes[2];
-    points[120] = t83_lanes[2];
-    points[121] = t84_lanes[2];
-    points[122] = t78_lanes[2];
-    points[123] = t91_lanes[2];
-    points[124] = t92_lanes[2];
-    points[125] = t73;
-    points[126] = t93_lanes[2];
-    points[127] = t94_lanes[2];
-    points[128] = t73;
-    points[129] = -t71 + t60;
-    points[130] = -t72 + t60;
-    points[131] = t73;
+    const real_t s_w = cf_sign(t33 * a_x);
+    const real_t t53 = whole * (t33 + a_x * s_w);
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t53 * t53, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t54 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t49 * t49));
+    const real_t t55 = mu * (CLOSEDFORM_C(1.0) + t54) * CLOSEDFORM_C(0.25);
+    const real_t t56 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t55);
+    const real_t t57 = l * l - t56;
+    const int t58 = t51 & (-(CLOSEDFORM_FEASIBILITY * t52) <= t57);
+    const real_t t59 = cf_poison(single, (!(t4 & t5)) | (!t58));
+    const real_t t60 = t1 + t59;
+    const real_t t61 = t18 + t59;
+    const real_t t62 = CLOSEDFORM_C(0.0) + t59;
+    const real_t t63 = t10 + t59;
+    const real_t t64 = t19 + t59;
+    const real_t t65 = -t6 + t59;
+    const real_t t66 = cf_select(in_line, CLOSEDFORM_C(0.0), t49 * part * CLOSEDFORM_C(0.5));
+    const real_t t67 = t47 * t66 + d_x * CLOSEDFORM_C(0.5);
+    const real_t m_x = cf_rarely(single, slim, over * (t33 * n_z - d_z * t48), t37);
+    const real_t slack = cf_max(t57, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t52, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t68 = cf_rarely(single, in_line, g_1 * s_w, m_x) * h;
+    const real_t t69 = t11 - (t67 - t68);
+    const real_t t70 = t8 - t69;
+    const real_t t71 = t48 * t66 - t33 * CLOSEDFORM_C(0.5);
+    const real_t t72 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t47), t43);
+    const real_t t73 = h * cf_rarely(single, in_line, g_1, -t72);
+    const real_t t74 = t20 + (t71 + t73);
+    const real_t t75 = t17 - t74;
+    const real_t t76 = n_z * t66 - d_z * CLOSEDFORM_C(0.5);
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * t48 + t33 * t47), t44);
+    const real_t t77 = h * cf_rarely(single, in_line, -t53, m_z);
+    const real_t t78 = -(t6 + (t76 + t77)) + t59;
+    const real_t t79 = t17 * CLOSEDFORM_C(0.5);
+    const real_t t80 = t10 - t79 + t59;
+    const real_t t81 = t8 * CLOSEDFORM_C(0.5);
+    const real_t t82 = t81 + t19 + t59;
+    const real_t t83 = t79 + t10 + t59;
+    const real_t t84 = t19 - t81 + t59;
+    const real_t t85 = t13 + t59;
+    const real_t t86 = t22 + t59;
+    const real_t t87 = t15 + t59;
+    const real_t t88 = t23 + t59;
+    const real_t t89 = -t7 + t59;
+    const real_t t90 = t12 - t69;
+    const real_t t91 = t21 - t74;
+    const real_t t92 = t21 * CLOSEDFORM_C(0.5);
+    const real_t t93 = t15 - t92 + t59;
+    const real_t t94 = t12 * CLOSEDFORM_C(0.5);
+    const real_t t95 = t94 + t23 + t59;
+    const real_t t96 = t92 + t15 + t59;
+    const real_t t97 = t23 - t94 + t59;
+    const real_t t98 = t39 + t59;
+    const real_t t99 = t29 + t59;
+    const real_t t100 = t40 + t59;
+    const real_t t101 = t31 + t59;
+    const real_t t102 = -t34 + t59;
+    const real_t t103 = t38 - t69;
+    const real_t t104 = t28 - t74;
+    const real_t t105 = t28 * CLOSEDFORM_C(0.5);
+    const real_t t106 = t40 - t105 + t59;
+    const real_t t107 = t38 * CLOSEDFORM_C(0.5);
+    const real_t t108 = t107 + t31 + t59;
+    const real_t t109 = t105 + t40 + t59;
+    const real_t t110 = t31 - t107 + t59;
+    const real_t t111 = t11 - (t67 + t68);
+    const real_t t112 = t8 - t111;
+    const real_t t113 = t20 + (t71 - t73);
+    const real_t t114 = t17 - t113;
+    const real_t t115 = -(t6 + (t76 - t77)) + t59;
+    const real_t t116 = t12 - t111;
+    const real_t t117 = t21 - t113;
+    const real_t t118 = t38 - t111;
+    const real_t t119 = t28 - t113;
+    points[0] = t60;
+    points[1] = t61;
+    points[2] = t62;
+    points[3] = t63;
+    points[4] = t64;
+    points[5] = t65;
+    points[6] = t70 + t59;
+    points[7] = t75 + t59;
+    points[8] = t78;
+    points[9] = t80;
+    points[10] = t82;
+    points[11] = t65;
+    points[12] = t83;
+    points[13] = t84;
+    points[14] = t65;
+    points[15] = t70 - t79 + t59;
+    points[16] = t81 + t75 + t59;
+    points[17] = t78;
+    points[18] = t79 + t70 + t59;
+    points[19] = t75 - t81 + t59;
+    points[20] = t78;
+    points[21] = t85;
+    points[22] = t86;
+    points[23] = t62;
+    points[24] = t87;
+    points[25] = t88;
+    points[26] = t89;
+    points[27] = t90 + t59;
+    points[28] = t91 + t59;
+    points[29] = t78;
+    points[30] = t93;
+    points[31] = t95;
+    points[32] = t89;
+    points[33] = t96;
+    points[34] = t97;
+    points[35] = t89;
+    points[36] = t90 - t92 + t59;
+    points[37] = t94 + t91 + t59;
+    points[38] = t78;
+    points[39] = t92 + t90 + t59;
+    points[40] = t91 - t94 + t59;
+    points[41] = t78;
+    points[42] = t98;
+    points[43] = t99;
+    points[44] = t62;
+    points[45] = t100;
+    points[46] = t101;
+    points[47] = t102;
+    points[48] = t103 + t59;
+    points[49] = t104 + t59;
+    points[50] = t78;
+    points[51] = t106;
+    points[52] = t108;
+    points[53] = t102;
+    points[54] = t109;
+    points[55] = t110;
+    points[56] = t102;
+    points[57] = t103 - t105 + t59;
+    points[58] = t107 + t104 + t59;
+    points[59] = t78;
+    points[60] = t105 + t103 + t59;
+    points[61] = t104 - t107 + t59;
+    points[62] = t78;
+    points[63] = -t69 + t59;
+    points[64] = -t74 + t59;
+    points[65] = t78;
+    points[66] = t60;
+    points[67] = t61;
+    points[68] = t62;
+    points[69] = t63;
+    points[70] = t64;
+    points[71] = t65;
+    points[72] = t112 + t59;
+    points[73] = t114 + t59;
+    points[74] = t115;
+    points[75] = t80;
+    points[76] = t82;
+    points[77] = t65;
+    points[78] = t83;
+    points[79] = t84;
+    points[80] = t65;
+    points[81] = t112 - t79 + t59;
+    points[82] = t81 + t114 + t59;
+    points[83] = t115;
+    points[84] = t79 + t112 + t59;
+    points[85] = t114 - t81 + t59;
+    points[86] = t115;
+    points[87] = t85;
+    points[88] = t86;
+    points[89] = t62;
+    points[90] = t87;
+    points[91] = t88;
+    points[92] = t89;
+    points[93] = t116 + t59;
+    points[94] = t117 + t59;
+    points[95] = t115;
+    points[96] = t93;
+    points[97] = t95;
+    points[98] = t89;
+    points[99] = t96;
+    points[100] = t97;
+    points[101] = t89;
+    points[102] = t116 - t92 + t59;
+    points[103] = t94 + t117 + t59;
+    points[104] = t115;
+    points[105] = t92 + t116 + t59;
+    points[106] = t117 - t94 + t59;
+    points[107] = t115;
+    points[108] = t98;
+    points[109] = t99;
+    points[110] = t62;
+    points[111] = t100;
+    points[112] = t101;
+    points[113] = t102;
+    points[114] = t118 + t59;
+    points[115] = t119 + t59;
+    points[116] = t115;
+    points[117] = t106;
+    points[118] = t108;
+    points[119] = t102;
+    points[120] = t109;
+    points[121] = t110;
+    points[122] = t102;
+    points[123] = t118 - t105 + t59;
+    points[124] = t107 + t119 + t59;
+    points[125] = t115;
+    points[126] = t105 + t118 + t59;
+    points[127] = t119 - t107 + t59;
+    points[128] = t115;
+    points[129] = -t111 + t59;
+    points[130] = -t113 + t59;
+    points[131] = t115;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1013,7 +732,7 @@ void delta_skeleton(const delta_params *params, const real_t q[3],
     delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -1023,9 +742,9 @@ void delta_skeleton(const delta_params *params, const real_t q[3],
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, params->alpha3, q[2], q[2], q[2] };
     cf_sincos_lanes(8, lanes, sines, cosines);
-    delta_skeleton_lanes(params, q, sines, cosines, points);
+    delta_skeleton_kernel(1, params, q, sines, cosines, points);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(132, points_degrees, exponent, points, points);
     }
@@ -1052,7 +771,7 @@ void delta_skeleton_batch(size_t n, const delta_params *params,
 {
     const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         delta_skeleton_other_sizes(n, params, q, q_stride, points, points_stride);
         return;
     }
@@ -1069,11 +788,11 @@ void delta_skeleton_batch(size_t n, const delta_params *params,
         for (size_t i = 0; i < length; ++i)
             angle_3[i] = params->alpha2;
         cf_sincos_block(length, angle_3, sines[3], cosines[3]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
+        real_t angle_4[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->alpha3;
-        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
+            angle_4[i] = params->alpha3;
+        cf_sincos_block(length, angle_4, sines[4], cosines[4]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[5], cosines[5]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
@@ -1217,7 +936,8 @@ void delta_skeleton_batch(size_t n, const delta_params *params,
     }
 }
 
-CF_INLINE void delta_jacobian_parallel_kernel(const int single, const delta_params *params,
+/* Every case. */
+CF_INLINE void delta_jacobian_parallel_whole_kernel(const int single, const delta_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t A[18])
 {
@@ -1239,10 +959,10 @@ CF_INLINE void delta_jacobian_parallel_kernel(const int single, const delta_para
     const real_t c_alpha1 = cosines[2];
     const real_t s_alpha2 = sines[3];
     const real_t c_alpha2 = cosines[3];
-    const real_t s3 = sines[4];
-    const real_t c3 = cosines[4];
-    const real_t s_alpha3 = sines[5];
-    const real_t c_alpha3 = cosines[5];
+    const real_t s_alpha3 = sines[4];
+    const real_t c_alpha3 = cosines[4];
+    const real_t s3 = sines[5];
+    const real_t c3 = cosines[5];
     const real_t t1 = L * s1;
     const real_t u_z = t1 - L * s2;
     const real_t t2 = L * c1;
@@ -1252,88 +972,290 @@ CF_INLINE void delta_jacobian_parallel_kernel(const int single, const delta_para
     const real_t t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t2;
     const real_t t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4);
     const real_t u_u = u_z * u_z + t5 * t5 + t7 * t7;
-    const real_t v_z = t1 - L * s3;
-    const real_t t8 = L * c3;
-    const real_t t9 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8);
-    const real_t t10 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8);
-    const real_t v_v = v_z * v_z + t9 * t9 + t10 * t10;
     const real_t size = f + e + L + l;
-    const real_t t11 = size * size;
-    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t11;
-    const int all_same = u_u + v_v <= t12;
-    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t12;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t13 = cf_rarely(single, same, t10, t7);
-    const real_t d_x = cf_rarely(single, same, t9, t5);
-    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
-    const real_t t14 = cf_rarely(single, same, t7, t10);
-    const real_t t15 = cf_rarely(single, same, t5, t9);
-    const real_t t16 = a_x * t14 - t13 * t15;
+    const real_t t8 = size * size;
+    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t10 = t8 * t9;
+    const int same = u_u <= t10;
+    const real_t t11 = L * c3;
+    const real_t t12 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11);
+    const real_t t13 = cf_rarely(single, same, t12, t7);
+    const real_t v_z = t1 - L * s3;
+    const real_t t14 = cf_rarely(single, same, u_z, v_z);
+    const real_t t15 = cf_rarely(single, same, t7, t12);
     const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t17 = cf_rarely(single, same, u_z, v_z);
-    const real_t t18 = a_x * t17 - t15 * d_z;
-    const real_t t19 = over * (t13 * t16 + d_z * t18);
-    const real_t t20 = t13 * t17 - t14 * d_z;
-    const real_t t21 = over * (a_x * t16 - d_z * t20);
-    const real_t n_z = over * (a_x * t18 + t13 * t20);
-    const real_t nu = t19 * t19 + t21 * t21 + n_z * n_z;
-    const int in_line = nu <= t12;
+    const real_t t16 = t13 * t14 - t15 * d_z;
+    const real_t t17 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11);
+    const real_t v_v = v_z * v_z + t17 * t17 + t12 * t12;
+    const int all_same = u_u + v_v <= t10;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
+    const real_t d_x = cf_rarely(single, same, t17, t5);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t18 = cf_rarely(single, same, t5, t17);
+    const real_t t19 = a_x * t14 - t18 * d_z;
+    const real_t t20 = a_x * t15 - t13 * t18;
+    const real_t product_2 = t16 * t16 + t19 * t19 + t20 * t20;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t21 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t22 = product_2 - t21 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t22 <= CLOSEDFORM_VANISHING * t21;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t23 = t13 * t20 + d_z * t19;
+    const real_t t24 = a_x * t20 - d_z * t16;
+    const real_t n_z = a_x * t19 + t13 * t16;
+    const real_t m_m = cf_rarely(single, slim, over * (t23 * t23 + t24 * t24 + n_z * n_z), product_2);
+    const int in_line = m_m <= t9 * (t8 * mu);
     const real_t g_1 = whole * d_z;
     const real_t s_w = cf_sign(t13 * a_x);
-    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t13 * n_z - d_z * t21);
-    const real_t t22 = whole * (t13 + a_x * s_w);
-    const real_t t23 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t22 * t22);
-    const real_t t24 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, t23, t24);
-    const real_t t25 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17);
-    const real_t t26 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t25 * CLOSEDFORM_C(0.5));
-    const real_t t27 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t26 * t26) + mu * CLOSEDFORM_C(0.25));
-    const real_t t28 = l * l - t27;
-    const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
-    const real_t t29 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t29, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t30 = w_x * h;
-    const real_t t31 = t19 * t26 + d_x * CLOSEDFORM_C(0.5);
-    const real_t t32 = t30 - t31;
-    const int t33 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t34 = t33 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t35 = t34 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t36 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t37 = cf_rarely(single, in_line, -t25, CLOSEDFORM_C(0.0));
-    const int t38 = cf_abs(t37) <= t11 * CLOSEDFORM_FEASIBILITY;
-    const int t39 = t38 & (-(CLOSEDFORM_FEASIBILITY * t29) <= t28);
-    const real_t t40 = cf_poison(single, (!(t35 & t36)) | (!t39));
-    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t19));
-    const real_t t41 = h * w_y;
-    const real_t t42 = t21 * t26 - t13 * CLOSEDFORM_C(0.5);
-    const real_t t43 = t41 + t42;
-    const real_t w_z = cf_rarely(single, in_line, -t22, a_x * t21 + t13 * t19);
-    const real_t t44 = h * w_z;
-    const real_t t45 = n_z * t26 - d_z * CLOSEDFORM_C(0.5);
-    const real_t t46 = t44 + t45;
-    const real_t A_11_above = t30 + t31;
-    const real_t A_12_above = t41 - t42;
-    const real_t A_13_above = t44 - t45;
-    A[0] = -t32 + t40;
-    A[1] = -t43 + t40;
-    A[2] = -t46 + t40;
-    A[3] = -(t5 + t32) + t40;
-    A[4] = -(t7 + t43) + t40;
-    A[5] = -(u_z + t46) + t40;
-    A[6] = -(t9 + t32) + t40;
-    A[7] = -(t10 + t43) + t40;
-    A[8] = -(v_z + t46) + t40;
-    A[9] = A_11_above + t40;
-    A[10] = A_12_above + t40;
-    A[11] = A_13_above + t40;
-    A[12] = A_11_above - t5 + t40;
-    A[13] = A_12_above - t7 + t40;
-    A[14] = A_13_above - u_z + t40;
-    A[15] = A_11_above - t9 + t40;
-    A[16] = A_12_above - t10 + t40;
-    A[17] = A_13_above - v_z + t40;
+    const real_t m_x = cf_rarely(single, slim, over * (t13 * n_z - d_z * t24), t16);
+    const real_t t25 = whole * (t13 + a_x * s_w);
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t26 = t18 * (d_x - t18) + t15 * (t13 - t15) + t14 * (d_z - t14);
+    const real_t t27 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t26 * t26));
+    const real_t t28 = mu * (CLOSEDFORM_C(1.0) + t27) * CLOSEDFORM_C(0.25);
+    const real_t t29 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t28);
+    const real_t t30 = l * l - t29;
+    const real_t slack = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t t31 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t31, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t32 = cf_rarely(single, in_line, g_1 * s_w, m_x) * h;
+    const real_t t33 = cf_select(in_line, CLOSEDFORM_C(0.0), part * t26 * CLOSEDFORM_C(0.5));
+    const real_t t34 = t23 * t33 + d_x * CLOSEDFORM_C(0.5);
+    const real_t t35 = t32 - t34;
+    const int t36 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t37 = t36 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t39 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t40 = cf_rarely(single, in_line, -t26, CLOSEDFORM_C(0.0));
+    const int t41 = cf_abs(t40) <= t8 * CLOSEDFORM_FEASIBILITY;
+    const int t42 = t41 & (-(CLOSEDFORM_FEASIBILITY * t31) <= t30);
+    const real_t t43 = cf_poison(single, (!(t38 & t39)) | (!t42));
+    const real_t t44 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t23), t19);
+    const real_t t45 = h * cf_rarely(single, in_line, g_1, -t44);
+    const real_t t46 = t24 * t33 - t13 * CLOSEDFORM_C(0.5);
+    const real_t t47 = t45 + t46;
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * t24 + t13 * t23), t20);
+    const real_t t48 = h * cf_rarely(single, in_line, -t25, m_z);
+    const real_t t49 = n_z * t33 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t50 = t48 + t49;
+    const real_t A_11_above = t32 + t34;
+    const real_t A_12_above = t45 - t46;
+    const real_t A_13_above = t48 - t49;
+    A[0] = -t35 + t43;
+    A[1] = -t47 + t43;
+    A[2] = -t50 + t43;
+    A[3] = -(t5 + t35) + t43;
+    A[4] = -(t7 + t47) + t43;
+    A[5] = -(u_z + t50) + t43;
+    A[6] = -(t17 + t35) + t43;
+    A[7] = -(t12 + t47) + t43;
+    A[8] = -(v_z + t50) + t43;
+    A[9] = A_11_above + t43;
+    A[10] = A_12_above + t43;
+    A[11] = A_13_above + t43;
+    A[12] = A_11_above - t5 + t43;
+    A[13] = A_12_above - t7 + t43;
+    A[14] = A_13_above - u_z + t43;
+    A[15] = A_11_above - t17 + t43;
+    A[16] = A_12_above - t12 + t43;
+    A[17] = A_13_above - v_z + t43;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void delta_jacobian_parallel_whole(const delta_params *params, const real_t q[3],
+    real_t A[18])
+{
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, params->alpha3, q[2], q[2], q[2] };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    delta_jacobian_parallel_whole_kernel(1, params, q, sines, cosines, A);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void delta_jacobian_parallel_common_kernel(const int single, const real_t one,
+    const delta_params *params, const real_t q[3],
+    const real_t *sines, const real_t *cosines,
+    real_t A[18], real_t rare[1])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t L = params->L;
+    const real_t l = params->l;
+    const real_t alpha1 = params->alpha1;
+    const real_t alpha2 = params->alpha2;
+    const real_t alpha3 = params->alpha3;
+    const real_t theta1 = q[0];
+    const real_t theta2 = q[1];
+    const real_t theta3 = q[2];
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s3 = sines[1];
+    const real_t c3 = cosines[1];
+    const real_t s_alpha1 = sines[2];
+    const real_t c_alpha1 = cosines[2];
+    const real_t s_alpha2 = sines[3];
+    const real_t c_alpha2 = cosines[3];
+    const real_t s2 = sines[4];
+    const real_t c2 = cosines[4];
+    const real_t s_alpha3 = sines[5];
+    const real_t c_alpha3 = cosines[5];
+    const real_t t1 = cf_rounded(single, one, L * s1);
+    const real_t v_z = t1 - cf_rounded(single, one, L * s3);
+    const real_t t2 = cf_rounded(single, one, e * s_alpha1) - cf_rounded(single, one, f * s_alpha1);
+    const real_t t3 = L * c1;
+    const real_t t4 = t2 - cf_rounded(single, one, s_alpha1 * t3);
+    const real_t t5 = cf_rounded(single, one, e * s_alpha2) - cf_rounded(single, one, f * s_alpha2);
+    const real_t t6 = L * c2;
+    const real_t t7 = t4 - (t5 - cf_rounded(single, one, s_alpha2 * t6));
+    const real_t u_z = t1 - cf_rounded(single, one, L * s2);
+    const real_t t8 = cf_rounded(single, one, e * s_alpha3) - cf_rounded(single, one, f * s_alpha3);
+    const real_t t9 = L * c3;
+    const real_t t10 = t4 - (t8 - cf_rounded(single, one, s_alpha3 * t9));
+    const real_t t11 = cf_rounded(single, one, v_z * t7) - cf_rounded(single, one, u_z * t10);
+    const real_t t12 = cf_rounded(single, one, e * c_alpha1) - cf_rounded(single, one, f * c_alpha1);
+    const real_t t13 = t12 - cf_rounded(single, one, c_alpha1 * t3);
+    const real_t t14 = cf_rounded(single, one, e * c_alpha2) - cf_rounded(single, one, f * c_alpha2);
+    const real_t t15 = t13 - (t14 - cf_rounded(single, one, c_alpha2 * t6));
+    const real_t t16 = cf_rounded(single, one, e * c_alpha3) - cf_rounded(single, one, f * c_alpha3);
+    const real_t t17 = t13 - (t16 - cf_rounded(single, one, c_alpha3 * t9));
+    const real_t t18 = cf_rounded(single, one, v_z * t15) - cf_rounded(single, one, u_z * t17);
+    const real_t t19 = cf_rounded(single, one, t11 * t11) + cf_rounded(single, one, t18 * t18);
+    const real_t m_z = cf_rounded(single, one, t15 * t10) - cf_rounded(single, one, t7 * t17);
+    const real_t product_2 = t19 + cf_rounded(single, one, m_z * m_z);
+    const real_t t20 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t15 * t15);
+    const real_t u_u = t20 + cf_rounded(single, one, t7 * t7);
+    const real_t size = f + e + L + l;
+    const real_t t21 = size * size;
+    const real_t t22 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t23 = t21 * t22;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t23) | (product_2 <= t22 * (t21 * u_u)), product_2);
+    const real_t t24 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t17 * (t15 - t17));
+    const real_t t25 = t24 + cf_rounded(single, one, t10 * (t7 - t10));
+    const real_t t26 = CLOSEDFORM_C(1.0) + cf_rounded(single, one, part * (t25 * t25));
+    const real_t t27 = cf_rounded(single, one, l * l) - u_u * t26 * CLOSEDFORM_C(0.25);
+    const real_t slack = cf_max(t27, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t28 = t11 * h;
+    const real_t t29 = part * t25 * CLOSEDFORM_C(0.5);
+    const real_t t30 = (t7 * m_z + u_z * t18) * t29 + t15 * CLOSEDFORM_C(0.5);
+    const real_t t31 = t28 - t30;
+    const int t32 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t33 = t32 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t34 = t33 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t35 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int t36 = cf_abs(CLOSEDFORM_C(0.0)) <= t21 * CLOSEDFORM_FEASIBILITY;
+    const real_t t37 = CLOSEDFORM_C(0.9375) * (l * size);
+    const int t38 = t36 & (-(CLOSEDFORM_FEASIBILITY * t37) <= t27);
+    const real_t t39 = cf_poison(single, (!(t34 & t35)) | (!t38));
+    const real_t t40 = t18 * h;
+    const real_t t41 = t29 * (t15 * m_z - u_z * t11) - t7 * CLOSEDFORM_C(0.5);
+    const real_t A_12 = t40 - t41;
+    const real_t t42 = m_z * h;
+    const real_t t43 = u_z * CLOSEDFORM_C(0.5) - t29 * (t15 * t18 + t7 * t11);
+    const real_t t44 = t42 - t43;
+    const real_t A_11_above = t28 + t30;
+    const real_t t45 = t40 + t41;
+    const real_t A_13_above = t42 + t43;
+    const real_t t46 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t17 * t17);
+    const real_t v_v = t46 + cf_rounded(single, one, t10 * t10);
+    const real_t t47 = u_u * v_v;
+    const real_t t48 = product_2 - t47 * CLOSEDFORM_C(0.000244140625);
+    const int t49 = (u_u <= t23) | (u_u + v_v <= t23) | (t48 <= CLOSEDFORM_VANISHING * t47);
+    const int t50 = t49 | (product_2 <= t22 * (t21 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t37);
+    A[0] = -t31 + t39;
+    A[1] = A_12 + t39;
+    A[2] = -t44 + t39;
+    A[3] = -(t15 + t31) + t39;
+    A[4] = A_12 - t7 + t39;
+    A[5] = -(u_z + t44) + t39;
+    A[6] = -(t17 + t31) + t39;
+    A[7] = A_12 - t10 + t39;
+    A[8] = -(v_z + t44) + t39;
+    A[9] = A_11_above + t39;
+    A[10] = -t45 + t39;
+    A[11] = A_13_above + t39;
+    A[12] = A_11_above - t15 + t39;
+    A[13] = -(t7 + t45) + t39;
+    A[14] = A_13_above - u_z + t39;
+    A[15] = A_11_above - t17 + t39;
+    A[16] = -(t10 + t45) + t39;
+    A[17] = A_13_above - v_z + t39;
+    rare[0] = (t50) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void delta_jacobian_parallel_common_batch(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *A, size_t A_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const delta_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[1], cosines[1]);
+        real_t angle_2[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_2[i] = params->alpha1;
+        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = params->alpha2;
+        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_5[i] = params->alpha3;
+        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            real_t A_i[18];
+            real_t rare_i[1];
+            delta_jacobian_parallel_common_kernel(0, one, &local, q_i, sines_i, cosines_i, A_i, rare_i);
+            A[start + i] = A_i[0];
+            A[A_stride + start + i] = A_i[1];
+            A[2 * A_stride + start + i] = A_i[2];
+            A[3 * A_stride + start + i] = A_i[3];
+            A[4 * A_stride + start + i] = A_i[4];
+            A[5 * A_stride + start + i] = A_i[5];
+            A[6 * A_stride + start + i] = A_i[6];
+            A[7 * A_stride + start + i] = A_i[7];
+            A[8 * A_stride + start + i] = A_i[8];
+            A[9 * A_stride + start + i] = A_i[9];
+            A[10 * A_stride + start + i] = A_i[10];
+            A[11 * A_stride + start + i] = A_i[11];
+            A[12 * A_stride + start + i] = A_i[12];
+            A[13 * A_stride + start + i] = A_i[13];
+            A[14 * A_stride + start + i] = A_i[14];
+            A[15 * A_stride + start + i] = A_i[15];
+            A[16 * A_stride + start + i] = A_i[16];
+            A[17 * A_stride + start + i] = A_i[17];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void delta_jacobian_parallel_common(const delta_params *params, const real_t q[3],
+    real_t A[18], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[0], q[2], params->alpha1, params->alpha2, q[1], params->alpha3, params->alpha3, params->alpha3 };
+    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
+    real_t rare_real[1];
+    delta_jacobian_parallel_common_kernel(1, one, params, q, sines, cosines, A, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1344,7 +1266,7 @@ void delta_jacobian_parallel(const delta_params *params, const real_t q[3],
     delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -1353,10 +1275,9 @@ void delta_jacobian_parallel(const delta_params *params, const real_t q[3],
         params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
         params = &params_scaled;
     }
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    delta_jacobian_parallel_kernel(1, params, q, sines, cosines, A);
+    uint8_t rare[1];
+    delta_jacobian_parallel_common(params, q, A, rare);
+    if (CF_UNLIKELY(rare[0])) delta_jacobian_parallel_whole(params, q, A);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(18, A_degrees, exponent, A, A);
     }
@@ -1381,60 +1302,29 @@ void delta_jacobian_parallel_batch(size_t n, const delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *A, size_t A_stride)
 {
-    const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         delta_jacobian_parallel_other_sizes(n, params, q, q_stride, A, A_stride);
         return;
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha1;
-        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->alpha3;
-        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        delta_jacobian_parallel_common_batch(length, params, q + start, q_stride, A + start, A_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
             real_t A_i[18];
-            delta_jacobian_parallel_kernel(0, &local, q_i, sines_i, cosines_i, A_i);
-            A[start + i] = A_i[0];
-            A[A_stride + start + i] = A_i[1];
-            A[2 * A_stride + start + i] = A_i[2];
-            A[3 * A_stride + start + i] = A_i[3];
-            A[4 * A_stride + start + i] = A_i[4];
-            A[5 * A_stride + start + i] = A_i[5];
-            A[6 * A_stride + start + i] = A_i[6];
-            A[7 * A_stride + start + i] = A_i[7];
-            A[8 * A_stride + start + i] = A_i[8];
-            A[9 * A_stride + start + i] = A_i[9];
-            A[10 * A_stride + start + i] = A_i[10];
-            A[11 * A_stride + start + i] = A_i[11];
-            A[12 * A_stride + start + i] = A_i[12];
-            A[13 * A_stride + start + i] = A_i[13];
-            A[14 * A_stride + start + i] = A_i[14];
-            A[15 * A_stride + start + i] = A_i[15];
-            A[16 * A_stride + start + i] = A_i[16];
-            A[17 * A_stride + start + i] = A_i[17];
+            delta_jacobian_parallel_whole(params, q_i, A_i);
+            for (size_t k = 0; k < 18; ++k) A[k * A_stride + i] = A_i[k];
+
         }
     }
 }
 
-CF_INLINE void delta_jacobian_serial_kernel(const int single, const delta_params *params,
+/* Every case. */
+CF_INLINE void delta_jacobian_serial_whole_kernel(const int single, const delta_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t B[6])
 {
@@ -1456,10 +1346,10 @@ CF_INLINE void delta_jacobian_serial_kernel(const int single, const delta_params
     const real_t c2 = cosines[2];
     const real_t s_alpha2 = sines[3];
     const real_t c_alpha2 = cosines[3];
-    const real_t s3 = sines[4];
-    const real_t c3 = cosines[4];
-    const real_t s_alpha3 = sines[5];
-    const real_t c_alpha3 = cosines[5];
+    const real_t s_alpha3 = sines[4];
+    const real_t c_alpha3 = cosines[4];
+    const real_t s3 = sines[5];
+    const real_t c3 = cosines[5];
     const real_t t1 = L * s1;
     const real_t t2 = c_alpha1 * t1;
     const real_t t3 = L * s2;
@@ -1471,87 +1361,280 @@ CF_INLINE void delta_jacobian_serial_kernel(const int single, const delta_params
     const real_t t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4;
     const real_t t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6);
     const real_t u_u = u_z * u_z + t7 * t7 + t9 * t9;
-    const real_t t10 = L * s3;
-    const real_t v_z = t1 - t10;
-    const real_t t11 = L * c3;
-    const real_t t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11);
-    const real_t t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11);
-    const real_t v_v = v_z * v_z + t12 * t12 + t13 * t13;
     const real_t size = f + e + L + l;
-    const real_t t14 = size * size;
-    const real_t t15 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t14;
-    const int all_same = u_u + v_v <= t15;
-    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t15;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t16 = cf_rarely(single, same, t13, t9);
-    const real_t d_x = cf_rarely(single, same, t12, t7);
-    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
-    const real_t t17 = cf_rarely(single, same, t9, t13);
-    const real_t t18 = cf_rarely(single, same, t7, t12);
-    const real_t t19 = a_x * t17 - t16 * t18;
+    const real_t t10 = size * size;
+    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t12 = t10 * t11;
+    const int same = u_u <= t12;
+    const real_t t13 = L * c3;
+    const real_t t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13);
+    const real_t t15 = cf_rarely(single, same, t14, t9);
+    const real_t t16 = L * s3;
+    const real_t v_z = t1 - t16;
+    const real_t t17 = cf_rarely(single, same, u_z, v_z);
+    const real_t t18 = cf_rarely(single, same, t9, t14);
     const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t20 = cf_rarely(single, same, u_z, v_z);
-    const real_t t21 = a_x * t20 - t18 * d_z;
-    const real_t t22 = over * (t16 * t19 + d_z * t21);
-    const real_t t23 = t16 * t20 - t17 * d_z;
-    const real_t t24 = over * (a_x * t19 - d_z * t23);
-    const real_t n_z = over * (a_x * t21 + t16 * t23);
-    const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
-    const int in_line = nu <= t15;
+    const real_t t19 = t15 * t17 - t18 * d_z;
+    const real_t t20 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13);
+    const real_t v_v = v_z * v_z + t20 * t20 + t14 * t14;
+    const int all_same = u_u + v_v <= t12;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
+    const real_t d_x = cf_rarely(single, same, t20, t7);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t21 = cf_rarely(single, same, t7, t20);
+    const real_t t22 = a_x * t17 - t21 * d_z;
+    const real_t t23 = a_x * t18 - t15 * t21;
+    const real_t product_2 = t19 * t19 + t22 * t22 + t23 * t23;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t24 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t25 = product_2 - t24 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t25 <= CLOSEDFORM_VANISHING * t24;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t26 = t15 * t23 + d_z * t22;
+    const real_t t27 = a_x * t23 - d_z * t19;
+    const real_t n_z = a_x * t22 + t15 * t19;
+    const real_t m_m = cf_rarely(single, slim, over * (t26 * t26 + t27 * t27 + n_z * n_z), product_2);
+    const int in_line = m_m <= t11 * (t10 * mu);
     const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(t16 * a_x);
-    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t16 * n_z - d_z * t24);
-    const real_t t25 = whole * (t16 + a_x * s_w);
-    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25);
-    const real_t t27 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, t26, t27);
-    const real_t t28 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
-    const real_t t29 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t28 * CLOSEDFORM_C(0.5));
-    const real_t t30 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t29 * t29) + mu * CLOSEDFORM_C(0.25));
-    const real_t t31 = l * l - t30;
-    const real_t slack = cf_max(t31, CLOSEDFORM_C(0.0));
-    const real_t t32 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t32, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t33 = w_x * h;
-    const real_t t34 = t22 * t29 + d_x * CLOSEDFORM_C(0.5);
-    const real_t t35 = t33 - t34;
-    const real_t t36 = s_alpha1 * t1;
-    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t22));
-    const real_t t37 = h * w_y;
-    const real_t t38 = t24 * t29 - t16 * CLOSEDFORM_C(0.5);
-    const real_t t39 = t37 + t38;
-    const real_t w_z = cf_rarely(single, in_line, -t25, a_x * t24 + t16 * t22);
-    const real_t t40 = h * w_z;
-    const real_t t41 = n_z * t29 - d_z * CLOSEDFORM_C(0.5);
-    const real_t t42 = t40 + t41;
+    const real_t s_w = cf_sign(t15 * a_x);
+    const real_t m_x = cf_rarely(single, slim, over * (t15 * n_z - d_z * t27), t19);
+    const real_t t28 = whole * (t15 + a_x * s_w);
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t28 * t28, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t29 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17);
+    const real_t t30 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t29 * t29));
+    const real_t t31 = mu * (CLOSEDFORM_C(1.0) + t30) * CLOSEDFORM_C(0.25);
+    const real_t t32 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t31);
+    const real_t t33 = l * l - t32;
+    const real_t slack = cf_max(t33, CLOSEDFORM_C(0.0));
+    const real_t t34 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t34, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t35 = cf_rarely(single, in_line, g_1 * s_w, m_x) * h;
+    const real_t t36 = cf_select(in_line, CLOSEDFORM_C(0.0), part * t29 * CLOSEDFORM_C(0.5));
+    const real_t t37 = t26 * t36 + d_x * CLOSEDFORM_C(0.5);
+    const real_t t38 = t35 - t37;
+    const real_t t39 = s_alpha1 * t1;
+    const real_t t40 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t26), t22);
+    const real_t t41 = h * cf_rarely(single, in_line, g_1, -t40);
+    const real_t t42 = t27 * t36 - t15 * CLOSEDFORM_C(0.5);
+    const real_t t43 = t41 + t42;
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * t27 + t15 * t26), t23);
+    const real_t t44 = h * cf_rarely(single, in_line, -t28, m_z);
+    const real_t t45 = n_z * t36 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t46 = t44 + t45;
+    const int t47 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t50 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t51 = cf_rarely(single, in_line, -t29, CLOSEDFORM_C(0.0));
+    const int t52 = cf_abs(t51) <= t10 * CLOSEDFORM_FEASIBILITY;
+    const int t53 = t52 & (-(CLOSEDFORM_FEASIBILITY * t34) <= t33);
+    const real_t t54 = cf_poison(single, (!(t49 & t50)) | (!t53));
+    const real_t t55 = c_alpha2 * t3;
+    const real_t t56 = s_alpha2 * t3;
+    const real_t B_22 = t55 * (t7 + t38) + t56 * (t9 + t43) + t6 * (u_z + t46);
+    const real_t t57 = c_alpha3 * t16;
+    const real_t t58 = s_alpha3 * t16;
+    const real_t B_33 = t57 * (t20 + t38) + t58 * (t14 + t43) + t13 * (v_z + t46);
+    const real_t A_11_above = t35 + t37;
+    const real_t A_12_above = t41 - t42;
+    const real_t t59 = t44 - t45;
+    const real_t t60 = t2 * A_11_above + t39 * A_12_above + t4 * t59;
+    const real_t t61 = t55 * (t7 - A_11_above) + t56 * (t9 - A_12_above);
+    const real_t t62 = t57 * (t20 - A_11_above) + t58 * (t14 - A_12_above);
+    B[0] = t2 * t38 + t39 * t43 + t4 * t46 + t54;
+    B[1] = B_22 + t54;
+    B[2] = B_33 + t54;
+    B[3] = -t60 + t54;
+    B[4] = t61 + t6 * (u_z - t59) + t54;
+    B[5] = t62 + t13 * (v_z - t59) + t54;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void delta_jacobian_serial_whole(const delta_params *params, const real_t q[3],
+    real_t B[6])
+{
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, params->alpha3, q[2], q[2], q[2] };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    delta_jacobian_serial_whole_kernel(1, params, q, sines, cosines, B);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void delta_jacobian_serial_common_kernel(const int single, const real_t one,
+    const delta_params *params, const real_t q[3],
+    const real_t *sines, const real_t *cosines,
+    real_t B[6], real_t rare[1])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t L = params->L;
+    const real_t l = params->l;
+    const real_t alpha1 = params->alpha1;
+    const real_t alpha2 = params->alpha2;
+    const real_t alpha3 = params->alpha3;
+    const real_t theta1 = q[0];
+    const real_t theta2 = q[1];
+    const real_t theta3 = q[2];
+    const real_t s_alpha1 = sines[0];
+    const real_t c_alpha1 = cosines[0];
+    const real_t s1 = sines[1];
+    const real_t c1 = cosines[1];
+    const real_t s3 = sines[2];
+    const real_t c3 = cosines[2];
+    const real_t s_alpha2 = sines[3];
+    const real_t c_alpha2 = cosines[3];
+    const real_t s2 = sines[4];
+    const real_t c2 = cosines[4];
+    const real_t s_alpha3 = sines[5];
+    const real_t c_alpha3 = cosines[5];
+    const real_t t1 = cf_rounded(single, one, L * s1);
+    const real_t t2 = c_alpha1 * t1;
+    const real_t t3 = cf_rounded(single, one, L * s3);
+    const real_t v_z = t1 - t3;
+    const real_t t4 = cf_rounded(single, one, e * s_alpha1) - cf_rounded(single, one, f * s_alpha1);
+    const real_t t5 = L * c1;
+    const real_t t6 = t4 - cf_rounded(single, one, s_alpha1 * t5);
+    const real_t t7 = cf_rounded(single, one, e * s_alpha2) - cf_rounded(single, one, f * s_alpha2);
+    const real_t t8 = L * c2;
+    const real_t t9 = t6 - (t7 - cf_rounded(single, one, s_alpha2 * t8));
+    const real_t t10 = cf_rounded(single, one, L * s2);
+    const real_t u_z = t1 - t10;
+    const real_t t11 = cf_rounded(single, one, e * s_alpha3) - cf_rounded(single, one, f * s_alpha3);
+    const real_t t12 = L * c3;
+    const real_t t13 = t11 - cf_rounded(single, one, s_alpha3 * t12);
+    const real_t t14 = t6 - t13;
+    const real_t t15 = cf_rounded(single, one, v_z * t9) - cf_rounded(single, one, u_z * t14);
+    const real_t t16 = cf_rounded(single, one, e * c_alpha1) - cf_rounded(single, one, f * c_alpha1);
+    const real_t t17 = t16 - cf_rounded(single, one, c_alpha1 * t5);
+    const real_t t18 = cf_rounded(single, one, e * c_alpha2) - cf_rounded(single, one, f * c_alpha2);
+    const real_t t19 = t17 - (t18 - cf_rounded(single, one, c_alpha2 * t8));
+    const real_t t20 = cf_rounded(single, one, e * c_alpha3) - cf_rounded(single, one, f * c_alpha3);
+    const real_t t21 = t20 - cf_rounded(single, one, c_alpha3 * t12);
+    const real_t t22 = t17 - t21;
+    const real_t t23 = cf_rounded(single, one, v_z * t19) - cf_rounded(single, one, u_z * t22);
+    const real_t t24 = cf_rounded(single, one, t15 * t15) + cf_rounded(single, one, t23 * t23);
+    const real_t m_z = cf_rounded(single, one, t19 * t14) - cf_rounded(single, one, t9 * t22);
+    const real_t product_2 = t24 + cf_rounded(single, one, m_z * m_z);
+    const real_t t25 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t19 * t19);
+    const real_t u_u = t25 + cf_rounded(single, one, t9 * t9);
+    const real_t size = f + e + L + l;
+    const real_t t26 = size * size;
+    const real_t t27 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t28 = t26 * t27;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t28) | (product_2 <= t27 * (t26 * u_u)), product_2);
+    const real_t t29 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t22 * (t19 - t22));
+    const real_t t30 = t29 + cf_rounded(single, one, t14 * (t9 - t14));
+    const real_t t31 = CLOSEDFORM_C(1.0) + cf_rounded(single, one, part * (t30 * t30));
+    const real_t t32 = cf_rounded(single, one, l * l) - u_u * t31 * CLOSEDFORM_C(0.25);
+    const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t33 = t15 * h;
+    const real_t t34 = part * t30 * CLOSEDFORM_C(0.5);
+    const real_t t35 = (t9 * m_z + u_z * t23) * t34 + t19 * CLOSEDFORM_C(0.5);
+    const real_t t36 = t33 - t35;
+    const real_t t37 = s_alpha1 * t1;
+    const real_t t38 = t23 * h;
+    const real_t t39 = t34 * (t19 * m_z - u_z * t15) - t9 * CLOSEDFORM_C(0.5);
+    const real_t A_12 = t38 - t39;
+    const real_t t40 = m_z * h;
+    const real_t t41 = u_z * CLOSEDFORM_C(0.5) - t34 * (t19 * t23 + t9 * t15);
+    const real_t t42 = t40 - t41;
     const int t43 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
     const int t44 = t43 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
     const int t45 = t44 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
     const int t46 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t47 = cf_rarely(single, in_line, -t28, CLOSEDFORM_C(0.0));
-    const int t48 = cf_abs(t47) <= t14 * CLOSEDFORM_FEASIBILITY;
-    const int t49 = t48 & (-(CLOSEDFORM_FEASIBILITY * t32) <= t31);
+    const int t47 = cf_abs(CLOSEDFORM_C(0.0)) <= t26 * CLOSEDFORM_FEASIBILITY;
+    const real_t t48 = CLOSEDFORM_C(0.9375) * (l * size);
+    const int t49 = t47 & (-(CLOSEDFORM_FEASIBILITY * t48) <= t32);
     const real_t t50 = cf_poison(single, (!(t45 & t46)) | (!t49));
-    const real_t t51 = c_alpha2 * t3;
-    const real_t t52 = s_alpha2 * t3;
-    const real_t B_22 = t51 * (t7 + t35) + t52 * (t9 + t39) + t6 * (u_z + t42);
-    const real_t t53 = c_alpha3 * t10;
-    const real_t t54 = s_alpha3 * t10;
-    const real_t B_33 = t53 * (t12 + t35) + t54 * (t13 + t39) + t11 * (v_z + t42);
-    const real_t A_11_above = t33 + t34;
-    const real_t A_12_above = t37 - t38;
-    const real_t t55 = t40 - t41;
-    const real_t t56 = t2 * A_11_above + t36 * A_12_above + t4 * t55;
-    const real_t t57 = t51 * (t7 - A_11_above) + t52 * (t9 - A_12_above);
-    const real_t t58 = t53 * (t12 - A_11_above) + t54 * (t13 - A_12_above);
-    B[0] = t2 * t35 + t36 * t39 + t4 * t42 + t50;
+    const real_t t51 = c_alpha2 * t10;
+    const real_t t52 = s_alpha2 * t10;
+    const real_t B_22 = t51 * (t19 + t36) + t52 * (t9 - A_12) + t8 * (u_z + t42);
+    const real_t t53 = c_alpha3 * t3;
+    const real_t t54 = s_alpha3 * t3;
+    const real_t B_33 = t53 * (t22 + t36) + t54 * (t14 - A_12) + t12 * (v_z + t42);
+    const real_t A_11_above = t33 + t35;
+    const real_t t55 = t38 + t39;
+    const real_t t56 = t40 + t41;
+    const real_t t57 = -(t2 * A_11_above - t37 * t55 + t5 * t56) + t50;
+    const real_t B_22_above = t51 * (t19 - A_11_above) + t52 * (t9 + t55) + t8 * (u_z - t56);
+    const real_t B_33_above = t53 * (t22 - A_11_above) + t54 * (t14 + t55) + t12 * (v_z - t56);
+    const real_t t58 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t22 * t22);
+    const real_t v_v = t58 + cf_rounded(single, one, t14 * t14);
+    const real_t t59 = u_u * v_v;
+    const real_t t60 = product_2 - t59 * CLOSEDFORM_C(0.000244140625);
+    const int t61 = (u_u <= t28) | (u_u + v_v <= t28) | (t60 <= CLOSEDFORM_VANISHING * t59);
+    const int t62 = t61 | (product_2 <= t27 * (t26 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t48);
+    B[0] = t2 * t36 - t37 * A_12 + t5 * t42 + t50;
     B[1] = B_22 + t50;
     B[2] = B_33 + t50;
-    B[3] = -t56 + t50;
-    B[4] = t57 + t6 * (u_z - t55) + t50;
-    B[5] = t58 + t11 * (v_z - t55) + t50;
+    B[3] = t57;
+    B[4] = B_22_above + t50;
+    B[5] = B_33_above + t50;
+    rare[0] = (t62) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void delta_jacobian_serial_common_batch(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *B, size_t B_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const delta_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = params->alpha1;
+        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
+        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = params->alpha2;
+        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_5[i] = params->alpha3;
+        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            real_t B_i[6];
+            real_t rare_i[1];
+            delta_jacobian_serial_common_kernel(0, one, &local, q_i, sines_i, cosines_i, B_i, rare_i);
+            B[start + i] = B_i[0];
+            B[B_stride + start + i] = B_i[1];
+            B[2 * B_stride + start + i] = B_i[2];
+            B[3 * B_stride + start + i] = B_i[3];
+            B[4 * B_stride + start + i] = B_i[4];
+            B[5 * B_stride + start + i] = B_i[5];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void delta_jacobian_serial_common(const delta_params *params, const real_t q[3],
+    real_t B[6], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, q[0], q[2], params->alpha2, q[1], params->alpha3, params->alpha3, params->alpha3 };
+    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
+    real_t rare_real[1];
+    delta_jacobian_serial_common_kernel(1, one, params, q, sines, cosines, B, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1562,7 +1645,7 @@ void delta_jacobian_serial(const delta_params *params, const real_t q[3],
     delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -1571,10 +1654,9 @@ void delta_jacobian_serial(const delta_params *params, const real_t q[3],
         params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
         params = &params_scaled;
     }
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    delta_jacobian_serial_kernel(1, params, q, sines, cosines, B);
+    uint8_t rare[1];
+    delta_jacobian_serial_common(params, q, B, rare);
+    if (CF_UNLIKELY(rare[0])) delta_jacobian_serial_whole(params, q, B);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(6, B_degrees, exponent, B, B);
     }
@@ -1599,43 +1681,23 @@ void delta_jacobian_serial_batch(size_t n, const delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *B, size_t B_stride)
 {
-    const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         delta_jacobian_serial_other_sizes(n, params, q, q_stride, B, B_stride);
         return;
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
-        cf_sincos_block(length, q + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + q_stride + start, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->alpha3;
-        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        delta_jacobian_serial_common_batch(length, params, q + start, q_stride, B + start, B_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
             real_t B_i[6];
-            delta_jacobian_serial_kernel(0, &local, q_i, sines_i, cosines_i, B_i);
-            B[start + i] = B_i[0];
-            B[B_stride + start + i] = B_i[1];
-            B[2 * B_stride + start + i] = B_i[2];
-            B[3 * B_stride + start + i] = B_i[3];
-            B[4 * B_stride + start + i] = B_i[4];
-            B[5 * B_stride + start + i] = B_i[5];
+            delta_jacobian_serial_whole(params, q_i, B_i);
+            for (size_t k = 0; k < 6; ++k) B[k * B_stride + i] = B_i[k];
+
         }
     }
 }
@@ -1662,10 +1724,10 @@ CF_INLINE void delta_jacobian_kernel(const int single, const delta_params *param
     const real_t c2 = cosines[2];
     const real_t s_alpha2 = sines[3];
     const real_t c_alpha2 = cosines[3];
-    const real_t s3 = sines[4];
-    const real_t c3 = cosines[4];
-    const real_t s_alpha3 = sines[5];
-    const real_t c_alpha3 = cosines[5];
+    const real_t s_alpha3 = sines[4];
+    const real_t c_alpha3 = cosines[4];
+    const real_t s3 = sines[5];
+    const real_t c3 = cosines[5];
     const real_t t1 = L * s1;
     const real_t t2 = c_alpha1 * t1;
     const real_t t3 = L * s2;
@@ -1677,121 +1739,126 @@ CF_INLINE void delta_jacobian_kernel(const int single, const delta_params *param
     const real_t t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4;
     const real_t t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6);
     const real_t u_u = u_z * u_z + t7 * t7 + t9 * t9;
-    const real_t t10 = L * s3;
-    const real_t v_z = t1 - t10;
-    const real_t t11 = L * c3;
-    const real_t t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11);
-    const real_t t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11);
-    const real_t v_v = v_z * v_z + t12 * t12 + t13 * t13;
     const real_t size = f + e + L + l;
-    const real_t t14 = size * size;
-    const real_t t15 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t14;
-    const int all_same = u_u + v_v <= t15;
-    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t15;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t16 = cf_rarely(single, same, t13, t9);
-    const real_t d_x = cf_rarely(single, same, t12, t7);
-    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
-    const real_t t17 = cf_rarely(single, same, t9, t13);
-    const real_t t18 = cf_rarely(single, same, t7, t12);
-    const real_t t19 = a_x * t17 - t16 * t18;
+    const real_t t10 = size * size;
+    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t12 = t10 * t11;
+    const int same = u_u <= t12;
+    const real_t t13 = L * c3;
+    const real_t t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13);
+    const real_t t15 = cf_rarely(single, same, t14, t9);
+    const real_t t16 = L * s3;
+    const real_t v_z = t1 - t16;
+    const real_t t17 = cf_rarely(single, same, u_z, v_z);
+    const real_t t18 = cf_rarely(single, same, t9, t14);
     const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t20 = cf_rarely(single, same, u_z, v_z);
-    const real_t t21 = a_x * t20 - t18 * d_z;
-    const real_t t22 = over * (t16 * t19 + d_z * t21);
-    const real_t t23 = t16 * t20 - t17 * d_z;
-    const real_t t24 = over * (a_x * t19 - d_z * t23);
-    const real_t n_z = over * (a_x * t21 + t16 * t23);
-    const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
-    const int in_line = nu <= t15;
+    const real_t t19 = t15 * t17 - t18 * d_z;
+    const real_t t20 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13);
+    const real_t v_v = v_z * v_z + t20 * t20 + t14 * t14;
+    const int all_same = u_u + v_v <= t12;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
+    const real_t d_x = cf_rarely(single, same, t20, t7);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t21 = cf_rarely(single, same, t7, t20);
+    const real_t t22 = a_x * t17 - t21 * d_z;
+    const real_t t23 = a_x * t18 - t15 * t21;
+    const real_t product_2 = t19 * t19 + t22 * t22 + t23 * t23;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t24 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t25 = product_2 - t24 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t25 <= CLOSEDFORM_VANISHING * t24;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t26 = t15 * t23 + d_z * t22;
+    const real_t t27 = a_x * t23 - d_z * t19;
+    const real_t n_z = a_x * t22 + t15 * t19;
+    const real_t m_m = cf_rarely(single, slim, over * (t26 * t26 + t27 * t27 + n_z * n_z), product_2);
+    const int in_line = m_m <= t11 * (t10 * mu);
     const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(t16 * a_x);
-    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t16 * n_z - d_z * t24);
-    const real_t t25 = whole * (t16 + a_x * s_w);
-    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25);
-    const real_t t27 = mu * nu;
-    const real_t t28 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t27);
-    const real_t part = cf_rarely(single, in_line, t26, t28);
-    const real_t t29 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
-    const real_t t30 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t29 * CLOSEDFORM_C(0.5));
-    const real_t t31 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t30 * t30) + mu * CLOSEDFORM_C(0.25));
-    const real_t t32 = l * l - t31;
-    const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
-    const real_t t33 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t33, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t34 = w_x * h;
-    const real_t t35 = t22 * t30 + d_x * CLOSEDFORM_C(0.5);
-    const real_t t36 = t34 - t35;
-    const real_t t37 = s_alpha1 * t1;
-    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t22));
-    const real_t t38 = h * w_y;
-    const real_t t39 = t24 * t30 - t16 * CLOSEDFORM_C(0.5);
-    const real_t t40 = t38 + t39;
-    const real_t w_z = cf_rarely(single, in_line, -t25, a_x * t24 + t16 * t22);
-    const real_t t41 = h * w_z;
-    const real_t t42 = n_z * t30 - d_z * CLOSEDFORM_C(0.5);
+    const real_t s_w = cf_sign(t15 * a_x);
+    const real_t m_x = cf_rarely(single, slim, over * (t15 * n_z - d_z * t27), t19);
+    const real_t t28 = whole * (t15 + a_x * s_w);
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t28 * t28, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t29 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17);
+    const real_t t30 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t29 * t29));
+    const real_t t31 = mu * (CLOSEDFORM_C(1.0) + t30) * CLOSEDFORM_C(0.25);
+    const real_t t32 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t31);
+    const real_t t33 = l * l - t32;
+    const real_t slack = cf_max(t33, CLOSEDFORM_C(0.0));
+    const real_t t34 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t34, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t35 = cf_rarely(single, in_line, g_1 * s_w, m_x) * h;
+    const real_t t36 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t29 * CLOSEDFORM_C(0.5));
+    const real_t t37 = t26 * t36 + d_x * CLOSEDFORM_C(0.5);
+    const real_t t38 = t35 - t37;
+    const real_t t39 = s_alpha1 * t1;
+    const real_t t40 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t26), t22);
+    const real_t t41 = h * cf_rarely(single, in_line, g_1, -t40);
+    const real_t t42 = t27 * t36 - t15 * CLOSEDFORM_C(0.5);
     const real_t t43 = t41 + t42;
-    const real_t t44 = t2 * t36 + t37 * t40 + t4 * t43;
-    const real_t t45 = t9 + t40;
-    const real_t t46 = v_z + t43;
-    const real_t t47 = u_z + t43;
-    const real_t t48 = t13 + t40;
-    const real_t Delta = t27 * h;
-    const real_t t49 = cf_nonzero(single, Delta);
-    const int t50 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t51 = t50 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t53 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t54 = cf_rarely(single, in_line, -t29, CLOSEDFORM_C(0.0));
-    const int t55 = cf_abs(t54) <= t14 * CLOSEDFORM_FEASIBILITY;
-    const int t56 = t55 & (-(CLOSEDFORM_FEASIBILITY * t33) <= t32);
-    const real_t t57 = cf_poison(single, (!(t52 & t53)) | (!t56));
-    const real_t t58 = c_alpha2 * t3;
-    const real_t t59 = t7 + t36;
-    const real_t t60 = s_alpha2 * t3;
-    const real_t t61 = t58 * t59 + t60 * t45 + t6 * t47;
-    const real_t t62 = c_alpha3 * t10;
-    const real_t t63 = t12 + t36;
-    const real_t t64 = s_alpha3 * t10;
-    const real_t t65 = t62 * t63 + t64 * t48 + t11 * t46;
-    const real_t A_11_above = t34 + t35;
-    const real_t A_12_above = t38 - t39;
-    const real_t t66 = t41 - t42;
-    const real_t t67 = t2 * A_11_above + t37 * A_12_above + t4 * t66;
-    const real_t t68 = t9 - A_12_above;
-    const real_t t69 = v_z - t66;
-    const real_t t70 = u_z - t66;
-    const real_t t71 = t13 - A_12_above;
-    const real_t t72 = t7 - A_11_above;
-    const real_t t73 = t58 * t72 + t60 * t68 + t6 * t70;
-    const real_t t74 = t73 * (A_12_above * t69 - t66 * t71) / t49 + t57;
-    const real_t t75 = t12 - A_11_above;
-    const real_t t76 = t62 * t75 + t64 * t71 + t11 * t69;
-    const real_t t77 = -(t76 * (A_12_above * t70 - t66 * t68) / t49);
-    const real_t t78 = -(t73 * (A_11_above * t69 - t66 * t75) / t49);
-    const real_t t79 = t76 * (A_11_above * t70 - t66 * t72) / t49 + t57;
-    const real_t t80 = t73 * (A_11_above * t71 - A_12_above * t75) / t49;
-    const real_t t81 = t76 * (A_11_above * t68 - A_12_above * t72) / t49;
-    J[0] = -(t44 * (t45 * t46 - t47 * t48) / t49) + t57;
-    J[1] = t61 * (t40 * t46 - t43 * t48) / t49 + t57;
-    J[2] = -(t65 * (t40 * t47 - t43 * t45) / t49) + t57;
-    J[3] = t44 * (t46 * t59 - t47 * t63) / t49 + t57;
-    J[4] = -(t61 * (t36 * t46 - t43 * t63) / t49) + t57;
-    J[5] = t65 * (t36 * t47 - t43 * t59) / t49 + t57;
-    J[6] = -(t44 * (t48 * t59 - t45 * t63) / t49) + t57;
-    J[7] = t61 * (t36 * t48 - t40 * t63) / t49 + t57;
-    J[8] = -(t65 * (t36 * t45 - t40 * t59) / t49) + t57;
-    J[9] = -(t67 * (t68 * t69 - t70 * t71) / t49) + t57;
-    J[10] = t74;
-    J[11] = t77 + t57;
-    J[12] = t67 * (t69 * t72 - t70 * t75) / t49 + t57;
-    J[13] = t78 + t57;
-    J[14] = t79;
-    J[15] = -(t67 * (t71 * t72 - t68 * t75) / t49) + t57;
-    J[16] = t80 + t57;
-    J[17] = -t81 + t57;
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * t27 + t15 * t26), t23);
+    const real_t t44 = h * cf_rarely(single, in_line, -t28, m_z);
+    const real_t t45 = n_z * t36 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t46 = t44 + t45;
+    const real_t t47 = t2 * t38 + t39 * t43 + t4 * t46;
+    const real_t t48 = t9 + t43;
+    const real_t t49 = v_z + t46;
+    const real_t t50 = u_z + t46;
+    const real_t t51 = t14 + t43;
+    const real_t Delta = m_m * h;
+    const real_t t52 = cf_nonzero(single, Delta);
+    const int t53 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t54 = t53 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t55 = t54 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t56 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t57 = cf_rarely(single, in_line, -t29, CLOSEDFORM_C(0.0));
+    const int t58 = cf_abs(t57) <= t10 * CLOSEDFORM_FEASIBILITY;
+    const int t59 = t58 & (-(CLOSEDFORM_FEASIBILITY * t34) <= t33);
+    const real_t t60 = cf_poison(single, (!(t55 & t56)) | (!t59));
+    const real_t t61 = c_alpha2 * t3;
+    const real_t t62 = t7 + t38;
+    const real_t t63 = s_alpha2 * t3;
+    const real_t t64 = t61 * t62 + t63 * t48 + t6 * t50;
+    const real_t t65 = c_alpha3 * t16;
+    const real_t t66 = t20 + t38;
+    const real_t t67 = s_alpha3 * t16;
+    const real_t t68 = t65 * t66 + t67 * t51 + t13 * t49;
+    const real_t A_11_above = t35 + t37;
+    const real_t A_12_above = t41 - t42;
+    const real_t t69 = t44 - t45;
+    const real_t t70 = t2 * A_11_above + t39 * A_12_above + t4 * t69;
+    const real_t t71 = t9 - A_12_above;
+    const real_t t72 = v_z - t69;
+    const real_t t73 = u_z - t69;
+    const real_t t74 = t14 - A_12_above;
+    const real_t t75 = t7 - A_11_above;
+    const real_t t76 = t61 * t75 + t63 * t71 + t6 * t73;
+    const real_t t77 = t76 * (A_12_above * t72 - t69 * t74) / t52 + t60;
+    const real_t t78 = t20 - A_11_above;
+    const real_t t79 = t65 * t78 + t67 * t74 + t13 * t72;
+    const real_t t80 = -(t79 * (A_12_above * t73 - t69 * t71) / t52);
+    const real_t t81 = -(t76 * (A_11_above * t72 - t69 * t78) / t52);
+    const real_t t82 = t79 * (A_11_above * t73 - t69 * t75) / t52 + t60;
+    const real_t t83 = t76 * (A_11_above * t74 - A_12_above * t78) / t52;
+    const real_t t84 = t79 * (A_11_above * t71 - A_12_above * t75) / t52;
+    J[0] = -(t47 * (t48 * t49 - t50 * t51) / t52) + t60;
+    J[1] = t64 * (t43 * t49 - t46 * t51) / t52 + t60;
+    J[2] = -(t68 * (t43 * t50 - t46 * t48) / t52) + t60;
+    J[3] = t47 * (t49 * t62 - t50 * t66) / t52 + t60;
+    J[4] = -(t64 * (t38 * t49 - t46 * t66) / t52) + t60;
+    J[5] = t68 * (t38 * t50 - t46 * t62) / t52 + t60;
+    J[6] = -(t47 * (t51 * t62 - t48 * t66) / t52) + t60;
+    J[7] = t64 * (t38 * t51 - t43 * t66) / t52 + t60;
+    J[8] = -(t68 * (t38 * t48 - t43 * t62) / t52) + t60;
+    J[9] = -(t70 * (t71 * t72 - t73 * t74) / t52) + t60;
+    J[10] = t77;
+    J[11] = t80 + t60;
+    J[12] = t70 * (t72 * t75 - t73 * t78) / t52 + t60;
+    J[13] = t81 + t60;
+    J[14] = t82;
+    J[15] = -(t70 * (t74 * t75 - t71 * t78) / t52) + t60;
+    J[16] = t83 + t60;
+    J[17] = -t84 + t60;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1802,7 +1869,7 @@ void delta_jacobian(const delta_params *params, const real_t q[3],
     delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -1812,7 +1879,7 @@ void delta_jacobian(const delta_params *params, const real_t q[3],
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, params->alpha3, q[2], q[2], q[2] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_jacobian_kernel(1, params, q, sines, cosines, J);
     if (CF_UNLIKELY(exponent != 0)) {
@@ -1841,7 +1908,7 @@ void delta_jacobian_batch(size_t n, const delta_params *params,
 {
     const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         delta_jacobian_other_sizes(n, params, q, q_stride, J, J_stride);
         return;
     }
@@ -1858,11 +1925,11 @@ void delta_jacobian_batch(size_t n, const delta_params *params,
         for (size_t i = 0; i < length; ++i)
             angle_3[i] = params->alpha2;
         cf_sincos_block(length, angle_3, sines[3], cosines[3]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
+        real_t angle_4[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->alpha3;
-        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
+            angle_4[i] = params->alpha3;
+        cf_sincos_block(length, angle_4, sines[4], cosines[4]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[5], cosines[5]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
@@ -1892,7 +1959,8 @@ void delta_jacobian_batch(size_t n, const delta_params *params,
     }
 }
 
-CF_INLINE void delta_determinant_kernel(const int single, const delta_params *params,
+/* Every case. */
+CF_INLINE void delta_determinant_whole_kernel(const int single, const delta_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t det[2])
 {
@@ -1914,10 +1982,10 @@ CF_INLINE void delta_determinant_kernel(const int single, const delta_params *pa
     const real_t c2 = cosines[2];
     const real_t s_alpha2 = sines[3];
     const real_t c_alpha2 = cosines[3];
-    const real_t s3 = sines[4];
-    const real_t c3 = cosines[4];
-    const real_t s_alpha3 = sines[5];
-    const real_t c_alpha3 = cosines[5];
+    const real_t s_alpha3 = sines[4];
+    const real_t c_alpha3 = cosines[4];
+    const real_t s3 = sines[5];
+    const real_t c3 = cosines[5];
     const real_t t1 = L * s1;
     const real_t t2 = c_alpha1 * t1;
     const real_t t3 = L * s2;
@@ -1929,87 +1997,275 @@ CF_INLINE void delta_determinant_kernel(const int single, const delta_params *pa
     const real_t t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4;
     const real_t t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6);
     const real_t u_u = u_z * u_z + t7 * t7 + t9 * t9;
-    const real_t t10 = L * s3;
-    const real_t v_z = t1 - t10;
-    const real_t t11 = L * c3;
-    const real_t t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11);
-    const real_t t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11);
-    const real_t v_v = v_z * v_z + t12 * t12 + t13 * t13;
     const real_t size = f + e + L + l;
-    const real_t t14 = size * size;
-    const real_t t15 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t14;
-    const int all_same = u_u + v_v <= t15;
-    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t15;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t16 = cf_rarely(single, same, t13, t9);
-    const real_t d_x = cf_rarely(single, same, t12, t7);
-    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
-    const real_t t17 = cf_rarely(single, same, t9, t13);
-    const real_t t18 = cf_rarely(single, same, t7, t12);
-    const real_t t19 = a_x * t17 - t16 * t18;
+    const real_t t10 = size * size;
+    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t12 = t10 * t11;
+    const int same = u_u <= t12;
+    const real_t t13 = L * c3;
+    const real_t t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13);
+    const real_t t15 = cf_rarely(single, same, t14, t9);
+    const real_t t16 = L * s3;
+    const real_t v_z = t1 - t16;
+    const real_t t17 = cf_rarely(single, same, u_z, v_z);
+    const real_t t18 = cf_rarely(single, same, t9, t14);
     const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t20 = cf_rarely(single, same, u_z, v_z);
-    const real_t t21 = a_x * t20 - t18 * d_z;
-    const real_t t22 = over * (t16 * t19 + d_z * t21);
-    const real_t t23 = t16 * t20 - t17 * d_z;
-    const real_t t24 = over * (a_x * t19 - d_z * t23);
-    const real_t n_z = over * (a_x * t21 + t16 * t23);
-    const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
-    const int in_line = nu <= t15;
+    const real_t t19 = t15 * t17 - t18 * d_z;
+    const real_t t20 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13);
+    const real_t v_v = v_z * v_z + t20 * t20 + t14 * t14;
+    const int all_same = u_u + v_v <= t12;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
+    const real_t d_x = cf_rarely(single, same, t20, t7);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t21 = cf_rarely(single, same, t7, t20);
+    const real_t t22 = a_x * t17 - t21 * d_z;
+    const real_t t23 = a_x * t18 - t15 * t21;
+    const real_t product_2 = t19 * t19 + t22 * t22 + t23 * t23;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t24 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t25 = product_2 - t24 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t25 <= CLOSEDFORM_VANISHING * t24;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t26 = t15 * t23 + d_z * t22;
+    const real_t t27 = a_x * t23 - d_z * t19;
+    const real_t n_z = a_x * t22 + t15 * t19;
+    const real_t m_m = cf_rarely(single, slim, over * (t26 * t26 + t27 * t27 + n_z * n_z), product_2);
+    const int in_line = m_m <= t11 * (t10 * mu);
     const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(t16 * a_x);
-    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t16 * n_z - d_z * t24);
-    const real_t t25 = whole * (t16 + a_x * s_w);
-    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25);
-    const real_t t27 = mu * nu;
-    const real_t t28 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t27);
-    const real_t part = cf_rarely(single, in_line, t26, t28);
-    const real_t t29 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
-    const real_t t30 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t29 * CLOSEDFORM_C(0.5));
-    const real_t t31 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t30 * t30) + mu * CLOSEDFORM_C(0.25));
-    const real_t t32 = l * l - t31;
-    const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
-    const real_t t33 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t33, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t34 = w_x * h;
-    const real_t t35 = t22 * t30 + d_x * CLOSEDFORM_C(0.5);
-    const real_t t36 = t34 - t35;
-    const real_t t37 = s_alpha1 * t1;
-    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t22));
-    const real_t t38 = h * w_y;
-    const real_t t39 = t24 * t30 - t16 * CLOSEDFORM_C(0.5);
-    const real_t t40 = t38 + t39;
-    const real_t w_z = cf_rarely(single, in_line, -t25, a_x * t24 + t16 * t22);
-    const real_t t41 = h * w_z;
-    const real_t t42 = n_z * t30 - d_z * CLOSEDFORM_C(0.5);
+    const real_t s_w = cf_sign(t15 * a_x);
+    const real_t m_x = cf_rarely(single, slim, over * (t15 * n_z - d_z * t27), t19);
+    const real_t t28 = whole * (t15 + a_x * s_w);
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t28 * t28, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t29 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17);
+    const real_t t30 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t29 * t29));
+    const real_t t31 = mu * (CLOSEDFORM_C(1.0) + t30) * CLOSEDFORM_C(0.25);
+    const real_t t32 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t31);
+    const real_t t33 = l * l - t32;
+    const real_t slack = cf_max(t33, CLOSEDFORM_C(0.0));
+    const real_t t34 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t34, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t35 = cf_rarely(single, in_line, g_1 * s_w, m_x) * h;
+    const real_t t36 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t29 * CLOSEDFORM_C(0.5));
+    const real_t t37 = t26 * t36 + d_x * CLOSEDFORM_C(0.5);
+    const real_t t38 = t35 - t37;
+    const real_t t39 = s_alpha1 * t1;
+    const real_t t40 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t26), t22);
+    const real_t t41 = h * cf_rarely(single, in_line, g_1, -t40);
+    const real_t t42 = t27 * t36 - t15 * CLOSEDFORM_C(0.5);
     const real_t t43 = t41 + t42;
-    const real_t t44 = c_alpha2 * t3;
-    const real_t t45 = s_alpha2 * t3;
-    const real_t t46 = t44 * (t7 + t36) + t45 * (t9 + t40) + t6 * (u_z + t43);
-    const real_t t47 = c_alpha3 * t10;
-    const real_t t48 = s_alpha3 * t10;
-    const real_t t49 = t47 * (t12 + t36) + t48 * (t13 + t40) + t11 * (v_z + t43);
-    const real_t t50 = (t2 * t36 + t37 * t40 + t4 * t43) * t46 * t49;
-    const real_t Delta = t27 * h;
-    const int t51 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t53 = t52 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t54 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t55 = cf_rarely(single, in_line, -t29, CLOSEDFORM_C(0.0));
-    const int t56 = cf_abs(t55) <= t14 * CLOSEDFORM_FEASIBILITY;
-    const int t57 = t56 & (-(CLOSEDFORM_FEASIBILITY * t33) <= t32);
-    const real_t t58 = cf_poison(single, (!(t53 & t54)) | (!t57));
-    const real_t A_11_above = t34 + t35;
-    const real_t A_12_above = t38 - t39;
-    const real_t t59 = t41 - t42;
-    const real_t t60 = t2 * A_11_above + t37 * A_12_above + t4 * t59;
-    const real_t t61 = t44 * (t7 - A_11_above) + t45 * (t9 - A_12_above);
-    const real_t t62 = t47 * (t12 - A_11_above) + t48 * (t13 - A_12_above);
-    const real_t t63 = t60 * (t61 + t6 * (u_z - t59)) * (t62 + t11 * (v_z - t59));
-    det[0] = -cf_quotient(single, t50, Delta) + t58;
-    det[1] = -cf_quotient(single, t63, Delta) + t58;
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * t27 + t15 * t26), t23);
+    const real_t t44 = h * cf_rarely(single, in_line, -t28, m_z);
+    const real_t t45 = n_z * t36 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t46 = t44 + t45;
+    const real_t t47 = c_alpha2 * t3;
+    const real_t t48 = s_alpha2 * t3;
+    const real_t t49 = t47 * (t7 + t38) + t48 * (t9 + t43) + t6 * (u_z + t46);
+    const real_t t50 = c_alpha3 * t16;
+    const real_t t51 = s_alpha3 * t16;
+    const real_t t52 = t50 * (t20 + t38) + t51 * (t14 + t43) + t13 * (v_z + t46);
+    const real_t t53 = (t2 * t38 + t39 * t43 + t4 * t46) * t49 * t52;
+    const real_t Delta = m_m * h;
+    const int t54 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t55 = t54 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t56 = t55 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t57 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t58 = cf_rarely(single, in_line, -t29, CLOSEDFORM_C(0.0));
+    const int t59 = cf_abs(t58) <= t10 * CLOSEDFORM_FEASIBILITY;
+    const int t60 = t59 & (-(CLOSEDFORM_FEASIBILITY * t34) <= t33);
+    const real_t t61 = cf_poison(single, (!(t56 & t57)) | (!t60));
+    const real_t A_11_above = t35 + t37;
+    const real_t A_12_above = t41 - t42;
+    const real_t t62 = t44 - t45;
+    const real_t t63 = t2 * A_11_above + t39 * A_12_above + t4 * t62;
+    const real_t t64 = t47 * (t7 - A_11_above) + t48 * (t9 - A_12_above);
+    const real_t t65 = t50 * (t20 - A_11_above) + t51 * (t14 - A_12_above);
+    const real_t t66 = t63 * (t64 + t6 * (u_z - t62)) * (t65 + t13 * (v_z - t62));
+    det[0] = -cf_quotient(single, t53, Delta) + t61;
+    det[1] = -cf_quotient(single, t66, Delta) + t61;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void delta_determinant_whole(const delta_params *params, const real_t q[3],
+    real_t det[2])
+{
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, params->alpha3, q[2], q[2], q[2] };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    delta_determinant_whole_kernel(1, params, q, sines, cosines, det);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void delta_determinant_common_kernel(const int single, const real_t one,
+    const delta_params *params, const real_t q[3],
+    const real_t *sines, const real_t *cosines,
+    real_t det[2], real_t rare[1])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t L = params->L;
+    const real_t l = params->l;
+    const real_t alpha1 = params->alpha1;
+    const real_t alpha2 = params->alpha2;
+    const real_t alpha3 = params->alpha3;
+    const real_t theta1 = q[0];
+    const real_t theta2 = q[1];
+    const real_t theta3 = q[2];
+    const real_t s_alpha1 = sines[0];
+    const real_t c_alpha1 = cosines[0];
+    const real_t s1 = sines[1];
+    const real_t c1 = cosines[1];
+    const real_t s3 = sines[2];
+    const real_t c3 = cosines[2];
+    const real_t s_alpha2 = sines[3];
+    const real_t c_alpha2 = cosines[3];
+    const real_t s2 = sines[4];
+    const real_t c2 = cosines[4];
+    const real_t s_alpha3 = sines[5];
+    const real_t c_alpha3 = cosines[5];
+    const real_t t1 = cf_rounded(single, one, L * s1);
+    const real_t t2 = c_alpha1 * t1;
+    const real_t t3 = cf_rounded(single, one, L * s3);
+    const real_t v_z = t1 - t3;
+    const real_t t4 = cf_rounded(single, one, e * s_alpha1) - cf_rounded(single, one, f * s_alpha1);
+    const real_t t5 = L * c1;
+    const real_t t6 = t4 - cf_rounded(single, one, s_alpha1 * t5);
+    const real_t t7 = cf_rounded(single, one, e * s_alpha2) - cf_rounded(single, one, f * s_alpha2);
+    const real_t t8 = L * c2;
+    const real_t t9 = t6 - (t7 - cf_rounded(single, one, s_alpha2 * t8));
+    const real_t t10 = cf_rounded(single, one, L * s2);
+    const real_t u_z = t1 - t10;
+    const real_t t11 = cf_rounded(single, one, e * s_alpha3) - cf_rounded(single, one, f * s_alpha3);
+    const real_t t12 = L * c3;
+    const real_t t13 = t11 - cf_rounded(single, one, s_alpha3 * t12);
+    const real_t t14 = t6 - t13;
+    const real_t t15 = cf_rounded(single, one, v_z * t9) - cf_rounded(single, one, u_z * t14);
+    const real_t t16 = cf_rounded(single, one, e * c_alpha1) - cf_rounded(single, one, f * c_alpha1);
+    const real_t t17 = t16 - cf_rounded(single, one, c_alpha1 * t5);
+    const real_t t18 = cf_rounded(single, one, e * c_alpha2) - cf_rounded(single, one, f * c_alpha2);
+    const real_t t19 = t17 - (t18 - cf_rounded(single, one, c_alpha2 * t8));
+    const real_t t20 = cf_rounded(single, one, e * c_alpha3) - cf_rounded(single, one, f * c_alpha3);
+    const real_t t21 = t20 - cf_rounded(single, one, c_alpha3 * t12);
+    const real_t t22 = t17 - t21;
+    const real_t t23 = cf_rounded(single, one, v_z * t19) - cf_rounded(single, one, u_z * t22);
+    const real_t t24 = cf_rounded(single, one, t15 * t15) + cf_rounded(single, one, t23 * t23);
+    const real_t m_z = cf_rounded(single, one, t19 * t14) - cf_rounded(single, one, t9 * t22);
+    const real_t product_2 = t24 + cf_rounded(single, one, m_z * m_z);
+    const real_t t25 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t19 * t19);
+    const real_t u_u = t25 + cf_rounded(single, one, t9 * t9);
+    const real_t size = f + e + L + l;
+    const real_t t26 = size * size;
+    const real_t t27 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t28 = t26 * t27;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t28) | (product_2 <= t27 * (t26 * u_u)), product_2);
+    const real_t t29 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t22 * (t19 - t22));
+    const real_t t30 = t29 + cf_rounded(single, one, t14 * (t9 - t14));
+    const real_t t31 = CLOSEDFORM_C(1.0) + cf_rounded(single, one, part * (t30 * t30));
+    const real_t t32 = cf_rounded(single, one, l * l) - u_u * t31 * CLOSEDFORM_C(0.25);
+    const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t33 = t15 * h;
+    const real_t t34 = part * t30 * CLOSEDFORM_C(0.5);
+    const real_t t35 = (t9 * m_z + u_z * t23) * t34 + t19 * CLOSEDFORM_C(0.5);
+    const real_t t36 = t33 - t35;
+    const real_t t37 = s_alpha1 * t1;
+    const real_t t38 = t23 * h;
+    const real_t t39 = t34 * (t19 * m_z - u_z * t15) - t9 * CLOSEDFORM_C(0.5);
+    const real_t A_12 = t38 - t39;
+    const real_t t40 = m_z * h;
+    const real_t t41 = u_z * CLOSEDFORM_C(0.5) - t34 * (t19 * t23 + t9 * t15);
+    const real_t t42 = t40 - t41;
+    const real_t t43 = c_alpha2 * t10;
+    const real_t t44 = s_alpha2 * t10;
+    const real_t t45 = t43 * (t19 + t36) + t44 * (t9 - A_12) + t8 * (u_z + t42);
+    const real_t t46 = c_alpha3 * t3;
+    const real_t t47 = s_alpha3 * t3;
+    const real_t t48 = t46 * (t22 + t36) + t47 * (t14 - A_12) + t12 * (v_z + t42);
+    const real_t t49 = (t2 * t36 - t37 * A_12 + t5 * t42) * t45 * t48;
+    const real_t Delta = product_2 * h;
+    const real_t t50 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t t51 = t49 / cf_divisor(single, (u_u <= t28) | (product_2 <= t27 * (t26 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t50), Delta);
+    const int t52 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t53 = t52 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t54 = t53 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t55 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int t56 = cf_abs(CLOSEDFORM_C(0.0)) <= t26 * CLOSEDFORM_FEASIBILITY;
+    const int t57 = t56 & (-(CLOSEDFORM_FEASIBILITY * t50) <= t32);
+    const real_t t58 = cf_poison(single, (!(t54 & t55)) | (!t57));
+    const real_t A_11_above = t33 + t35;
+    const real_t t59 = t38 + t39;
+    const real_t t60 = t40 + t41;
+    const real_t t61 = t43 * (t19 - A_11_above) + t44 * (t9 + t59) + t8 * (u_z - t60);
+    const real_t t62 = (t2 * A_11_above - t37 * t59 + t5 * t60) * t61;
+    const real_t t63 = t46 * (t22 - A_11_above) + t47 * (t14 + t59) + t12 * (v_z - t60);
+    const real_t t64 = t62 * t63 / cf_divisor(single, (u_u <= t28) | (product_2 <= t27 * (t26 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t50), Delta);
+    const real_t t65 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t22 * t22);
+    const real_t v_v = t65 + cf_rounded(single, one, t14 * t14);
+    const real_t t66 = u_u * v_v;
+    const real_t t67 = product_2 - t66 * CLOSEDFORM_C(0.000244140625);
+    const int t68 = (u_u <= t28) | (u_u + v_v <= t28) | (t67 <= CLOSEDFORM_VANISHING * t66);
+    const int t69 = t68 | (product_2 <= t27 * (t26 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t50);
+    det[0] = -t51 + t58;
+    det[1] = -t64 + t58;
+    rare[0] = (t69) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void delta_determinant_common_batch(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const delta_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = params->alpha1;
+        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
+        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = params->alpha2;
+        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_5[i] = params->alpha3;
+        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            real_t det_i[2];
+            real_t rare_i[1];
+            delta_determinant_common_kernel(0, one, &local, q_i, sines_i, cosines_i, det_i, rare_i);
+            det[start + i] = det_i[0];
+            det[det_stride + start + i] = det_i[1];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void delta_determinant_common(const delta_params *params, const real_t q[3],
+    real_t det[2], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, q[0], q[2], params->alpha2, q[1], params->alpha3, params->alpha3, params->alpha3 };
+    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
+    real_t rare_real[1];
+    delta_determinant_common_kernel(1, one, params, q, sines, cosines, det, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2029,10 +2285,9 @@ void delta_determinant(const delta_params *params, const real_t q[3],
         params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
         params = &params_scaled;
     }
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    delta_determinant_kernel(1, params, q, sines, cosines, det);
+    uint8_t rare[1];
+    delta_determinant_common(params, q, det, rare);
+    if (CF_UNLIKELY(rare[0])) delta_determinant_whole(params, q, det);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(2, det_degrees, exponent, det, det);
     }
@@ -2057,7 +2312,6 @@ void delta_determinant_batch(size_t n, const delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *det, size_t det_stride)
 {
-    const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
     if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         delta_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
@@ -2065,36 +2319,22 @@ void delta_determinant_batch(size_t n, const delta_params *params,
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
-        cf_sincos_block(length, q + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + q_stride + start, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->alpha3;
-        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        delta_determinant_common_batch(length, params, q + start, q_stride, det + start, det_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
             real_t det_i[2];
-            delta_determinant_kernel(0, &local, q_i, sines_i, cosines_i, det_i);
-            det[start + i] = det_i[0];
-            det[det_stride + start + i] = det_i[1];
+            delta_determinant_whole(params, q_i, det_i);
+            for (size_t k = 0; k < 2; ++k) det[k * det_stride + i] = det_i[k];
+
         }
     }
 }
 
-CF_INLINE void delta_singularities_kernel(const int single, const delta_params *params,
+/* Every case. */
+CF_INLINE void delta_singularities_whole_kernel(const int single, const delta_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t factors[8])
 {
@@ -2116,10 +2356,10 @@ CF_INLINE void delta_singularities_kernel(const int single, const delta_params *
     const real_t c2 = cosines[2];
     const real_t s_alpha2 = sines[3];
     const real_t c_alpha2 = cosines[3];
-    const real_t s3 = sines[4];
-    const real_t c3 = cosines[4];
-    const real_t s_alpha3 = sines[5];
-    const real_t c_alpha3 = cosines[5];
+    const real_t s_alpha3 = sines[4];
+    const real_t c_alpha3 = cosines[4];
+    const real_t s3 = sines[5];
+    const real_t c3 = cosines[5];
     const real_t t1 = L * s1;
     const real_t t2 = c_alpha1 * t1;
     const real_t t3 = L * s2;
@@ -2131,91 +2371,288 @@ CF_INLINE void delta_singularities_kernel(const int single, const delta_params *
     const real_t t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4;
     const real_t t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6);
     const real_t u_u = u_z * u_z + t7 * t7 + t9 * t9;
-    const real_t t10 = L * s3;
-    const real_t v_z = t1 - t10;
-    const real_t t11 = L * c3;
-    const real_t t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11);
-    const real_t t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11);
-    const real_t v_v = v_z * v_z + t12 * t12 + t13 * t13;
     const real_t size = f + e + L + l;
-    const real_t t14 = size * size;
-    const real_t t15 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t14;
-    const int all_same = u_u + v_v <= t15;
-    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t15;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t16 = cf_rarely(single, same, t13, t9);
-    const real_t d_x = cf_rarely(single, same, t12, t7);
-    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
-    const real_t t17 = cf_rarely(single, same, t9, t13);
-    const real_t t18 = cf_rarely(single, same, t7, t12);
-    const real_t t19 = a_x * t17 - t16 * t18;
+    const real_t t10 = size * size;
+    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t12 = t10 * t11;
+    const int same = u_u <= t12;
+    const real_t t13 = L * c3;
+    const real_t t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13);
+    const real_t t15 = cf_rarely(single, same, t14, t9);
+    const real_t t16 = L * s3;
+    const real_t v_z = t1 - t16;
+    const real_t t17 = cf_rarely(single, same, u_z, v_z);
+    const real_t t18 = cf_rarely(single, same, t9, t14);
     const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t20 = cf_rarely(single, same, u_z, v_z);
-    const real_t t21 = a_x * t20 - t18 * d_z;
-    const real_t t22 = over * (t16 * t19 + d_z * t21);
-    const real_t t23 = t16 * t20 - t17 * d_z;
-    const real_t t24 = over * (a_x * t19 - d_z * t23);
-    const real_t n_z = over * (a_x * t21 + t16 * t23);
-    const real_t nu = t22 * t22 + t24 * t24 + n_z * n_z;
-    const int in_line = nu <= t15;
+    const real_t t19 = t15 * t17 - t18 * d_z;
+    const real_t t20 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13);
+    const real_t v_v = v_z * v_z + t20 * t20 + t14 * t14;
+    const int all_same = u_u + v_v <= t12;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
+    const real_t d_x = cf_rarely(single, same, t20, t7);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t21 = cf_rarely(single, same, t7, t20);
+    const real_t t22 = a_x * t17 - t21 * d_z;
+    const real_t t23 = a_x * t18 - t15 * t21;
+    const real_t product_2 = t19 * t19 + t22 * t22 + t23 * t23;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t24 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t25 = product_2 - t24 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t25 <= CLOSEDFORM_VANISHING * t24;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t26 = t15 * t23 + d_z * t22;
+    const real_t t27 = a_x * t23 - d_z * t19;
+    const real_t n_z = a_x * t22 + t15 * t19;
+    const real_t m_m = cf_rarely(single, slim, over * (t26 * t26 + t27 * t27 + n_z * n_z), product_2);
+    const int in_line = m_m <= t11 * (t10 * mu);
     const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(t16 * a_x);
-    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t16 * n_z - d_z * t24);
-    const real_t t25 = whole * (t16 + a_x * s_w);
-    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25);
-    const real_t t27 = mu * nu;
-    const real_t t28 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t27);
-    const real_t part = cf_rarely(single, in_line, t26, t28);
-    const real_t t29 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20);
-    const real_t t30 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t29 * CLOSEDFORM_C(0.5));
-    const real_t t31 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t30 * t30) + mu * CLOSEDFORM_C(0.25));
-    const real_t t32 = l * l - t31;
-    const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
-    const real_t t33 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t33, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t34 = w_x * h;
-    const real_t t35 = t22 * t30 + d_x * CLOSEDFORM_C(0.5);
-    const real_t t36 = t34 - t35;
-    const real_t t37 = s_alpha1 * t1;
-    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t22));
-    const real_t t38 = h * w_y;
-    const real_t t39 = t24 * t30 - t16 * CLOSEDFORM_C(0.5);
-    const real_t t40 = t38 + t39;
-    const real_t w_z = cf_rarely(single, in_line, -t25, a_x * t24 + t16 * t22);
-    const real_t t41 = h * w_z;
-    const real_t t42 = n_z * t30 - d_z * CLOSEDFORM_C(0.5);
+    const real_t s_w = cf_sign(t15 * a_x);
+    const real_t m_x = cf_rarely(single, slim, over * (t15 * n_z - d_z * t27), t19);
+    const real_t t28 = whole * (t15 + a_x * s_w);
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t28 * t28, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t29 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17);
+    const real_t t30 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t29 * t29));
+    const real_t t31 = mu * (CLOSEDFORM_C(1.0) + t30) * CLOSEDFORM_C(0.25);
+    const real_t t32 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t31);
+    const real_t t33 = l * l - t32;
+    const real_t slack = cf_max(t33, CLOSEDFORM_C(0.0));
+    const real_t t34 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t34, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t35 = cf_rarely(single, in_line, g_1 * s_w, m_x) * h;
+    const real_t t36 = cf_select(in_line, CLOSEDFORM_C(0.0), part * t29 * CLOSEDFORM_C(0.5));
+    const real_t t37 = t26 * t36 + d_x * CLOSEDFORM_C(0.5);
+    const real_t t38 = t35 - t37;
+    const real_t t39 = s_alpha1 * t1;
+    const real_t t40 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t26), t22);
+    const real_t t41 = h * cf_rarely(single, in_line, g_1, -t40);
+    const real_t t42 = t27 * t36 - t15 * CLOSEDFORM_C(0.5);
     const real_t t43 = t41 + t42;
-    const int t44 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t45 = t44 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t46 = t45 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t47 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t48 = cf_rarely(single, in_line, -t29, CLOSEDFORM_C(0.0));
-    const int t49 = cf_abs(t48) <= t14 * CLOSEDFORM_FEASIBILITY;
-    const int t50 = t49 & (-(CLOSEDFORM_FEASIBILITY * t33) <= t32);
-    const real_t t51 = cf_poison(single, (!(t46 & t47)) | (!t50));
-    const real_t t52 = c_alpha2 * t3;
-    const real_t t53 = s_alpha2 * t3;
-    const real_t B_22 = t52 * (t7 + t36) + t53 * (t9 + t40) + t6 * (u_z + t43);
-    const real_t t54 = c_alpha3 * t10;
-    const real_t t55 = s_alpha3 * t10;
-    const real_t B_33 = t54 * (t12 + t36) + t55 * (t13 + t40) + t11 * (v_z + t43);
-    const real_t Delta = t27 * h;
-    const real_t A_11_above = t34 + t35;
-    const real_t A_12_above = t38 - t39;
-    const real_t t56 = t41 - t42;
-    const real_t t57 = t2 * A_11_above + t37 * A_12_above + t4 * t56;
-    const real_t t58 = t52 * (t7 - A_11_above) + t53 * (t9 - A_12_above);
-    const real_t t59 = t54 * (t12 - A_11_above) + t55 * (t13 - A_12_above);
-    factors[0] = t2 * t36 + t37 * t40 + t4 * t43 + t51;
-    factors[1] = B_22 + t51;
-    factors[2] = B_33 + t51;
-    factors[3] = -Delta + t51;
-    factors[4] = -t57 + t51;
-    factors[5] = t58 + t6 * (u_z - t56) + t51;
-    factors[6] = t59 + t11 * (v_z - t56) + t51;
-    factors[7] = Delta + t51;
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * t27 + t15 * t26), t23);
+    const real_t t44 = h * cf_rarely(single, in_line, -t28, m_z);
+    const real_t t45 = n_z * t36 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t46 = t44 + t45;
+    const int t47 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t50 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t51 = cf_rarely(single, in_line, -t29, CLOSEDFORM_C(0.0));
+    const int t52 = cf_abs(t51) <= t10 * CLOSEDFORM_FEASIBILITY;
+    const int t53 = t52 & (-(CLOSEDFORM_FEASIBILITY * t34) <= t33);
+    const real_t t54 = cf_poison(single, (!(t49 & t50)) | (!t53));
+    const real_t t55 = c_alpha2 * t3;
+    const real_t t56 = s_alpha2 * t3;
+    const real_t B_22 = t55 * (t7 + t38) + t56 * (t9 + t43) + t6 * (u_z + t46);
+    const real_t t57 = c_alpha3 * t16;
+    const real_t t58 = s_alpha3 * t16;
+    const real_t B_33 = t57 * (t20 + t38) + t58 * (t14 + t43) + t13 * (v_z + t46);
+    const real_t Delta = m_m * h;
+    const real_t A_11_above = t35 + t37;
+    const real_t A_12_above = t41 - t42;
+    const real_t t59 = t44 - t45;
+    const real_t t60 = t2 * A_11_above + t39 * A_12_above + t4 * t59;
+    const real_t t61 = t55 * (t7 - A_11_above) + t56 * (t9 - A_12_above);
+    const real_t t62 = t57 * (t20 - A_11_above) + t58 * (t14 - A_12_above);
+    factors[0] = t2 * t38 + t39 * t43 + t4 * t46 + t54;
+    factors[1] = B_22 + t54;
+    factors[2] = B_33 + t54;
+    factors[3] = -Delta + t54;
+    factors[4] = -t60 + t54;
+    factors[5] = t61 + t6 * (u_z - t59) + t54;
+    factors[6] = t62 + t13 * (v_z - t59) + t54;
+    factors[7] = Delta + t54;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void delta_singularities_whole(const delta_params *params, const real_t q[3],
+    real_t factors[8])
+{
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, params->alpha3, q[2], q[2], q[2] };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    delta_singularities_whole_kernel(1, params, q, sines, cosines, factors);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void delta_singularities_common_kernel(const int single, const real_t one,
+    const delta_params *params, const real_t q[3],
+    const real_t *sines, const real_t *cosines,
+    real_t factors[8], real_t rare[1])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t L = params->L;
+    const real_t l = params->l;
+    const real_t alpha1 = params->alpha1;
+    const real_t alpha2 = params->alpha2;
+    const real_t alpha3 = params->alpha3;
+    const real_t theta1 = q[0];
+    const real_t theta2 = q[1];
+    const real_t theta3 = q[2];
+    const real_t s_alpha1 = sines[0];
+    const real_t c_alpha1 = cosines[0];
+    const real_t s1 = sines[1];
+    const real_t c1 = cosines[1];
+    const real_t s3 = sines[2];
+    const real_t c3 = cosines[2];
+    const real_t s_alpha2 = sines[3];
+    const real_t c_alpha2 = cosines[3];
+    const real_t s2 = sines[4];
+    const real_t c2 = cosines[4];
+    const real_t s_alpha3 = sines[5];
+    const real_t c_alpha3 = cosines[5];
+    const real_t t1 = cf_rounded(single, one, L * s1);
+    const real_t t2 = c_alpha1 * t1;
+    const real_t t3 = cf_rounded(single, one, L * s3);
+    const real_t v_z = t1 - t3;
+    const real_t t4 = cf_rounded(single, one, e * s_alpha1) - cf_rounded(single, one, f * s_alpha1);
+    const real_t t5 = L * c1;
+    const real_t t6 = t4 - cf_rounded(single, one, s_alpha1 * t5);
+    const real_t t7 = cf_rounded(single, one, e * s_alpha2) - cf_rounded(single, one, f * s_alpha2);
+    const real_t t8 = L * c2;
+    const real_t t9 = t6 - (t7 - cf_rounded(single, one, s_alpha2 * t8));
+    const real_t t10 = cf_rounded(single, one, L * s2);
+    const real_t u_z = t1 - t10;
+    const real_t t11 = cf_rounded(single, one, e * s_alpha3) - cf_rounded(single, one, f * s_alpha3);
+    const real_t t12 = L * c3;
+    const real_t t13 = t11 - cf_rounded(single, one, s_alpha3 * t12);
+    const real_t t14 = t6 - t13;
+    const real_t t15 = cf_rounded(single, one, v_z * t9) - cf_rounded(single, one, u_z * t14);
+    const real_t t16 = cf_rounded(single, one, e * c_alpha1) - cf_rounded(single, one, f * c_alpha1);
+    const real_t t17 = t16 - cf_rounded(single, one, c_alpha1 * t5);
+    const real_t t18 = cf_rounded(single, one, e * c_alpha2) - cf_rounded(single, one, f * c_alpha2);
+    const real_t t19 = t17 - (t18 - cf_rounded(single, one, c_alpha2 * t8));
+    const real_t t20 = cf_rounded(single, one, e * c_alpha3) - cf_rounded(single, one, f * c_alpha3);
+    const real_t t21 = t20 - cf_rounded(single, one, c_alpha3 * t12);
+    const real_t t22 = t17 - t21;
+    const real_t t23 = cf_rounded(single, one, v_z * t19) - cf_rounded(single, one, u_z * t22);
+    const real_t t24 = cf_rounded(single, one, t15 * t15) + cf_rounded(single, one, t23 * t23);
+    const real_t m_z = cf_rounded(single, one, t19 * t14) - cf_rounded(single, one, t9 * t22);
+    const real_t product_2 = t24 + cf_rounded(single, one, m_z * m_z);
+    const real_t t25 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t19 * t19);
+    const real_t u_u = t25 + cf_rounded(single, one, t9 * t9);
+    const real_t size = f + e + L + l;
+    const real_t t26 = size * size;
+    const real_t t27 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t28 = t26 * t27;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t28) | (product_2 <= t27 * (t26 * u_u)), product_2);
+    const real_t t29 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t22 * (t19 - t22));
+    const real_t t30 = t29 + cf_rounded(single, one, t14 * (t9 - t14));
+    const real_t t31 = CLOSEDFORM_C(1.0) + cf_rounded(single, one, part * (t30 * t30));
+    const real_t t32 = cf_rounded(single, one, l * l) - u_u * t31 * CLOSEDFORM_C(0.25);
+    const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t33 = t15 * h;
+    const real_t t34 = part * t30 * CLOSEDFORM_C(0.5);
+    const real_t t35 = (t9 * m_z + u_z * t23) * t34 + t19 * CLOSEDFORM_C(0.5);
+    const real_t t36 = t33 - t35;
+    const real_t t37 = s_alpha1 * t1;
+    const real_t t38 = t23 * h;
+    const real_t t39 = t34 * (t19 * m_z - u_z * t15) - t9 * CLOSEDFORM_C(0.5);
+    const real_t A_12 = t38 - t39;
+    const real_t t40 = m_z * h;
+    const real_t t41 = u_z * CLOSEDFORM_C(0.5) - t34 * (t19 * t23 + t9 * t15);
+    const real_t t42 = t40 - t41;
+    const int t43 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t44 = t43 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t45 = t44 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t46 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int t47 = cf_abs(CLOSEDFORM_C(0.0)) <= t26 * CLOSEDFORM_FEASIBILITY;
+    const real_t t48 = CLOSEDFORM_C(0.9375) * (l * size);
+    const int t49 = t47 & (-(CLOSEDFORM_FEASIBILITY * t48) <= t32);
+    const real_t t50 = cf_poison(single, (!(t45 & t46)) | (!t49));
+    const real_t t51 = c_alpha2 * t10;
+    const real_t t52 = s_alpha2 * t10;
+    const real_t B_22 = t51 * (t19 + t36) + t52 * (t9 - A_12) + t8 * (u_z + t42);
+    const real_t t53 = c_alpha3 * t3;
+    const real_t t54 = s_alpha3 * t3;
+    const real_t B_33 = t53 * (t22 + t36) + t54 * (t14 - A_12) + t12 * (v_z + t42);
+    const real_t Delta = product_2 * h;
+    const real_t A_11_above = t33 + t35;
+    const real_t t55 = t38 + t39;
+    const real_t t56 = t40 + t41;
+    const real_t t57 = -(t2 * A_11_above - t37 * t55 + t5 * t56) + t50;
+    const real_t B_22_above = t51 * (t19 - A_11_above) + t52 * (t9 + t55) + t8 * (u_z - t56);
+    const real_t B_33_above = t53 * (t22 - A_11_above) + t54 * (t14 + t55) + t12 * (v_z - t56);
+    const real_t t58 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t22 * t22);
+    const real_t v_v = t58 + cf_rounded(single, one, t14 * t14);
+    const real_t t59 = u_u * v_v;
+    const real_t t60 = product_2 - t59 * CLOSEDFORM_C(0.000244140625);
+    const int t61 = (u_u <= t28) | (u_u + v_v <= t28) | (t60 <= CLOSEDFORM_VANISHING * t59);
+    const int t62 = t61 | (product_2 <= t27 * (t26 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t48);
+    factors[0] = t2 * t36 - t37 * A_12 + t5 * t42 + t50;
+    factors[1] = B_22 + t50;
+    factors[2] = B_33 + t50;
+    factors[3] = -Delta + t50;
+    factors[4] = t57;
+    factors[5] = B_22_above + t50;
+    factors[6] = B_33_above + t50;
+    factors[7] = Delta + t50;
+    rare[0] = (t62) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void delta_singularities_common_batch(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const delta_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = params->alpha1;
+        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
+        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = params->alpha2;
+        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_5[i] = params->alpha3;
+        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            real_t factors_i[8];
+            real_t rare_i[1];
+            delta_singularities_common_kernel(0, one, &local, q_i, sines_i, cosines_i, factors_i, rare_i);
+            factors[start + i] = factors_i[0];
+            factors[factors_stride + start + i] = factors_i[1];
+            factors[2 * factors_stride + start + i] = factors_i[2];
+            factors[3 * factors_stride + start + i] = factors_i[3];
+            factors[4 * factors_stride + start + i] = factors_i[4];
+            factors[5 * factors_stride + start + i] = factors_i[5];
+            factors[6 * factors_stride + start + i] = factors_i[6];
+            factors[7 * factors_stride + start + i] = factors_i[7];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void delta_singularities_common(const delta_params *params, const real_t q[3],
+    real_t factors[8], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, q[0], q[2], params->alpha2, q[1], params->alpha3, params->alpha3, params->alpha3 };
+    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
+    real_t rare_real[1];
+    delta_singularities_common_kernel(1, one, params, q, sines, cosines, factors, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2226,7 +2663,7 @@ void delta_singularities(const delta_params *params, const real_t q[3],
     delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -2235,10 +2672,9 @@ void delta_singularities(const delta_params *params, const real_t q[3],
         params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
         params = &params_scaled;
     }
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, q[0], q[1], params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    delta_singularities_kernel(1, params, q, sines, cosines, factors);
+    uint8_t rare[1];
+    delta_singularities_common(params, q, factors, rare);
+    if (CF_UNLIKELY(rare[0])) delta_singularities_whole(params, q, factors);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(8, factors_degrees, exponent, factors, factors);
     }
@@ -2263,45 +2699,23 @@ void delta_singularities_batch(size_t n, const delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *factors, size_t factors_stride)
 {
-    const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         delta_singularities_other_sizes(n, params, q, q_stride, factors, factors_stride);
         return;
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
-        cf_sincos_block(length, q + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + q_stride + start, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->alpha3;
-        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        delta_singularities_common_batch(length, params, q + start, q_stride, factors + start, factors_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
             real_t factors_i[8];
-            delta_singularities_kernel(0, &local, q_i, sines_i, cosines_i, factors_i);
-            factors[start + i] = factors_i[0];
-            factors[factors_stride + start + i] = factors_i[1];
-            factors[2 * factors_stride + start + i] = factors_i[2];
-            factors[3 * factors_stride + start + i] = factors_i[3];
-            factors[4 * factors_stride + start + i] = factors_i[4];
-            factors[5 * factors_stride + start + i] = factors_i[5];
-            factors[6 * factors_stride + start + i] = factors_i[6];
-            factors[7 * factors_stride + start + i] = factors_i[7];
+            delta_singularities_whole(params, q_i, factors_i);
+            for (size_t k = 0; k < 8; ++k) factors[k * factors_stride + i] = factors_i[k];
+
         }
     }
 }
@@ -2328,10 +2742,10 @@ CF_INLINE void delta_condition_number_kernel(const int single, const delta_param
     const real_t c_alpha1 = cosines[2];
     const real_t s_alpha2 = sines[3];
     const real_t c_alpha2 = cosines[3];
-    const real_t s3 = sines[4];
-    const real_t c3 = cosines[4];
-    const real_t s_alpha3 = sines[5];
-    const real_t c_alpha3 = cosines[5];
+    const real_t s_alpha3 = sines[4];
+    const real_t c_alpha3 = cosines[4];
+    const real_t s3 = sines[5];
+    const real_t c3 = cosines[5];
     const real_t t1 = L * s1;
     const real_t u_z = t1 - L * s2;
     const real_t t2 = L * c1;
@@ -2341,113 +2755,118 @@ CF_INLINE void delta_condition_number_kernel(const int single, const delta_param
     const real_t t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t2;
     const real_t t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4);
     const real_t u_u = u_z * u_z + t5 * t5 + t7 * t7;
-    const real_t v_z = t1 - L * s3;
-    const real_t t8 = L * c3;
-    const real_t t9 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8);
-    const real_t t10 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8);
-    const real_t v_v = v_z * v_z + t9 * t9 + t10 * t10;
     const real_t size = f + e + L + l;
-    const real_t t11 = size * size;
-    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t11;
-    const int all_same = u_u + v_v <= t12;
-    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t12;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t13 = cf_rarely(single, same, t10, t7);
-    const real_t d_x = cf_rarely(single, same, t9, t5);
-    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
-    const real_t t14 = cf_rarely(single, same, t7, t10);
-    const real_t t15 = cf_rarely(single, same, t5, t9);
-    const real_t t16 = a_x * t14 - t13 * t15;
+    const real_t t8 = size * size;
+    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t10 = t8 * t9;
+    const int same = u_u <= t10;
+    const real_t t11 = L * c3;
+    const real_t t12 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11);
+    const real_t t13 = cf_rarely(single, same, t12, t7);
+    const real_t v_z = t1 - L * s3;
+    const real_t t14 = cf_rarely(single, same, u_z, v_z);
+    const real_t t15 = cf_rarely(single, same, t7, t12);
     const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t17 = cf_rarely(single, same, u_z, v_z);
-    const real_t t18 = a_x * t17 - t15 * d_z;
-    const real_t t19 = over * (t13 * t16 + d_z * t18);
-    const real_t t20 = t13 * t17 - t14 * d_z;
-    const real_t t21 = over * (a_x * t16 - d_z * t20);
-    const real_t n_z = over * (a_x * t18 + t13 * t20);
-    const real_t nu = t19 * t19 + t21 * t21 + n_z * n_z;
-    const int in_line = nu <= t12;
+    const real_t t16 = t13 * t14 - t15 * d_z;
+    const real_t t17 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11);
+    const real_t v_v = v_z * v_z + t17 * t17 + t12 * t12;
+    const int all_same = u_u + v_v <= t10;
+    const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
+    const real_t d_x = cf_rarely(single, same, t17, t5);
+    const real_t a_x = cf_rarely(single, all_same, whole, d_x);
+    const real_t t18 = cf_rarely(single, same, t5, t17);
+    const real_t t19 = a_x * t14 - t18 * d_z;
+    const real_t t20 = a_x * t15 - t13 * t18;
+    const real_t product_2 = t16 * t16 + t19 * t19 + t20 * t20;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t21 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t22 = product_2 - t21 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t22 <= CLOSEDFORM_VANISHING * t21;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t23 = t13 * t20 + d_z * t19;
+    const real_t t24 = a_x * t20 - d_z * t16;
+    const real_t n_z = a_x * t19 + t13 * t16;
+    const real_t m_m = cf_rarely(single, slim, over * (t23 * t23 + t24 * t24 + n_z * n_z), product_2);
+    const int in_line = m_m <= t9 * (t8 * mu);
     const real_t g_1 = whole * d_z;
     const real_t s_w = cf_sign(t13 * a_x);
-    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t13 * n_z - d_z * t21);
-    const real_t t22 = whole * (t13 + a_x * s_w);
-    const real_t t23 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t22 * t22);
-    const real_t t24 = mu * nu;
-    const real_t t25 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t24);
-    const real_t part = cf_rarely(single, in_line, t23, t25);
-    const real_t t26 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17);
-    const real_t t27 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t26 * CLOSEDFORM_C(0.5));
-    const real_t t28 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t27 * t27) + mu * CLOSEDFORM_C(0.25));
-    const real_t t29 = l * l - t28;
-    const real_t slack = cf_max(t29, CLOSEDFORM_C(0.0));
-    const real_t t30 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t30, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t31 = w_x * h;
-    const real_t t32 = t19 * t27 + d_x * CLOSEDFORM_C(0.5);
-    const real_t t33 = t31 - t32;
-    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t19));
-    const real_t t34 = h * w_y;
-    const real_t t35 = t21 * t27 - t13 * CLOSEDFORM_C(0.5);
-    const real_t t36 = t34 + t35;
-    const real_t w_z = cf_rarely(single, in_line, -t22, a_x * t21 + t13 * t19);
-    const real_t t37 = h * w_z;
-    const real_t t38 = n_z * t27 - d_z * CLOSEDFORM_C(0.5);
+    const real_t m_x = cf_rarely(single, slim, over * (t13 * n_z - d_z * t24), t16);
+    const real_t t25 = whole * (t13 + a_x * s_w);
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t25 * t25, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t26 = t18 * (d_x - t18) + t15 * (t13 - t15) + t14 * (d_z - t14);
+    const real_t t27 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t26 * t26));
+    const real_t t28 = mu * (CLOSEDFORM_C(1.0) + t27) * CLOSEDFORM_C(0.25);
+    const real_t t29 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t28);
+    const real_t t30 = l * l - t29;
+    const real_t slack = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t t31 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t31, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t32 = cf_rarely(single, in_line, g_1 * s_w, m_x) * h;
+    const real_t t33 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t26 * CLOSEDFORM_C(0.5));
+    const real_t t34 = t23 * t33 + d_x * CLOSEDFORM_C(0.5);
+    const real_t t35 = t32 - t34;
+    const real_t t36 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t23), t19);
+    const real_t t37 = h * cf_rarely(single, in_line, g_1, -t36);
+    const real_t t38 = t24 * t33 - t13 * CLOSEDFORM_C(0.5);
     const real_t t39 = t37 + t38;
-    const real_t t40 = t5 + t33;
-    const real_t t41 = t7 + t36;
-    const real_t t42 = u_z + t39;
-    const real_t t43 = t33 * t33 + t36 * t36 + t39 * t39 + (t40 * t40 + t41 * t41 + t42 * t42);
-    const real_t t44 = t9 + t33;
-    const real_t t45 = t10 + t36;
-    const real_t t46 = v_z + t39;
-    const real_t t47 = t33 * t41 - t36 * t40;
-    const real_t t48 = t33 * t42 - t39 * t40;
-    const real_t t49 = t33 * t45 - t36 * t44;
-    const real_t t50 = t33 * t46 - t39 * t44;
-    const real_t t51 = t47 * t47 + t48 * t48 + t49 * t49 + t50 * t50;
-    const real_t t52 = t36 * t42 - t39 * t41;
-    const real_t t53 = t36 * t46 - t39 * t45;
-    const real_t t54 = t40 * t45 - t41 * t44;
-    const real_t t55 = t40 * t46 - t42 * t44;
-    const real_t t56 = t51 + t52 * t52 + t53 * t53 + t54 * t54 + t55 * t55;
-    const real_t t57 = t41 * t46 - t42 * t45;
-    const real_t t58 = (t43 + (t44 * t44 + t45 * t45 + t46 * t46)) * (t56 + t57 * t57);
-    const real_t t59 = CLOSEDFORM_C(3.0) * (t24 * h);
-    const int t60 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t61 = t60 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t62 = t61 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t63 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t64 = cf_rarely(single, in_line, -t26, CLOSEDFORM_C(0.0));
-    const int t65 = cf_abs(t64) <= t11 * CLOSEDFORM_FEASIBILITY;
-    const int t66 = t65 & (-(CLOSEDFORM_FEASIBILITY * t30) <= t29);
-    const real_t t67 = cf_poison(single, (!(t62 & t63)) | (!t66));
-    const real_t A_11_above = t31 + t32;
-    const real_t A_12_above = t34 - t35;
-    const real_t t68 = A_11_above * A_11_above + A_12_above * A_12_above;
-    const real_t t69 = t37 - t38;
-    const real_t t70 = t5 - A_11_above;
-    const real_t t71 = t7 - A_12_above;
-    const real_t t72 = u_z - t69;
-    const real_t t73 = t68 + t69 * t69 + (t70 * t70 + t71 * t71 + t72 * t72);
-    const real_t t74 = t9 - A_11_above;
-    const real_t t75 = t10 - A_12_above;
-    const real_t t76 = v_z - t69;
-    const real_t t77 = A_11_above * t71 - A_12_above * t70;
-    const real_t t78 = A_11_above * t72 - t69 * t70;
-    const real_t t79 = A_11_above * t75 - A_12_above * t74;
-    const real_t t80 = A_11_above * t76 - t69 * t74;
-    const real_t t81 = t77 * t77 + t78 * t78 + t79 * t79 + t80 * t80;
-    const real_t t82 = A_12_above * t72 - t69 * t71;
-    const real_t t83 = A_12_above * t76 - t69 * t75;
-    const real_t t84 = t70 * t75 - t71 * t74;
-    const real_t t85 = t70 * t76 - t72 * t74;
-    const real_t t86 = t81 + t82 * t82 + t83 * t83 + t84 * t84 + t85 * t85;
-    const real_t t87 = t71 * t76 - t72 * t75;
-    const real_t t88 = (t73 + (t74 * t74 + t75 * t75 + t76 * t76)) * (t86 + t87 * t87);
-    kappa[0] = cf_quotient(single, cf_sqrt(t58), t59) + t67;
-    kappa[1] = cf_quotient(single, cf_sqrt(t88), t59) + t67;
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * t24 + t13 * t23), t20);
+    const real_t t40 = h * cf_rarely(single, in_line, -t25, m_z);
+    const real_t t41 = n_z * t33 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t42 = t40 + t41;
+    const real_t t43 = t5 + t35;
+    const real_t t44 = t7 + t39;
+    const real_t t45 = u_z + t42;
+    const real_t t46 = t35 * t35 + t39 * t39 + t42 * t42 + (t43 * t43 + t44 * t44 + t45 * t45);
+    const real_t t47 = t17 + t35;
+    const real_t t48 = t12 + t39;
+    const real_t t49 = v_z + t42;
+    const real_t t50 = t35 * t44 - t39 * t43;
+    const real_t t51 = t35 * t45 - t42 * t43;
+    const real_t t52 = t35 * t48 - t39 * t47;
+    const real_t t53 = t35 * t49 - t42 * t47;
+    const real_t t54 = t50 * t50 + t51 * t51 + t52 * t52 + t53 * t53;
+    const real_t t55 = t39 * t45 - t42 * t44;
+    const real_t t56 = t39 * t49 - t42 * t48;
+    const real_t t57 = t43 * t48 - t44 * t47;
+    const real_t t58 = t43 * t49 - t45 * t47;
+    const real_t t59 = t54 + t55 * t55 + t56 * t56 + t57 * t57 + t58 * t58;
+    const real_t t60 = t44 * t49 - t45 * t48;
+    const real_t t61 = (t46 + (t47 * t47 + t48 * t48 + t49 * t49)) * (t59 + t60 * t60);
+    const real_t t62 = CLOSEDFORM_C(3.0) * (m_m * h);
+    const int t63 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t64 = t63 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t65 = t64 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t66 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t67 = cf_rarely(single, in_line, -t26, CLOSEDFORM_C(0.0));
+    const int t68 = cf_abs(t67) <= t8 * CLOSEDFORM_FEASIBILITY;
+    const int t69 = t68 & (-(CLOSEDFORM_FEASIBILITY * t31) <= t30);
+    const real_t t70 = cf_poison(single, (!(t65 & t66)) | (!t69));
+    const real_t A_11_above = t32 + t34;
+    const real_t A_12_above = t37 - t38;
+    const real_t t71 = A_11_above * A_11_above + A_12_above * A_12_above;
+    const real_t t72 = t40 - t41;
+    const real_t t73 = t5 - A_11_above;
+    const real_t t74 = t7 - A_12_above;
+    const real_t t75 = u_z - t72;
+    const real_t t76 = t71 + t72 * t72 + (t73 * t73 + t74 * t74 + t75 * t75);
+    const real_t t77 = t17 - A_11_above;
+    const real_t t78 = t12 - A_12_above;
+    const real_t t79 = v_z - t72;
+    const real_t t80 = A_11_above * t74 - A_12_above * t73;
+    const real_t t81 = A_11_above * t75 - t72 * t73;
+    const real_t t82 = A_11_above * t78 - A_12_above * t77;
+    const real_t t83 = A_11_above * t79 - t72 * t77;
+    const real_t t84 = t80 * t80 + t81 * t81 + t82 * t82 + t83 * t83;
+    const real_t t85 = A_12_above * t75 - t72 * t74;
+    const real_t t86 = A_12_above * t79 - t72 * t78;
+    const real_t t87 = t73 * t78 - t74 * t77;
+    const real_t t88 = t73 * t79 - t75 * t77;
+    const real_t t89 = t84 + t85 * t85 + t86 * t86 + t87 * t87 + t88 * t88;
+    const real_t t90 = t74 * t79 - t75 * t78;
+    const real_t t91 = (t76 + (t77 * t77 + t78 * t78 + t79 * t79)) * (t89 + t90 * t90);
+    kappa[0] = cf_quotient(single, cf_sqrt(t61), t62) + t70;
+    kappa[1] = cf_quotient(single, cf_sqrt(t91), t62) + t70;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2467,7 +2886,7 @@ void delta_condition_number(const delta_params *params, const real_t q[3],
         params = &params_scaled;
     }
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, q[2], params->alpha3, params->alpha3, params->alpha3 };
+    const real_t lanes[8] = { q[0], q[1], params->alpha1, params->alpha2, params->alpha3, q[2], q[2], q[2] };
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_condition_number_kernel(1, params, q, sines, cosines, kappa);
 }
@@ -2510,11 +2929,11 @@ void delta_condition_number_batch(size_t n, const delta_params *params,
         for (size_t i = 0; i < length; ++i)
             angle_3[i] = params->alpha2;
         cf_sincos_block(length, angle_3, sines[3], cosines[3]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
+        real_t angle_4[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->alpha3;
-        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
+            angle_4[i] = params->alpha3;
+        cf_sincos_block(length, angle_4, sines[4], cosines[4]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[5], cosines[5]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
@@ -2528,7 +2947,8 @@ void delta_condition_number_batch(size_t n, const delta_params *params,
     }
 }
 
-CF_INLINE void delta_constraint_kernel(const int single, const delta_params *params,
+/* Every case. */
+CF_INLINE void delta_constraint_whole_kernel(const int single, const delta_params *params,
     const real_t q[3], const real_t *sines,
     const real_t *cosines, real_t factors[2])
 {
@@ -2571,104 +2991,312 @@ CF_INLINE void delta_constraint_kernel(const int single, const delta_params *par
     const real_t v_v = v_z * v_z + t10 * t10 + t11 * t11;
     const real_t size = f + e + L + l;
     const real_t t12 = size * size;
-    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t12;
-    const int all_same = u_u + v_v <= t13;
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const int all_same = u_u + v_v <= t14;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t13;
+    const int same = u_u <= t14;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t14 = cf_rarely(single, same, t11, t8);
+    const real_t t15 = cf_rarely(single, same, t11, t8);
+    const real_t t16 = cf_rarely(single, same, u_z, v_z);
+    const real_t t17 = cf_rarely(single, same, t8, t11);
+    const real_t d_z = cf_rarely(single, same, v_z, u_z);
+    const real_t t18 = t15 * t16 - t17 * d_z;
     const real_t d_x = cf_rarely(single, same, t10, t6);
     const real_t a_x = cf_rarely(single, all_same, whole, d_x);
-    const real_t t15 = cf_rarely(single, same, t8, t11);
-    const real_t t16 = cf_rarely(single, same, t6, t10);
-    const real_t t17 = a_x * t15 - t14 * t16;
-    const real_t d_z = cf_rarely(single, same, v_z, u_z);
-    const real_t t18 = cf_rarely(single, same, u_z, v_z);
-    const real_t t19 = a_x * t18 - t16 * d_z;
-    const real_t t20 = over * (t14 * t17 + d_z * t19);
-    const real_t t21 = t14 * t18 - t15 * d_z;
-    const real_t t22 = over * (a_x * t17 - d_z * t21);
-    const real_t n_z = over * (a_x * t19 + t14 * t21);
-    const real_t nu = t20 * t20 + t22 * t22 + n_z * n_z;
-    const int in_line = nu <= t13;
+    const real_t t19 = cf_rarely(single, same, t6, t10);
+    const real_t t20 = a_x * t16 - t19 * d_z;
+    const real_t t21 = a_x * t17 - t15 * t19;
+    const real_t product_2 = t18 * t18 + t20 * t20 + t21 * t21;
+    const real_t t22 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t23 = product_2 - t22 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t23 <= CLOSEDFORM_VANISHING * t22;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t24 = t15 * t21 + d_z * t20;
+    const real_t t25 = a_x * t21 - d_z * t18;
+    const real_t n_z = a_x * t20 + t15 * t18;
+    const real_t m_m = cf_rarely(single, slim, over * (t24 * t24 + t25 * t25 + n_z * n_z), product_2);
+    const int in_line = m_m <= t13 * (t12 * mu);
     const real_t g_1 = whole * d_z;
-    const real_t s_w = cf_sign(t14 * a_x);
-    const real_t t23 = whole * (t14 + a_x * s_w);
-    const real_t t24 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t23 * t23);
-    const real_t t25 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, t24, t25);
-    const real_t t26 = t16 * (d_x - t16) + t15 * (t14 - t15) + t18 * (d_z - t18);
-    const real_t t27 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t26 * CLOSEDFORM_C(0.5));
-    const real_t t28 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t27 * t27) + mu * CLOSEDFORM_C(0.25));
-    const real_t t29 = l * l - t28;
-    const real_t slack = cf_max(t29, CLOSEDFORM_C(0.0));
-    const real_t t30 = CLOSEDFORM_C(0.9375) * (l * size);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t30, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t w_z = cf_rarely(single, in_line, -t23, a_x * t22 + t14 * t20);
-    const real_t t31 = h * w_z;
-    const real_t t32 = n_z * t27 - d_z * CLOSEDFORM_C(0.5);
-    const real_t t33 = t31 + t32;
-    const real_t t34 = s_alpha3 * t33;
-    const real_t t35 = t1 * t34;
-    const real_t t36 = u_z + t33;
-    const real_t w_y = cf_rarely(single, in_line, g_1, -(a_x * n_z + d_z * t20));
-    const real_t t37 = h * w_y;
-    const real_t t38 = t22 * t27 - t14 * CLOSEDFORM_C(0.5);
-    const real_t t39 = t37 + t38;
-    const real_t t40 = t36 * (t11 + t39);
+    const real_t s_w = cf_sign(t15 * a_x);
+    const real_t t26 = whole * (t15 + a_x * s_w);
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (g_1 * g_1) + t26 * t26, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t27 = t19 * (d_x - t19) + t17 * (t15 - t17) + t16 * (d_z - t16);
+    const real_t t28 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t27 * t27));
+    const real_t t29 = mu * (CLOSEDFORM_C(1.0) + t28) * CLOSEDFORM_C(0.25);
+    const real_t t30 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t29);
+    const real_t t31 = l * l - t30;
+    const real_t slack = cf_max(t31, CLOSEDFORM_C(0.0));
+    const real_t t32 = CLOSEDFORM_C(0.9375) * (l * size);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t32, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * t25 + t15 * t24), t21);
+    const real_t t33 = h * cf_rarely(single, in_line, -t26, m_z);
+    const real_t t34 = cf_select(in_line, CLOSEDFORM_C(0.0), part * t27 * CLOSEDFORM_C(0.5));
+    const real_t t35 = n_z * t34 - d_z * CLOSEDFORM_C(0.5);
+    const real_t t36 = t33 + t35;
+    const real_t t37 = s_alpha3 * t36;
+    const real_t t38 = t1 * t37;
+    const real_t t39 = u_z + t36;
+    const real_t t40 = cf_rarely(single, slim, over * (a_x * n_z + d_z * t24), t20);
+    const real_t t41 = h * cf_rarely(single, in_line, g_1, -t40);
+    const real_t t42 = t25 * t34 - t15 * CLOSEDFORM_C(0.5);
+    const real_t t43 = t41 + t42;
+    const real_t t44 = t39 * (t11 + t43);
+    const real_t t45 = c_alpha3 * t1;
+    const real_t m_x = cf_rarely(single, slim, over * (t15 * n_z - d_z * t25), t18);
+    const real_t t46 = cf_rarely(single, in_line, g_1 * s_w, m_x) * h;
+    const real_t t47 = t24 * t34 + d_x * CLOSEDFORM_C(0.5);
+    const real_t t48 = t46 - t47;
+    const real_t t49 = v_z + t36;
+    const real_t t50 = t39 * t49;
+    const real_t t51 = t48 * t50;
+    const real_t t52 = c_alpha1 * c_alpha2;
+    const real_t t53 = s_alpha3 * t52;
+    const real_t t54 = s_alpha1 * s_alpha2;
+    const real_t t55 = c_alpha3 * t54;
+    const real_t t56 = t50 * t43;
+    const real_t t57 = s_alpha1 * c_alpha2;
+    const real_t t58 = s_alpha3 * t57;
+    const real_t t59 = t45 * t51 - t53 * t51 + t55 * t56 - t58 * t56;
+    const real_t t60 = c_alpha3 * t36;
+    const real_t t61 = t57 * t60;
+    const real_t t62 = t49 * (t6 + t48);
+    const real_t t63 = t49 * (t8 + t43);
+    const real_t t64 = t59 - t61 * t62 + t52 * t62 * t37 - t54 * t60 * t63;
+    const real_t t65 = t39 * (t10 + t48);
+    const real_t t66 = t64 + t63 * t38 + t61 * t65 - t1 * t60 * t65 + t57 * t37 * t44;
+    const int t67 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t68 = t67 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t69 = t68 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t70 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t71 = cf_rarely(single, in_line, -t27, CLOSEDFORM_C(0.0));
+    const int t72 = cf_abs(t71) <= t12 * CLOSEDFORM_FEASIBILITY;
+    const int t73 = t72 & (-(CLOSEDFORM_FEASIBILITY * t32) <= t31);
+    const real_t t74 = cf_poison(single, (!(t69 & t70)) | (!t73));
+    const real_t A_11_above = t46 + t47;
+    const real_t t75 = t33 - t35;
+    const real_t t76 = u_z - t75;
+    const real_t t77 = v_z - t75;
+    const real_t t78 = t76 * t77;
+    const real_t t79 = A_11_above * t78;
+    const real_t A_12_above = t41 - t42;
+    const real_t t80 = t78 * A_12_above;
+    const real_t t81 = t45 * t79 - t53 * t79 + t55 * t80 - t58 * t80;
+    const real_t t82 = c_alpha3 * t75;
+    const real_t t83 = t57 * t82;
+    const real_t t84 = t77 * (t6 - A_11_above);
+    const real_t t85 = s_alpha3 * t75;
+    const real_t t86 = t77 * (t8 - A_12_above);
+    const real_t t87 = t81 - t83 * t84 + t52 * t84 * t85 - t54 * t82 * t86;
+    const real_t t88 = t1 * t85;
+    const real_t t89 = t76 * (t10 - A_11_above);
+    const real_t t90 = t76 * (t11 - A_12_above);
+    const real_t t91 = t87 + t86 * t88 + t83 * t89 - t1 * t82 * t89 + t57 * t85 * t90;
+    factors[0] = t38 * t44 - t66 + t74;
+    factors[1] = t91 - t88 * t90 + t74;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void delta_constraint_whole(const delta_params *params, const real_t q[3],
+    real_t factors[2])
+{
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, params->alpha2, params->alpha3, q[0], q[1], q[2], q[2], q[2] };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    delta_constraint_whole_kernel(1, params, q, sines, cosines, factors);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void delta_constraint_common_kernel(const int single, const real_t one,
+    const delta_params *params, const real_t q[3],
+    const real_t *sines, const real_t *cosines,
+    real_t factors[2], real_t rare[1])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t L = params->L;
+    const real_t l = params->l;
+    const real_t alpha1 = params->alpha1;
+    const real_t alpha2 = params->alpha2;
+    const real_t alpha3 = params->alpha3;
+    const real_t theta1 = q[0];
+    const real_t theta2 = q[1];
+    const real_t theta3 = q[2];
+    const real_t s_alpha3 = sines[0];
+    const real_t c_alpha3 = cosines[0];
+    const real_t s_alpha1 = sines[1];
+    const real_t c_alpha1 = cosines[1];
+    const real_t s_alpha2 = sines[2];
+    const real_t c_alpha2 = cosines[2];
+    const real_t s1 = sines[3];
+    const real_t c1 = cosines[3];
+    const real_t s2 = sines[4];
+    const real_t c2 = cosines[4];
+    const real_t s3 = sines[5];
+    const real_t c3 = cosines[5];
+    const real_t t1 = c_alpha1 * s_alpha2;
+    const real_t t2 = s_alpha3 * t1;
+    const real_t t3 = cf_rounded(single, one, e * c_alpha1) - cf_rounded(single, one, f * c_alpha1);
+    const real_t t4 = L * c1;
+    const real_t t5 = t3 - cf_rounded(single, one, c_alpha1 * t4);
+    const real_t t6 = cf_rounded(single, one, e * c_alpha2) - cf_rounded(single, one, f * c_alpha2);
+    const real_t t7 = L * c2;
+    const real_t t8 = t5 - (t6 - cf_rounded(single, one, c_alpha2 * t7));
+    const real_t t9 = cf_rounded(single, one, e * s_alpha1) - cf_rounded(single, one, f * s_alpha1);
+    const real_t t10 = t9 - cf_rounded(single, one, s_alpha1 * t4);
+    const real_t t11 = cf_rounded(single, one, e * s_alpha3) - cf_rounded(single, one, f * s_alpha3);
+    const real_t t12 = L * c3;
+    const real_t t13 = t11 - cf_rounded(single, one, s_alpha3 * t12);
+    const real_t t14 = t10 - t13;
+    const real_t t15 = cf_rounded(single, one, e * s_alpha2) - cf_rounded(single, one, f * s_alpha2);
+    const real_t t16 = t10 - (t15 - cf_rounded(single, one, s_alpha2 * t7));
+    const real_t t17 = cf_rounded(single, one, e * c_alpha3) - cf_rounded(single, one, f * c_alpha3);
+    const real_t t18 = t17 - cf_rounded(single, one, c_alpha3 * t12);
+    const real_t t19 = t5 - t18;
+    const real_t m_z = cf_rounded(single, one, t8 * t14) - cf_rounded(single, one, t16 * t19);
+    const real_t t20 = cf_rounded(single, one, L * s1);
+    const real_t v_z = t20 - cf_rounded(single, one, L * s3);
+    const real_t u_z = t20 - cf_rounded(single, one, L * s2);
+    const real_t t21 = cf_rounded(single, one, v_z * t16) - cf_rounded(single, one, u_z * t14);
+    const real_t t22 = cf_rounded(single, one, v_z * t8) - cf_rounded(single, one, u_z * t19);
+    const real_t t23 = cf_rounded(single, one, t21 * t21) + cf_rounded(single, one, t22 * t22);
+    const real_t product_2 = t23 + cf_rounded(single, one, m_z * m_z);
+    const real_t t24 = cf_rounded(single, one, u_z * u_z) + cf_rounded(single, one, t8 * t8);
+    const real_t u_u = t24 + cf_rounded(single, one, t16 * t16);
+    const real_t size = f + e + L + l;
+    const real_t t25 = size * size;
+    const real_t t26 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t27 = t25 * t26;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t27) | (product_2 <= t26 * (t25 * u_u)), product_2);
+    const real_t t28 = cf_rounded(single, one, v_z * (u_z - v_z)) + cf_rounded(single, one, t19 * (t8 - t19));
+    const real_t t29 = t28 + cf_rounded(single, one, t14 * (t16 - t14));
+    const real_t t30 = CLOSEDFORM_C(1.0) + cf_rounded(single, one, part * (t29 * t29));
+    const real_t t31 = cf_rounded(single, one, l * l) - u_u * t30 * CLOSEDFORM_C(0.25);
+    const real_t slack = cf_max(t31, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t32 = m_z * h;
+    const real_t t33 = part * t29 * CLOSEDFORM_C(0.5);
+    const real_t t34 = u_z * CLOSEDFORM_C(0.5) - t33 * (t8 * t22 + t16 * t21);
+    const real_t t35 = t32 - t34;
+    const real_t t36 = u_z + t35;
+    const real_t t37 = t35 * t36;
+    const real_t t38 = t22 * h;
+    const real_t t39 = t33 * (t8 * m_z - u_z * t21) - t16 * CLOSEDFORM_C(0.5);
+    const real_t A_12 = t38 - t39;
+    const real_t t40 = t37 * (t14 - A_12);
     const real_t t41 = c_alpha3 * t1;
-    const real_t w_x = cf_rarely(single, in_line, g_1 * s_w, t14 * n_z - d_z * t22);
-    const real_t t42 = w_x * h;
-    const real_t t43 = t20 * t27 + d_x * CLOSEDFORM_C(0.5);
+    const real_t t42 = t21 * h;
+    const real_t t43 = (t16 * m_z + u_z * t22) * t33 + t8 * CLOSEDFORM_C(0.5);
     const real_t t44 = t42 - t43;
-    const real_t t45 = v_z + t33;
+    const real_t t45 = v_z + t35;
     const real_t t46 = t36 * t45;
     const real_t t47 = t44 * t46;
-    const real_t t48 = c_alpha1 * c_alpha2;
-    const real_t t49 = s_alpha3 * t48;
-    const real_t t50 = s_alpha1 * s_alpha2;
-    const real_t t51 = c_alpha3 * t50;
-    const real_t t52 = t46 * t39;
-    const real_t t53 = s_alpha1 * c_alpha2;
-    const real_t t54 = s_alpha3 * t53;
-    const real_t t55 = t41 * t47 - t49 * t47 + t51 * t52 - t54 * t52;
-    const real_t t56 = c_alpha3 * t33;
-    const real_t t57 = t53 * t56;
-    const real_t t58 = t45 * (t6 + t44);
-    const real_t t59 = t45 * (t8 + t39);
-    const real_t t60 = t55 - t57 * t58 + t48 * t58 * t34 - t50 * t56 * t59;
-    const real_t t61 = t36 * (t10 + t44);
-    const real_t t62 = t60 + t59 * t35 + t57 * t61 - t1 * t56 * t61 + t53 * t34 * t40;
-    const int t63 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t64 = t63 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t65 = t64 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
-    const int t66 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
-    const real_t t67 = cf_rarely(single, in_line, -t26, CLOSEDFORM_C(0.0));
-    const int t68 = cf_abs(t67) <= t12 * CLOSEDFORM_FEASIBILITY;
-    const int t69 = t68 & (-(CLOSEDFORM_FEASIBILITY * t30) <= t29);
-    const real_t t70 = cf_poison(single, (!(t65 & t66)) | (!t69));
+    const real_t t48 = s_alpha3 * (c_alpha1 * c_alpha2);
+    const real_t t49 = c_alpha3 * (s_alpha1 * s_alpha2);
+    const real_t t50 = t46 * A_12;
+    const real_t t51 = s_alpha1 * c_alpha2;
+    const real_t t52 = s_alpha3 * t51;
+    const real_t t53 = t41 * t47 - t48 * t47 - t49 * t50 + t52 * t50;
+    const real_t t54 = c_alpha3 * t51;
+    const real_t t55 = t35 * t45;
+    const real_t t56 = (t8 + t44) * t55;
+    const real_t t57 = t55 * (t16 - A_12);
+    const real_t t58 = t53 - t54 * t56 + t48 * t56 - t49 * t57 + t2 * t57;
+    const real_t t59 = (t19 + t44) * t37;
+    const real_t t60 = t2 * t40 - (t58 + t54 * t59 - t41 * t59 + t52 * t40);
+    const int t61 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t62 = t61 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t63 = t62 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t64 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const int t65 = cf_abs(CLOSEDFORM_C(0.0)) <= t25 * CLOSEDFORM_FEASIBILITY;
+    const real_t t66 = CLOSEDFORM_C(0.9375) * (l * size);
+    const int t67 = t65 & (-(CLOSEDFORM_FEASIBILITY * t66) <= t31);
+    const real_t t68 = cf_poison(single, (!(t63 & t64)) | (!t67));
     const real_t A_11_above = t42 + t43;
-    const real_t t71 = t31 - t32;
-    const real_t t72 = u_z - t71;
-    const real_t t73 = v_z - t71;
-    const real_t t74 = t72 * t73;
-    const real_t t75 = A_11_above * t74;
-    const real_t A_12_above = t37 - t38;
-    const real_t t76 = t74 * A_12_above;
-    const real_t t77 = t41 * t75 - t49 * t75 + t51 * t76 - t54 * t76;
-    const real_t t78 = c_alpha3 * t71;
-    const real_t t79 = t53 * t78;
-    const real_t t80 = t73 * (t6 - A_11_above);
-    const real_t t81 = s_alpha3 * t71;
-    const real_t t82 = t73 * (t8 - A_12_above);
-    const real_t t83 = t77 - t79 * t80 + t48 * t80 * t81 - t50 * t78 * t82;
-    const real_t t84 = t1 * t81;
-    const real_t t85 = t72 * (t10 - A_11_above);
-    const real_t t86 = t72 * (t11 - A_12_above);
-    const real_t t87 = t83 + t82 * t84 + t79 * t85 - t1 * t78 * t85 + t53 * t81 * t86;
-    factors[0] = t35 * t40 - t62 + t70;
-    factors[1] = t87 - t84 * t86 + t70;
+    const real_t t69 = t32 + t34;
+    const real_t t70 = u_z - t69;
+    const real_t t71 = v_z - t69;
+    const real_t t72 = t70 * t71;
+    const real_t t73 = A_11_above * t72;
+    const real_t t74 = t38 + t39;
+    const real_t t75 = t72 * t74;
+    const real_t t76 = t41 * t73 - t48 * t73 - t49 * t75 + t52 * t75;
+    const real_t t77 = t69 * t71;
+    const real_t t78 = (t8 - A_11_above) * t77;
+    const real_t t79 = t77 * (t16 + t74);
+    const real_t t80 = t76 - t54 * t78 + t48 * t78 - t49 * t79 + t2 * t79;
+    const real_t t81 = t69 * t70;
+    const real_t t82 = (t19 - A_11_above) * t81;
+    const real_t t83 = t81 * (t14 + t74);
+    const real_t t84 = t80 + t54 * t82 - t41 * t82 + t52 * t83 - t2 * t83;
+    const real_t t85 = cf_rounded(single, one, v_z * v_z) + cf_rounded(single, one, t19 * t19);
+    const real_t v_v = t85 + cf_rounded(single, one, t14 * t14);
+    const real_t t86 = u_u * v_v;
+    const real_t t87 = product_2 - t86 * CLOSEDFORM_C(0.000244140625);
+    const int t88 = (u_u <= t27) | (u_u + v_v <= t27) | (t87 <= CLOSEDFORM_VANISHING * t86);
+    const int t89 = t88 | (product_2 <= t26 * (t25 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t66);
+    factors[0] = t60 + t68;
+    factors[1] = t84 + t68;
+    rare[0] = (t89) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void delta_constraint_common_batch(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const delta_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = params->alpha3;
+        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
+        real_t angle_1[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_1[i] = params->alpha1;
+        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
+        real_t angle_2[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_2[i] = params->alpha2;
+        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
+        cf_sincos_block_rounded(length, one, q + start, sines[3], cosines[3]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
+        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[5], cosines[5]);
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            real_t factors_i[2];
+            real_t rare_i[1];
+            delta_constraint_common_kernel(0, one, &local, q_i, sines_i, cosines_i, factors_i, rare_i);
+            factors[start + i] = factors_i[0];
+            factors[factors_stride + start + i] = factors_i[1];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void delta_constraint_common(const delta_params *params, const real_t q[3],
+    real_t factors[2], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha3, params->alpha1, params->alpha2, q[0], q[1], q[2], q[2], q[2] };
+    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
+    real_t rare_real[1];
+    delta_constraint_common_kernel(1, one, params, q, sines, cosines, factors, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2679,7 +3307,7 @@ void delta_constraint(const delta_params *params, const real_t q[3],
     delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -2688,10 +3316,9 @@ void delta_constraint(const delta_params *params, const real_t q[3],
         params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
         params = &params_scaled;
     }
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, params->alpha2, params->alpha3, q[0], q[1], q[2], q[2], q[2] };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    delta_constraint_kernel(1, params, q, sines, cosines, factors);
+    uint8_t rare[1];
+    delta_constraint_common(params, q, factors, rare);
+    if (CF_UNLIKELY(rare[0])) delta_constraint_whole(params, q, factors);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(2, factors_degrees, exponent, factors, factors);
     }
@@ -2716,39 +3343,23 @@ void delta_constraint_batch(size_t n, const delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *factors, size_t factors_stride)
 {
-    const delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         delta_constraint_other_sizes(n, params, q, q_stride, factors, factors_stride);
         return;
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha2;
-        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha3;
-        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
-        cf_sincos_block(length, q + start, sines[3], cosines[3]);
-        cf_sincos_block(length, q + q_stride + start, sines[4], cosines[4]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[5], cosines[5]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        delta_constraint_common_batch(length, params, q + start, q_stride, factors + start, factors_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
             real_t factors_i[2];
-            delta_constraint_kernel(0, &local, q_i, sines_i, cosines_i, factors_i);
-            factors[start + i] = factors_i[0];
-            factors[factors_stride + start + i] = factors_i[1];
+            delta_constraint_whole(params, q_i, factors_i);
+            for (size_t k = 0; k < 2; ++k) factors[k * factors_stride + i] = factors_i[k];
+
         }
     }
 }

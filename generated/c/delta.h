@@ -3,17 +3,27 @@
  * derivations/delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 45 compare and select, 64 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
- *   fk where nothing vanishes: 62 add, 27 compare and select, 7 divide, 77 multiply, 6 sincos, 1
+ *   fk: 52 compare and select, 67 add, 8 divide, 93 multiply, 6 sincos, 1 sqrt
+ *   fk where nothing vanishes: 60 add, 29 compare and select, 7 divide, 71 multiply, 6 sincos, 1
  *     sqrt
- *   skeleton: 44 compare and select, 179 add, 14 divide, 86 multiply, 6 sincos, 1 sqrt
- *   jacobian_parallel: 44 compare and select, 85 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
- *   jacobian_serial: 44 compare and select, 85 add, 8 divide, 110 multiply, 6 sincos, 1 sqrt
- *   jacobian: 44 compare and select, 115 add, 26 divide, 165 multiply, 6 sincos, 1 sqrt
- *   determinant: 44 compare and select, 81 add, 10 divide, 115 multiply, 6 sincos, 1 sqrt
- *   singularities: 44 compare and select, 87 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
- *   condition_number: 44 compare and select, 119 add, 10 divide, 162 multiply, 6 sincos, 3 sqrt
- *   constraint: 44 compare and select, 91 add, 8 divide, 148 multiply, 6 sincos, 1 sqrt
+ *   skeleton: 51 compare and select, 182 add, 14 divide, 93 multiply, 6 sincos, 1 sqrt
+ *   jacobian_parallel: 51 compare and select, 88 add, 8 divide, 93 multiply, 6 sincos, 1 sqrt
+ *   jacobian_parallel where nothing vanishes: 81 add, 28 compare and select, 7 divide, 71
+ *     multiply, 6 sincos, 1 sqrt
+ *   jacobian_serial: 51 compare and select, 88 add, 8 divide, 117 multiply, 6 sincos, 1 sqrt
+ *   jacobian_serial where nothing vanishes: 81 add, 28 compare and select, 7 divide, 95 multiply,
+ *     6 sincos, 1 sqrt
+ *   jacobian: 51 compare and select, 118 add, 26 divide, 172 multiply, 6 sincos, 1 sqrt
+ *   determinant: 51 compare and select, 84 add, 10 divide, 122 multiply, 6 sincos, 1 sqrt
+ *   determinant where nothing vanishes: 77 add, 28 compare and select, 9 divide, 100 multiply, 6
+ *     sincos, 1 sqrt
+ *   singularities: 51 compare and select, 90 add, 8 divide, 118 multiply, 6 sincos, 1 sqrt
+ *   singularities where nothing vanishes: 83 add, 28 compare and select, 7 divide, 96 multiply, 6
+ *     sincos, 1 sqrt
+ *   condition_number: 51 compare and select, 122 add, 10 divide, 169 multiply, 6 sincos, 3 sqrt
+ *   constraint: 51 compare and select, 94 add, 8 divide, 155 multiply, 6 sincos, 1 sqrt
+ *   constraint where nothing vanishes: 87 add, 28 compare and select, 7 divide, 123 multiply, 6
+ *     sincos, 1 sqrt
  *   ik: 139 compare and select, 130 add, 6 atan2, 13 divide, 151 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
  *

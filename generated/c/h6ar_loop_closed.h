@@ -4,7 +4,7 @@
  * Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
  *     manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 60 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
+ *   fk: 59 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
  *     sincos, 6 sqrt
  *   pose: 57 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 6 sqrt
  *   skeleton: 57 compare and select, 175 add, 21 divide, 201 multiply, 6 sincos, 6 sqrt

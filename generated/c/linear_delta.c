@@ -3,24 +3,31 @@
  * derivations/linear_delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 44 compare and select, 50 add, 12 divide, 61 multiply, 1 sqrt
- *   fk where nothing vanishes: 28 compare and select, 48 add, 11 divide, 51 multiply, 1 sqrt
- *   skeleton: 43 compare and select, 124 add, 14 divide, 61 multiply, 1 sqrt
- *   jacobian_parallel: 43 compare and select, 68 add, 12 divide, 61 multiply, 1 sqrt
- *   jacobian_parallel where nothing vanishes: 27 compare and select, 66 add, 11 divide, 51
+ *   fk: 51 compare and select, 53 add, 12 divide, 68 multiply, 1 sqrt
+ *   fk where nothing vanishes: 30 compare and select, 46 add, 11 divide, 45 multiply, 1 sqrt
+ *   skeleton: 50 compare and select, 127 add, 14 divide, 68 multiply, 1 sqrt
+ *   skeleton where nothing vanishes: 29 compare and select, 120 add, 13 divide, 45 multiply, 1
+ *     sqrt
+ *   jacobian_parallel: 50 compare and select, 71 add, 12 divide, 68 multiply, 1 sqrt
+ *   jacobian_parallel where nothing vanishes: 29 compare and select, 64 add, 11 divide, 45
  *     multiply, 1 sqrt
- *   jacobian_serial: 41 compare and select, 44 add, 10 divide, 52 multiply, 1 sqrt
- *   jacobian_serial where nothing vanishes: 27 compare and select, 42 add, 9 divide, 43 multiply,
+ *   jacobian_serial: 46 compare and select, 47 add, 10 divide, 57 multiply, 1 sqrt
+ *   jacobian_serial where nothing vanishes: 29 compare and select, 40 add, 9 divide, 37 multiply,
  *     1 sqrt
- *   jacobian: 43 compare and select, 88 add, 30 divide, 112 multiply, 1 sqrt
- *   determinant: 41 compare and select, 40 add, 12 divide, 57 multiply, 1 sqrt
- *   determinant where nothing vanishes: 27 compare and select, 38 add, 11 divide, 48 multiply, 1
+ *   jacobian: 50 compare and select, 91 add, 30 divide, 119 multiply, 1 sqrt
+ *   jacobian where nothing vanishes: 29 compare and select, 84 add, 29 divide, 96 multiply, 1 sqrt
+ *   determinant: 46 compare and select, 43 add, 12 divide, 62 multiply, 1 sqrt
+ *   determinant where nothing vanishes: 29 compare and select, 36 add, 11 divide, 42 multiply, 1
  *     sqrt
- *   singularities: 41 compare and select, 46 add, 10 divide, 53 multiply, 1 sqrt
- *   singularities where nothing vanishes: 27 compare and select, 44 add, 9 divide, 44 multiply, 1
+ *   singularities: 46 compare and select, 49 add, 10 divide, 58 multiply, 1 sqrt
+ *   singularities where nothing vanishes: 29 compare and select, 42 add, 9 divide, 38 multiply, 1
  *     sqrt
- *   condition_number: 43 compare and select, 104 add, 14 divide, 131 multiply, 3 sqrt
- *   constraint: 43 compare and select, 62 add, 18 divide, 85 multiply, 1 sqrt
+ *   condition_number: 50 compare and select, 107 add, 14 divide, 138 multiply, 3 sqrt
+ *   condition_number where nothing vanishes: 29 compare and select, 100 add, 13 divide, 115
+ *     multiply, 3 sqrt
+ *   constraint: 50 compare and select, 65 add, 18 divide, 92 multiply, 1 sqrt
+ *   constraint where nothing vanishes: 29 compare and select, 58 add, 17 divide, 69 multiply, 1
+ *     sqrt
  *   ik: 60 compare and select, 63 add, 5 divide, 44 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  */
@@ -37,83 +44,88 @@ CF_INLINE void linear_delta_fk_whole_kernel(const int single, const real_t one,
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t t1 = rho1 - rho2;
     const real_t c1_x = f - e;
     const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
-    const real_t t2 = c1_x - c2_x;
+    const real_t t1 = c1_x - c2_x;
+    const real_t t2 = rho1 - rho2;
     const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
     const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
     const real_t c3_y = t3 - t4;
-    const real_t t5 = cf_rounded(single, one, t2 * t2) + cf_rounded(single, one, c3_y * c3_y);
-    const real_t u_u = cf_rounded(single, one, t1 * t1) + t5;
-    const real_t t6 = rho1 - rho3;
-    const real_t v_v = cf_rounded(single, one, t6 * t6) + t5;
+    const real_t t5 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t2 * t2) + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t7 = size * size;
-    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
+    const real_t t6 = size * size;
+    const real_t t7 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t8 = t6 * t7;
+    const int same = u_u <= t8;
+    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t t9 = rho1 - rho3;
+    const real_t v_v = cf_rounded(single, one, t9 * t9) + t5;
     const int all_same = u_u + v_v <= t8;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t8;
+    const real_t a_x = cf_rarely(single, all_same, whole, -t1);
+    const real_t t10 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t product_z = cf_rounded(single, one, a_x * t10) + cf_rounded(single, one, t1 * d_y);
+    const real_t t11 = cf_rarely(single, same, t9, t2);
+    const real_t t12 = cf_rarely(single, same, t2, t9);
+    const real_t product_y = cf_rounded(single, one, a_x * t12) + cf_rounded(single, one, t1 * t11);
+    const real_t t13 = cf_rounded(single, one, d_y * product_z) + cf_rounded(single, one, t11 * product_y);
+    const real_t t14 = cf_rounded(single, one, d_y * t12) - cf_rounded(single, one, t10 * t11);
+    const real_t t15 = cf_rounded(single, one, product_y * product_y);
+    const real_t t16 = cf_rounded(single, one, product_z * product_z);
+    const real_t product_2 = cf_rounded(single, one, t14 * t14) + t15 + t16;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t17 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t18 = product_2 - t17 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t18 <= CLOSEDFORM_VANISHING * t17;
     const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t2);
-    const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
-    const real_t m_z = cf_rounded(single, one, a_x * t9) + cf_rounded(single, one, t2 * d_y);
-    const real_t t10 = cf_rarely(single, same, t6, t1);
-    const real_t t11 = cf_rarely(single, same, t1, t6);
-    const real_t m_y = cf_rounded(single, one, a_x * t11) + cf_rounded(single, one, t2 * t10);
-    const real_t t12 = cf_rounded(single, one, d_y * m_z) + cf_rounded(single, one, t10 * m_y);
-    const real_t t13 = over * t12;
-    const real_t t14 = cf_rounded(single, one, d_y * t11) - cf_rounded(single, one, t9 * t10);
-    const real_t t15 = cf_rounded(single, one, a_x * m_z) - cf_rounded(single, one, t10 * t14);
-    const real_t n_y = over * t15;
-    const real_t t16 = cf_rounded(single, one, t13 * t13) + cf_rounded(single, one, n_y * n_y);
-    const real_t t17 = cf_rounded(single, one, a_x * m_y) + cf_rounded(single, one, d_y * t14);
-    const real_t t18 = over * t17;
-    const real_t nu = t16 + cf_rounded(single, one, t18 * t18);
-    const int in_line = nu <= t8;
-    const real_t t19 = whole * t10;
+    const real_t n_y = cf_rounded(single, one, a_x * product_z) - cf_rounded(single, one, t11 * t14);
+    const real_t t19 = cf_rounded(single, one, t13 * t13) + cf_rounded(single, one, n_y * n_y);
+    const real_t t20 = cf_rounded(single, one, a_x * product_y) + cf_rounded(single, one, d_y * t14);
+    const real_t t21 = over * (t19 + cf_rounded(single, one, t20 * t20));
+    const real_t m_m = cf_rarely(single, slim, t21, product_2);
+    const int in_line = m_m <= t7 * (t6 * mu);
+    const real_t t22 = whole * t11;
     const real_t s_w = cf_sign(d_y * a_x);
-    const real_t t20 = cf_rarely(single, in_line, t19 * s_w, d_y * t18 - t10 * n_y);
     const real_t g_2 = whole * (d_y + a_x * s_w);
-    const real_t t21 = CLOSEDFORM_C(2.0) * (t19 * t19) + cf_rounded(single, one, g_2 * g_2);
-    const real_t t22 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) / cf_nonzero(single, t21), t22);
-    const real_t t23 = cf_rounded(single, one, t9 * (d_y - t9)) + cf_rounded(single, one, t11 * (t10 - t11));
-    const real_t t24 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t23 * CLOSEDFORM_C(0.5));
-    const real_t t25 = cf_rounded(single, one, nu * (t24 * t24)) + mu * CLOSEDFORM_C(0.25);
-    const real_t t26 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t25);
-    const real_t t27 = cf_rounded(single, one, l * l) - t26;
-    const real_t slack = cf_max(t27, CLOSEDFORM_C(0.0));
-    const real_t t28 = l * size * CLOSEDFORM_C(0.1875);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t28, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t29 = t20 * h;
-    const real_t t30 = t2 * CLOSEDFORM_C(0.5) - (c1_x + t13 * t24);
-    const int t31 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t32 = t31 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t33 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int invalid = !(t32 & (CLOSEDFORM_C(0.0) <= l) & t33);
-    const real_t t34 = cf_rarely(single, in_line, -t23, CLOSEDFORM_C(0.0));
-    const int t35 = cf_abs(t34) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t36 = t35 & (-(CLOSEDFORM_FEASIBILITY * t28) <= t27);
-    const int unreachable = !t36;
-    const real_t t37 = cf_poison(single, invalid | unreachable);
-    const real_t t38 = n_y * t24 - d_y * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(single, in_line, -t19, a_x * t18 + t10 * t13);
-    const real_t t39 = h * w_y;
-    const real_t t40 = t10 * CLOSEDFORM_C(0.5) - (rho1 + t18 * t24);
-    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t13);
-    const real_t t41 = h * w_z;
-    const real_t t42 = cf_status(single, invalid, unreachable, in_line);
-    p[0] = t29 - t30 + t37;
-    p[1] = -(t38 + t39) + t37;
-    p[2] = -(t40 + t41) + t37;
-    p[3] = -(t30 + t29) + t37;
-    p[4] = t39 - t38 + t37;
-    p[5] = t41 - t40 + t37;
-    status[0] = t42;
-    status[1] = t42;
+    const real_t t23 = CLOSEDFORM_C(2.0) * (t22 * t22) + cf_rounded(single, one, g_2 * g_2);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, cf_rarely(single, in_line, t23, m_m));
+    const real_t t24 = cf_rounded(single, one, t10 * (d_y - t10)) + cf_rounded(single, one, t12 * (t11 - t12));
+    const real_t t25 = cf_select(in_line, CLOSEDFORM_C(0.0), part * t24 * CLOSEDFORM_C(0.5));
+    const real_t t26 = c1_x - t1 * CLOSEDFORM_C(0.5) + t13 * t25;
+    const real_t t27 = cf_rarely(single, slim, over * (d_y * t20 - t11 * n_y), t14);
+    const real_t t28 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), cf_rounded(single, one, part * (t24 * t24)));
+    const real_t t29 = mu * (CLOSEDFORM_C(1.0) + t28) * CLOSEDFORM_C(0.25);
+    const real_t t30 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t29);
+    const real_t t31 = cf_rounded(single, one, l * l) - t30;
+    const real_t slack = cf_max(t31, CLOSEDFORM_C(0.0));
+    const real_t t32 = l * size * CLOSEDFORM_C(0.1875);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t32, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t33 = cf_rarely(single, in_line, t22 * s_w, t27) * h;
+    const int t34 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t35 = t34 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t36 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int invalid = !(t35 & (CLOSEDFORM_C(0.0) <= l) & t36);
+    const real_t t37 = cf_rarely(single, in_line, -t24, CLOSEDFORM_C(0.0));
+    const int t38 = cf_abs(t37) <= t6 * CLOSEDFORM_FEASIBILITY;
+    const int t39 = t38 & (-(CLOSEDFORM_FEASIBILITY * t32) <= t31);
+    const int unreachable = !t39;
+    const real_t t40 = cf_poison(single, invalid | unreachable);
+    const real_t t41 = n_y * t25 - d_y * CLOSEDFORM_C(0.5);
+    const real_t m_y = cf_rarely(single, slim, over * (a_x * t20 + t11 * t13), product_y);
+    const real_t t42 = h * cf_rarely(single, in_line, -t22, m_y);
+    const real_t t43 = t11 * CLOSEDFORM_C(0.5) - (rho1 + t20 * t25);
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t13), product_z);
+    const real_t t44 = h * cf_rarely(single, in_line, -g_2, m_z);
+    const real_t t45 = cf_status(single, invalid, unreachable, in_line);
+    p[0] = t26 + t33 + t40;
+    p[1] = -(t41 + t42) + t40;
+    p[2] = -(t43 + t44) + t40;
+    p[3] = t26 - t33 + t40;
+    p[4] = t42 - t41 + t40;
+    p[5] = t44 - t43 + t40;
+    status[0] = t45;
+    status[1] = t45;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -150,56 +162,53 @@ CF_INLINE void linear_delta_fk_common_kernel(const int single, const real_t one,
     const real_t t6 = rho1 - rho2;
     const real_t t7 = rho1 - rho3;
     const real_t t8 = cf_rounded(single, one, t1 * t7) - cf_rounded(single, one, t1 * t6);
-    const real_t t9 = cf_rounded(single, one, c3_y * t5) - cf_rounded(single, one, t6 * t8);
-    const real_t t10 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
-    const real_t u_u = cf_rounded(single, one, t6 * t6) + t10;
+    const real_t t9 = cf_rounded(single, one, c3_y * t7) + cf_rounded(single, one, c3_y * t6);
+    const real_t t10 = cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, t8 * t8);
+    const real_t product_2 = t10 + cf_rounded(single, one, t5 * t5);
+    const real_t t11 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t6 * t6) + t11;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t11 = size * size;
-    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t11;
-    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t12, u_u);
-    const real_t t13 = t9 * over;
-    const real_t t14 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
-    const real_t t15 = t14 - cf_rounded(single, one, t7 * (t6 - t7));
-    const real_t t16 = cf_rounded(single, one, c3_y * t7) + cf_rounded(single, one, c3_y * t6);
-    const real_t t17 = cf_rounded(single, one, t1 * t5) + cf_rounded(single, one, t6 * t16);
-    const real_t n_y = t17 * over;
-    const real_t t18 = cf_rounded(single, one, t13 * t13) + cf_rounded(single, one, n_y * n_y);
-    const real_t t19 = cf_rounded(single, one, t1 * t8) + cf_rounded(single, one, c3_y * t16);
-    const real_t t20 = t19 * over;
-    const real_t nu = t18 + cf_rounded(single, one, t20 * t20);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t12) | (nu <= t12), u_u * nu);
-    const real_t t21 = u_u * t15 * part * CLOSEDFORM_C(0.5);
-    const real_t t22 = c1_x - t1 * CLOSEDFORM_C(0.5) - t13 * t21;
-    const real_t t23 = cf_rounded(single, one, nu * (t21 * t21)) + u_u * CLOSEDFORM_C(0.25);
-    const real_t t24 = cf_rounded(single, one, l * l) - t23;
-    const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
+    const real_t t12 = size * size;
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)), product_2);
+    const real_t t15 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t16 = t15 - cf_rounded(single, one, t7 * (t6 - t7));
+    const real_t t17 = part * t16 * CLOSEDFORM_C(0.5);
+    const real_t t18 = c1_x - t1 * CLOSEDFORM_C(0.5) - (c3_y * t5 - t6 * t8) * t17;
+    const real_t t19 = CLOSEDFORM_C(1.0) + cf_rounded(single, one, part * (t16 * t16));
+    const real_t t20 = cf_rounded(single, one, l * l) - u_u * t19 * CLOSEDFORM_C(0.25);
+    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t25 = (c3_y * t20 + t6 * n_y) * h;
-    const int t26 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t27 = t26 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t28 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int invalid = !(t27 & (CLOSEDFORM_C(0.0) <= l) & t28);
-    const int t29 = cf_abs(CLOSEDFORM_C(0.0)) <= t11 * CLOSEDFORM_FEASIBILITY;
-    const real_t t30 = l * size * CLOSEDFORM_C(0.1875);
-    const int t31 = t29 & (-(CLOSEDFORM_FEASIBILITY * t30) <= t24);
-    const int unreachable = !t31;
-    const real_t t32 = cf_poison(single, invalid | unreachable);
-    const real_t t33 = h * (t1 * t20 - t6 * t13);
-    const real_t t34 = c3_y * CLOSEDFORM_C(0.5) - n_y * t21;
-    const real_t t35 = h * (t1 * n_y + c3_y * t13);
-    const real_t t36 = t6 * CLOSEDFORM_C(0.5) - (rho1 - t20 * t21);
-    const real_t t37 = cf_status(single, invalid, unreachable, 0);
-    const real_t t38 = u_u + (cf_rounded(single, one, t7 * t7) + t10);
-    const int t39 = (u_u <= t12) | (t38 <= t12) | (nu <= t12) | (slack <= CLOSEDFORM_VANISHING * t30);
-    p[0] = t22 - t25 + t32;
-    p[1] = t33 - t34 + t32;
-    p[2] = t35 - t36 + t32;
-    p[3] = t22 + t25 + t32;
-    p[4] = -(t34 + t33) + t32;
-    p[5] = -(t36 + t35) + t32;
-    status[0] = t37;
-    status[1] = t37;
-    rare[0] = (t39) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t21 = t9 * h;
+    const int t22 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t23 = t22 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t24 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int invalid = !(t23 & (CLOSEDFORM_C(0.0) <= l) & t24);
+    const int t25 = cf_abs(CLOSEDFORM_C(0.0)) <= t12 * CLOSEDFORM_FEASIBILITY;
+    const real_t t26 = l * size * CLOSEDFORM_C(0.1875);
+    const int t27 = t25 & (-(CLOSEDFORM_FEASIBILITY * t26) <= t20);
+    const int unreachable = !t27;
+    const real_t t28 = cf_poison(single, invalid | unreachable);
+    const real_t t29 = t17 * (t1 * t5 + t6 * t9) - c3_y * CLOSEDFORM_C(0.5);
+    const real_t t30 = t8 * h;
+    const real_t t31 = t5 * h;
+    const real_t t32 = t6 * CLOSEDFORM_C(0.5) - (rho1 - t17 * (t1 * t8 + c3_y * t9));
+    const real_t t33 = cf_status(single, invalid, unreachable, 0);
+    const real_t v_v = cf_rounded(single, one, t7 * t7) + t11;
+    const real_t t34 = u_u * v_v;
+    const real_t t35 = product_2 - t34 * CLOSEDFORM_C(0.000244140625);
+    const int t36 = (u_u <= t14) | (u_u + v_v <= t14) | (t35 <= CLOSEDFORM_VANISHING * t34);
+    const int t37 = t36 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26);
+    p[0] = t18 - t21 + t28;
+    p[1] = t29 + t30 + t28;
+    p[2] = t31 - t32 + t28;
+    p[3] = t18 + t21 + t28;
+    p[4] = t29 - t30 + t28;
+    p[5] = -(t32 + t31) + t28;
+    status[0] = t33;
+    status[1] = t33;
+    rare[0] = (t37) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void linear_delta_fk_common_batch(size_t n, const linear_delta_params *params,
@@ -268,7 +277,7 @@ void linear_delta_fk(const linear_delta_params *params,
     linear_delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -290,7 +299,7 @@ void linear_delta_fk(const linear_delta_params *params,
 CF_INLINE cf_word linear_delta_fk_excess(const real_t dimensions,
     const real_t *q, size_t q_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
 }
 
 CF_RARE void linear_delta_fk_other_sizes(size_t n, const real_t dimensions,
@@ -342,7 +351,8 @@ void linear_delta_fk_batch(size_t n, const linear_delta_params *params,
     }
 }
 
-CF_INLINE void linear_delta_skeleton_kernel(const int single, const linear_delta_params *params,
+/* Every case. */
+CF_INLINE void linear_delta_skeleton_whole_kernel(const int single, const linear_delta_params *params,
     const real_t q[3], real_t points[132])
 {
     const real_t f = params->f;
@@ -365,295 +375,500 @@ CF_INLINE void linear_delta_skeleton_kernel(const int single, const linear_delta
     const real_t c3_y = t9 - t10;
     const real_t t11 = t7 * t7 + c3_y * c3_y;
     const real_t u_u = t4 * t4 + t11;
-    const real_t t12 = rho1 - rho3;
-    const real_t v_v = t12 * t12 + t11;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t13 = size * size;
-    const real_t t14 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t13;
+    const real_t t12 = size * size;
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const int same = u_u <= t14;
+    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t t15 = rho1 - rho3;
+    const real_t t16 = cf_rarely(single, same, t4, t15);
+    const real_t t17 = cf_rarely(single, same, t15, t4);
+    const real_t t18 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t19 = d_y * t16 - t17 * t18;
+    const real_t v_v = t15 * t15 + t11;
     const int all_same = u_u + v_v <= t14;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t14;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
     const real_t a_x = cf_rarely(single, all_same, whole, -t7);
-    const real_t t15 = cf_rarely(single, same, -c3_y, c3_y);
-    const real_t m_z = a_x * t15 + t7 * d_y;
-    const real_t t16 = cf_rarely(single, same, t12, t4);
-    const real_t t17 = cf_rarely(single, same, t4, t12);
-    const real_t m_y = a_x * t17 + t7 * t16;
-    const real_t t18 = over * (d_y * m_z + t16 * m_y);
-    const real_t t19 = d_y * t17 - t15 * t16;
-    const real_t n_y = over * (a_x * m_z - t16 * t19);
-    const real_t t20 = over * (a_x * m_y + d_y * t19);
-    const real_t nu = t18 * t18 + n_y * n_y + t20 * t20;
-    const int in_line = nu <= t14;
-    const real_t t21 = t15 * (d_y - t15) + t17 * (t16 - t17);
-    const real_t t22 = cf_rarely(single, in_line, -t21, CLOSEDFORM_C(0.0));
-    const int t23 = cf_abs(t22) <= t13 * CLOSEDFORM_FEASIBILITY;
-    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t t25 = whole * t16;
+    const real_t product_y = t16 * a_x + t7 * t17;
+    const real_t product_z = t18 * a_x + t7 * d_y;
+    const real_t product_2 = t19 * t19 + product_y * product_y + product_z * product_z;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t20 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t21 = product_2 - t20 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t21 <= CLOSEDFORM_VANISHING * t20;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t22 = d_y * product_z + t17 * product_y;
+    const real_t n_y = a_x * product_z - t17 * t19;
+    const real_t t23 = a_x * product_y + d_y * t19;
+    const real_t m_m = cf_rarely(single, slim, over * (t22 * t22 + n_y * n_y + t23 * t23), product_2);
+    const int in_line = m_m <= t13 * (t12 * mu);
+    const real_t t24 = t18 * (d_y - t18) - t16 * (t16 - t17);
+    const real_t t25 = cf_rarely(single, in_line, -t24, CLOSEDFORM_C(0.0));
+    const int t26 = cf_abs(t25) <= t12 * CLOSEDFORM_FEASIBILITY;
+    const real_t t27 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t t28 = whole * t17;
     const real_t s_w = cf_sign(d_y * a_x);
     const real_t g_2 = whole * (d_y + a_x * s_w);
-    const real_t t26 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t25 * t25) + g_2 * g_2);
-    const real_t t27 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, t26, t27);
-    const real_t t28 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * t21 * part * CLOSEDFORM_C(0.5));
-    const real_t t29 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t28 * t28) + mu * CLOSEDFORM_C(0.25));
-    const real_t t30 = l * l - t29;
-    const int t31 = t23 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t30);
-    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= l) & t3)) | (!t31);
-    const real_t t32 = cf_poison(single, failed);
-    const real_t t33 = f + t32;
-    const real_t t34 = CLOSEDFORM_C(0.0) + t32;
-    const real_t t35 = rho1 + t32;
-    const real_t t36 = e + c1_x;
-    const real_t t37 = t7 * CLOSEDFORM_C(0.5) - t18 * t28;
-    const real_t t38 = cf_rarely(single, in_line, t25 * s_w, d_y * t20 - t16 * n_y);
-    const real_t slack = cf_max(t30, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t39 = t38 * h;
-    const real_t t40 = t37 - t39;
-    const real_t t41 = t36 - t40 + t32;
-    const real_t t42 = n_y * t28 - d_y * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(single, in_line, -t25, a_x * t20 + t16 * t18);
-    const real_t t43 = h * w_y;
-    const real_t t44 = t42 + t43;
-    const real_t t45 = -t44 + t32;
-    const real_t t46 = t20 * t28 - t16 * CLOSEDFORM_C(0.5);
-    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t18);
-    const real_t t47 = h * w_z;
-    const real_t t48 = rho1 + (t46 - t47) + t32;
-    const real_t t49 = t5 + t32;
-    const real_t t50 = -t5 + t32;
-    const real_t t51 = -t6 + t32;
-    const real_t t52 = t10 + t32;
-    const real_t t53 = rho2 + t32;
-    const real_t t54 = c1_x - t5;
-    const real_t t55 = t54 - t40;
-    const real_t t56 = t55 + t32;
-    const real_t t57 = t8 * CLOSEDFORM_C(0.25);
-    const real_t t58 = -(t6 + t57) + t32;
-    const real_t t59 = e * CLOSEDFORM_C(0.25);
-    const real_t t60 = t10 - t59;
-    const real_t t61 = t60 + t32;
-    const real_t t62 = t57 - t6 + t32;
-    const real_t t63 = t10 + t59;
-    const real_t t64 = t63 + t32;
-    const real_t t65 = t55 - t57 + t32;
-    const real_t t66 = t9 - t59;
-    const real_t t67 = t57 + t55 + t32;
-    const real_t t68 = t9 + t59;
-    const real_t t69 = -t10 + t32;
-    const real_t t70 = rho3 + t32;
-    const real_t t71 = -t63 + t32;
-    const real_t t72 = -t60 + t32;
-    const real_t t73 = t37 + t39;
-    const real_t t74 = t36 - t73 + t32;
-    const real_t t75 = t42 - t43;
-    const real_t t76 = -t75 + t32;
-    const real_t t77 = rho1 + (t46 + t47) + t32;
-    const real_t t78 = t54 - t73;
-    const real_t t79 = t78 + t32;
-    const real_t t80 = t78 - t57 + t32;
-    const real_t t81 = t57 + t78 + t32;
-    points[0] = t33;
-    points[1] = t34;
-    points[2] = t34;
-    points[3] = t33;
-    points[4] = t34;
-    points[5] = t35;
-    points[6] = t41;
-    points[7] = t45;
-    points[8] = t48;
-    points[9] = t33;
-    points[10] = t49;
-    points[11] = t35;
-    points[12] = t33;
-    points[13] = t50;
-    points[14] = t35;
-    points[15] = t41;
-    points[16] = t5 - t44 + t32;
-    points[17] = t48;
-    points[18] = t41;
-    points[19] = -(t5 + t44) + t32;
-    points[20] = t48;
-    points[21] = t51;
-    points[22] = t52;
-    points[23] = t34;
-    points[24] = t51;
-    points[25] = t52;
-    points[26] = t53;
-    points[27] = t56;
-    points[28] = t9 - t44 + t32;
-    points[29] = t48;
-    points[30] = t58;
-    points[31] = t61;
-    points[32] = t53;
-    points[33] = t62;
-    points[34] = t64;
-    points[35] = t53;
-    points[36] = t65;
-    points[37] = t66 - t44 + t32;
-    points[38] = t48;
-    points[39] = t67;
-    points[40] = t68 - t44 + t32;
-    points[41] = t48;
-    points[42] = t51;
-    points[43] = t69;
-    points[44] = t34;
-    points[45] = t51;
-    points[46] = t69;
-    points[47] = t70;
-    points[48] = t56;
-    points[49] = -(t9 + t44) + t32;
-    points[50] = t48;
-    points[51] = t62;
-    points[52] = t71;
-    points[53] = t70;
-    points[54] = t58;
-    points[55] = t72;
-    points[56] = t70;
-    points[57] = t67;
-    points[58] = -(t68 + t44) + t32;
-    points[59] = t48;
-    points[60] = t65;
-    points[61] = -(t66 + t44) + t32;
-    points[62] = t48;
-    points[63] = c1_x - t40 + t32;
-    points[64] = t45;
-    points[65] = t48;
-    points[66] = t33;
-    points[67] = t34;
-    points[68] = t34;
-    points[69] = t33;
-    points[70] = t34;
-    points[71] = t35;
-    points[72] = t74;
-    points[73] = t76;
-    points[74] = t77;
-    points[75] = t33;
-    points[76] = t49;
-    points[77] = t35;
-    points[78] = t33;
-    points[79] = t50;
-    points[80] = t35;
-    points[81] = t74;
-    points[82] = t5 - t75 + t32;
-    points[83] = t77;
-    points[84] = t74;
-    points[85] = -(t5 + t75) + t32;
-    points[86] = t77;
-    points[87] = t51;
-    points[88] = t52;
-    points[89] = t34;
-    points[90] = t51;
-    points[91] = t52;
-    points[92] = t53;
-    points[93] = t79;
-    points[94] = t9 - t75 + t32;
-    points[95] = t77;
-    points[96] = t58;
-    points[97] = t61;
-    points[98] = t53;
-    points[99] = t62;
-    points[100] = t64;
-    points[101] = t53;
-    points[102] = t80;
-    points[103] = t66 - t75 + t32;
-    points[104] = t77;
-    points[105] = t81;
-    points[106] = t68 - t75 + t32;
-    points[107] = t77;
-    points[108] = t51;
-    points[109] = t69;
-    points[110] = t34;
-    points[111] = t51;
-    points[112] = t69;
-    points[113] = t70;
-    points[114] = t79;
-    points[115] = -(t9 + t75) + t32;
-    points[116] = t77;
-    points[117] = t62;
-    points[118] = t71;
-    points[119] = t70;
-    points[120] = t58;
-    points[121] = t72;
-    points[122] = t70;
-    points[123] = t81;
-    points[124] = -(t68 + t75) + t32;
-    points[125] = t77;
-    points[126] = t80;
-    points[127] = -(t66 + t75) + t32;
-    points[128] = t77;
-    points[129] = c1_x - t73 + t32;
-    points[130] = t76;
-    points[131] = t77;
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t28 * t28) + g_2 * g_2, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t29 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t24 * t24));
+    const real_t t30 = mu * (CLOSEDFORM_C(1.0) + t29) * CLOSEDFORM_C(0.25);
+    const real_t t31 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t30);
+    const real_t t32 = l * l - t31;
+    const int t33 = t26 & (-(CLOSEDFORM_FEASIBILITY * t27) <= t32);
+    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= l) & t3)) | (!t33);
+    const real_t t34 = cf_poison(single, failed);
+    const real_t t35 = f + t34;
+    const real_t t36 = CLOSEDFORM_C(0.0) + t34;
+    const real_t t37 = rho1 + t34;
+    const real_t t38 = e + c1_x;
+    const real_t t39 = cf_select(in_line, CLOSEDFORM_C(0.0), t24 * part * CLOSEDFORM_C(0.5));
+    const real_t t40 = t7 * CLOSEDFORM_C(0.5) - t22 * t39;
+    const real_t t41 = cf_rarely(single, slim, over * (d_y * t23 - t17 * n_y), t19);
+    const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t27, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t42 = cf_rarely(single, in_line, t28 * s_w, t41) * h;
+    const real_t t43 = t40 - t42;
+    const real_t t44 = t38 - t43 + t34;
+    const real_t t45 = n_y * t39 - d_y * CLOSEDFORM_C(0.5);
+    const real_t m_y = cf_rarely(single, slim, over * (a_x * t23 + t17 * t22), product_y);
+    const real_t t46 = h * cf_rarely(single, in_line, -t28, m_y);
+    const real_t t47 = t45 + t46;
+    const real_t t48 = -t47 + t34;
+    const real_t t49 = t23 * t39 - t17 * CLOSEDFORM_C(0.5);
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t22), product_z);
+    const real_t t50 = h * cf_rarely(single, in_line, -g_2, m_z);
+    const real_t t51 = rho1 + (t49 - t50) + t34;
+    const real_t t52 = t5 + t34;
+    const real_t t53 = -t5 + t34;
+    const real_t t54 = -t6 + t34;
+    const real_t t55 = t10 + t34;
+    const real_t t56 = rho2 + t34;
+    const real_t t57 = c1_x - t5;
+    const real_t t58 = t57 - t43;
+    const real_t t59 = t58 + t34;
+    const real_t t60 = t8 * CLOSEDFORM_C(0.25);
+    const real_t t61 = -(t6 + t60) + t34;
+    const real_t t62 = e * CLOSEDFORM_C(0.25);
+    const real_t t63 = t10 - t62;
+    const real_t t64 = t63 + t34;
+    const real_t t65 = t60 - t6 + t34;
+    const real_t t66 = t10 + t62;
+    const real_t t67 = t66 + t34;
+    const real_t t68 = t58 - t60 + t34;
+    const real_t t69 = t9 - t62;
+    const real_t t70 = t60 + t58 + t34;
+    const real_t t71 = t9 + t62;
+    const real_t t72 = -t10 + t34;
+    const real_t t73 = rho3 + t34;
+    const real_t t74 = -t66 + t34;
+    const real_t t75 = -t63 + t34;
+    const real_t t76 = t40 + t42;
+    const real_t t77 = t38 - t76 + t34;
+    const real_t t78 = t45 - t46;
+    const real_t t79 = -t78 + t34;
+    const real_t t80 = rho1 + (t49 + t50) + t34;
+    const real_t t81 = t57 - t76;
+    const real_t t82 = t81 + t34;
+    const real_t t83 = t81 - t60 + t34;
+    const real_t t84 = t60 + t81 + t34;
+    points[0] = t35;
+    points[1] = t36;
+    points[2] = t36;
+    points[3] = t35;
+    points[4] = t36;
+    points[5] = t37;
+    points[6] = t44;
+    points[7] = t48;
+    points[8] = t51;
+    points[9] = t35;
+    points[10] = t52;
+    points[11] = t37;
+    points[12] = t35;
+    points[13] = t53;
+    points[14] = t37;
+    points[15] = t44;
+    points[16] = t5 - t47 + t34;
+    points[17] = t51;
+    points[18] = t44;
+    points[19] = -(t5 + t47) + t34;
+    points[20] = t51;
+    points[21] = t54;
+    points[22] = t55;
+    points[23] = t36;
+    points[24] = t54;
+    points[25] = t55;
+    points[26] = t56;
+    points[27] = t59;
+    points[28] = t9 - t47 + t34;
+    points[29] = t51;
+    points[30] = t61;
+    points[31] = t64;
+    points[32] = t56;
+    points[33] = t65;
+    points[34] = t67;
+    points[35] = t56;
+    points[36] = t68;
+    points[37] = t69 - t47 + t34;
+    points[38] = t51;
+    points[39] = t70;
+    points[40] = t71 - t47 + t34;
+    points[41] = t51;
+    points[42] = t54;
+    points[43] = t72;
+    points[44] = t36;
+    points[45] = t54;
+    points[46] = t72;
+    points[47] = t73;
+    points[48] = t59;
+    points[49] = -(t9 + t47) + t34;
+    points[50] = t51;
+    points[51] = t65;
+    points[52] = t74;
+    points[53] = t73;
+    points[54] = t61;
+    points[55] = t75;
+    points[56] = t73;
+    points[57] = t70;
+    points[58] = -(t71 + t47) + t34;
+    points[59] = t51;
+    points[60] = t68;
+    points[61] = -(t69 + t47) + t34;
+    points[62] = t51;
+    points[63] = c1_x - t43 + t34;
+    points[64] = t48;
+    points[65] = t51;
+    points[66] = t35;
+    points[67] = t36;
+    points[68] = t36;
+    points[69] = t35;
+    points[70] = t36;
+    points[71] = t37;
+    points[72] = t77;
+    points[73] = t79;
+    points[74] = t80;
+    points[75] = t35;
+    points[76] = t52;
+    points[77] = t37;
+    points[78] = t35;
+    points[79] = t53;
+    points[80] = t37;
+    points[81] = t77;
+    points[82] = t5 - t78 + t34;
+    points[83] = t80;
+    points[84] = t77;
+    points[85] = -(t5 + t78) + t34;
+    points[86] = t80;
+    points[87] = t54;
+    points[88] = t55;
+    points[89] = t36;
+    points[90] = t54;
+    points[91] = t55;
+    points[92] = t56;
+    points[93] = t82;
+    points[94] = t9 - t78 + t34;
+    points[95] = t80;
+    points[96] = t61;
+    points[97] = t64;
+    points[98] = t56;
+    points[99] = t65;
+    points[100] = t67;
+    points[101] = t56;
+    points[102] = t83;
+    points[103] = t69 - t78 + t34;
+    points[104] = t80;
+    points[105] = t84;
+    points[106] = t71 - t78 + t34;
+    points[107] = t80;
+    points[108] = t54;
+    points[109] = t72;
+    points[110] = t36;
+    points[111] = t54;
+    points[112] = t72;
+    points[113] = t73;
+    points[114] = t82;
+    points[115] = -(t9 + t78) + t34;
+    points[116] = t80;
+    points[117] = t65;
+    points[118] = t74;
+    points[119] = t73;
+    points[120] = t61;
+    points[121] = t75;
+    points[122] = t73;
+    points[123] = t84;
+    points[124] = -(t71 + t78) + t34;
+    points[125] = t80;
+    points[126] = t83;
+    points[127] = -(t69 + t78) + t34;
+    points[128] = t80;
+    points[129] = c1_x - t76 + t34;
+    points[130] = t79;
+    points[131] = t80;
 }
 
 CLOSEDFORM_DISPATCHED
-void linear_delta_skeleton(const linear_delta_params *params,
+CF_OUT_OF_LINE void linear_delta_skeleton_whole(const linear_delta_params *params,
     const real_t q[3], real_t points[132])
 {
-    static const signed char q_degrees[3] = { 1, 1, 1 };
-    static const signed char points_degrees[132] = { 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
-    real_t q_scaled[3];
-    linear_delta_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
-        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
-        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
-        params = &params_scaled;
-        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
-        q = q_scaled;
-    }
-    linear_delta_skeleton_kernel(1, params, q, points);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(132, points_degrees, exponent, points, points);
-    }
+    linear_delta_skeleton_whole_kernel(1, params, q, points);
 }
 
-/* Has its sign bit set where powers of the size of a posture may leave the range. */
-CF_INLINE cf_word linear_delta_skeleton_excess(const real_t dimensions,
-    const real_t *q, size_t q_stride, size_t i)
-{
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
-}
-
-CF_RARE void linear_delta_skeleton_other_sizes(size_t n, const real_t dimensions,
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void linear_delta_skeleton_common_kernel(const int single, const real_t one,
     const linear_delta_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *points, size_t points_stride)
+    const real_t q[3], real_t points[132],
+    real_t rare[1])
 {
-    for (size_t i = 0; i < n; ++i) {
-        if (!(linear_delta_skeleton_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
-        real_t q_i[3];
-        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-        real_t points_i[132];
-        linear_delta_skeleton(params, q_i, points_i);
-        for (size_t k = 0; k < 132; ++k) points[k * points_stride + i] = points_i[k];
-
-    }
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t l = params->l;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const real_t rho3 = q[2];
+    const int t1 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t3 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
+    const real_t t4 = size * size;
+    const int t5 = cf_abs(CLOSEDFORM_C(0.0)) <= t4 * CLOSEDFORM_FEASIBILITY;
+    const real_t t6 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t t7 = rho1 - rho2;
+    const real_t c1_x = f - e;
+    const real_t t8 = e * CLOSEDFORM_C(0.5);
+    const real_t t9 = f * CLOSEDFORM_C(0.5);
+    const real_t t10 = c1_x - (t8 - t9);
+    const real_t t11 = e * CLOSEDFORM_C(1.7320508075688772);
+    const real_t t12 = t11 * CLOSEDFORM_C(0.5);
+    const real_t t13 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t12 - t13;
+    const real_t t14 = cf_rounded(single, one, t10 * t10) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t7 * t7) + t14;
+    const real_t t15 = rho1 - rho3;
+    const real_t t16 = cf_rounded(single, one, c3_y * t15) + cf_rounded(single, one, c3_y * t7);
+    const real_t t17 = cf_rounded(single, one, t10 * t15) - cf_rounded(single, one, t10 * t7);
+    const real_t t18 = cf_rounded(single, one, t16 * t16) + cf_rounded(single, one, t17 * t17);
+    const real_t t19 = cf_rounded(single, one, c3_y * t10);
+    const real_t t20 = t19 + t19;
+    const real_t product_2 = t18 + cf_rounded(single, one, t20 * t20);
+    const real_t t21 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t22 = t4 * t21;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t22) | (product_2 <= t21 * (t4 * u_u)), product_2);
+    const real_t t23 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t24 = t23 - cf_rounded(single, one, t15 * (t7 - t15));
+    const real_t t25 = CLOSEDFORM_C(1.0) + cf_rounded(single, one, part * (t24 * t24));
+    const real_t t26 = cf_rounded(single, one, l * l) - u_u * t25 * CLOSEDFORM_C(0.25);
+    const int unreachable = !(t5 & (-(CLOSEDFORM_FEASIBILITY * t6) <= t26));
+    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= l) & t3)) | unreachable;
+    const real_t t27 = cf_poison(single, failed);
+    const real_t t28 = f + t27;
+    const real_t t29 = CLOSEDFORM_C(0.0) + t27;
+    const real_t t30 = rho1 + t27;
+    const real_t t31 = e + c1_x;
+    const real_t t32 = part * t24 * CLOSEDFORM_C(0.5);
+    const real_t t33 = t10 * CLOSEDFORM_C(0.5) + (c3_y * t20 - t7 * t17) * t32;
+    const real_t slack = cf_max(t26, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t34 = t16 * h;
+    const real_t t35 = t33 + t34;
+    const real_t t36 = t31 - t35 + t27;
+    const real_t t37 = t32 * (t10 * t20 + t7 * t16) - c3_y * CLOSEDFORM_C(0.5);
+    const real_t t38 = t17 * h;
+    const real_t A_12 = t37 + t38;
+    const real_t t39 = A_12 + t27;
+    const real_t t40 = t32 * (t10 * t17 + c3_y * t16) + t7 * CLOSEDFORM_C(0.5);
+    const real_t t41 = t20 * h;
+    const real_t t42 = rho1 - (t40 - t41) + t27;
+    const real_t t43 = t8 + t27;
+    const real_t t44 = -t8 + t27;
+    const real_t t45 = -t9 + t27;
+    const real_t t46 = t13 + t27;
+    const real_t t47 = rho2 + t27;
+    const real_t t48 = c1_x - t8;
+    const real_t t49 = t48 - t35;
+    const real_t t50 = t49 + t27;
+    const real_t t51 = t11 * CLOSEDFORM_C(0.25);
+    const real_t t52 = -(t9 + t51) + t27;
+    const real_t t53 = e * CLOSEDFORM_C(0.25);
+    const real_t t54 = t13 - t53;
+    const real_t t55 = t54 + t27;
+    const real_t t56 = t51 - t9 + t27;
+    const real_t t57 = t13 + t53;
+    const real_t t58 = t57 + t27;
+    const real_t t59 = t49 - t51 + t27;
+    const real_t t60 = t12 - t53;
+    const real_t t61 = t51 + t49 + t27;
+    const real_t t62 = t12 + t53;
+    const real_t t63 = -t13 + t27;
+    const real_t t64 = rho3 + t27;
+    const real_t t65 = -t57 + t27;
+    const real_t t66 = -t54 + t27;
+    const real_t t67 = t33 - t34;
+    const real_t t68 = t31 - t67 + t27;
+    const real_t A_12_above = t37 - t38;
+    const real_t t69 = A_12_above + t27;
+    const real_t t70 = rho1 - (t40 + t41) + t27;
+    const real_t t71 = t48 - t67;
+    const real_t t72 = t71 + t27;
+    const real_t t73 = t71 - t51 + t27;
+    const real_t t74 = t51 + t71 + t27;
+    const real_t v_v = cf_rounded(single, one, t15 * t15) + t14;
+    const real_t t75 = u_u * v_v;
+    const real_t t76 = product_2 - t75 * CLOSEDFORM_C(0.000244140625);
+    const int t77 = (u_u <= t22) | (u_u + v_v <= t22) | (t76 <= CLOSEDFORM_VANISHING * t75);
+    const int t78 = t77 | (product_2 <= t21 * (t4 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t6);
+    points[0] = t28;
+    points[1] = t29;
+    points[2] = t29;
+    points[3] = t28;
+    points[4] = t29;
+    points[5] = t30;
+    points[6] = t36;
+    points[7] = t39;
+    points[8] = t42;
+    points[9] = t28;
+    points[10] = t43;
+    points[11] = t30;
+    points[12] = t28;
+    points[13] = t44;
+    points[14] = t30;
+    points[15] = t36;
+    points[16] = t8 + A_12 + t27;
+    points[17] = t42;
+    points[18] = t36;
+    points[19] = A_12 - t8 + t27;
+    points[20] = t42;
+    points[21] = t45;
+    points[22] = t46;
+    points[23] = t29;
+    points[24] = t45;
+    points[25] = t46;
+    points[26] = t47;
+    points[27] = t50;
+    points[28] = t12 + A_12 + t27;
+    points[29] = t42;
+    points[30] = t52;
+    points[31] = t55;
+    points[32] = t47;
+    points[33] = t56;
+    points[34] = t58;
+    points[35] = t47;
+    points[36] = t59;
+    points[37] = t60 + A_12 + t27;
+    points[38] = t42;
+    points[39] = t61;
+    points[40] = t62 + A_12 + t27;
+    points[41] = t42;
+    points[42] = t45;
+    points[43] = t63;
+    points[44] = t29;
+    points[45] = t45;
+    points[46] = t63;
+    points[47] = t64;
+    points[48] = t50;
+    points[49] = A_12 - t12 + t27;
+    points[50] = t42;
+    points[51] = t56;
+    points[52] = t65;
+    points[53] = t64;
+    points[54] = t52;
+    points[55] = t66;
+    points[56] = t64;
+    points[57] = t61;
+    points[58] = A_12 - t62 + t27;
+    points[59] = t42;
+    points[60] = t59;
+    points[61] = A_12 - t60 + t27;
+    points[62] = t42;
+    points[63] = c1_x - t35 + t27;
+    points[64] = t39;
+    points[65] = t42;
+    points[66] = t28;
+    points[67] = t29;
+    points[68] = t29;
+    points[69] = t28;
+    points[70] = t29;
+    points[71] = t30;
+    points[72] = t68;
+    points[73] = t69;
+    points[74] = t70;
+    points[75] = t28;
+    points[76] = t43;
+    points[77] = t30;
+    points[78] = t28;
+    points[79] = t44;
+    points[80] = t30;
+    points[81] = t68;
+    points[82] = t8 + A_12_above + t27;
+    points[83] = t70;
+    points[84] = t68;
+    points[85] = A_12_above - t8 + t27;
+    points[86] = t70;
+    points[87] = t45;
+    points[88] = t46;
+    points[89] = t29;
+    points[90] = t45;
+    points[91] = t46;
+    points[92] = t47;
+    points[93] = t72;
+    points[94] = t12 + A_12_above + t27;
+    points[95] = t70;
+    points[96] = t52;
+    points[97] = t55;
+    points[98] = t47;
+    points[99] = t56;
+    points[100] = t58;
+    points[101] = t47;
+    points[102] = t73;
+    points[103] = t60 + A_12_above + t27;
+    points[104] = t70;
+    points[105] = t74;
+    points[106] = t62 + A_12_above + t27;
+    points[107] = t70;
+    points[108] = t45;
+    points[109] = t63;
+    points[110] = t29;
+    points[111] = t45;
+    points[112] = t63;
+    points[113] = t64;
+    points[114] = t72;
+    points[115] = A_12_above - t12 + t27;
+    points[116] = t70;
+    points[117] = t56;
+    points[118] = t65;
+    points[119] = t64;
+    points[120] = t52;
+    points[121] = t66;
+    points[122] = t64;
+    points[123] = t74;
+    points[124] = A_12_above - t62 + t27;
+    points[125] = t70;
+    points[126] = t73;
+    points[127] = A_12_above - t60 + t27;
+    points[128] = t70;
+    points[129] = c1_x - t67 + t27;
+    points[130] = t69;
+    points[131] = t70;
+    rare[0] = (t78) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
-CLOSEDFORM_DISPATCHED
-void linear_delta_skeleton_batch(size_t n, const linear_delta_params *params,
+CF_INLINE void linear_delta_skeleton_common_batch(size_t n, const linear_delta_params *params,
     const real_t *q, size_t q_stride,
-    real_t *points, size_t points_stride)
+    real_t *points, size_t points_stride,
+    uint8_t *rare, size_t rare_stride)
 {
+    (void)rare_stride;
     const linear_delta_params local = *params;
-    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
+    const real_t one = cf_one();
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             real_t points_i[132];
-            linear_delta_skeleton_kernel(0, &local, q_i, points_i);
+            real_t rare_i[1];
+            linear_delta_skeleton_common_kernel(0, one, &local, q_i, points_i, rare_i);
             points[start + i] = points_i[0];
             points[points_stride + start + i] = points_i[1];
             points[2 * points_stride + start + i] = points_i[2];
@@ -786,6 +1001,94 @@ void linear_delta_skeleton_batch(size_t n, const linear_delta_params *params,
             points[129 * points_stride + start + i] = points_i[129];
             points[130 * points_stride + start + i] = points_i[130];
             points[131 * points_stride + start + i] = points_i[131];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void linear_delta_skeleton_common(const linear_delta_params *params,
+    const real_t q[3], real_t points[132],
+    uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t rare_real[1];
+    linear_delta_skeleton_common_kernel(1, one, params, q, points, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
+}
+
+CLOSEDFORM_DISPATCHED
+void linear_delta_skeleton(const linear_delta_params *params,
+    const real_t q[3], real_t points[132])
+{
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char points_degrees[132] = { 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    real_t q_scaled[3];
+    linear_delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
+    uint8_t rare[1];
+    linear_delta_skeleton_common(params, q, points, rare);
+    if (CF_UNLIKELY(rare[0])) linear_delta_skeleton_whole(params, q, points);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(132, points_degrees, exponent, points, points);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word linear_delta_skeleton_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
+}
+
+CF_RARE void linear_delta_skeleton_other_sizes(size_t n, const real_t dimensions,
+    const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(linear_delta_skeleton_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t points_i[132];
+        linear_delta_skeleton(params, q_i, points_i);
+        for (size_t k = 0; k < 132; ++k) points[k * points_stride + i] = points_i[k];
+
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void linear_delta_skeleton_batch(size_t n, const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        linear_delta_skeleton_common_batch(length, params, q + start, q_stride, points + start, points_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+            real_t points_i[132];
+            linear_delta_skeleton_whole(params, q_i, points_i);
+            for (size_t k = 0; k < 132; ++k) points[k * points_stride + i] = points_i[k];
+
         }
         cf_word excess = 0;
         for (size_t i = 0; i < length; ++i)
@@ -813,85 +1116,91 @@ CF_INLINE void linear_delta_jacobian_parallel_whole_kernel(const int single, con
     const real_t c3_y = t3 - t4;
     const real_t t5 = t1 * t1 + c3_y * c3_y;
     const real_t u_u = t2 * t2 + t5;
-    const real_t t6 = rho1 - rho3;
-    const real_t v_v = t6 * t6 + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t7 = size * size;
-    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
+    const real_t t6 = size * size;
+    const real_t t7 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t8 = t6 * t7;
+    const int same = u_u <= t8;
+    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t t9 = rho1 - rho3;
+    const real_t v_v = t9 * t9 + t5;
     const int all_same = u_u + v_v <= t8;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t8;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
     const real_t a_x = cf_rarely(single, all_same, whole, -t1);
-    const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
-    const real_t m_z = a_x * t9 + t1 * d_y;
-    const real_t t10 = cf_rarely(single, same, t6, t2);
-    const real_t t11 = cf_rarely(single, same, t2, t6);
-    const real_t m_y = a_x * t11 + t1 * t10;
-    const real_t t12 = over * (d_y * m_z + t10 * m_y);
-    const real_t t13 = d_y * t11 - t9 * t10;
-    const real_t n_y = over * (a_x * m_z - t10 * t13);
-    const real_t t14 = over * (a_x * m_y + d_y * t13);
-    const real_t nu = t12 * t12 + n_y * n_y + t14 * t14;
-    const int in_line = nu <= t8;
-    const real_t t15 = whole * t10;
+    const real_t t10 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t product_z = a_x * t10 + t1 * d_y;
+    const real_t t11 = cf_rarely(single, same, t9, t2);
+    const real_t t12 = cf_rarely(single, same, t2, t9);
+    const real_t product_y = a_x * t12 + t1 * t11;
+    const real_t t13 = d_y * product_z + t11 * product_y;
+    const real_t t14 = d_y * t12 - t10 * t11;
+    const real_t product_2 = t14 * t14 + product_y * product_y + product_z * product_z;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t15 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t16 = product_2 - t15 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t16 <= CLOSEDFORM_VANISHING * t15;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t n_y = a_x * product_z - t11 * t14;
+    const real_t t17 = a_x * product_y + d_y * t14;
+    const real_t m_m = cf_rarely(single, slim, over * (t13 * t13 + n_y * n_y + t17 * t17), product_2);
+    const int in_line = m_m <= t7 * (t6 * mu);
+    const real_t t18 = whole * t11;
     const real_t s_w = cf_sign(d_y * a_x);
     const real_t g_2 = whole * (d_y + a_x * s_w);
-    const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
-    const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, t16, t17);
-    const real_t t18 = t9 * (d_y - t9) + t11 * (t10 - t11);
-    const real_t t19 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
-    const real_t t20 = t1 * CLOSEDFORM_C(0.5) - t12 * t19;
-    const real_t t21 = cf_rarely(single, in_line, t15 * s_w, d_y * t14 - t10 * n_y);
-    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
-    const real_t t23 = l * l - t22;
-    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t25 = t21 * h;
-    const real_t t26 = t20 - t25;
-    const int t27 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t30 = cf_rarely(single, in_line, -t18, CLOSEDFORM_C(0.0));
-    const int t31 = cf_abs(t30) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t32 = t31 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
-    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
-    const real_t t33 = cf_poison(single, failed);
-    const real_t t34 = n_y * t19 - d_y * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t14 + t10 * t12);
-    const real_t t35 = h * w_y;
-    const real_t t36 = t34 + t35;
-    const real_t t37 = t14 * t19 - t10 * CLOSEDFORM_C(0.5);
-    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t12);
-    const real_t t38 = h * w_z;
-    const real_t A_13 = t37 - t38;
-    const real_t t39 = t1 - t26 + t33;
-    const real_t t40 = t20 + t25;
-    const real_t t41 = t34 - t35;
-    const real_t A_13_above = t37 + t38;
-    const real_t t42 = t1 - t40 + t33;
-    A[0] = -t26 + t33;
-    A[1] = -t36 + t33;
-    A[2] = A_13 + t33;
-    A[3] = t39;
-    A[4] = c3_y - t36 + t33;
-    A[5] = t2 + A_13 + t33;
-    A[6] = t39;
-    A[7] = -(c3_y + t36) + t33;
-    A[8] = t6 + A_13 + t33;
-    A[9] = -t40 + t33;
-    A[10] = -t41 + t33;
-    A[11] = A_13_above + t33;
-    A[12] = t42;
-    A[13] = c3_y - t41 + t33;
-    A[14] = t2 + A_13_above + t33;
-    A[15] = t42;
-    A[16] = -(c3_y + t41) + t33;
-    A[17] = t6 + A_13_above + t33;
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t18 * t18) + g_2 * g_2, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t19 = t10 * (d_y - t10) + t12 * (t11 - t12);
+    const real_t t20 = cf_select(in_line, CLOSEDFORM_C(0.0), part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t21 = t1 * CLOSEDFORM_C(0.5) - t13 * t20;
+    const real_t t22 = cf_rarely(single, slim, over * (d_y * t17 - t11 * n_y), t14);
+    const real_t t23 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t19 * t19));
+    const real_t t24 = mu * (CLOSEDFORM_C(1.0) + t23) * CLOSEDFORM_C(0.25);
+    const real_t t25 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t24);
+    const real_t t26 = l * l - t25;
+    const real_t slack = cf_max(t26, CLOSEDFORM_C(0.0));
+    const real_t t27 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t27, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t28 = cf_rarely(single, in_line, t18 * s_w, t22) * h;
+    const real_t t29 = t21 - t28;
+    const int t30 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t31 = t30 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t32 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t33 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t34 = cf_abs(t33) <= t6 * CLOSEDFORM_FEASIBILITY;
+    const int t35 = t34 & (-(CLOSEDFORM_FEASIBILITY * t27) <= t26);
+    const int failed = (!(t31 & (CLOSEDFORM_C(0.0) <= l) & t32)) | (!t35);
+    const real_t t36 = cf_poison(single, failed);
+    const real_t t37 = n_y * t20 - d_y * CLOSEDFORM_C(0.5);
+    const real_t m_y = cf_rarely(single, slim, over * (a_x * t17 + t11 * t13), product_y);
+    const real_t t38 = h * cf_rarely(single, in_line, -t18, m_y);
+    const real_t t39 = t37 + t38;
+    const real_t t40 = t17 * t20 - t11 * CLOSEDFORM_C(0.5);
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t13), product_z);
+    const real_t t41 = h * cf_rarely(single, in_line, -g_2, m_z);
+    const real_t A_13 = t40 - t41;
+    const real_t t42 = t1 - t29 + t36;
+    const real_t t43 = t21 + t28;
+    const real_t t44 = t37 - t38;
+    const real_t A_13_above = t40 + t41;
+    const real_t t45 = t1 - t43 + t36;
+    A[0] = -t29 + t36;
+    A[1] = -t39 + t36;
+    A[2] = A_13 + t36;
+    A[3] = t42;
+    A[4] = c3_y - t39 + t36;
+    A[5] = t2 + A_13 + t36;
+    A[6] = t42;
+    A[7] = -(c3_y + t39) + t36;
+    A[8] = t9 + A_13 + t36;
+    A[9] = -t43 + t36;
+    A[10] = -t44 + t36;
+    A[11] = A_13_above + t36;
+    A[12] = t45;
+    A[13] = c3_y - t44 + t36;
+    A[14] = t2 + A_13_above + t36;
+    A[15] = t45;
+    A[16] = -(c3_y + t44) + t36;
+    A[17] = t9 + A_13_above + t36;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -922,72 +1231,69 @@ CF_INLINE void linear_delta_jacobian_parallel_common_kernel(const int single, co
     const real_t t6 = rho1 - rho2;
     const real_t t7 = rho1 - rho3;
     const real_t t8 = cf_rounded(single, one, t1 * t7) - cf_rounded(single, one, t1 * t6);
-    const real_t t9 = cf_rounded(single, one, c3_y * t5) - cf_rounded(single, one, t6 * t8);
-    const real_t t10 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
-    const real_t u_u = cf_rounded(single, one, t6 * t6) + t10;
+    const real_t t9 = cf_rounded(single, one, c3_y * t7) + cf_rounded(single, one, c3_y * t6);
+    const real_t t10 = cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, t8 * t8);
+    const real_t product_2 = t10 + cf_rounded(single, one, t5 * t5);
+    const real_t t11 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t6 * t6) + t11;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t11 = size * size;
-    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t11;
-    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t12, u_u);
-    const real_t t13 = t9 * over;
-    const real_t t14 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
-    const real_t t15 = t14 - cf_rounded(single, one, t7 * (t6 - t7));
-    const real_t t16 = cf_rounded(single, one, c3_y * t7) + cf_rounded(single, one, c3_y * t6);
-    const real_t t17 = cf_rounded(single, one, t1 * t5) + cf_rounded(single, one, t6 * t16);
-    const real_t n_y = t17 * over;
-    const real_t t18 = cf_rounded(single, one, t13 * t13) + cf_rounded(single, one, n_y * n_y);
-    const real_t t19 = cf_rounded(single, one, t1 * t8) + cf_rounded(single, one, c3_y * t16);
-    const real_t t20 = t19 * over;
-    const real_t nu = t18 + cf_rounded(single, one, t20 * t20);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t12) | (nu <= t12), u_u * nu);
-    const real_t t21 = u_u * t15 * part * CLOSEDFORM_C(0.5);
-    const real_t t22 = t1 * CLOSEDFORM_C(0.5) + t13 * t21;
-    const real_t t23 = cf_rounded(single, one, nu * (t21 * t21)) + u_u * CLOSEDFORM_C(0.25);
-    const real_t t24 = cf_rounded(single, one, l * l) - t23;
-    const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
+    const real_t t12 = size * size;
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)), product_2);
+    const real_t t15 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t16 = t15 - cf_rounded(single, one, t7 * (t6 - t7));
+    const real_t t17 = part * t16 * CLOSEDFORM_C(0.5);
+    const real_t t18 = t1 * CLOSEDFORM_C(0.5) + (c3_y * t5 - t6 * t8) * t17;
+    const real_t t19 = CLOSEDFORM_C(1.0) + cf_rounded(single, one, part * (t16 * t16));
+    const real_t t20 = cf_rounded(single, one, l * l) - u_u * t19 * CLOSEDFORM_C(0.25);
+    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t25 = (c3_y * t20 + t6 * n_y) * h;
-    const real_t t26 = t22 + t25;
-    const int t27 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t30 = cf_abs(CLOSEDFORM_C(0.0)) <= t11 * CLOSEDFORM_FEASIBILITY;
-    const real_t t31 = CLOSEDFORM_C(0.234375) * (l * size);
-    const int t32 = t30 & (-(CLOSEDFORM_FEASIBILITY * t31) <= t24);
-    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
-    const real_t t33 = cf_poison(single, failed);
-    const real_t t34 = c3_y * CLOSEDFORM_C(0.5) - n_y * t21;
-    const real_t t35 = h * (t1 * t20 - t6 * t13);
-    const real_t t36 = t34 - t35;
-    const real_t t37 = t6 * CLOSEDFORM_C(0.5) + t20 * t21;
-    const real_t t38 = h * (t1 * n_y + c3_y * t13);
-    const real_t t39 = t37 - t38;
-    const real_t t40 = t1 - t26 + t33;
-    const real_t t41 = t22 - t25;
-    const real_t t42 = t34 + t35;
-    const real_t t43 = t37 + t38;
-    const real_t t44 = t1 - t41 + t33;
-    const real_t t45 = u_u + (cf_rounded(single, one, t7 * t7) + t10);
-    const int t46 = (u_u <= t12) | (t45 <= t12) | (nu <= t12) | (slack <= CLOSEDFORM_VANISHING * t31);
-    A[0] = -t26 + t33;
-    A[1] = -t36 + t33;
-    A[2] = -t39 + t33;
-    A[3] = t40;
-    A[4] = c3_y - t36 + t33;
-    A[5] = t6 - t39 + t33;
-    A[6] = t40;
-    A[7] = -(c3_y + t36) + t33;
-    A[8] = t7 - t39 + t33;
-    A[9] = -t41 + t33;
-    A[10] = -t42 + t33;
-    A[11] = -t43 + t33;
-    A[12] = t44;
-    A[13] = c3_y - t42 + t33;
-    A[14] = t6 - t43 + t33;
-    A[15] = t44;
-    A[16] = -(c3_y + t42) + t33;
-    A[17] = t7 - t43 + t33;
-    rare[0] = (t46) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t21 = t9 * h;
+    const real_t t22 = t18 + t21;
+    const int t23 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t24 = t23 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t25 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t26 = cf_abs(CLOSEDFORM_C(0.0)) <= t12 * CLOSEDFORM_FEASIBILITY;
+    const real_t t27 = CLOSEDFORM_C(0.234375) * (l * size);
+    const int t28 = t26 & (-(CLOSEDFORM_FEASIBILITY * t27) <= t20);
+    const int failed = (!(t24 & (CLOSEDFORM_C(0.0) <= l) & t25)) | (!t28);
+    const real_t t29 = cf_poison(single, failed);
+    const real_t t30 = t17 * (t1 * t5 + t6 * t9) - c3_y * CLOSEDFORM_C(0.5);
+    const real_t t31 = t8 * h;
+    const real_t A_12 = t30 + t31;
+    const real_t t32 = t17 * (t1 * t8 + c3_y * t9) + t6 * CLOSEDFORM_C(0.5);
+    const real_t t33 = t5 * h;
+    const real_t t34 = t32 - t33;
+    const real_t t35 = t1 - t22 + t29;
+    const real_t t36 = t18 - t21;
+    const real_t A_12_above = t30 - t31;
+    const real_t t37 = t32 + t33;
+    const real_t t38 = t1 - t36 + t29;
+    const real_t v_v = cf_rounded(single, one, t7 * t7) + t11;
+    const real_t t39 = u_u * v_v;
+    const real_t t40 = product_2 - t39 * CLOSEDFORM_C(0.000244140625);
+    const int t41 = (u_u <= t14) | (u_u + v_v <= t14) | (t40 <= CLOSEDFORM_VANISHING * t39);
+    const int t42 = t41 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t27);
+    A[0] = -t22 + t29;
+    A[1] = A_12 + t29;
+    A[2] = -t34 + t29;
+    A[3] = t35;
+    A[4] = c3_y + A_12 + t29;
+    A[5] = t6 - t34 + t29;
+    A[6] = t35;
+    A[7] = A_12 - c3_y + t29;
+    A[8] = t7 - t34 + t29;
+    A[9] = -t36 + t29;
+    A[10] = A_12_above + t29;
+    A[11] = -t37 + t29;
+    A[12] = t38;
+    A[13] = c3_y + A_12_above + t29;
+    A[14] = t6 - t37 + t29;
+    A[15] = t38;
+    A[16] = A_12_above - c3_y + t29;
+    A[17] = t7 - t37 + t29;
+    rare[0] = (t42) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void linear_delta_jacobian_parallel_common_batch(size_t n, const linear_delta_params *params,
@@ -1053,7 +1359,7 @@ void linear_delta_jacobian_parallel(const linear_delta_params *params,
     linear_delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -1075,7 +1381,7 @@ void linear_delta_jacobian_parallel(const linear_delta_params *params,
 CF_INLINE cf_word linear_delta_jacobian_parallel_excess(const real_t dimensions,
     const real_t *q, size_t q_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
 }
 
 CF_RARE void linear_delta_jacobian_parallel_other_sizes(size_t n, const real_t dimensions,
@@ -1143,56 +1449,62 @@ CF_INLINE void linear_delta_jacobian_serial_whole_kernel(const int single, const
     const real_t v_v = t6 * t6 + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
     const real_t t7 = size * size;
-    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
-    const int all_same = u_u + v_v <= t8;
+    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t9 = t7 * t8;
+    const int all_same = u_u + v_v <= t9;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t8;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t a_x = cf_rarely(single, all_same, whole, -t2);
-    const real_t t9 = cf_rarely(single, same, t1, t6);
-    const real_t t10 = cf_rarely(single, same, t6, t1);
-    const real_t m_y = a_x * t9 + t2 * t10;
+    const int same = u_u <= t9;
+    const real_t t10 = cf_rarely(single, same, t1, t6);
+    const real_t t11 = cf_rarely(single, same, t6, t1);
+    const real_t product_y = a_x * t10 + t2 * t11;
     const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t t11 = cf_rarely(single, same, -c3_y, c3_y);
-    const real_t t12 = t9 * d_y - t10 * t11;
-    const real_t t13 = over * (a_x * m_y + d_y * t12);
-    const real_t m_z = a_x * t11 + t2 * d_y;
-    const real_t t14 = over * (d_y * m_z + t10 * m_y);
-    const real_t n_y = over * (a_x * m_z - t10 * t12);
-    const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
-    const int in_line = nu <= t8;
-    const real_t t15 = whole * t10;
+    const real_t t12 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t13 = t10 * d_y - t11 * t12;
+    const real_t t14 = a_x * product_y + d_y * t13;
+    const real_t product_z = a_x * t12 + t2 * d_y;
+    const real_t product_2 = t13 * t13 + product_y * product_y + product_z * product_z;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t15 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t16 = product_2 - t15 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t16 <= CLOSEDFORM_VANISHING * t15;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t17 = d_y * product_z + t11 * product_y;
+    const real_t n_y = a_x * product_z - t11 * t13;
+    const real_t m_m = cf_rarely(single, slim, over * (t17 * t17 + n_y * n_y + t14 * t14), product_2);
+    const int in_line = m_m <= t8 * (t7 * mu);
+    const real_t t18 = whole * t11;
     const real_t g_2 = whole * (d_y + a_x * cf_sign(a_x * d_y));
-    const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
-    const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, t16, t17);
-    const real_t t18 = t11 * (d_y - t11) - t9 * (t9 - t10);
-    const real_t t19 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
-    const real_t t20 = t13 * t19 - t10 * CLOSEDFORM_C(0.5);
-    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t14);
-    const real_t t21 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
-    const real_t t22 = l * l - t21;
-    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
-    const real_t t23 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t23, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t24 = w_z * h;
-    const real_t A_13 = t20 - t24;
-    const int t25 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t26 = t25 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t27 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t28 = cf_rarely(single, in_line, -t18, CLOSEDFORM_C(0.0));
-    const int t29 = cf_abs(t28) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t30 = t29 & (-(CLOSEDFORM_FEASIBILITY * t23) <= t22);
-    const int failed = (!(t26 & (CLOSEDFORM_C(0.0) <= l) & t27)) | (!t30);
-    const real_t t31 = cf_poison(single, failed);
-    const real_t A_13_above = t20 + t24;
-    B[0] = A_13 + t31;
-    B[1] = t1 + A_13 + t31;
-    B[2] = t6 + A_13 + t31;
-    B[3] = A_13_above + t31;
-    B[4] = t1 + A_13_above + t31;
-    B[5] = t6 + A_13_above + t31;
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t18 * t18) + g_2 * g_2, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t19 = t12 * (d_y - t12) - t10 * (t10 - t11);
+    const real_t t20 = cf_select(in_line, CLOSEDFORM_C(0.0), part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t21 = t14 * t20 - t11 * CLOSEDFORM_C(0.5);
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t17), product_z);
+    const real_t t22 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t19 * t19));
+    const real_t t23 = mu * (CLOSEDFORM_C(1.0) + t22) * CLOSEDFORM_C(0.25);
+    const real_t t24 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t23);
+    const real_t t25 = l * l - t24;
+    const real_t slack = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t t26 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t26, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t27 = cf_rarely(single, in_line, -g_2, m_z) * h;
+    const real_t A_13 = t21 - t27;
+    const int t28 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t29 = t28 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t30 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t31 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t32 = cf_abs(t31) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t33 = t32 & (-(CLOSEDFORM_FEASIBILITY * t26) <= t25);
+    const int failed = (!(t29 & (CLOSEDFORM_C(0.0) <= l) & t30)) | (!t33);
+    const real_t t34 = cf_poison(single, failed);
+    const real_t A_13_above = t21 + t27;
+    B[0] = A_13 + t34;
+    B[1] = t1 + A_13 + t34;
+    B[2] = t6 + A_13 + t34;
+    B[3] = A_13_above + t34;
+    B[4] = t1 + A_13_above + t34;
+    B[5] = t6 + A_13_above + t34;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1213,59 +1525,56 @@ CF_INLINE void linear_delta_jacobian_serial_common_kernel(const int single, cons
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t t1 = rho1 - rho2;
     const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
-    const real_t t2 = f - e - c2_x;
-    const real_t t3 = rho1 - rho3;
-    const real_t t4 = cf_rounded(single, one, t2 * t3) - cf_rounded(single, one, t2 * t1);
+    const real_t t1 = f - e - c2_x;
+    const real_t t2 = rho1 - rho3;
+    const real_t t3 = rho1 - rho2;
+    const real_t t4 = cf_rounded(single, one, t1 * t2) - cf_rounded(single, one, t1 * t3);
     const real_t t5 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
     const real_t t6 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
     const real_t c3_y = t5 - t6;
-    const real_t t7 = cf_rounded(single, one, c3_y * t3) + cf_rounded(single, one, c3_y * t1);
-    const real_t t8 = cf_rounded(single, one, t2 * t4) + cf_rounded(single, one, c3_y * t7);
-    const real_t t9 = cf_rounded(single, one, t2 * t2) + cf_rounded(single, one, c3_y * c3_y);
-    const real_t u_u = cf_rounded(single, one, t1 * t1) + t9;
+    const real_t t7 = cf_rounded(single, one, c3_y * t2) + cf_rounded(single, one, c3_y * t3);
+    const real_t t8 = cf_rounded(single, one, t7 * t7) + cf_rounded(single, one, t4 * t4);
+    const real_t t9 = cf_rounded(single, one, c3_y * t1);
+    const real_t t10 = t9 + t9;
+    const real_t product_2 = t8 + cf_rounded(single, one, t10 * t10);
+    const real_t t11 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t3 * t3) + t11;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t10 = size * size;
-    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t10;
-    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t11, u_u);
-    const real_t t12 = t8 * over;
-    const real_t t13 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
-    const real_t t14 = t13 - cf_rounded(single, one, t3 * (t1 - t3));
-    const real_t t15 = cf_rounded(single, one, c3_y * t2);
-    const real_t t16 = t15 + t15;
-    const real_t t17 = cf_rounded(single, one, c3_y * t16) - cf_rounded(single, one, t1 * t4);
-    const real_t t18 = t17 * over;
-    const real_t t19 = cf_rounded(single, one, t2 * t16) + cf_rounded(single, one, t1 * t7);
-    const real_t n_y = t19 * over;
-    const real_t t20 = cf_rounded(single, one, t18 * t18) + cf_rounded(single, one, n_y * n_y);
-    const real_t nu = t20 + cf_rounded(single, one, t12 * t12);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t11) | (nu <= t11), u_u * nu);
-    const real_t t21 = u_u * t14 * part * CLOSEDFORM_C(0.5);
-    const real_t t22 = t1 * CLOSEDFORM_C(0.5) + t12 * t21;
-    const real_t t23 = cf_rounded(single, one, nu * (t21 * t21)) + u_u * CLOSEDFORM_C(0.25);
-    const real_t t24 = cf_rounded(single, one, l * l) - t23;
-    const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
-    const real_t t25 = (t2 * n_y + c3_y * t18) * cf_sqrt(part * slack);
-    const real_t t26 = t22 - t25;
-    const int t27 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t30 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
-    const real_t t31 = CLOSEDFORM_C(0.234375) * (l * size);
-    const int t32 = t30 & (-(CLOSEDFORM_FEASIBILITY * t31) <= t24);
-    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
-    const real_t t33 = cf_poison(single, failed);
-    const real_t t34 = t22 + t25;
-    const real_t t35 = u_u + (cf_rounded(single, one, t3 * t3) + t9);
-    const int t36 = (u_u <= t11) | (t35 <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t31);
-    B[0] = -t26 + t33;
-    B[1] = t1 - t26 + t33;
-    B[2] = t3 - t26 + t33;
-    B[3] = -t34 + t33;
-    B[4] = t1 - t34 + t33;
-    B[5] = t3 - t34 + t33;
-    rare[0] = (t36) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t12 = size * size;
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)), product_2);
+    const real_t t15 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t16 = t15 - cf_rounded(single, one, t2 * (t3 - t2));
+    const real_t t17 = (t1 * t4 + c3_y * t7) * (part * t16 * CLOSEDFORM_C(0.5));
+    const real_t t18 = t17 + t3 * CLOSEDFORM_C(0.5);
+    const real_t t19 = CLOSEDFORM_C(1.0) + cf_rounded(single, one, part * (t16 * t16));
+    const real_t t20 = cf_rounded(single, one, l * l) - u_u * t19 * CLOSEDFORM_C(0.25);
+    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
+    const real_t t21 = t10 * cf_sqrt(part * slack);
+    const real_t t22 = t18 - t21;
+    const int t23 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t24 = t23 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t25 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t26 = cf_abs(CLOSEDFORM_C(0.0)) <= t12 * CLOSEDFORM_FEASIBILITY;
+    const real_t t27 = CLOSEDFORM_C(0.234375) * (l * size);
+    const int t28 = t26 & (-(CLOSEDFORM_FEASIBILITY * t27) <= t20);
+    const int failed = (!(t24 & (CLOSEDFORM_C(0.0) <= l) & t25)) | (!t28);
+    const real_t t29 = cf_poison(single, failed);
+    const real_t t30 = t18 + t21;
+    const real_t v_v = cf_rounded(single, one, t2 * t2) + t11;
+    const real_t t31 = u_u * v_v;
+    const real_t t32 = product_2 - t31 * CLOSEDFORM_C(0.000244140625);
+    const int t33 = (u_u + v_v <= t14) | (u_u <= t14) | (t32 <= CLOSEDFORM_VANISHING * t31);
+    const int t34 = t33 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t27);
+    B[0] = -t22 + t29;
+    B[1] = t3 - t22 + t29;
+    B[2] = t2 - t22 + t29;
+    B[3] = -t30 + t29;
+    B[4] = t3 - t30 + t29;
+    B[5] = t2 - t30 + t29;
+    rare[0] = (t34) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void linear_delta_jacobian_serial_common_batch(size_t n, const linear_delta_params *params,
@@ -1319,7 +1628,7 @@ void linear_delta_jacobian_serial(const linear_delta_params *params,
     linear_delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -1341,7 +1650,7 @@ void linear_delta_jacobian_serial(const linear_delta_params *params,
 CF_INLINE cf_word linear_delta_jacobian_serial_excess(const real_t dimensions,
     const real_t *q, size_t q_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
 }
 
 CF_RARE void linear_delta_jacobian_serial_other_sizes(size_t n, const real_t dimensions,
@@ -1387,7 +1696,8 @@ void linear_delta_jacobian_serial_batch(size_t n, const linear_delta_params *par
     }
 }
 
-CF_INLINE void linear_delta_jacobian_kernel(const int single, const linear_delta_params *params,
+/* Every case. */
+CF_INLINE void linear_delta_jacobian_whole_kernel(const int single, const linear_delta_params *params,
     const real_t q[3], real_t J[18])
 {
     const real_t f = params->f;
@@ -1408,110 +1718,297 @@ CF_INLINE void linear_delta_jacobian_kernel(const int single, const linear_delta
     const real_t v_v = t6 * t6 + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
     const real_t t7 = size * size;
-    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
-    const int all_same = u_u + v_v <= t8;
+    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t9 = t7 * t8;
+    const int all_same = u_u + v_v <= t9;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t8;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t a_x = cf_rarely(single, all_same, whole, -t2);
-    const real_t t9 = cf_rarely(single, same, t1, t6);
-    const real_t t10 = cf_rarely(single, same, t6, t1);
-    const real_t m_y = a_x * t9 + t2 * t10;
+    const int same = u_u <= t9;
+    const real_t t10 = cf_rarely(single, same, t1, t6);
+    const real_t t11 = cf_rarely(single, same, t6, t1);
+    const real_t product_y = a_x * t10 + t2 * t11;
     const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t t11 = cf_rarely(single, same, -c3_y, c3_y);
-    const real_t t12 = t9 * d_y - t10 * t11;
-    const real_t t13 = over * (a_x * m_y + d_y * t12);
-    const real_t m_z = a_x * t11 + t2 * d_y;
-    const real_t t14 = over * (d_y * m_z + t10 * m_y);
-    const real_t n_y = over * (a_x * m_z - t10 * t12);
-    const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
-    const int in_line = nu <= t8;
-    const real_t t15 = whole * t10;
+    const real_t t12 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t13 = t10 * d_y - t11 * t12;
+    const real_t t14 = a_x * product_y + d_y * t13;
+    const real_t product_z = a_x * t12 + t2 * d_y;
+    const real_t product_2 = t13 * t13 + product_y * product_y + product_z * product_z;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t15 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t16 = product_2 - t15 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t16 <= CLOSEDFORM_VANISHING * t15;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t17 = d_y * product_z + t11 * product_y;
+    const real_t n_y = a_x * product_z - t11 * t13;
+    const real_t m_m = cf_rarely(single, slim, over * (t17 * t17 + n_y * n_y + t14 * t14), product_2);
+    const int in_line = m_m <= t8 * (t7 * mu);
+    const real_t t18 = whole * t11;
     const real_t s_w = cf_sign(a_x * d_y);
     const real_t g_2 = whole * (d_y + a_x * s_w);
-    const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
-    const real_t t17 = mu * nu;
-    const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
-    const real_t part = cf_rarely(single, in_line, t16, t18);
-    const real_t t19 = t11 * (d_y - t11) - t9 * (t9 - t10);
-    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
-    const real_t t21 = t13 * t20 - t10 * CLOSEDFORM_C(0.5);
-    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t14);
-    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
-    const real_t t23 = l * l - t22;
-    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t25 = w_z * h;
-    const real_t A_13 = t21 - t25;
-    const real_t t26 = n_y * t20 - d_y * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t13 + t10 * t14);
-    const real_t t27 = h * w_y;
-    const real_t t28 = t26 + t27;
-    const real_t A_22 = c3_y - t28;
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t18 * t18) + g_2 * g_2, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t19 = t12 * (d_y - t12) - t10 * (t10 - t11);
+    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t21 = t14 * t20 - t11 * CLOSEDFORM_C(0.5);
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t17), product_z);
+    const real_t t22 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t19 * t19));
+    const real_t t23 = mu * (CLOSEDFORM_C(1.0) + t22) * CLOSEDFORM_C(0.25);
+    const real_t t24 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t23);
+    const real_t t25 = l * l - t24;
+    const real_t slack = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t t26 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t26, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t27 = cf_rarely(single, in_line, -g_2, m_z) * h;
+    const real_t A_13 = t21 - t27;
+    const real_t t28 = n_y * t20 - d_y * CLOSEDFORM_C(0.5);
+    const real_t m_y = cf_rarely(single, slim, over * (a_x * t14 + t11 * t17), product_y);
+    const real_t t29 = h * cf_rarely(single, in_line, -t18, m_y);
+    const real_t t30 = t28 + t29;
+    const real_t A_22 = c3_y - t30;
     const real_t A_33 = t6 + A_13;
     const real_t A_23 = t1 + A_13;
-    const real_t t29 = c3_y + t28;
-    const real_t Delta = t17 * h;
-    const real_t t30 = cf_nonzero(single, Delta);
-    const int t31 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t32 = t31 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t33 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t34 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
-    const int t35 = cf_abs(t34) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t36 = t35 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
-    const int failed = (!(t32 & (CLOSEDFORM_C(0.0) <= l) & t33)) | (!t36);
-    const real_t t37 = cf_poison(single, failed);
-    const real_t t38 = -(A_13 * (A_22 * A_33 + A_23 * t29) / t30) + t37;
-    const real_t t39 = -(A_23 * (t28 * A_33 - A_13 * t29) / t30) + t37;
-    const real_t t40 = A_33 * (t28 * A_23 + A_13 * A_22) / t30 + t37;
-    const real_t t41 = t2 * CLOSEDFORM_C(0.5) - t14 * t20;
-    const real_t t42 = cf_rarely(single, in_line, t15 * s_w, d_y * t13 - t10 * n_y);
-    const real_t t43 = h * t42;
-    const real_t t44 = t41 - t43;
-    const real_t A_21 = t2 - t44;
-    const real_t t45 = A_13 * (A_33 * A_21 - A_23 * A_21) / t30 + t37;
-    const real_t t46 = A_13 * A_21;
-    const real_t t47 = A_13 * (t29 * A_21 + A_22 * A_21) / t30 + t37;
-    const real_t t48 = t28 * A_21;
-    const real_t A_13_above = t21 + t25;
-    const real_t t49 = t26 - t27;
-    const real_t A_22_above = c3_y - t49;
+    const real_t t31 = c3_y + t30;
+    const real_t Delta = m_m * h;
+    const real_t t32 = cf_nonzero(single, Delta);
+    const int t33 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t34 = t33 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t35 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t36 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t37 = cf_abs(t36) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t38 = t37 & (-(CLOSEDFORM_FEASIBILITY * t26) <= t25);
+    const int failed = (!(t34 & (CLOSEDFORM_C(0.0) <= l) & t35)) | (!t38);
+    const real_t t39 = cf_poison(single, failed);
+    const real_t t40 = -(A_13 * (A_22 * A_33 + A_23 * t31) / t32) + t39;
+    const real_t t41 = -(A_23 * (t30 * A_33 - A_13 * t31) / t32) + t39;
+    const real_t t42 = A_33 * (t30 * A_23 + A_13 * A_22) / t32 + t39;
+    const real_t t43 = t2 * CLOSEDFORM_C(0.5) - t17 * t20;
+    const real_t t44 = cf_rarely(single, slim, over * (d_y * t14 - t11 * n_y), t13);
+    const real_t t45 = h * cf_rarely(single, in_line, t18 * s_w, t44);
+    const real_t t46 = t43 - t45;
+    const real_t A_21 = t2 - t46;
+    const real_t t47 = A_13 * (A_33 * A_21 - A_23 * A_21) / t32 + t39;
+    const real_t t48 = A_13 * A_21;
+    const real_t t49 = A_13 * (t31 * A_21 + A_22 * A_21) / t32 + t39;
+    const real_t t50 = t30 * A_21;
+    const real_t A_13_above = t21 + t27;
+    const real_t t51 = t28 - t29;
+    const real_t A_22_above = c3_y - t51;
     const real_t A_33_above = t6 + A_13_above;
     const real_t A_23_above = t1 + A_13_above;
-    const real_t t50 = c3_y + t49;
-    const real_t t51 = A_13_above * (A_22_above * A_33_above + A_23_above * t50);
-    const real_t t52 = A_23_above * (t49 * A_33_above - A_13_above * t50);
-    const real_t t53 = A_33_above * (t49 * A_23_above + A_13_above * A_22_above);
-    const real_t t54 = t41 + t43;
-    const real_t A_21_above = t2 - t54;
-    const real_t t55 = A_33_above * A_21_above - A_23_above * A_21_above;
-    const real_t t56 = A_13_above * A_21_above;
-    const real_t t57 = -(A_23_above * (A_33_above * t54 + t56) / t30);
-    const real_t t58 = A_33_above * (t56 + A_23_above * t54) / t30 + t37;
-    const real_t t59 = A_13_above * (t50 * A_21_above + A_22_above * A_21_above);
-    const real_t t60 = t49 * A_21_above;
-    const real_t t61 = -(A_23_above * (t50 * t54 + t60) / t30) + t37;
-    const real_t t62 = A_33_above * (t60 - A_22_above * t54) / t30 + t37;
-    J[0] = t38;
-    J[1] = t39;
-    J[2] = t40;
-    J[3] = t45;
-    J[4] = A_23 * (A_33 * t44 + t46) / t30 + t37;
-    J[5] = -(A_33 * (t46 + A_23 * t44) / t30) + t37;
-    J[6] = t47;
-    J[7] = A_23 * (t29 * t44 + t48) / t30 + t37;
-    J[8] = -(A_33 * (t48 - A_22 * t44) / t30) + t37;
-    J[9] = t51 / t30 + t37;
-    J[10] = t52 / t30 + t37;
-    J[11] = -(t53 / t30) + t37;
-    J[12] = -(A_13_above * t55 / t30) + t37;
-    J[13] = t57 + t37;
-    J[14] = t58;
-    J[15] = -(t59 / t30) + t37;
-    J[16] = t61;
-    J[17] = t62;
+    const real_t t52 = c3_y + t51;
+    const real_t t53 = A_13_above * (A_22_above * A_33_above + A_23_above * t52);
+    const real_t t54 = A_23_above * (t51 * A_33_above - A_13_above * t52);
+    const real_t t55 = A_33_above * (t51 * A_23_above + A_13_above * A_22_above);
+    const real_t t56 = t43 + t45;
+    const real_t A_21_above = t2 - t56;
+    const real_t t57 = A_33_above * A_21_above - A_23_above * A_21_above;
+    const real_t t58 = A_13_above * A_21_above;
+    const real_t t59 = -(A_23_above * (A_33_above * t56 + t58) / t32);
+    const real_t t60 = A_33_above * (t58 + A_23_above * t56) / t32 + t39;
+    const real_t t61 = A_13_above * (t52 * A_21_above + A_22_above * A_21_above);
+    const real_t t62 = t51 * A_21_above;
+    const real_t t63 = -(A_23_above * (t52 * t56 + t62) / t32) + t39;
+    const real_t t64 = A_33_above * (t62 - A_22_above * t56) / t32 + t39;
+    J[0] = t40;
+    J[1] = t41;
+    J[2] = t42;
+    J[3] = t47;
+    J[4] = A_23 * (A_33 * t46 + t48) / t32 + t39;
+    J[5] = -(A_33 * (t48 + A_23 * t46) / t32) + t39;
+    J[6] = t49;
+    J[7] = A_23 * (t31 * t46 + t50) / t32 + t39;
+    J[8] = -(A_33 * (t50 - A_22 * t46) / t32) + t39;
+    J[9] = t53 / t32 + t39;
+    J[10] = t54 / t32 + t39;
+    J[11] = -(t55 / t32) + t39;
+    J[12] = -(A_13_above * t57 / t32) + t39;
+    J[13] = t59 + t39;
+    J[14] = t60;
+    J[15] = -(t61 / t32) + t39;
+    J[16] = t63;
+    J[17] = t64;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void linear_delta_jacobian_whole(const linear_delta_params *params,
+    const real_t q[3], real_t J[18])
+{
+    linear_delta_jacobian_whole_kernel(1, params, q, J);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void linear_delta_jacobian_common_kernel(const int single, const real_t one,
+    const linear_delta_params *params,
+    const real_t q[3], real_t J[18], real_t rare[1])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t l = params->l;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const real_t rho3 = q[2];
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t1 = f - e - c2_x;
+    const real_t t2 = rho1 - rho3;
+    const real_t t3 = rho1 - rho2;
+    const real_t t4 = cf_rounded(single, one, t1 * t2) - cf_rounded(single, one, t1 * t3);
+    const real_t t5 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t6 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t5 - t6;
+    const real_t t7 = cf_rounded(single, one, c3_y * t2) + cf_rounded(single, one, c3_y * t3);
+    const real_t t8 = cf_rounded(single, one, t7 * t7) + cf_rounded(single, one, t4 * t4);
+    const real_t t9 = cf_rounded(single, one, c3_y * t1);
+    const real_t t10 = t9 + t9;
+    const real_t product_2 = t8 + cf_rounded(single, one, t10 * t10);
+    const real_t t11 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t3 * t3) + t11;
+    const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
+    const real_t t12 = size * size;
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)), product_2);
+    const real_t t15 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t16 = t15 - cf_rounded(single, one, t2 * (t3 - t2));
+    const real_t t17 = part * t16 * CLOSEDFORM_C(0.5);
+    const real_t t18 = (t1 * t4 + c3_y * t7) * t17 + t3 * CLOSEDFORM_C(0.5);
+    const real_t t19 = CLOSEDFORM_C(1.0) + cf_rounded(single, one, part * (t16 * t16));
+    const real_t t20 = cf_rounded(single, one, l * l) - u_u * t19 * CLOSEDFORM_C(0.25);
+    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t21 = t10 * h;
+    const real_t t22 = t18 - t21;
+    const real_t t23 = t17 * (t1 * t10 + t3 * t7) - c3_y * CLOSEDFORM_C(0.5);
+    const real_t t24 = t4 * h;
+    const real_t A_12 = t23 + t24;
+    const real_t A_22 = c3_y + A_12;
+    const real_t A_33 = t2 - t22;
+    const real_t A_23 = t3 - t22;
+    const real_t t25 = c3_y - A_12;
+    const real_t Delta = product_2 * h;
+    const real_t t26 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t t27 = t22 * (A_22 * A_33 + A_23 * t25) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const int t28 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t29 = t28 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t30 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t31 = cf_abs(CLOSEDFORM_C(0.0)) <= t12 * CLOSEDFORM_FEASIBILITY;
+    const int t32 = t31 & (-(CLOSEDFORM_FEASIBILITY * t26) <= t20);
+    const int failed = (!(t29 & (CLOSEDFORM_C(0.0) <= l) & t30)) | (!t32);
+    const real_t t33 = cf_poison(single, failed);
+    const real_t t34 = A_23 * (A_12 * A_33 - t22 * t25) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t35 = A_33 * (A_12 * A_23 + t22 * A_22) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t36 = t1 * CLOSEDFORM_C(0.5) + t17 * (c3_y * t10 - t3 * t4);
+    const real_t t37 = t7 * h;
+    const real_t t38 = t36 + t37;
+    const real_t A_21 = t1 - t38;
+    const real_t t39 = t22 * (A_33 * A_21 - A_23 * A_21) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t40 = t22 * A_21;
+    const real_t t41 = A_23 * (A_33 * t38 - t40) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t42 = A_33 * (t40 - A_23 * t38) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t43 = t22 * (t25 * A_21 + A_22 * A_21) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t44 = A_12 * A_21;
+    const real_t t45 = A_23 * (t25 * t38 - t44) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t46 = A_33 * (t44 + A_22 * t38) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t47 = t18 + t21;
+    const real_t A_12_above = t23 - t24;
+    const real_t A_22_above = c3_y + A_12_above;
+    const real_t A_33_above = t2 - t47;
+    const real_t A_23_above = t3 - t47;
+    const real_t t48 = c3_y - A_12_above;
+    const real_t t49 = t47 * (A_22_above * A_33_above + A_23_above * t48);
+    const real_t t50 = t49 / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t51 = A_23_above * (A_12_above * A_33_above - t47 * t48);
+    const real_t t52 = t51 / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t53 = A_33_above * (A_12_above * A_23_above + t47 * A_22_above);
+    const real_t t54 = t53 / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t55 = t36 - t37;
+    const real_t A_21_above = t1 - t55;
+    const real_t t56 = A_33_above * A_21_above - A_23_above * A_21_above;
+    const real_t t57 = t47 * t56 / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t58 = t47 * A_21_above;
+    const real_t t59 = A_23_above * (A_33_above * t55 - t58) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t60 = A_33_above * (t58 - A_23_above * t55) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t61 = t47 * (t48 * A_21_above + A_22_above * A_21_above);
+    const real_t t62 = t61 / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t63 = A_12_above * A_21_above;
+    const real_t t64 = A_23_above * (t48 * t55 - t63) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t t65 = A_33_above * (t63 + A_22_above * t55) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26), Delta);
+    const real_t v_v = cf_rounded(single, one, t2 * t2) + t11;
+    const real_t t66 = u_u * v_v;
+    const real_t t67 = product_2 - t66 * CLOSEDFORM_C(0.000244140625);
+    const int t68 = (u_u + v_v <= t14) | (u_u <= t14) | (t67 <= CLOSEDFORM_VANISHING * t66);
+    const int t69 = t68 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t26);
+    J[0] = t27 + t33;
+    J[1] = t34 + t33;
+    J[2] = -t35 + t33;
+    J[3] = -t39 + t33;
+    J[4] = t41 + t33;
+    J[5] = t42 + t33;
+    J[6] = -t43 + t33;
+    J[7] = t45 + t33;
+    J[8] = t46 + t33;
+    J[9] = -t50 + t33;
+    J[10] = -t52 + t33;
+    J[11] = t54 + t33;
+    J[12] = t57 + t33;
+    J[13] = -t59 + t33;
+    J[14] = -t60 + t33;
+    J[15] = t62 + t33;
+    J[16] = -t64 + t33;
+    J[17] = -t65 + t33;
+    rare[0] = (t69) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void linear_delta_jacobian_common_batch(size_t n, const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const linear_delta_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            real_t J_i[18];
+            real_t rare_i[1];
+            linear_delta_jacobian_common_kernel(0, one, &local, q_i, J_i, rare_i);
+            J[start + i] = J_i[0];
+            J[J_stride + start + i] = J_i[1];
+            J[2 * J_stride + start + i] = J_i[2];
+            J[3 * J_stride + start + i] = J_i[3];
+            J[4 * J_stride + start + i] = J_i[4];
+            J[5 * J_stride + start + i] = J_i[5];
+            J[6 * J_stride + start + i] = J_i[6];
+            J[7 * J_stride + start + i] = J_i[7];
+            J[8 * J_stride + start + i] = J_i[8];
+            J[9 * J_stride + start + i] = J_i[9];
+            J[10 * J_stride + start + i] = J_i[10];
+            J[11 * J_stride + start + i] = J_i[11];
+            J[12 * J_stride + start + i] = J_i[12];
+            J[13 * J_stride + start + i] = J_i[13];
+            J[14 * J_stride + start + i] = J_i[14];
+            J[15 * J_stride + start + i] = J_i[15];
+            J[16 * J_stride + start + i] = J_i[16];
+            J[17 * J_stride + start + i] = J_i[17];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void linear_delta_jacobian_common(const linear_delta_params *params,
+    const real_t q[3], real_t J[18], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t rare_real[1];
+    linear_delta_jacobian_common_kernel(1, one, params, q, J, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1523,7 +2020,7 @@ void linear_delta_jacobian(const linear_delta_params *params,
     linear_delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -1533,14 +2030,16 @@ void linear_delta_jacobian(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    linear_delta_jacobian_kernel(1, params, q, J);
+    uint8_t rare[1];
+    linear_delta_jacobian_common(params, q, J, rare);
+    if (CF_UNLIKELY(rare[0])) linear_delta_jacobian_whole(params, q, J);
 }
 
 /* Has its sign bit set where powers of the size of a posture may leave the range. */
 CF_INLINE cf_word linear_delta_jacobian_excess(const real_t dimensions,
     const real_t *q, size_t q_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
 }
 
 CF_RARE void linear_delta_jacobian_other_sizes(size_t n, const real_t dimensions,
@@ -1564,33 +2063,19 @@ void linear_delta_jacobian_batch(size_t n, const linear_delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *J, size_t J_stride)
 {
-    const linear_delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        linear_delta_jacobian_common_batch(length, params, q + start, q_stride, J + start, J_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
             real_t J_i[18];
-            linear_delta_jacobian_kernel(0, &local, q_i, J_i);
-            J[start + i] = J_i[0];
-            J[J_stride + start + i] = J_i[1];
-            J[2 * J_stride + start + i] = J_i[2];
-            J[3 * J_stride + start + i] = J_i[3];
-            J[4 * J_stride + start + i] = J_i[4];
-            J[5 * J_stride + start + i] = J_i[5];
-            J[6 * J_stride + start + i] = J_i[6];
-            J[7 * J_stride + start + i] = J_i[7];
-            J[8 * J_stride + start + i] = J_i[8];
-            J[9 * J_stride + start + i] = J_i[9];
-            J[10 * J_stride + start + i] = J_i[10];
-            J[11 * J_stride + start + i] = J_i[11];
-            J[12 * J_stride + start + i] = J_i[12];
-            J[13 * J_stride + start + i] = J_i[13];
-            J[14 * J_stride + start + i] = J_i[14];
-            J[15 * J_stride + start + i] = J_i[15];
-            J[16 * J_stride + start + i] = J_i[16];
-            J[17 * J_stride + start + i] = J_i[17];
+            linear_delta_jacobian_whole(params, q_i, J_i);
+            for (size_t k = 0; k < 18; ++k) J[k * J_stride + i] = J_i[k];
+
         }
         cf_word excess = 0;
         for (size_t i = 0; i < length; ++i)
@@ -1622,56 +2107,61 @@ CF_INLINE void linear_delta_determinant_whole_kernel(const int single, const lin
     const real_t v_v = t6 * t6 + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
     const real_t t7 = size * size;
-    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
-    const int all_same = u_u + v_v <= t8;
+    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t9 = t7 * t8;
+    const int all_same = u_u + v_v <= t9;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t8;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t a_x = cf_rarely(single, all_same, whole, -t2);
-    const real_t t9 = cf_rarely(single, same, t1, t6);
-    const real_t t10 = cf_rarely(single, same, t6, t1);
-    const real_t m_y = a_x * t9 + t2 * t10;
+    const int same = u_u <= t9;
+    const real_t t10 = cf_rarely(single, same, t1, t6);
+    const real_t t11 = cf_rarely(single, same, t6, t1);
+    const real_t product_y = a_x * t10 + t2 * t11;
     const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t t11 = cf_rarely(single, same, -c3_y, c3_y);
-    const real_t t12 = t9 * d_y - t10 * t11;
-    const real_t t13 = over * (a_x * m_y + d_y * t12);
-    const real_t m_z = a_x * t11 + t2 * d_y;
-    const real_t t14 = over * (d_y * m_z + t10 * m_y);
-    const real_t n_y = over * (a_x * m_z - t10 * t12);
-    const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
-    const int in_line = nu <= t8;
-    const real_t t15 = whole * t10;
+    const real_t t12 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t13 = t10 * d_y - t11 * t12;
+    const real_t t14 = a_x * product_y + d_y * t13;
+    const real_t product_z = a_x * t12 + t2 * d_y;
+    const real_t product_2 = t13 * t13 + product_y * product_y + product_z * product_z;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t15 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t16 = product_2 - t15 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t16 <= CLOSEDFORM_VANISHING * t15;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t17 = d_y * product_z + t11 * product_y;
+    const real_t n_y = a_x * product_z - t11 * t13;
+    const real_t m_m = cf_rarely(single, slim, over * (t17 * t17 + n_y * n_y + t14 * t14), product_2);
+    const int in_line = m_m <= t8 * (t7 * mu);
+    const real_t t18 = whole * t11;
     const real_t g_2 = whole * (d_y + a_x * cf_sign(a_x * d_y));
-    const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
-    const real_t t17 = mu * nu;
-    const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
-    const real_t part = cf_rarely(single, in_line, t16, t18);
-    const real_t t19 = t11 * (d_y - t11) - t9 * (t9 - t10);
-    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
-    const real_t t21 = t13 * t20 - t10 * CLOSEDFORM_C(0.5);
-    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t14);
-    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
-    const real_t t23 = l * l - t22;
-    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t25 = w_z * h;
-    const real_t A_13 = t21 - t25;
-    const real_t Delta = t17 * h;
-    const real_t t26 = cf_quotient(single, A_13 * (t1 + A_13) * (t6 + A_13), Delta);
-    const int t27 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t30 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
-    const int t31 = cf_abs(t30) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t32 = t31 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
-    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
-    const real_t t33 = cf_poison(single, failed);
-    const real_t A_13_above = t21 + t25;
-    const real_t t34 = A_13_above * (t1 + A_13_above) * (t6 + A_13_above);
-    det[0] = -t26 + t33;
-    det[1] = cf_quotient(single, t34, Delta) + t33;
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t18 * t18) + g_2 * g_2, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t19 = t12 * (d_y - t12) - t10 * (t10 - t11);
+    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t21 = t14 * t20 - t11 * CLOSEDFORM_C(0.5);
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t17), product_z);
+    const real_t t22 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t19 * t19));
+    const real_t t23 = mu * (CLOSEDFORM_C(1.0) + t22) * CLOSEDFORM_C(0.25);
+    const real_t t24 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t23);
+    const real_t t25 = l * l - t24;
+    const real_t slack = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t t26 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t26, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t27 = cf_rarely(single, in_line, -g_2, m_z) * h;
+    const real_t A_13 = t21 - t27;
+    const real_t Delta = m_m * h;
+    const real_t t28 = cf_quotient(single, A_13 * (t1 + A_13) * (t6 + A_13), Delta);
+    const int t29 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t30 = t29 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t31 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t32 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t33 = cf_abs(t32) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t34 = t33 & (-(CLOSEDFORM_FEASIBILITY * t26) <= t25);
+    const int failed = (!(t30 & (CLOSEDFORM_C(0.0) <= l) & t31)) | (!t34);
+    const real_t t35 = cf_poison(single, failed);
+    const real_t A_13_above = t21 + t27;
+    const real_t t36 = A_13_above * (t1 + A_13_above) * (t6 + A_13_above);
+    det[0] = -t28 + t35;
+    det[1] = cf_quotient(single, t36, Delta) + t35;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1692,60 +2182,56 @@ CF_INLINE void linear_delta_determinant_common_kernel(const int single, const re
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t t1 = rho1 - rho2;
     const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
-    const real_t t2 = f - e - c2_x;
-    const real_t t3 = rho1 - rho3;
-    const real_t t4 = cf_rounded(single, one, t2 * t3) - cf_rounded(single, one, t2 * t1);
+    const real_t t1 = f - e - c2_x;
+    const real_t t2 = rho1 - rho3;
+    const real_t t3 = rho1 - rho2;
+    const real_t t4 = cf_rounded(single, one, t1 * t2) - cf_rounded(single, one, t1 * t3);
     const real_t t5 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
     const real_t t6 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
     const real_t c3_y = t5 - t6;
-    const real_t t7 = cf_rounded(single, one, c3_y * t3) + cf_rounded(single, one, c3_y * t1);
-    const real_t t8 = cf_rounded(single, one, t2 * t4) + cf_rounded(single, one, c3_y * t7);
-    const real_t t9 = cf_rounded(single, one, t2 * t2) + cf_rounded(single, one, c3_y * c3_y);
-    const real_t u_u = cf_rounded(single, one, t1 * t1) + t9;
+    const real_t t7 = cf_rounded(single, one, c3_y * t2) + cf_rounded(single, one, c3_y * t3);
+    const real_t t8 = cf_rounded(single, one, t7 * t7) + cf_rounded(single, one, t4 * t4);
+    const real_t t9 = cf_rounded(single, one, c3_y * t1);
+    const real_t t10 = t9 + t9;
+    const real_t product_2 = t8 + cf_rounded(single, one, t10 * t10);
+    const real_t t11 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t3 * t3) + t11;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t10 = size * size;
-    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t10;
-    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t11, u_u);
-    const real_t t12 = t8 * over;
-    const real_t t13 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
-    const real_t t14 = t13 - cf_rounded(single, one, t3 * (t1 - t3));
-    const real_t t15 = cf_rounded(single, one, c3_y * t2);
-    const real_t t16 = t15 + t15;
-    const real_t t17 = cf_rounded(single, one, c3_y * t16) - cf_rounded(single, one, t1 * t4);
-    const real_t t18 = t17 * over;
-    const real_t t19 = cf_rounded(single, one, t2 * t16) + cf_rounded(single, one, t1 * t7);
-    const real_t n_y = t19 * over;
-    const real_t t20 = cf_rounded(single, one, t18 * t18) + cf_rounded(single, one, n_y * n_y);
-    const real_t nu = t20 + cf_rounded(single, one, t12 * t12);
-    const real_t t21 = u_u * nu;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t11) | (nu <= t11), t21);
-    const real_t t22 = u_u * t14 * part * CLOSEDFORM_C(0.5);
-    const real_t t23 = t1 * CLOSEDFORM_C(0.5) + t12 * t22;
-    const real_t t24 = cf_rounded(single, one, nu * (t22 * t22)) + u_u * CLOSEDFORM_C(0.25);
-    const real_t t25 = cf_rounded(single, one, l * l) - t24;
-    const real_t slack = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t t12 = size * size;
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)), product_2);
+    const real_t t15 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t16 = t15 - cf_rounded(single, one, t2 * (t3 - t2));
+    const real_t t17 = (t1 * t4 + c3_y * t7) * (part * t16 * CLOSEDFORM_C(0.5));
+    const real_t t18 = t17 + t3 * CLOSEDFORM_C(0.5);
+    const real_t t19 = CLOSEDFORM_C(1.0) + cf_rounded(single, one, part * (t16 * t16));
+    const real_t t20 = cf_rounded(single, one, l * l) - u_u * t19 * CLOSEDFORM_C(0.25);
+    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t26 = (t2 * n_y + c3_y * t18) * h;
-    const real_t t27 = t23 - t26;
-    const real_t Delta = t21 * h;
-    const real_t t28 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t t29 = t27 * (t1 - t27) * (t3 - t27) / cf_divisor(single, (u_u <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t28), Delta);
-    const int t30 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t31 = t30 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t32 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t33 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
-    const int t34 = t33 & (-(CLOSEDFORM_FEASIBILITY * t28) <= t25);
-    const int failed = (!(t31 & (CLOSEDFORM_C(0.0) <= l) & t32)) | (!t34);
-    const real_t t35 = cf_poison(single, failed);
-    const real_t t36 = t23 + t26;
-    const real_t t37 = t36 * (t1 - t36) * (t3 - t36) / cf_divisor(single, (u_u <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t28), Delta);
-    const real_t t38 = u_u + (cf_rounded(single, one, t3 * t3) + t9);
-    const int t39 = (u_u <= t11) | (t38 <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t28);
-    det[0] = t29 + t35;
-    det[1] = -t37 + t35;
-    rare[0] = (t39) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t21 = t10 * h;
+    const real_t t22 = t18 - t21;
+    const real_t Delta = product_2 * h;
+    const real_t t23 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t t24 = t22 * (t3 - t22) * (t2 - t22) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t23), Delta);
+    const int t25 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t26 = t25 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t27 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t28 = cf_abs(CLOSEDFORM_C(0.0)) <= t12 * CLOSEDFORM_FEASIBILITY;
+    const int t29 = t28 & (-(CLOSEDFORM_FEASIBILITY * t23) <= t20);
+    const int failed = (!(t26 & (CLOSEDFORM_C(0.0) <= l) & t27)) | (!t29);
+    const real_t t30 = cf_poison(single, failed);
+    const real_t t31 = t18 + t21;
+    const real_t t32 = t31 * (t3 - t31) * (t2 - t31) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t23), Delta);
+    const real_t v_v = cf_rounded(single, one, t2 * t2) + t11;
+    const real_t t33 = u_u * v_v;
+    const real_t t34 = product_2 - t33 * CLOSEDFORM_C(0.000244140625);
+    const int t35 = (u_u + v_v <= t14) | (u_u <= t14) | (t34 <= CLOSEDFORM_VANISHING * t33);
+    const int t36 = t35 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t23);
+    det[0] = t24 + t30;
+    det[1] = -t32 + t30;
+    rare[0] = (t36) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void linear_delta_determinant_common_batch(size_t n, const linear_delta_params *params,
@@ -1794,7 +2280,7 @@ void linear_delta_determinant(const linear_delta_params *params,
     linear_delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -1813,7 +2299,7 @@ void linear_delta_determinant(const linear_delta_params *params,
 CF_INLINE cf_word linear_delta_determinant_excess(const real_t dimensions,
     const real_t *q, size_t q_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
 }
 
 CF_RARE void linear_delta_determinant_other_sizes(size_t n, const real_t dimensions,
@@ -1881,60 +2367,65 @@ CF_INLINE void linear_delta_singularities_whole_kernel(const int single, const l
     const real_t v_v = t6 * t6 + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
     const real_t t7 = size * size;
-    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
-    const int all_same = u_u + v_v <= t8;
+    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t9 = t7 * t8;
+    const int all_same = u_u + v_v <= t9;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t8;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
     const real_t a_x = cf_rarely(single, all_same, whole, -t2);
-    const real_t t9 = cf_rarely(single, same, t1, t6);
-    const real_t t10 = cf_rarely(single, same, t6, t1);
-    const real_t m_y = a_x * t9 + t2 * t10;
+    const int same = u_u <= t9;
+    const real_t t10 = cf_rarely(single, same, t1, t6);
+    const real_t t11 = cf_rarely(single, same, t6, t1);
+    const real_t product_y = a_x * t10 + t2 * t11;
     const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t t11 = cf_rarely(single, same, -c3_y, c3_y);
-    const real_t t12 = t9 * d_y - t10 * t11;
-    const real_t t13 = over * (a_x * m_y + d_y * t12);
-    const real_t m_z = a_x * t11 + t2 * d_y;
-    const real_t t14 = over * (d_y * m_z + t10 * m_y);
-    const real_t n_y = over * (a_x * m_z - t10 * t12);
-    const real_t nu = t14 * t14 + n_y * n_y + t13 * t13;
-    const int in_line = nu <= t8;
-    const real_t t15 = whole * t10;
+    const real_t t12 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t13 = t10 * d_y - t11 * t12;
+    const real_t t14 = a_x * product_y + d_y * t13;
+    const real_t product_z = a_x * t12 + t2 * d_y;
+    const real_t product_2 = t13 * t13 + product_y * product_y + product_z * product_z;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t15 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t16 = product_2 - t15 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t16 <= CLOSEDFORM_VANISHING * t15;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t17 = d_y * product_z + t11 * product_y;
+    const real_t n_y = a_x * product_z - t11 * t13;
+    const real_t m_m = cf_rarely(single, slim, over * (t17 * t17 + n_y * n_y + t14 * t14), product_2);
+    const int in_line = m_m <= t8 * (t7 * mu);
+    const real_t t18 = whole * t11;
     const real_t g_2 = whole * (d_y + a_x * cf_sign(a_x * d_y));
-    const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
-    const real_t t17 = mu * nu;
-    const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
-    const real_t part = cf_rarely(single, in_line, t16, t18);
-    const real_t t19 = t11 * (d_y - t11) - t9 * (t9 - t10);
-    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
-    const real_t t21 = t13 * t20 - t10 * CLOSEDFORM_C(0.5);
-    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t14);
-    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
-    const real_t t23 = l * l - t22;
-    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t25 = w_z * h;
-    const real_t A_13 = t21 - t25;
-    const int t26 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t27 = t26 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t28 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t29 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
-    const int t30 = cf_abs(t29) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t31 = t30 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
-    const int failed = (!(t27 & (CLOSEDFORM_C(0.0) <= l) & t28)) | (!t31);
-    const real_t t32 = cf_poison(single, failed);
-    const real_t Delta = t17 * h;
-    const real_t A_13_above = t21 + t25;
-    factors[0] = A_13 + t32;
-    factors[1] = t1 + A_13 + t32;
-    factors[2] = t6 + A_13 + t32;
-    factors[3] = -Delta + t32;
-    factors[4] = A_13_above + t32;
-    factors[5] = t1 + A_13_above + t32;
-    factors[6] = t6 + A_13_above + t32;
-    factors[7] = Delta + t32;
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t18 * t18) + g_2 * g_2, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t19 = t12 * (d_y - t12) - t10 * (t10 - t11);
+    const real_t t20 = cf_select(in_line, CLOSEDFORM_C(0.0), part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t21 = t14 * t20 - t11 * CLOSEDFORM_C(0.5);
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t17), product_z);
+    const real_t t22 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t19 * t19));
+    const real_t t23 = mu * (CLOSEDFORM_C(1.0) + t22) * CLOSEDFORM_C(0.25);
+    const real_t t24 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t23);
+    const real_t t25 = l * l - t24;
+    const real_t slack = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t t26 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t h = cf_select(slack <= CLOSEDFORM_VANISHING * t26, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t27 = cf_rarely(single, in_line, -g_2, m_z) * h;
+    const real_t A_13 = t21 - t27;
+    const int t28 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t29 = t28 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t30 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t31 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t32 = cf_abs(t31) <= t7 * CLOSEDFORM_FEASIBILITY;
+    const int t33 = t32 & (-(CLOSEDFORM_FEASIBILITY * t26) <= t25);
+    const int failed = (!(t29 & (CLOSEDFORM_C(0.0) <= l) & t30)) | (!t33);
+    const real_t t34 = cf_poison(single, failed);
+    const real_t Delta = m_m * h;
+    const real_t A_13_above = t21 + t27;
+    factors[0] = A_13 + t34;
+    factors[1] = t1 + A_13 + t34;
+    factors[2] = t6 + A_13 + t34;
+    factors[3] = -Delta + t34;
+    factors[4] = A_13_above + t34;
+    factors[5] = t1 + A_13_above + t34;
+    factors[6] = t6 + A_13_above + t34;
+    factors[7] = Delta + t34;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1955,64 +2446,60 @@ CF_INLINE void linear_delta_singularities_common_kernel(const int single, const 
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t t1 = rho1 - rho2;
     const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
-    const real_t t2 = f - e - c2_x;
-    const real_t t3 = rho1 - rho3;
-    const real_t t4 = cf_rounded(single, one, t2 * t3) - cf_rounded(single, one, t2 * t1);
+    const real_t t1 = f - e - c2_x;
+    const real_t t2 = rho1 - rho3;
+    const real_t t3 = rho1 - rho2;
+    const real_t t4 = cf_rounded(single, one, t1 * t2) - cf_rounded(single, one, t1 * t3);
     const real_t t5 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
     const real_t t6 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
     const real_t c3_y = t5 - t6;
-    const real_t t7 = cf_rounded(single, one, c3_y * t3) + cf_rounded(single, one, c3_y * t1);
-    const real_t t8 = cf_rounded(single, one, t2 * t4) + cf_rounded(single, one, c3_y * t7);
-    const real_t t9 = cf_rounded(single, one, t2 * t2) + cf_rounded(single, one, c3_y * c3_y);
-    const real_t u_u = cf_rounded(single, one, t1 * t1) + t9;
+    const real_t t7 = cf_rounded(single, one, c3_y * t2) + cf_rounded(single, one, c3_y * t3);
+    const real_t t8 = cf_rounded(single, one, t7 * t7) + cf_rounded(single, one, t4 * t4);
+    const real_t t9 = cf_rounded(single, one, c3_y * t1);
+    const real_t t10 = t9 + t9;
+    const real_t product_2 = t8 + cf_rounded(single, one, t10 * t10);
+    const real_t t11 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t3 * t3) + t11;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t10 = size * size;
-    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t10;
-    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t11, u_u);
-    const real_t t12 = t8 * over;
-    const real_t t13 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
-    const real_t t14 = t13 - cf_rounded(single, one, t3 * (t1 - t3));
-    const real_t t15 = cf_rounded(single, one, c3_y * t2);
-    const real_t t16 = t15 + t15;
-    const real_t t17 = cf_rounded(single, one, c3_y * t16) - cf_rounded(single, one, t1 * t4);
-    const real_t t18 = t17 * over;
-    const real_t t19 = cf_rounded(single, one, t2 * t16) + cf_rounded(single, one, t1 * t7);
-    const real_t n_y = t19 * over;
-    const real_t t20 = cf_rounded(single, one, t18 * t18) + cf_rounded(single, one, n_y * n_y);
-    const real_t nu = t20 + cf_rounded(single, one, t12 * t12);
-    const real_t t21 = u_u * nu;
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t11) | (nu <= t11), t21);
-    const real_t t22 = u_u * t14 * part * CLOSEDFORM_C(0.5);
-    const real_t t23 = t1 * CLOSEDFORM_C(0.5) + t12 * t22;
-    const real_t t24 = cf_rounded(single, one, nu * (t22 * t22)) + u_u * CLOSEDFORM_C(0.25);
-    const real_t t25 = cf_rounded(single, one, l * l) - t24;
-    const real_t slack = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t t12 = size * size;
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)), product_2);
+    const real_t t15 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t16 = t15 - cf_rounded(single, one, t2 * (t3 - t2));
+    const real_t t17 = (t1 * t4 + c3_y * t7) * (part * t16 * CLOSEDFORM_C(0.5));
+    const real_t t18 = t17 + t3 * CLOSEDFORM_C(0.5);
+    const real_t t19 = CLOSEDFORM_C(1.0) + cf_rounded(single, one, part * (t16 * t16));
+    const real_t t20 = cf_rounded(single, one, l * l) - u_u * t19 * CLOSEDFORM_C(0.25);
+    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t26 = (t2 * n_y + c3_y * t18) * h;
-    const real_t t27 = t23 - t26;
-    const int t28 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t29 = t28 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t30 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int t31 = cf_abs(CLOSEDFORM_C(0.0)) <= t10 * CLOSEDFORM_FEASIBILITY;
-    const real_t t32 = CLOSEDFORM_C(0.234375) * (l * size);
-    const int t33 = t31 & (-(CLOSEDFORM_FEASIBILITY * t32) <= t25);
-    const int failed = (!(t29 & (CLOSEDFORM_C(0.0) <= l) & t30)) | (!t33);
-    const real_t t34 = cf_poison(single, failed);
-    const real_t Delta = t21 * h;
-    const real_t t35 = t23 + t26;
-    const real_t t36 = u_u + (cf_rounded(single, one, t3 * t3) + t9);
-    const int t37 = (u_u <= t11) | (t36 <= t11) | (nu <= t11) | (slack <= CLOSEDFORM_VANISHING * t32);
-    factors[0] = -t27 + t34;
-    factors[1] = t1 - t27 + t34;
-    factors[2] = t3 - t27 + t34;
-    factors[3] = -Delta + t34;
-    factors[4] = -t35 + t34;
-    factors[5] = t1 - t35 + t34;
-    factors[6] = t3 - t35 + t34;
-    factors[7] = Delta + t34;
-    rare[0] = (t37) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t21 = t10 * h;
+    const real_t t22 = t18 - t21;
+    const int t23 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t24 = t23 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t25 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t26 = cf_abs(CLOSEDFORM_C(0.0)) <= t12 * CLOSEDFORM_FEASIBILITY;
+    const real_t t27 = CLOSEDFORM_C(0.234375) * (l * size);
+    const int t28 = t26 & (-(CLOSEDFORM_FEASIBILITY * t27) <= t20);
+    const int failed = (!(t24 & (CLOSEDFORM_C(0.0) <= l) & t25)) | (!t28);
+    const real_t t29 = cf_poison(single, failed);
+    const real_t Delta = product_2 * h;
+    const real_t t30 = t18 + t21;
+    const real_t v_v = cf_rounded(single, one, t2 * t2) + t11;
+    const real_t t31 = u_u * v_v;
+    const real_t t32 = product_2 - t31 * CLOSEDFORM_C(0.000244140625);
+    const int t33 = (u_u + v_v <= t14) | (u_u <= t14) | (t32 <= CLOSEDFORM_VANISHING * t31);
+    const int t34 = t33 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t27);
+    factors[0] = -t22 + t29;
+    factors[1] = t3 - t22 + t29;
+    factors[2] = t2 - t22 + t29;
+    factors[3] = -Delta + t29;
+    factors[4] = -t30 + t29;
+    factors[5] = t3 - t30 + t29;
+    factors[6] = t2 - t30 + t29;
+    factors[7] = Delta + t29;
+    rare[0] = (t34) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void linear_delta_singularities_common_batch(size_t n, const linear_delta_params *params,
@@ -2069,7 +2556,7 @@ void linear_delta_singularities(const linear_delta_params *params,
     linear_delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -2091,7 +2578,7 @@ void linear_delta_singularities(const linear_delta_params *params,
 CF_INLINE cf_word linear_delta_singularities_excess(const real_t dimensions,
     const real_t *q, size_t q_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
 }
 
 CF_RARE void linear_delta_singularities_other_sizes(size_t n, const real_t dimensions,
@@ -2137,7 +2624,8 @@ void linear_delta_singularities_batch(size_t n, const linear_delta_params *param
     }
 }
 
-CF_INLINE void linear_delta_condition_number_kernel(const int single, const linear_delta_params *params,
+/* Every case. */
+CF_INLINE void linear_delta_condition_number_whole_kernel(const int single, const linear_delta_params *params,
     const real_t q[3], real_t kappa[2])
 {
     const real_t f = params->f;
@@ -2154,113 +2642,276 @@ CF_INLINE void linear_delta_condition_number_kernel(const int single, const line
     const real_t c3_y = t3 - t4;
     const real_t t5 = t1 * t1 + c3_y * c3_y;
     const real_t u_u = t2 * t2 + t5;
-    const real_t t6 = rho1 - rho3;
-    const real_t v_v = t6 * t6 + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t7 = size * size;
-    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
+    const real_t t6 = size * size;
+    const real_t t7 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t8 = t6 * t7;
+    const int same = u_u <= t8;
+    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t t9 = rho1 - rho3;
+    const real_t v_v = t9 * t9 + t5;
     const int all_same = u_u + v_v <= t8;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t8;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
     const real_t a_x = cf_rarely(single, all_same, whole, -t1);
-    const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
-    const real_t m_z = a_x * t9 + t1 * d_y;
-    const real_t t10 = cf_rarely(single, same, t6, t2);
-    const real_t t11 = cf_rarely(single, same, t2, t6);
-    const real_t m_y = a_x * t11 + t1 * t10;
-    const real_t t12 = over * (d_y * m_z + t10 * m_y);
-    const real_t t13 = d_y * t11 - t9 * t10;
-    const real_t n_y = over * (a_x * m_z - t10 * t13);
-    const real_t t14 = over * (a_x * m_y + d_y * t13);
-    const real_t nu = t12 * t12 + n_y * n_y + t14 * t14;
-    const int in_line = nu <= t8;
-    const real_t t15 = whole * t10;
+    const real_t t10 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t product_z = a_x * t10 + t1 * d_y;
+    const real_t t11 = cf_rarely(single, same, t9, t2);
+    const real_t t12 = cf_rarely(single, same, t2, t9);
+    const real_t product_y = a_x * t12 + t1 * t11;
+    const real_t t13 = d_y * product_z + t11 * product_y;
+    const real_t t14 = d_y * t12 - t10 * t11;
+    const real_t product_2 = t14 * t14 + product_y * product_y + product_z * product_z;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t15 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t16 = product_2 - t15 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t16 <= CLOSEDFORM_VANISHING * t15;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t n_y = a_x * product_z - t11 * t14;
+    const real_t t17 = a_x * product_y + d_y * t14;
+    const real_t m_m = cf_rarely(single, slim, over * (t13 * t13 + n_y * n_y + t17 * t17), product_2);
+    const int in_line = m_m <= t7 * (t6 * mu);
+    const real_t t18 = whole * t11;
     const real_t s_w = cf_sign(d_y * a_x);
     const real_t g_2 = whole * (d_y + a_x * s_w);
-    const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
-    const real_t t17 = mu * nu;
-    const real_t t18 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, t17);
-    const real_t part = cf_rarely(single, in_line, t16, t18);
-    const real_t t19 = t9 * (d_y - t9) + t11 * (t10 - t11);
-    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t19 * CLOSEDFORM_C(0.5));
-    const real_t t21 = t1 * CLOSEDFORM_C(0.5) - t12 * t20;
-    const real_t t22 = cf_rarely(single, in_line, t15 * s_w, d_y * t14 - t10 * n_y);
-    const real_t t23 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t20 * t20) + mu * CLOSEDFORM_C(0.25));
-    const real_t t24 = l * l - t23;
-    const real_t slack = cf_max(t24, CLOSEDFORM_C(0.0));
-    const real_t t25 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t25, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t26 = t22 * h;
-    const real_t t27 = t21 - t26;
-    const real_t t28 = n_y * t20 - d_y * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t14 + t10 * t12);
-    const real_t t29 = h * w_y;
-    const real_t t30 = t28 + t29;
-    const real_t t31 = t14 * t20 - t10 * CLOSEDFORM_C(0.5);
-    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t12);
-    const real_t t32 = h * w_z;
-    const real_t A_13 = t31 - t32;
-    const real_t A_21 = t1 - t27;
-    const real_t t33 = A_21 * A_21;
-    const real_t A_22 = c3_y - t30;
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t18 * t18) + g_2 * g_2, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t19 = t10 * (d_y - t10) + t12 * (t11 - t12);
+    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t21 = t1 * CLOSEDFORM_C(0.5) - t13 * t20;
+    const real_t t22 = cf_rarely(single, slim, over * (d_y * t17 - t11 * n_y), t14);
+    const real_t t23 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t19 * t19));
+    const real_t t24 = mu * (CLOSEDFORM_C(1.0) + t23) * CLOSEDFORM_C(0.25);
+    const real_t t25 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t24);
+    const real_t t26 = l * l - t25;
+    const real_t slack = cf_max(t26, CLOSEDFORM_C(0.0));
+    const real_t t27 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t27, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t28 = cf_rarely(single, in_line, t18 * s_w, t22) * h;
+    const real_t t29 = t21 - t28;
+    const real_t t30 = n_y * t20 - d_y * CLOSEDFORM_C(0.5);
+    const real_t m_y = cf_rarely(single, slim, over * (a_x * t17 + t11 * t13), product_y);
+    const real_t t31 = h * cf_rarely(single, in_line, -t18, m_y);
+    const real_t t32 = t30 + t31;
+    const real_t t33 = t17 * t20 - t11 * CLOSEDFORM_C(0.5);
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t13), product_z);
+    const real_t t34 = h * cf_rarely(single, in_line, -g_2, m_z);
+    const real_t A_13 = t33 - t34;
+    const real_t A_21 = t1 - t29;
+    const real_t t35 = A_21 * A_21;
+    const real_t A_22 = c3_y - t32;
     const real_t A_23 = t2 + A_13;
-    const real_t t34 = t27 * t27 + t30 * t30 + A_13 * A_13 + (t33 + A_22 * A_22 + A_23 * A_23);
-    const real_t t35 = c3_y + t30;
-    const real_t A_33 = t6 + A_13;
-    const real_t t36 = t30 * A_21;
-    const real_t t37 = t27 * A_22 - t36;
-    const real_t t38 = A_13 * A_21;
-    const real_t t39 = t27 * A_23 + t38;
-    const real_t t40 = t36 + t27 * t35;
-    const real_t t41 = t38 + t27 * A_33;
-    const real_t t42 = t37 * t37 + t39 * t39 + t40 * t40 + t41 * t41;
-    const real_t t43 = t30 * A_23 + A_13 * A_22;
-    const real_t t44 = t30 * A_33 - A_13 * t35;
-    const real_t t45 = A_21 * t35 + A_21 * A_22;
-    const real_t t46 = A_21 * A_33 - A_21 * A_23;
-    const real_t t47 = t42 + t43 * t43 + t44 * t44 + t45 * t45 + t46 * t46;
-    const real_t t48 = A_22 * A_33 + A_23 * t35;
-    const real_t t49 = (t34 + (t33 + t35 * t35 + A_33 * A_33)) * (t47 + t48 * t48);
-    const real_t t50 = CLOSEDFORM_C(3.0) * (t17 * h);
-    const int t51 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t53 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t54 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
-    const int t55 = cf_abs(t54) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t56 = t55 & (-(CLOSEDFORM_FEASIBILITY * t25) <= t24);
-    const int failed = (!(t52 & (CLOSEDFORM_C(0.0) <= l) & t53)) | (!t56);
-    const real_t t57 = cf_poison(single, failed);
-    const real_t t58 = t21 + t26;
-    const real_t t59 = t28 - t29;
-    const real_t A_13_above = t31 + t32;
-    const real_t square1_above = t58 * t58 + t59 * t59 + A_13_above * A_13_above;
-    const real_t A_21_above = t1 - t58;
-    const real_t t60 = A_21_above * A_21_above;
-    const real_t A_22_above = c3_y - t59;
+    const real_t t36 = t29 * t29 + t32 * t32 + A_13 * A_13 + (t35 + A_22 * A_22 + A_23 * A_23);
+    const real_t t37 = c3_y + t32;
+    const real_t A_33 = t9 + A_13;
+    const real_t t38 = t32 * A_21;
+    const real_t t39 = t29 * A_22 - t38;
+    const real_t t40 = A_13 * A_21;
+    const real_t t41 = t29 * A_23 + t40;
+    const real_t t42 = t38 + t29 * t37;
+    const real_t t43 = t40 + t29 * A_33;
+    const real_t t44 = t39 * t39 + t41 * t41 + t42 * t42 + t43 * t43;
+    const real_t t45 = t32 * A_23 + A_13 * A_22;
+    const real_t t46 = t32 * A_33 - A_13 * t37;
+    const real_t t47 = A_21 * t37 + A_21 * A_22;
+    const real_t t48 = A_21 * A_33 - A_21 * A_23;
+    const real_t t49 = t44 + t45 * t45 + t46 * t46 + t47 * t47 + t48 * t48;
+    const real_t t50 = A_22 * A_33 + A_23 * t37;
+    const real_t t51 = (t36 + (t35 + t37 * t37 + A_33 * A_33)) * (t49 + t50 * t50);
+    const real_t t52 = CLOSEDFORM_C(3.0) * (m_m * h);
+    const int t53 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t54 = t53 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t55 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t56 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t57 = cf_abs(t56) <= t6 * CLOSEDFORM_FEASIBILITY;
+    const int t58 = t57 & (-(CLOSEDFORM_FEASIBILITY * t27) <= t26);
+    const int failed = (!(t54 & (CLOSEDFORM_C(0.0) <= l) & t55)) | (!t58);
+    const real_t t59 = cf_poison(single, failed);
+    const real_t t60 = t21 + t28;
+    const real_t t61 = t30 - t31;
+    const real_t A_13_above = t33 + t34;
+    const real_t square1_above = t60 * t60 + t61 * t61 + A_13_above * A_13_above;
+    const real_t A_21_above = t1 - t60;
+    const real_t t62 = A_21_above * A_21_above;
+    const real_t A_22_above = c3_y - t61;
     const real_t A_23_above = t2 + A_13_above;
-    const real_t square2_above = t60 + A_22_above * A_22_above + A_23_above * A_23_above;
-    const real_t t61 = c3_y + t59;
-    const real_t A_33_above = t6 + A_13_above;
-    const real_t t62 = square1_above + square2_above + (t60 + t61 * t61 + A_33_above * A_33_above);
-    const real_t t63 = t59 * A_21_above;
-    const real_t t64 = t58 * A_22_above - t63;
-    const real_t t65 = A_13_above * A_21_above;
-    const real_t t66 = t58 * A_23_above + t65;
-    const real_t t67 = t63 + t58 * t61;
-    const real_t t68 = t65 + t58 * A_33_above;
-    const real_t t69 = t64 * t64 + t66 * t66 + t67 * t67 + t68 * t68;
-    const real_t t70 = t59 * A_23_above + A_13_above * A_22_above;
-    const real_t t71 = t59 * A_33_above - A_13_above * t61;
-    const real_t t72 = A_21_above * t61 + A_21_above * A_22_above;
-    const real_t t73 = A_21_above * A_33_above - A_21_above * A_23_above;
-    const real_t t74 = t69 + t70 * t70 + t71 * t71 + t72 * t72 + t73 * t73;
-    const real_t t75 = A_22_above * A_33_above + A_23_above * t61;
-    const real_t t76 = cf_quotient(single, cf_sqrt(t62 * (t74 + t75 * t75)), t50);
-    kappa[0] = cf_quotient(single, cf_sqrt(t49), t50) + t57;
-    kappa[1] = t76 + t57;
+    const real_t square2_above = t62 + A_22_above * A_22_above + A_23_above * A_23_above;
+    const real_t t63 = c3_y + t61;
+    const real_t A_33_above = t9 + A_13_above;
+    const real_t t64 = square1_above + square2_above + (t62 + t63 * t63 + A_33_above * A_33_above);
+    const real_t t65 = t61 * A_21_above;
+    const real_t t66 = t60 * A_22_above - t65;
+    const real_t t67 = A_13_above * A_21_above;
+    const real_t t68 = t60 * A_23_above + t67;
+    const real_t t69 = t65 + t60 * t63;
+    const real_t t70 = t67 + t60 * A_33_above;
+    const real_t t71 = t66 * t66 + t68 * t68 + t69 * t69 + t70 * t70;
+    const real_t t72 = t61 * A_23_above + A_13_above * A_22_above;
+    const real_t t73 = t61 * A_33_above - A_13_above * t63;
+    const real_t t74 = A_21_above * t63 + A_21_above * A_22_above;
+    const real_t t75 = A_21_above * A_33_above - A_21_above * A_23_above;
+    const real_t t76 = t71 + t72 * t72 + t73 * t73 + t74 * t74 + t75 * t75;
+    const real_t t77 = A_22_above * A_33_above + A_23_above * t63;
+    const real_t t78 = cf_quotient(single, cf_sqrt(t64 * (t76 + t77 * t77)), t52);
+    kappa[0] = cf_quotient(single, cf_sqrt(t51), t52) + t59;
+    kappa[1] = t78 + t59;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void linear_delta_condition_number_whole(const linear_delta_params *params,
+    const real_t q[3], real_t kappa[2])
+{
+    linear_delta_condition_number_whole_kernel(1, params, q, kappa);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void linear_delta_condition_number_common_kernel(const int single, const real_t one,
+    const linear_delta_params *params,
+    const real_t q[3], real_t kappa[2], real_t rare[1])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t l = params->l;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const real_t rho3 = q[2];
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t1 = f - e - c2_x;
+    const real_t t2 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t3 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t2 - t3;
+    const real_t t4 = cf_rounded(single, one, c3_y * t1);
+    const real_t t5 = t4 + t4;
+    const real_t t6 = rho1 - rho2;
+    const real_t t7 = rho1 - rho3;
+    const real_t t8 = cf_rounded(single, one, t1 * t7) - cf_rounded(single, one, t1 * t6);
+    const real_t t9 = cf_rounded(single, one, c3_y * t7) + cf_rounded(single, one, c3_y * t6);
+    const real_t t10 = cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, t8 * t8);
+    const real_t product_2 = t10 + cf_rounded(single, one, t5 * t5);
+    const real_t t11 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t6 * t6) + t11;
+    const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
+    const real_t t12 = size * size;
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)), product_2);
+    const real_t t15 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t16 = t15 - cf_rounded(single, one, t7 * (t6 - t7));
+    const real_t t17 = part * t16 * CLOSEDFORM_C(0.5);
+    const real_t t18 = t1 * CLOSEDFORM_C(0.5) + (c3_y * t5 - t6 * t8) * t17;
+    const real_t t19 = CLOSEDFORM_C(1.0) + cf_rounded(single, one, part * (t16 * t16));
+    const real_t t20 = cf_rounded(single, one, l * l) - u_u * t19 * CLOSEDFORM_C(0.25);
+    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t21 = t9 * h;
+    const real_t t22 = t18 + t21;
+    const real_t t23 = t17 * (t1 * t5 + t6 * t9) - c3_y * CLOSEDFORM_C(0.5);
+    const real_t t24 = t8 * h;
+    const real_t A_12 = t23 + t24;
+    const real_t t25 = t17 * (t1 * t8 + c3_y * t9) + t6 * CLOSEDFORM_C(0.5);
+    const real_t t26 = t5 * h;
+    const real_t t27 = t25 - t26;
+    const real_t A_21 = t1 - t22;
+    const real_t t28 = A_21 * A_21;
+    const real_t A_22 = c3_y + A_12;
+    const real_t A_23 = t6 - t27;
+    const real_t t29 = t22 * t22 + A_12 * A_12 + t27 * t27 + (t28 + A_22 * A_22 + A_23 * A_23);
+    const real_t t30 = c3_y - A_12;
+    const real_t A_33 = t7 - t27;
+    const real_t t31 = A_12 * A_21;
+    const real_t t32 = t22 * A_22 + t31;
+    const real_t t33 = t27 * A_21;
+    const real_t t34 = t22 * A_23 - t33;
+    const real_t t35 = t31 - t22 * t30;
+    const real_t t36 = t33 - t22 * A_33;
+    const real_t t37 = t32 * t32 + t34 * t34 + t35 * t35 + t36 * t36;
+    const real_t t38 = A_12 * A_23 + t27 * A_22;
+    const real_t t39 = A_12 * A_33 - t27 * t30;
+    const real_t t40 = A_21 * t30 + A_21 * A_22;
+    const real_t t41 = A_21 * A_33 - A_21 * A_23;
+    const real_t t42 = t37 + t38 * t38 + t39 * t39 + t40 * t40 + t41 * t41;
+    const real_t t43 = A_22 * A_33 + A_23 * t30;
+    const real_t t44 = (t29 + (t28 + t30 * t30 + A_33 * A_33)) * (t42 + t43 * t43);
+    const real_t t45 = CLOSEDFORM_C(3.0) * (product_2 * h);
+    const real_t t46 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t t47 = cf_sqrt(t44) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t46), t45);
+    const int t48 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t50 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t51 = cf_abs(CLOSEDFORM_C(0.0)) <= t12 * CLOSEDFORM_FEASIBILITY;
+    const int t52 = t51 & (-(CLOSEDFORM_FEASIBILITY * t46) <= t20);
+    const int failed = (!(t49 & (CLOSEDFORM_C(0.0) <= l) & t50)) | (!t52);
+    const real_t t53 = cf_poison(single, failed);
+    const real_t t54 = t18 - t21;
+    const real_t A_12_above = t23 - t24;
+    const real_t t55 = t25 + t26;
+    const real_t square1_above = t54 * t54 + A_12_above * A_12_above + t55 * t55;
+    const real_t A_21_above = t1 - t54;
+    const real_t t56 = A_21_above * A_21_above;
+    const real_t A_22_above = c3_y + A_12_above;
+    const real_t A_23_above = t6 - t55;
+    const real_t square2_above = t56 + A_22_above * A_22_above + A_23_above * A_23_above;
+    const real_t t57 = c3_y - A_12_above;
+    const real_t A_33_above = t7 - t55;
+    const real_t t58 = square1_above + square2_above + (t56 + t57 * t57 + A_33_above * A_33_above);
+    const real_t t59 = A_12_above * A_21_above;
+    const real_t t60 = t54 * A_22_above + t59;
+    const real_t t61 = t55 * A_21_above;
+    const real_t t62 = t54 * A_23_above - t61;
+    const real_t t63 = t59 - t54 * t57;
+    const real_t t64 = t61 - t54 * A_33_above;
+    const real_t t65 = t60 * t60 + t62 * t62 + t63 * t63 + t64 * t64;
+    const real_t t66 = A_12_above * A_23_above + t55 * A_22_above;
+    const real_t t67 = A_12_above * A_33_above - t55 * t57;
+    const real_t t68 = A_21_above * t57 + A_21_above * A_22_above;
+    const real_t t69 = A_21_above * A_33_above - A_21_above * A_23_above;
+    const real_t t70 = t65 + t66 * t66 + t67 * t67 + t68 * t68 + t69 * t69;
+    const real_t t71 = A_22_above * A_33_above + A_23_above * t57;
+    const real_t t72 = cf_sqrt(t58 * (t70 + t71 * t71)) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t46), t45);
+    const real_t v_v = cf_rounded(single, one, t7 * t7) + t11;
+    const real_t t73 = u_u * v_v;
+    const real_t t74 = product_2 - t73 * CLOSEDFORM_C(0.000244140625);
+    const int t75 = (u_u <= t14) | (u_u + v_v <= t14) | (t74 <= CLOSEDFORM_VANISHING * t73);
+    const int t76 = t75 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t46);
+    kappa[0] = t47 + t53;
+    kappa[1] = t72 + t53;
+    rare[0] = (t76) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void linear_delta_condition_number_common_batch(size_t n, const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *kappa, size_t kappa_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const linear_delta_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            real_t kappa_i[2];
+            real_t rare_i[1];
+            linear_delta_condition_number_common_kernel(0, one, &local, q_i, kappa_i, rare_i);
+            kappa[start + i] = kappa_i[0];
+            kappa[kappa_stride + start + i] = kappa_i[1];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void linear_delta_condition_number_common(const linear_delta_params *params,
+    const real_t q[3], real_t kappa[2], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t rare_real[1];
+    linear_delta_condition_number_common_kernel(1, one, params, q, kappa, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2282,7 +2933,9 @@ void linear_delta_condition_number(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    linear_delta_condition_number_kernel(1, params, q, kappa);
+    uint8_t rare[1];
+    linear_delta_condition_number_common(params, q, kappa, rare);
+    if (CF_UNLIKELY(rare[0])) linear_delta_condition_number_whole(params, q, kappa);
 }
 
 /* Has its sign bit set where powers of the size of a posture may leave the range. */
@@ -2313,17 +2966,19 @@ void linear_delta_condition_number_batch(size_t n, const linear_delta_params *pa
     const real_t *q, size_t q_stride,
     real_t *kappa, size_t kappa_stride)
 {
-    const linear_delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        linear_delta_condition_number_common_batch(length, params, q + start, q_stride, kappa + start, kappa_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
             real_t kappa_i[2];
-            linear_delta_condition_number_kernel(0, &local, q_i, kappa_i);
-            kappa[start + i] = kappa_i[0];
-            kappa[kappa_stride + start + i] = kappa_i[1];
+            linear_delta_condition_number_whole(params, q_i, kappa_i);
+            for (size_t k = 0; k < 2; ++k) kappa[k * kappa_stride + i] = kappa_i[k];
+
         }
         cf_word excess = 0;
         for (size_t i = 0; i < length; ++i)
@@ -2333,7 +2988,8 @@ void linear_delta_condition_number_batch(size_t n, const linear_delta_params *pa
     }
 }
 
-CF_INLINE void linear_delta_constraint_kernel(const int single, const linear_delta_params *params,
+/* Every case. */
+CF_INLINE void linear_delta_constraint_whole_kernel(const int single, const linear_delta_params *params,
     const real_t q[3], real_t factors[2])
 {
     const real_t f = params->f;
@@ -2350,82 +3006,216 @@ CF_INLINE void linear_delta_constraint_kernel(const int single, const linear_del
     const real_t c3_y = t3 - t4;
     const real_t t5 = t1 * t1 + c3_y * c3_y;
     const real_t u_u = t2 * t2 + t5;
-    const real_t t6 = rho1 - rho3;
-    const real_t v_v = t6 * t6 + t5;
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t7 = size * size;
-    const real_t t8 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t7;
+    const real_t t6 = size * size;
+    const real_t t7 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t8 = t6 * t7;
+    const int same = u_u <= t8;
+    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t t9 = rho1 - rho3;
+    const real_t v_v = t9 * t9 + t5;
     const int all_same = u_u + v_v <= t8;
     const real_t whole = cf_select(size == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), size);
-    const int same = u_u <= t8;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t d_y = cf_rarely(single, same, c3_y, -c3_y);
     const real_t a_x = cf_rarely(single, all_same, whole, -t1);
-    const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
-    const real_t m_z = a_x * t9 + t1 * d_y;
-    const real_t t10 = cf_rarely(single, same, t6, t2);
-    const real_t t11 = cf_rarely(single, same, t2, t6);
-    const real_t m_y = a_x * t11 + t1 * t10;
-    const real_t t12 = over * (d_y * m_z + t10 * m_y);
-    const real_t t13 = d_y * t11 - t9 * t10;
-    const real_t n_y = over * (a_x * m_z - t10 * t13);
-    const real_t t14 = over * (a_x * m_y + d_y * t13);
-    const real_t nu = t12 * t12 + n_y * n_y + t14 * t14;
-    const int in_line = nu <= t8;
-    const real_t t15 = whole * t10;
+    const real_t t10 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t product_z = a_x * t10 + t1 * d_y;
+    const real_t t11 = cf_rarely(single, same, t9, t2);
+    const real_t t12 = cf_rarely(single, same, t2, t9);
+    const real_t product_y = a_x * t12 + t1 * t11;
+    const real_t t13 = d_y * product_z + t11 * product_y;
+    const real_t t14 = d_y * t12 - t10 * t11;
+    const real_t product_2 = t14 * t14 + product_y * product_y + product_z * product_z;
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t15 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t16 = product_2 - t15 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t16 <= CLOSEDFORM_VANISHING * t15;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t n_y = a_x * product_z - t11 * t14;
+    const real_t t17 = a_x * product_y + d_y * t14;
+    const real_t m_m = cf_rarely(single, slim, over * (t13 * t13 + n_y * n_y + t17 * t17), product_2);
+    const int in_line = m_m <= t7 * (t6 * mu);
+    const real_t t18 = whole * t11;
     const real_t s_w = cf_sign(d_y * a_x);
     const real_t g_2 = whole * (d_y + a_x * s_w);
-    const real_t t16 = CLOSEDFORM_C(1.0) / cf_nonzero(single, CLOSEDFORM_C(2.0) * (t15 * t15) + g_2 * g_2);
-    const real_t t17 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, mu * nu);
-    const real_t part = cf_rarely(single, in_line, t16, t17);
-    const real_t t18 = t9 * (d_y - t9) + t11 * (t10 - t11);
-    const real_t t19 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), mu * part * t18 * CLOSEDFORM_C(0.5));
-    const real_t t20 = t1 * CLOSEDFORM_C(0.5) - t12 * t19;
-    const real_t t21 = cf_rarely(single, in_line, t15 * s_w, d_y * t14 - t10 * n_y);
-    const real_t t22 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), nu * (t19 * t19) + mu * CLOSEDFORM_C(0.25));
-    const real_t t23 = l * l - t22;
-    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
-    const real_t t24 = CLOSEDFORM_C(0.234375) * (l * size);
-    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t24, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
-    const real_t t25 = t21 * h;
-    const real_t t26 = t20 - t25;
-    const real_t t27 = t14 * t19 - t10 * CLOSEDFORM_C(0.5);
-    const real_t w_z = cf_rarely(single, in_line, -g_2, a_x * n_y + d_y * t12);
-    const real_t t28 = h * w_z;
-    const real_t A_13 = t27 - t28;
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t18 * t18) + g_2 * g_2, m_m);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, w_w);
+    const real_t t19 = t10 * (d_y - t10) + t12 * (t11 - t12);
+    const real_t t20 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * t19 * CLOSEDFORM_C(0.5));
+    const real_t t21 = t1 * CLOSEDFORM_C(0.5) - t13 * t20;
+    const real_t t22 = cf_rarely(single, slim, over * (d_y * t17 - t11 * n_y), t14);
+    const real_t t23 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), part * (t19 * t19));
+    const real_t t24 = mu * (CLOSEDFORM_C(1.0) + t23) * CLOSEDFORM_C(0.25);
+    const real_t t25 = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), t24);
+    const real_t t26 = l * l - t25;
+    const real_t slack = cf_max(t26, CLOSEDFORM_C(0.0));
+    const real_t t27 = CLOSEDFORM_C(0.234375) * (l * size);
+    const real_t h = cf_rarely(single, slack <= CLOSEDFORM_VANISHING * t27, CLOSEDFORM_C(0.0), cf_sqrt(part * slack));
+    const real_t t28 = cf_rarely(single, in_line, t18 * s_w, t22) * h;
+    const real_t t29 = t21 - t28;
+    const real_t t30 = t17 * t20 - t11 * CLOSEDFORM_C(0.5);
+    const real_t m_z = cf_rarely(single, slim, over * (a_x * n_y + d_y * t13), product_z);
+    const real_t t31 = h * cf_rarely(single, in_line, -g_2, m_z);
+    const real_t A_13 = t30 - t31;
     const real_t A_23 = t2 + A_13;
-    const real_t t29 = CLOSEDFORM_C(1.7320508075688772) * t26 * A_23;
-    const real_t A_33 = t6 + A_13;
-    const real_t t30 = (t1 - t26) * (CLOSEDFORM_C(1.7320508075688772) * A_13);
-    const real_t t31 = t29 * A_33 * CLOSEDFORM_C(0.5) + A_33 * t30 * CLOSEDFORM_C(0.25);
-    const real_t t32 = n_y * t19 - d_y * CLOSEDFORM_C(0.5);
-    const real_t w_y = cf_rarely(single, in_line, -t15, a_x * t14 + t10 * t12);
-    const real_t t33 = h * w_y;
-    const real_t t34 = t32 + t33;
+    const real_t t32 = CLOSEDFORM_C(1.7320508075688772) * t29 * A_23;
+    const real_t A_33 = t9 + A_13;
+    const real_t t33 = (t1 - t29) * (CLOSEDFORM_C(1.7320508075688772) * A_13);
+    const real_t t34 = t32 * A_33 * CLOSEDFORM_C(0.5) + A_33 * t33 * CLOSEDFORM_C(0.25);
     const real_t t35 = CLOSEDFORM_C(0.75) * A_13;
-    const real_t t36 = t31 - A_33 * (c3_y - t34) * t35 + A_23 * t30 * CLOSEDFORM_C(0.25);
-    const int t37 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
-    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t39 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t40 = cf_rarely(single, in_line, -t18, CLOSEDFORM_C(0.0));
-    const int t41 = cf_abs(t40) <= t7 * CLOSEDFORM_FEASIBILITY;
-    const int t42 = t41 & (-(CLOSEDFORM_FEASIBILITY * t24) <= t23);
-    const int failed = (!(t38 & (CLOSEDFORM_C(0.0) <= l) & t39)) | (!t42);
-    const real_t t43 = cf_poison(single, failed);
-    const real_t t44 = t20 + t25;
-    const real_t A_13_above = t27 + t28;
+    const real_t t36 = n_y * t20 - d_y * CLOSEDFORM_C(0.5);
+    const real_t m_y = cf_rarely(single, slim, over * (a_x * t17 + t11 * t13), product_y);
+    const real_t t37 = h * cf_rarely(single, in_line, -t18, m_y);
+    const real_t t38 = t36 + t37;
+    const real_t t39 = t34 - A_33 * t35 * (c3_y - t38) + A_23 * t33 * CLOSEDFORM_C(0.25);
+    const int t40 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t41 = t40 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t42 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t43 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t44 = cf_abs(t43) <= t6 * CLOSEDFORM_FEASIBILITY;
+    const int t45 = t44 & (-(CLOSEDFORM_FEASIBILITY * t27) <= t26);
+    const int failed = (!(t41 & (CLOSEDFORM_C(0.0) <= l) & t42)) | (!t45);
+    const real_t t46 = cf_poison(single, failed);
+    const real_t t47 = t21 + t28;
+    const real_t A_13_above = t30 + t31;
     const real_t A_23_above = t2 + A_13_above;
-    const real_t t45 = CLOSEDFORM_C(1.7320508075688772) * t44 * A_23_above;
-    const real_t A_33_above = t6 + A_13_above;
-    const real_t t46 = CLOSEDFORM_C(1.7320508075688772) * A_13_above;
-    const real_t t47 = (t1 - t44) * t46;
-    const real_t t48 = t45 * A_33_above * CLOSEDFORM_C(0.5) + A_33_above * t47 * CLOSEDFORM_C(0.25);
-    const real_t t49 = t32 - t33;
-    const real_t t50 = CLOSEDFORM_C(0.75) * A_13_above;
-    const real_t t51 = t48 - A_33_above * (c3_y - t49) * t50 + A_23_above * t47 * CLOSEDFORM_C(0.25);
-    factors[0] = t36 - A_23 * t35 * (c3_y + t34) + t43;
-    factors[1] = t51 - A_23_above * t50 * (c3_y + t49) + t43;
+    const real_t t48 = CLOSEDFORM_C(1.7320508075688772) * t47 * A_23_above;
+    const real_t A_33_above = t9 + A_13_above;
+    const real_t t49 = CLOSEDFORM_C(1.7320508075688772) * A_13_above;
+    const real_t t50 = (t1 - t47) * t49;
+    const real_t t51 = t48 * A_33_above * CLOSEDFORM_C(0.5) + A_33_above * t50 * CLOSEDFORM_C(0.25);
+    const real_t t52 = CLOSEDFORM_C(0.75) * A_13_above;
+    const real_t t53 = t36 - t37;
+    const real_t t54 = t51 - A_33_above * t52 * (c3_y - t53) + A_23_above * t50 * CLOSEDFORM_C(0.25);
+    factors[0] = t39 - A_23 * t35 * (c3_y + t38) + t46;
+    factors[1] = t54 - A_23_above * t52 * (c3_y + t53) + t46;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void linear_delta_constraint_whole(const linear_delta_params *params,
+    const real_t q[3], real_t factors[2])
+{
+    linear_delta_constraint_whole_kernel(1, params, q, factors);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void linear_delta_constraint_common_kernel(const int single, const real_t one,
+    const linear_delta_params *params,
+    const real_t q[3], real_t factors[2], real_t rare[1])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t l = params->l;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const real_t rho3 = q[2];
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t1 = f - e - c2_x;
+    const real_t t2 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t3 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t2 - t3;
+    const real_t t4 = cf_rounded(single, one, c3_y * t1);
+    const real_t t5 = t4 + t4;
+    const real_t t6 = rho1 - rho2;
+    const real_t t7 = rho1 - rho3;
+    const real_t t8 = cf_rounded(single, one, t1 * t7) - cf_rounded(single, one, t1 * t6);
+    const real_t t9 = cf_rounded(single, one, c3_y * t7) + cf_rounded(single, one, c3_y * t6);
+    const real_t t10 = cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, t8 * t8);
+    const real_t product_2 = t10 + cf_rounded(single, one, t5 * t5);
+    const real_t t11 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t u_u = cf_rounded(single, one, t6 * t6) + t11;
+    const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
+    const real_t t12 = size * size;
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)), product_2);
+    const real_t t15 = cf_rounded(single, one, c3_y * (c3_y + c3_y));
+    const real_t t16 = t15 - cf_rounded(single, one, t7 * (t6 - t7));
+    const real_t t17 = part * t16 * CLOSEDFORM_C(0.5);
+    const real_t t18 = t1 * CLOSEDFORM_C(0.5) + (c3_y * t5 - t6 * t8) * t17;
+    const real_t t19 = CLOSEDFORM_C(1.0) + cf_rounded(single, one, part * (t16 * t16));
+    const real_t t20 = cf_rounded(single, one, l * l) - u_u * t19 * CLOSEDFORM_C(0.25);
+    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
+    const real_t h = cf_sqrt(part * slack);
+    const real_t t21 = t9 * h;
+    const real_t t22 = t18 + t21;
+    const real_t t23 = t17 * (t1 * t8 + c3_y * t9) + t6 * CLOSEDFORM_C(0.5);
+    const real_t t24 = t5 * h;
+    const real_t t25 = t23 - t24;
+    const real_t A_23 = t6 - t25;
+    const real_t t26 = CLOSEDFORM_C(1.7320508075688772) * t22 * A_23;
+    const real_t A_33 = t7 - t25;
+    const real_t t27 = (t1 - t22) * (CLOSEDFORM_C(1.7320508075688772) * t25);
+    const real_t t28 = t26 * A_33 * CLOSEDFORM_C(0.5) - A_33 * t27 * CLOSEDFORM_C(0.25);
+    const real_t t29 = t17 * (t1 * t5 + t6 * t9) - c3_y * CLOSEDFORM_C(0.5);
+    const real_t t30 = t8 * h;
+    const real_t A_12 = t29 + t30;
+    const real_t t31 = CLOSEDFORM_C(0.75) * t25;
+    const real_t t32 = t28 + A_33 * (c3_y + A_12) * t31 - A_23 * t27 * CLOSEDFORM_C(0.25);
+    const int t33 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t34 = t33 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t35 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t36 = cf_abs(CLOSEDFORM_C(0.0)) <= t12 * CLOSEDFORM_FEASIBILITY;
+    const real_t t37 = CLOSEDFORM_C(0.234375) * (l * size);
+    const int t38 = t36 & (-(CLOSEDFORM_FEASIBILITY * t37) <= t20);
+    const int failed = (!(t34 & (CLOSEDFORM_C(0.0) <= l) & t35)) | (!t38);
+    const real_t t39 = cf_poison(single, failed);
+    const real_t t40 = t18 - t21;
+    const real_t t41 = t23 + t24;
+    const real_t A_23_above = t6 - t41;
+    const real_t t42 = CLOSEDFORM_C(1.7320508075688772) * t40 * A_23_above;
+    const real_t A_33_above = t7 - t41;
+    const real_t t43 = (t1 - t40) * (CLOSEDFORM_C(1.7320508075688772) * t41);
+    const real_t t44 = t42 * A_33_above * CLOSEDFORM_C(0.5) - A_33_above * t43 * CLOSEDFORM_C(0.25);
+    const real_t A_12_above = t29 - t30;
+    const real_t t45 = CLOSEDFORM_C(0.75) * t41;
+    const real_t t46 = t44 + A_33_above * (c3_y + A_12_above) * t45 - A_23_above * t43 * CLOSEDFORM_C(0.25);
+    const real_t t47 = t46 + A_23_above * t45 * (c3_y - A_12_above) + t39;
+    const real_t v_v = cf_rounded(single, one, t7 * t7) + t11;
+    const real_t t48 = u_u * v_v;
+    const real_t t49 = product_2 - t48 * CLOSEDFORM_C(0.000244140625);
+    const int t50 = (u_u <= t14) | (u_u + v_v <= t14) | (t49 <= CLOSEDFORM_VANISHING * t48);
+    const int t51 = t50 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t37);
+    factors[0] = t32 + A_23 * t31 * (c3_y - A_12) + t39;
+    factors[1] = t47;
+    rare[0] = (t51) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void linear_delta_constraint_common_batch(size_t n, const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const linear_delta_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            real_t factors_i[2];
+            real_t rare_i[1];
+            linear_delta_constraint_common_kernel(0, one, &local, q_i, factors_i, rare_i);
+            factors[start + i] = factors_i[0];
+            factors[factors_stride + start + i] = factors_i[1];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void linear_delta_constraint_common(const linear_delta_params *params,
+    const real_t q[3], real_t factors[2],
+    uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t rare_real[1];
+    linear_delta_constraint_common_kernel(1, one, params, q, factors, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
 }
 
 CLOSEDFORM_DISPATCHED
@@ -2438,7 +3228,7 @@ void linear_delta_constraint(const linear_delta_params *params,
     linear_delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
@@ -2448,7 +3238,9 @@ void linear_delta_constraint(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    linear_delta_constraint_kernel(1, params, q, factors);
+    uint8_t rare[1];
+    linear_delta_constraint_common(params, q, factors, rare);
+    if (CF_UNLIKELY(rare[0])) linear_delta_constraint_whole(params, q, factors);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(2, factors_degrees, exponent, factors, factors);
     }
@@ -2458,7 +3250,7 @@ void linear_delta_constraint(const linear_delta_params *params,
 CF_INLINE cf_word linear_delta_constraint_excess(const real_t dimensions,
     const real_t *q, size_t q_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_4);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_6);
 }
 
 CF_RARE void linear_delta_constraint_other_sizes(size_t n, const real_t dimensions,
@@ -2482,17 +3274,19 @@ void linear_delta_constraint_batch(size_t n, const linear_delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *factors, size_t factors_stride)
 {
-    const linear_delta_params local = *params;
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        linear_delta_constraint_common_batch(length, params, q + start, q_stride, factors + start, factors_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
             real_t factors_i[2];
-            linear_delta_constraint_kernel(0, &local, q_i, factors_i);
-            factors[start + i] = factors_i[0];
-            factors[factors_stride + start + i] = factors_i[1];
+            linear_delta_constraint_whole(params, q_i, factors_i);
+            for (size_t k = 0; k < 2; ++k) factors[k * factors_stride + i] = factors_i[k];
+
         }
         cf_word excess = 0;
         for (size_t i = 0; i < length; ++i)

@@ -1035,10 +1035,10 @@ CF_INLINE void opw_arm_ik_whole_kernel(const int single, const real_t one,
     const real_t t19 = c2 - f;
     const real_t whole_1_1 = size * CLOSEDFORM_ROUNDING;
     const real_t t20 = cf_max(CLOSEDFORM_C(0.0), cf_abs(t19) - whole_1_1);
-    const real_t low_1_1 = t20 * t20;
+    const real_t low_1_1 = cf_rounded(single, one, t20 * t20);
     const real_t t21 = c2 + f;
     const real_t t22 = whole_1_1 + t21;
-    const real_t high_1_1 = t22 * t22;
+    const real_t high_1_1 = cf_rounded(single, one, t22 * t22);
     const real_t t23 = cf_max(low_1_1, cf_min(high_1_1, square_1_1));
     const real_t miss_1_1 = square_1_1 - t23;
     const real_t inner_1_1 = cf_rounded(single, one, t16 * t16) - cf_rounded(single, one, bend_1_1 * miss_1_1);

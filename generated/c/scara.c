@@ -11,7 +11,7 @@
  *   singularities: 1 sincos
  *   jacobian_space: 4 add, 8 multiply, 2 sincos
  *   jacobian_body: 4 add, 8 multiply, 2 sincos
- *   ik: 32 add, 38 compare and select, 5 atan2, 5 divide, 39 multiply, 1 sincos, 2 sqrt
+ *   ik: 32 add, 37 compare and select, 5 atan2, 5 divide, 39 multiply, 1 sincos, 2 sqrt
  */
 #include "scara.h"
 
@@ -692,7 +692,7 @@ CF_INLINE void scara_ik_kernel(const int single, const real_t one,
         angles[4] = cf_atan2(opposite[4], adjacent[4]);
     }
     q[0] = cf_wrap_cut(angles[0]) + t25;
-    q[1] = cf_wrap_cut(angles[1]) + t25;
+    q[1] = angles[1] + t25;
     q[2] = t27;
     q[3] = cf_wrap_cut(-angles[2]) + t25;
     q[4] = cf_wrap_cut(angles[3]) + t25;

@@ -3,15 +3,27 @@
  * derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops on a sphere, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 68 compare and select, 62 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
- *   fk where nothing vanishes: 45 compare and select, 60 add, 11 divide, 84 multiply, 7 sincos, 4
+ *   fk: 75 compare and select, 65 add, 12 divide, 104 multiply, 7 sincos, 4 sqrt
+ *   fk where nothing vanishes: 47 compare and select, 58 add, 12 divide, 79 multiply, 7 sincos, 4
  *     sqrt
- *   skeleton: 67 compare and select, 74 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
- *   jacobian_parallel: 67 compare and select, 83 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
- *   jacobian_serial: 67 compare and select, 69 add, 9 divide, 110 multiply, 7 sincos, 4 sqrt
- *   jacobian: 67 compare and select, 95 add, 21 divide, 148 multiply, 7 sincos, 4 sqrt
- *   singularities: 67 compare and select, 71 add, 9 divide, 112 multiply, 7 sincos, 4 sqrt
- *   condition_number: 67 compare and select, 111 add, 17 divide, 157 multiply, 7 sincos, 8 sqrt
+ *   skeleton: 74 compare and select, 77 add, 11 divide, 105 multiply, 7 sincos, 4 sqrt
+ *   skeleton where nothing vanishes: 46 compare and select, 70 add, 10 divide, 81 multiply, 7
+ *     sincos, 4 sqrt
+ *   jacobian_parallel: 74 compare and select, 86 add, 11 divide, 105 multiply, 7 sincos, 4 sqrt
+ *   jacobian_parallel where nothing vanishes: 46 compare and select, 79 add, 10 divide, 81
+ *     multiply, 7 sincos, 4 sqrt
+ *   jacobian_serial: 74 compare and select, 72 add, 11 divide, 117 multiply, 7 sincos, 4 sqrt
+ *   jacobian_serial where nothing vanishes: 46 compare and select, 65 add, 10 divide, 93 multiply,
+ *     7 sincos, 4 sqrt
+ *   jacobian: 74 compare and select, 98 add, 23 divide, 154 multiply, 7 sincos, 4 sqrt
+ *   jacobian where nothing vanishes: 46 compare and select, 91 add, 22 divide, 130 multiply, 7
+ *     sincos, 4 sqrt
+ *   singularities: 74 compare and select, 74 add, 11 divide, 118 multiply, 7 sincos, 4 sqrt
+ *   singularities where nothing vanishes: 46 compare and select, 67 add, 10 divide, 94 multiply, 7
+ *     sincos, 4 sqrt
+ *   condition_number: 74 compare and select, 114 add, 19 divide, 163 multiply, 7 sincos, 8 sqrt
+ *   condition_number where nothing vanishes: 46 compare and select, 107 add, 18 divide, 139
+ *     multiply, 7 sincos, 8 sqrt
  *   ik: 107 compare and select, 78 add, 4 atan2, 13 divide, 105 multiply, 5 sincos, 7 sqrt
  *   workspace_contains: 53 compare and select, 26 add, 8 divide, 31 multiply, 5 sincos, 5 sqrt
  */
@@ -22,166 +34,6 @@ CF_INLINE void spherical_five_bar_fk_whole_kernel(const int single, const real_t
     const spherical_five_bar_params *params,
     const real_t q[2], const real_t *sines,
     const real_t *cosines, real_t p[6], real_t status[2])
-{
-    const real_t r = params->r;
-    const real_t gamma = params->gamma;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t beta1 = params->beta1;
-    const real_t beta2 = params->beta2;
-    const real_t theta1 = q[0];
-    const real_t theta2 = q[1];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s_gamma = sines[1];
-    const real_t c_gamma = cosines[1];
-    const real_t s2 = sines[2];
-    const real_t c2 = cosines[2];
-    const real_t s_alpha2 = sines[3];
-    const real_t c_alpha2 = cosines[3];
-    const real_t s1 = sines[4];
-    const real_t c1 = cosines[4];
-    const real_t s_beta2_half = sines[5];
-    const real_t s_beta1_half = sines[6];
-    const real_t c1_x = cf_rounded(single, one, r * c_alpha1);
-    const real_t t1 = r * cf_abs(s_alpha2);
-    const real_t t2 = c2 * t1;
-    const real_t t3 = r * c_alpha2;
-    const real_t t4 = cf_rounded(single, one, s_gamma * t2) - cf_rounded(single, one, c_gamma * t3);
-    const real_t t5 = c1_x + t4;
-    const real_t t6 = r * cf_abs(s_alpha1);
-    const real_t c1_y = cf_rounded(single, one, c1 * t6);
-    const real_t c2_y = cf_rounded(single, one, s_gamma * t3) + cf_rounded(single, one, c_gamma * t2);
-    const real_t t7 = c1_y - c2_y;
-    const real_t t8 = cf_rounded(single, one, t5 * t5) + cf_rounded(single, one, t7 * t7);
-    const real_t c1_z = cf_rounded(single, one, s1 * t6);
-    const real_t t9 = c1_z - cf_rounded(single, one, s2 * t1);
-    const real_t u_u = t8 + cf_rounded(single, one, t9 * t9);
-    const real_t t10 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
-    const real_t v_v = t10 + cf_rounded(single, one, c1_z * c1_z);
-    const real_t t11 = r * r;
-    const real_t t12 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t11;
-    const int all_same = u_u + v_v <= t12;
-    const real_t whole = cf_select(r == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), r);
-    const int same = u_u <= t12;
-    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t13 = cf_rarely(single, same, c1_y, t7);
-    const real_t t14 = cf_rarely(single, same, c1_x, t5);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t14);
-    const real_t t15 = cf_rarely(single, same, t7, c1_y);
-    const real_t t16 = cf_rarely(single, same, t5, c1_x);
-    const real_t t17 = cf_rounded(single, one, a_x * t15) + cf_rounded(single, one, t13 * t16);
-    const real_t t18 = cf_rarely(single, same, c1_z, t9);
-    const real_t t19 = cf_rarely(single, same, t9, c1_z);
-    const real_t m_y = cf_rounded(single, one, a_x * t19) + cf_rounded(single, one, t16 * t18);
-    const real_t t20 = cf_rounded(single, one, t13 * t17) + cf_rounded(single, one, t18 * m_y);
-    const real_t t21 = over * t20;
-    const real_t m_x = cf_rounded(single, one, t13 * t19) - cf_rounded(single, one, t15 * t18);
-    const real_t t22 = cf_rounded(single, one, a_x * t17) - cf_rounded(single, one, t18 * m_x);
-    const real_t t23 = over * t22;
-    const real_t t24 = cf_rounded(single, one, t21 * t21) + cf_rounded(single, one, t23 * t23);
-    const real_t t25 = cf_rounded(single, one, a_x * m_y) + cf_rounded(single, one, t13 * m_x);
-    const real_t t26 = over * t25;
-    const real_t nu = t24 + cf_rounded(single, one, t26 * t26);
-    const int in_line = nu <= t12;
-    const real_t t27 = whole * t18;
-    const real_t s_w = cf_sign(-(t13 * a_x));
-    const real_t w_x = cf_rarely(single, in_line, -(t27 * s_w), t13 * t26 - t18 * t23);
-    const real_t length_a = cf_sqrt(mu);
-    const real_t t28 = whole * (t13 - a_x * s_w);
-    const real_t t29 = CLOSEDFORM_C(2.0) * (t27 * t27) + cf_rounded(single, one, t28 * t28);
-    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, over * t29, nu));
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
-    const real_t t30 = r * CLOSEDFORM_C(2.0);
-    const real_t r_2 = cf_abs(s_beta2_half) * t30;
-    const real_t over_a = length_n * part;
-    const real_t t31 = cf_rounded(single, one, a_x * t16) - cf_rounded(single, one, t13 * t15);
-    const real_t t32 = cf_rounded(single, one, over_a * (t31 - cf_rounded(single, one, t18 * t19)));
-    const real_t D = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), length_a);
-    const real_t r_1 = cf_rounded(single, one, cf_abs(s_beta1_half) * t30);
-    const real_t t33 = D + r_1;
-    const real_t t34 = cf_rarely(single, same, r, r_2);
-    const real_t t35 = t33 - t34;
-    const real_t outer = cf_max(t35, CLOSEDFORM_C(0.0));
-    const real_t t36 = D - r_1;
-    const real_t t37 = t34 + t36;
-    const real_t inner = cf_max(t37, CLOSEDFORM_C(0.0));
-    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t38 = t34 - t36;
-    const real_t slack = cf_max(t38, CLOSEDFORM_C(0.0));
-    const real_t t39 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t along = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t39);
-    const real_t t40 = t32 + along;
-    const real_t t41 = nu - cf_rarely(single, same, r_2 * r_2, t11) + cf_rounded(single, one, t40 * t40);
-    const real_t t42 = cf_root(single, outer * inner * slack * (t34 + t33));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t42);
-    const real_t left = t41 + cf_rounded(single, one, rho * rho);
-    const real_t j = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), length_n);
-    const real_t t43 = cf_rounded(single, one, CLOSEDFORM_C(2.0) * j * rho);
-    const real_t t44 = left + t43;
-    const real_t upper = cf_max(t44, CLOSEDFORM_C(0.0));
-    const real_t t45 = t43 - left;
-    const real_t lower = cf_max(t45, CLOSEDFORM_C(0.0));
-    const real_t both = upper + lower;
-    const real_t t46 = cf_rarely(single, same, r_2, r);
-    const int t47 = (both <= CLOSEDFORM_VANISHING * (r * t46)) | in_line;
-    const real_t half = rho / cf_divisor(single, t47, both);
-    const real_t t48 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * cf_rarely(single, t47, rho, t48);
-    const real_t t49 = w_x * h;
-    const real_t Y = cf_select(t47, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
-    const real_t X = over_a * along;
-    const real_t t50 = t21 * Y - (c1_x - t14 * X);
-    const int t51 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t53 = t52 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t54 = t53 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t55 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const int invalid = !(t54 & t55);
-    const real_t t56 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
-    const int t57 = (-t56 <= t38) & (-t56 <= t35) & (-t56 <= t37);
-    const real_t t58 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t46;
-    const real_t t59 = CLOSEDFORM_FEASIBILITY * (r * t58 * CLOSEDFORM_C(0.5));
-    const int unreachable = !(t57 & (-t59 <= t44) & (-t59 <= t45));
-    const real_t t60 = cf_poison(single, invalid | unreachable);
-    const real_t w_y = cf_rarely(single, in_line, -t27, a_x * t26 + t18 * t21);
-    const real_t t61 = w_y * h;
-    const real_t t62 = t23 * Y - (c1_y - t13 * X);
-    const real_t w_z = cf_rarely(single, in_line, t28, -(a_x * t23 + t13 * t21));
-    const real_t t63 = w_z * h;
-    const real_t t64 = t26 * Y - (c1_z - t18 * X);
-    const real_t t65 = cf_status(single, invalid, unreachable, in_line);
-    p[0] = t49 - t50 + t60;
-    p[1] = t61 - t62 + t60;
-    p[2] = t63 - t64 + t60;
-    p[3] = -(t50 + t49) + t60;
-    p[4] = -(t62 + t61) + t60;
-    p[5] = -(t64 + t63) + t60;
-    status[0] = t65;
-    status[1] = t65;
-}
-
-CLOSEDFORM_DISPATCHED
-CF_OUT_OF_LINE void spherical_five_bar_fk_whole(const spherical_five_bar_params *params,
-    const real_t q[2], real_t p[6], uint8_t status[2])
-{
-    const real_t one = cf_one();
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta2 / CLOSEDFORM_C(2.0), params->beta1 / CLOSEDFORM_C(2.0), params->beta1 / CLOSEDFORM_C(2.0) };
-    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
-    real_t status_real[2];
-    spherical_five_bar_fk_whole_kernel(1, one, params, q, sines, cosines, p, status_real);
-    for (size_t i = 0; i < 2; ++i)
-        status[i] = (uint8_t)status_real[i];
-}
-
-/* Where nothing vanishes; rare is whether something does. */
-CF_INLINE void spherical_five_bar_fk_common_kernel(const int single, const real_t one,
-    const spherical_five_bar_params *params,
-    const real_t q[2], const real_t *sines,
-    const real_t *cosines, real_t p[6],
-    real_t status[2], real_t rare[1])
 {
     const real_t r = params->r;
     const real_t gamma = params->gamma;
@@ -218,87 +70,253 @@ CF_INLINE void spherical_five_bar_fk_common_kernel(const int single, const real_
     const real_t t9 = c1_z - cf_rounded(single, one, s2 * t1);
     const real_t u_u = t8 + cf_rounded(single, one, t9 * t9);
     const real_t t10 = cf_rounded(single, one, r * r);
-    const real_t t11 = CLOSEDFORM_VANISHING * t10;
-    const real_t t12 = CLOSEDFORM_VANISHING * t11;
-    const real_t over = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t12, u_u);
-    const real_t t13 = cf_rounded(single, one, t5 * c1_y) - cf_rounded(single, one, c1_x * t7);
-    const real_t t14 = cf_rounded(single, one, t5 * c1_z) - cf_rounded(single, one, c1_x * t9);
-    const real_t t15 = cf_rounded(single, one, t7 * t13) + cf_rounded(single, one, t9 * t14);
-    const real_t t16 = over * t15;
-    const real_t length_a = cf_sqrt(u_u);
-    const real_t m_x = cf_rounded(single, one, t7 * c1_z) - cf_rounded(single, one, c1_y * t9);
-    const real_t t17 = cf_rounded(single, one, t5 * t13) - cf_rounded(single, one, t9 * m_x);
-    const real_t t18 = over * t17;
-    const real_t t19 = cf_rounded(single, one, t16 * t16) + cf_rounded(single, one, t18 * t18);
-    const real_t t20 = cf_rounded(single, one, t5 * t14) + cf_rounded(single, one, t7 * m_x);
-    const real_t t21 = over * t20;
-    const real_t nu = t19 + cf_rounded(single, one, t21 * t21);
-    const real_t length_n = cf_sqrt(nu);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t12) | (nu <= t12), length_a * length_n);
-    const real_t t22 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_rounded(single, one, cf_abs(s_beta1_half) * t22);
-    const real_t r_2 = cf_rounded(single, one, cf_abs(s_beta2_half) * t22);
-    const real_t t23 = r_1 - r_2;
-    const real_t t24 = length_a + t23;
-    const real_t outer = cf_max(t24, CLOSEDFORM_C(0.0));
-    const real_t t25 = length_a - t23;
-    const real_t inner = cf_max(t25, CLOSEDFORM_C(0.0));
-    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t12, outer + inner);
-    const real_t t26 = r_1 + r_2;
-    const real_t t27 = t26 - length_a;
-    const real_t slack = cf_max(t27, CLOSEDFORM_C(0.0));
-    const real_t t28 = cf_root(single, outer * inner * slack * (length_a + t26));
-    const real_t rho = share * t28;
-    const real_t t29 = cf_rounded(single, one, CLOSEDFORM_C(2.0) * length_n * rho);
-    const real_t over_a = length_n * part;
-    const real_t t30 = cf_rounded(single, one, c1_x * t5) + cf_rounded(single, one, c1_y * t7);
-    const real_t t31 = cf_rounded(single, one, over_a * (t30 + cf_rounded(single, one, c1_z * t9)));
-    const real_t t32 = share * (length_a + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t along = length_a * CLOSEDFORM_C(0.5) + t32;
-    const real_t t33 = t31 - along;
-    const real_t t34 = t10 - nu - cf_rounded(single, one, t33 * t33);
-    const real_t t35 = t34 - cf_rounded(single, one, rho * rho);
-    const real_t t36 = t29 - t35;
-    const real_t upper = cf_max(t36, CLOSEDFORM_C(0.0));
-    const real_t t37 = t35 + t29;
-    const real_t lower = cf_max(t37, CLOSEDFORM_C(0.0));
+    const real_t t11 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t12 = t10 * t11;
+    const int same = u_u <= t12;
+    const real_t t13 = cf_rarely(single, same, c1_y, t7);
+    const real_t t14 = cf_rarely(single, same, t9, c1_z);
+    const real_t t15 = cf_rarely(single, same, c1_z, t9);
+    const real_t t16 = cf_rarely(single, same, t7, c1_y);
+    const real_t product_x = cf_rounded(single, one, t13 * t14) - cf_rounded(single, one, t15 * t16);
+    const real_t t17 = cf_rounded(single, one, product_x * product_x);
+    const real_t t18 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t18 + cf_rounded(single, one, c1_z * c1_z);
+    const int all_same = u_u + v_v <= t12;
+    const real_t whole = cf_select(r == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), r);
+    const real_t t19 = cf_rarely(single, same, c1_x, t5);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t19);
+    const real_t t20 = cf_rarely(single, same, t5, c1_x);
+    const real_t product_y = cf_rounded(single, one, t14 * a_x) + cf_rounded(single, one, t15 * t20);
+    const real_t t21 = cf_rounded(single, one, product_y * product_y);
+    const real_t t22 = cf_rounded(single, one, t16 * a_x) + cf_rounded(single, one, t13 * t20);
+    const real_t product_2 = t17 + t21 + cf_rounded(single, one, t22 * t22);
+    const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
+    const real_t t23 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t24 = product_2 - t23 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t24 <= CLOSEDFORM_VANISHING * t23;
+    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
+    const real_t t25 = cf_rounded(single, one, t13 * t22) + cf_rounded(single, one, t15 * product_y);
+    const real_t t26 = cf_rounded(single, one, a_x * t22) - cf_rounded(single, one, t15 * product_x);
+    const real_t t27 = cf_rounded(single, one, t25 * t25) + cf_rounded(single, one, t26 * t26);
+    const real_t t28 = cf_rounded(single, one, a_x * product_y) + cf_rounded(single, one, t13 * product_x);
+    const real_t t29 = over * (t27 + cf_rounded(single, one, t28 * t28));
+    const real_t m_m = cf_rarely(single, slim, t29, product_2);
+    const int in_line = m_m <= t11 * (t10 * mu);
+    const real_t t30 = whole * t15;
+    const real_t s_w = cf_sign(-(t13 * a_x));
+    const real_t m_x = cf_rarely(single, slim, over * (t13 * t28 - t15 * t26), product_x);
+    const real_t w_x = cf_rarely(single, in_line, -(t30 * s_w), m_x);
+    const real_t length_a = cf_sqrt(mu);
+    const real_t t31 = whole * (t13 - a_x * s_w);
+    const real_t t32 = CLOSEDFORM_C(2.0) * (t30 * t30) + cf_rounded(single, one, t31 * t31);
+    const real_t nu = cf_rounded(single, one, over * cf_rarely(single, in_line, t32, m_m));
+    const real_t beside_a = cf_sqrt(nu);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * beside_a);
+    const real_t j = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), beside_a);
+    const real_t t33 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_rounded(single, one, cf_abs(s_beta1_half) * t33);
+    const real_t D = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), length_a);
+    const real_t t34 = D + r_1;
+    const real_t r_2 = cf_rounded(single, one, cf_abs(s_beta2_half) * t33);
+    const real_t t35 = cf_rarely(single, same, r, r_2);
+    const real_t t36 = t34 - t35;
+    const real_t outer = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t t37 = D - r_1;
+    const real_t t38 = t35 + t37;
+    const real_t inner = cf_max(t38, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
+    const real_t t39 = t35 - t37;
+    const real_t slack = cf_max(t39, CLOSEDFORM_C(0.0));
+    const real_t t40 = cf_root(single, outer * inner * slack * (t35 + t34));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t40);
+    const real_t t41 = cf_rounded(single, one, CLOSEDFORM_C(2.0) * j * rho);
+    const real_t t42 = cf_rarely(single, same, cf_rounded(single, one, r_2 * r_2), t10);
+    const real_t t43 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), nu);
+    const real_t t44 = t42 - t43 - cf_rounded(single, one, rho * rho);
+    const real_t over_a = beside_a * part;
+    const real_t t45 = cf_rounded(single, one, a_x * t20) - cf_rounded(single, one, t13 * t16);
+    const real_t t46 = cf_rounded(single, one, over_a * (t45 - cf_rounded(single, one, t14 * t15)));
+    const real_t t47 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t47);
+    const real_t t48 = t46 + along;
+    const real_t t49 = t44 - cf_rounded(single, one, t48 * t48);
+    const real_t t50 = t41 - t49;
+    const real_t upper = cf_max(t50, CLOSEDFORM_C(0.0));
+    const real_t t51 = t49 + t41;
+    const real_t lower = cf_max(t51, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t half = rho / cf_divisor(single, both <= t11, both);
-    const real_t Y = length_a * part * half * (upper - lower);
+    const real_t t52 = cf_rarely(single, same, r_2, r);
+    const int t53 = (both <= CLOSEDFORM_VANISHING * (r * t52)) | in_line;
+    const real_t half = rho / cf_divisor(single, t53, both);
+    const real_t t54 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t53, rho, t54);
+    const real_t t55 = w_x * h;
+    const real_t Y = cf_select(t53, CLOSEDFORM_C(0.0), part * over_a * half * (upper - lower));
     const real_t X = over_a * along;
-    const real_t t38 = t16 * Y + (c1_x - t5 * X);
-    const real_t t39 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * t39;
-    const real_t t40 = (t7 * t21 - t9 * t18) * h;
-    const int t41 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t42 = t41 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t43 = t42 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t44 = t43 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t45 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const int invalid = !(t44 & t45);
-    const real_t t46 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
-    const int t47 = (-t46 <= t27) & (-t46 <= t24) & (-t46 <= t25);
-    const real_t t48 = r * (r + r * CLOSEDFORM_C(2.2737367544323206e-13));
-    const real_t t49 = CLOSEDFORM_FEASIBILITY * (t48 * CLOSEDFORM_C(0.5));
-    const int unreachable = !(t47 & (-t49 <= t36) & (-t49 <= t37));
-    const real_t t50 = cf_poison(single, invalid | unreachable);
-    const real_t t51 = t18 * Y - (c1_y - t7 * X);
-    const real_t t52 = (t5 * t21 + t9 * t16) * h;
-    const real_t t53 = (t5 * t18 + t7 * t16) * h;
-    const real_t t54 = t21 * Y - (c1_z - t9 * X);
-    const real_t t55 = cf_status(single, invalid, unreachable, 0);
-    const real_t t56 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
-    const real_t t57 = u_u + (t56 + cf_rounded(single, one, c1_z * c1_z));
-    const int t58 = (u_u <= t12) | (t57 <= t12) | (nu <= t12) | (both <= t11);
-    p[0] = t38 + t40 + t50;
-    p[1] = -(t51 + t52) + t50;
-    p[2] = t53 - t54 + t50;
-    p[3] = t38 - t40 + t50;
-    p[4] = t52 - t51 + t50;
-    p[5] = -(t54 + t53) + t50;
-    status[0] = t55;
-    status[1] = t55;
-    rare[0] = (t58) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t56 = t25 * Y - (c1_x - t19 * X);
+    const int t57 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t58 = t57 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t59 = t58 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t60 = t59 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t61 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const int invalid = !(t60 & t61);
+    const real_t t62 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const int t63 = (-t62 <= t39) & (-t62 <= t36) & (-t62 <= t38);
+    const real_t t64 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t52;
+    const real_t t65 = CLOSEDFORM_FEASIBILITY * (r * t64 * CLOSEDFORM_C(0.5));
+    const int unreachable = !(t63 & (-t65 <= t50) & (-t65 <= t51));
+    const real_t t66 = cf_poison(single, invalid | unreachable);
+    const real_t m_y = cf_rarely(single, slim, over * (a_x * t28 + t15 * t25), product_y);
+    const real_t t67 = cf_rarely(single, in_line, -t30, m_y) * h;
+    const real_t t68 = t26 * Y - (c1_y - t13 * X);
+    const real_t t69 = cf_rarely(single, slim, over * (a_x * t26 + t13 * t25), t22);
+    const real_t t70 = cf_rarely(single, in_line, t31, -t69) * h;
+    const real_t t71 = t28 * Y - (c1_z - t15 * X);
+    const real_t t72 = cf_status(single, invalid, unreachable, in_line);
+    p[0] = t55 - t56 + t66;
+    p[1] = t67 - t68 + t66;
+    p[2] = t70 - t71 + t66;
+    p[3] = -(t56 + t55) + t66;
+    p[4] = -(t68 + t67) + t66;
+    p[5] = -(t71 + t70) + t66;
+    status[0] = t72;
+    status[1] = t72;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void spherical_five_bar_fk_whole(const spherical_five_bar_params *params,
+    const real_t q[2], real_t p[6], uint8_t status[2])
+{
+    const real_t one = cf_one();
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
+    real_t status_real[2];
+    spherical_five_bar_fk_whole_kernel(1, one, params, q, sines, cosines, p, status_real);
+    for (size_t i = 0; i < 2; ++i)
+        status[i] = (uint8_t)status_real[i];
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void spherical_five_bar_fk_common_kernel(const int single, const real_t one,
+    const spherical_five_bar_params *params,
+    const real_t q[2], const real_t *sines,
+    const real_t *cosines, real_t p[6],
+    real_t status[2], real_t rare[1])
+{
+    const real_t r = params->r;
+    const real_t gamma = params->gamma;
+    const real_t alpha1 = params->alpha1;
+    const real_t alpha2 = params->alpha2;
+    const real_t beta1 = params->beta1;
+    const real_t beta2 = params->beta2;
+    const real_t theta1 = q[0];
+    const real_t theta2 = q[1];
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s_alpha1 = sines[1];
+    const real_t c_alpha1 = cosines[1];
+    const real_t s_gamma = sines[2];
+    const real_t c_gamma = cosines[2];
+    const real_t s_alpha2 = sines[3];
+    const real_t c_alpha2 = cosines[3];
+    const real_t s2 = sines[4];
+    const real_t c2 = cosines[4];
+    const real_t s_beta1_half = sines[5];
+    const real_t s_beta2_half = sines[6];
+    const real_t t1 = r * cf_abs(s_alpha1);
+    const real_t c1_y = cf_rounded(single, one, c1 * t1);
+    const real_t t2 = r * c_alpha2;
+    const real_t t3 = r * cf_abs(s_alpha2);
+    const real_t t4 = c2 * t3;
+    const real_t c2_y = cf_rounded(single, one, s_gamma * t2) + cf_rounded(single, one, c_gamma * t4);
+    const real_t t5 = c1_y - c2_y;
+    const real_t c1_x = cf_rounded(single, one, r * c_alpha1);
+    const real_t t6 = cf_rounded(single, one, s_gamma * t4) - cf_rounded(single, one, c_gamma * t2);
+    const real_t t7 = c1_x + t6;
+    const real_t m_z = cf_rounded(single, one, t7 * c1_y) - cf_rounded(single, one, c1_x * t5);
+    const real_t c1_z = cf_rounded(single, one, s1 * t1);
+    const real_t t8 = c1_z - cf_rounded(single, one, s2 * t3);
+    const real_t t9 = cf_rounded(single, one, t7 * c1_z) - cf_rounded(single, one, c1_x * t8);
+    const real_t t10 = cf_rounded(single, one, t7 * t7) + cf_rounded(single, one, t5 * t5);
+    const real_t u_u = t10 + cf_rounded(single, one, t8 * t8);
+    const real_t length_a = cf_sqrt(u_u);
+    const real_t product_x = cf_rounded(single, one, t5 * c1_z) - cf_rounded(single, one, c1_y * t8);
+    const real_t t11 = cf_rounded(single, one, product_x * product_x);
+    const real_t product_2 = t11 + cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, m_z * m_z);
+    const real_t t12 = cf_rounded(single, one, r * r);
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const real_t nu = product_2 / cf_divisor(single, u_u <= t14, u_u);
+    const real_t beside_a = cf_sqrt(nu);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t14) | (product_2 <= t13 * (t12 * u_u)), length_a * beside_a);
+    const real_t over_a = beside_a * part;
+    const real_t t15 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_rounded(single, one, cf_abs(s_beta1_half) * t15);
+    const real_t r_2 = cf_rounded(single, one, cf_abs(s_beta2_half) * t15);
+    const real_t t16 = r_1 - r_2;
+    const real_t t17 = length_a + t16;
+    const real_t outer = cf_max(t17, CLOSEDFORM_C(0.0));
+    const real_t t18 = length_a - t16;
+    const real_t inner = cf_max(t18, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t14, outer + inner);
+    const real_t t19 = r_1 + r_2;
+    const real_t t20 = t19 - length_a;
+    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
+    const real_t t21 = cf_root(single, outer * inner * slack * (length_a + t19));
+    const real_t rho = share * t21;
+    const real_t t22 = cf_rounded(single, one, CLOSEDFORM_C(2.0) * beside_a * rho);
+    const real_t t23 = cf_rounded(single, one, c1_x * t7) + cf_rounded(single, one, c1_y * t5);
+    const real_t t24 = cf_rounded(single, one, over_a * (t23 + cf_rounded(single, one, c1_z * t8)));
+    const real_t t25 = share * (length_a + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = length_a * CLOSEDFORM_C(0.5) + t25;
+    const real_t t26 = t24 - along;
+    const real_t t27 = t12 - nu - cf_rounded(single, one, t26 * t26);
+    const real_t t28 = t27 - cf_rounded(single, one, rho * rho);
+    const real_t t29 = t22 - t28;
+    const real_t upper = cf_max(t29, CLOSEDFORM_C(0.0));
+    const real_t t30 = t28 + t22;
+    const real_t lower = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t both = upper + lower;
+    const real_t half = rho / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t12, both);
+    const real_t Y = part * over_a * half * (upper - lower);
+    const real_t X = over_a * along;
+    const real_t t31 = (t5 * m_z + t8 * t9) * Y + (c1_x - t7 * X);
+    const real_t t32 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * t32;
+    const real_t t33 = product_x * h;
+    const int t34 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t35 = t34 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t36 = t35 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t37 = t36 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t38 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const int invalid = !(t37 & t38);
+    const real_t t39 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.25));
+    const int t40 = (-t39 <= t20) & (-t39 <= t17) & (-t39 <= t18);
+    const real_t t41 = r * (r + r * CLOSEDFORM_C(2.2737367544323206e-13));
+    const real_t t42 = CLOSEDFORM_FEASIBILITY * (t41 * CLOSEDFORM_C(0.5));
+    const int unreachable = !(t40 & (-t42 <= t29) & (-t42 <= t30));
+    const real_t t43 = cf_poison(single, invalid | unreachable);
+    const real_t t44 = (t7 * m_z - t8 * product_x) * Y - (c1_y - t5 * X);
+    const real_t t45 = t9 * h;
+    const real_t t46 = m_z * h;
+    const real_t t47 = (t7 * t9 + t5 * product_x) * Y - (c1_z - t8 * X);
+    const real_t t48 = cf_status(single, invalid, unreachable, 0);
+    const real_t t49 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t49 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t50 = u_u * v_v;
+    const real_t t51 = product_2 - t50 * CLOSEDFORM_C(0.000244140625);
+    const int t52 = (u_u <= t14) | (u_u + v_v <= t14) | (t51 <= CLOSEDFORM_VANISHING * t50);
+    const int t53 = t52 | (product_2 <= t13 * (t12 * u_u)) | (both <= CLOSEDFORM_VANISHING * t12);
+    p[0] = t31 + t33 + t43;
+    p[1] = -(t44 + t45) + t43;
+    p[2] = t46 - t47 + t43;
+    p[3] = t31 - t33 + t43;
+    p[4] = t45 - t44 + t43;
+    p[5] = -(t47 + t46) + t43;
+    status[0] = t48;
+    status[1] = t48;
+    rare[0] = (t53) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void spherical_five_bar_fk_common_batch(size_t n, const spherical_five_bar_params *params,
@@ -313,20 +331,20 @@ CF_INLINE void spherical_five_bar_fk_common_batch(size_t n, const spherical_five
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
         real_t angle_1[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->gamma;
+            angle_1[i] = params->alpha1;
         cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[2], cosines[2]);
+        real_t angle_2[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_2[i] = params->gamma;
+        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
         real_t angle_3[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
             angle_3[i] = params->alpha2;
         cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + start, sines[4], cosines[4]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
         real_t angle_5[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
             angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
@@ -374,7 +392,7 @@ CF_INLINE void spherical_five_bar_fk_common(const spherical_five_bar_params *par
 {
     const real_t one = cf_one();
     real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, params->alpha2, q[1], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
     real_t status_real[2];
     real_t rare_real[1];
@@ -393,7 +411,7 @@ void spherical_five_bar_fk(const spherical_five_bar_params *params,
     spherical_five_bar_params params_scaled;
     int exponent = 0;
     const real_t size = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
@@ -431,7 +449,7 @@ void spherical_five_bar_fk_batch(size_t n, const spherical_five_bar_params *para
     uint8_t *status, size_t status_stride)
 {
     const real_t dimensions = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         spherical_five_bar_fk_other_sizes(n, params, q, q_stride, p, p_stride, status, status_stride);
         return;
     }
@@ -453,7 +471,8 @@ void spherical_five_bar_fk_batch(size_t n, const spherical_five_bar_params *para
     }
 }
 
-CF_INLINE void spherical_five_bar_skeleton_kernel(const int single,
+/* Every case. */
+CF_INLINE void spherical_five_bar_skeleton_whole_kernel(const int single,
     const spherical_five_bar_params *params,
     const real_t q[2], const real_t *sines,
     const real_t *cosines, real_t points[36])
@@ -501,211 +520,352 @@ CF_INLINE void spherical_five_bar_skeleton_kernel(const int single,
     const real_t t16 = c1_z - c2_z;
     const real_t u_u = t12 * t12 + t15 * t15 + t16 * t16;
     const real_t t17 = r * r;
-    const real_t t18 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t17;
-    const int same = u_u <= t18;
-    const real_t t19 = r * CLOSEDFORM_C(2.0);
-    const real_t r_2 = cf_abs(s_beta2_half) * t19;
-    const real_t t20 = cf_rarely(single, same, r, r_2);
-    const real_t r_1 = cf_abs(s_beta1_half) * t19;
+    const real_t t18 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t19 = t17 * t18;
+    const int same = u_u <= t19;
+    const real_t t20 = r * CLOSEDFORM_C(2.0);
+    const real_t r_2 = cf_abs(s_beta2_half) * t20;
+    const real_t t21 = cf_rarely(single, same, r, r_2);
+    const real_t r_1 = cf_abs(s_beta1_half) * t20;
     const real_t v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
-    const int all_same = u_u + v_v <= t18;
+    const int all_same = u_u + v_v <= t19;
     const real_t whole = cf_select(r == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), r);
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
     const real_t length_a = cf_sqrt(mu);
     const real_t D = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), length_a);
-    const real_t t21 = r_1 - D;
-    const real_t t22 = t20 + t21;
-    const real_t t23 = r_1 + D;
-    const real_t t24 = t23 - t20;
-    const real_t t25 = t20 - t21;
-    const real_t t26 = cf_rarely(single, same, r_2, r);
-    const real_t t27 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t26;
-    const real_t t28 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t27));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t29 = cf_rarely(single, same, c1_y, t15);
-    const real_t t30 = cf_rarely(single, same, c1_x, t12);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t30);
-    const real_t t31 = cf_rarely(single, same, t15, c1_y);
-    const real_t t32 = cf_rarely(single, same, t12, c1_x);
-    const real_t t33 = a_x * t31 + t29 * t32;
-    const real_t t34 = cf_rarely(single, same, c1_z, t16);
-    const real_t t35 = cf_rarely(single, same, t16, c1_z);
-    const real_t m_y = a_x * t35 + t32 * t34;
-    const real_t t36 = over * (t29 * t33 + t34 * m_y);
-    const real_t m_x = t29 * t35 - t31 * t34;
-    const real_t t37 = over * (a_x * t33 - t34 * m_x);
-    const real_t t38 = over * (a_x * m_y + t29 * m_x);
-    const real_t nu = t36 * t36 + t37 * t37 + t38 * t38;
-    const int in_line = nu <= t18;
-    const real_t t39 = whole * t34;
-    const real_t s_w = cf_sign(-(t29 * a_x));
-    const real_t t40 = whole * (t29 - a_x * s_w);
-    const real_t t41 = over * (CLOSEDFORM_C(2.0) * (t39 * t39) + t40 * t40);
-    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t41, nu));
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
-    const real_t over_a = length_n * part;
-    const real_t outer = cf_max(t24, CLOSEDFORM_C(0.0));
-    const real_t inner = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t t22 = r_1 - D;
+    const real_t t23 = t21 + t22;
+    const real_t t24 = r_1 + D;
+    const real_t t25 = t24 - t21;
+    const real_t t26 = t21 - t22;
+    const real_t t27 = cf_rarely(single, same, r_2, r);
+    const real_t t28 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t27;
+    const real_t t29 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t28));
+    const real_t t30 = cf_rarely(single, same, c1_y, t15);
+    const real_t t31 = cf_rarely(single, same, t16, c1_z);
+    const real_t t32 = cf_rarely(single, same, c1_z, t16);
+    const real_t t33 = cf_rarely(single, same, t15, c1_y);
+    const real_t product_x = t30 * t31 - t32 * t33;
+    const real_t t34 = cf_rarely(single, same, c1_x, t12);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t34);
+    const real_t t35 = cf_rarely(single, same, t12, c1_x);
+    const real_t product_y = t31 * a_x + t32 * t35;
+    const real_t t36 = product_x * product_x + product_y * product_y;
+    const real_t t37 = t33 * a_x + t30 * t35;
+    const real_t product_2 = t36 + t37 * t37;
+    const real_t t38 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t39 = product_2 - t38 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t39 <= CLOSEDFORM_VANISHING * t38;
+    const real_t t40 = cf_nonzero(single, mu);
+    const real_t over = CLOSEDFORM_C(1.0) / t40;
+    const real_t t41 = t30 * t37 + t32 * product_y;
+    const real_t t42 = a_x * t37 - t32 * product_x;
+    const real_t t43 = a_x * product_y + t30 * product_x;
+    const real_t m_m = cf_rarely(single, slim, over * (t41 * t41 + t42 * t42 + t43 * t43), product_2);
+    const int in_line = m_m <= t18 * (t17 * mu);
+    const real_t t44 = whole * t32;
+    const real_t s_w = cf_sign(-(t30 * a_x));
+    const real_t t45 = whole * (t30 - a_x * s_w);
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t44 * t44) + t45 * t45, m_m);
+    const real_t nu = w_w / t40;
+    const real_t t46 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), nu);
+    const real_t t47 = t46 - cf_rarely(single, same, r_2 * r_2, t17);
+    const real_t beside_a = cf_sqrt(nu);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * beside_a);
+    const real_t over_a = beside_a * part;
+    const real_t outer = cf_max(t25, CLOSEDFORM_C(0.0));
+    const real_t inner = cf_max(t26, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t slack = cf_max(t22, CLOSEDFORM_C(0.0));
-    const real_t t42 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t along = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t42);
-    const real_t t43 = over_a * (a_x * t32 - t29 * t31 - t34 * t35) + along;
-    const real_t t44 = nu - cf_rarely(single, same, r_2 * r_2, t17) + t43 * t43;
-    const real_t t45 = cf_root(single, outer * inner * slack * (t20 + t23));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t45);
-    const real_t left = t44 + rho * rho;
-    const real_t j = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), length_n);
-    const real_t t46 = CLOSEDFORM_C(2.0) * j * rho;
-    const real_t t47 = left + t46;
-    const int t48 = (-t6 <= t22) & (-t6 <= t24) & (-t6 <= t25) & (-t28 <= t47);
-    const real_t t49 = t46 - left;
-    const real_t t50 = cf_poison(single, (!(t4 & t5)) | (!(t48 & (-t28 <= t49))));
-    const real_t t51 = CLOSEDFORM_C(0.0) + t50;
-    const real_t t52 = c1_x + t50;
-    const real_t t53 = c1_y + t50;
-    const real_t t54 = c1_z + t50;
-    const real_t t55 = t10 + t50;
-    const real_t t56 = t14 + t50;
-    const real_t t57 = -t11 + t50;
-    const real_t t58 = c2_y + t50;
-    const real_t t59 = c2_z + t50;
+    const real_t slack = cf_max(t23, CLOSEDFORM_C(0.0));
+    const real_t t48 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t48);
+    const real_t t49 = over_a * (a_x * t35 - t30 * t33 - t31 * t32) + along;
+    const real_t t50 = cf_root(single, outer * inner * slack * (t21 + t24));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t50);
+    const real_t left = t47 + t49 * t49 + rho * rho;
+    const real_t j = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), beside_a);
+    const real_t t51 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t52 = left + t51;
+    const int t53 = (-t6 <= t23) & (-t6 <= t25) & (-t6 <= t26) & (-t29 <= t52);
+    const real_t t54 = t51 - left;
+    const real_t t55 = cf_poison(single, (!(t4 & t5)) | (!(t53 & (-t29 <= t54))));
+    const real_t t56 = CLOSEDFORM_C(0.0) + t55;
+    const real_t t57 = c1_x + t55;
+    const real_t t58 = c1_y + t55;
+    const real_t t59 = c1_z + t55;
+    const real_t t60 = t10 + t55;
+    const real_t t61 = t14 + t55;
+    const real_t t62 = -t11 + t55;
+    const real_t t63 = c2_y + t55;
+    const real_t t64 = c2_z + t55;
     const real_t X = over_a * along;
-    const real_t upper = cf_max(t47, CLOSEDFORM_C(0.0));
-    const real_t lower = cf_max(t49, CLOSEDFORM_C(0.0));
+    const real_t upper = cf_max(t52, CLOSEDFORM_C(0.0));
+    const real_t lower = cf_max(t54, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const int t60 = (both <= CLOSEDFORM_VANISHING * (r * t26)) | in_line;
-    const real_t half = rho / cf_divisor(single, t60, both);
-    const real_t Y = cf_select(t60, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
-    const real_t t61 = t30 * X + t36 * Y;
-    const real_t w_x = cf_rarely(single, in_line, -(t39 * s_w), t29 * t38 - t34 * t37);
-    const real_t t62 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * cf_rarely(single, t60, rho, t62);
-    const real_t t63 = w_x * h;
-    const real_t t64 = t29 * X + t37 * Y;
-    const real_t w_y = cf_rarely(single, in_line, -t39, a_x * t38 + t34 * t36);
-    const real_t t65 = w_y * h;
-    const real_t t66 = t34 * X + t38 * Y;
-    const real_t w_z = cf_rarely(single, in_line, t40, -(a_x * t37 + t29 * t36));
-    const real_t t67 = w_z * h;
-    points[0] = t51;
-    points[1] = t51;
-    points[2] = t51;
-    points[3] = t52;
-    points[4] = t51;
-    points[5] = t51;
-    points[6] = t52;
-    points[7] = t53;
-    points[8] = t54;
-    points[9] = t55;
-    points[10] = t56;
-    points[11] = t51;
-    points[12] = t57;
-    points[13] = t58;
-    points[14] = t59;
-    points[15] = c1_x - (t61 - t63) + t50;
-    points[16] = c1_y - (t64 - t65) + t50;
-    points[17] = c1_z - (t66 - t67) + t50;
-    points[18] = t51;
-    points[19] = t51;
-    points[20] = t51;
-    points[21] = t52;
-    points[22] = t51;
-    points[23] = t51;
-    points[24] = t52;
-    points[25] = t53;
-    points[26] = t54;
-    points[27] = t55;
-    points[28] = t56;
-    points[29] = t51;
-    points[30] = t57;
-    points[31] = t58;
-    points[32] = t59;
-    points[33] = c1_x - (t61 + t63) + t50;
-    points[34] = c1_y - (t64 + t65) + t50;
-    points[35] = c1_z - (t66 + t67) + t50;
+    const int t65 = (both <= CLOSEDFORM_VANISHING * (r * t27)) | in_line;
+    const real_t half = rho / cf_divisor(single, t65, both);
+    const real_t Y = cf_select(t65, CLOSEDFORM_C(0.0), part * over_a * half * (upper - lower));
+    const real_t t66 = t34 * X + t41 * Y;
+    const real_t m_x = cf_rarely(single, slim, over * (t30 * t43 - t32 * t42), product_x);
+    const real_t w_x = cf_rarely(single, in_line, -(t44 * s_w), m_x);
+    const real_t t67 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t65, rho, t67);
+    const real_t t68 = w_x * h;
+    const real_t t69 = t30 * X + t42 * Y;
+    const real_t m_y = cf_rarely(single, slim, over * (a_x * t43 + t32 * t41), product_y);
+    const real_t t70 = cf_rarely(single, in_line, -t44, m_y) * h;
+    const real_t t71 = t32 * X + t43 * Y;
+    const real_t t72 = cf_rarely(single, slim, over * (a_x * t42 + t30 * t41), t37);
+    const real_t t73 = cf_rarely(single, in_line, t45, -t72) * h;
+    points[0] = t56;
+    points[1] = t56;
+    points[2] = t56;
+    points[3] = t57;
+    points[4] = t56;
+    points[5] = t56;
+    points[6] = t57;
+    points[7] = t58;
+    points[8] = t59;
+    points[9] = t60;
+    points[10] = t61;
+    points[11] = t56;
+    points[12] = t62;
+    points[13] = t63;
+    points[14] = t64;
+    points[15] = c1_x - (t66 - t68) + t55;
+    points[16] = c1_y - (t69 - t70) + t55;
+    points[17] = c1_z - (t71 - t73) + t55;
+    points[18] = t56;
+    points[19] = t56;
+    points[20] = t56;
+    points[21] = t57;
+    points[22] = t56;
+    points[23] = t56;
+    points[24] = t57;
+    points[25] = t58;
+    points[26] = t59;
+    points[27] = t60;
+    points[28] = t61;
+    points[29] = t56;
+    points[30] = t62;
+    points[31] = t63;
+    points[32] = t64;
+    points[33] = c1_x - (t66 + t68) + t55;
+    points[34] = c1_y - (t69 + t70) + t55;
+    points[35] = c1_z - (t71 + t73) + t55;
 }
 
 CLOSEDFORM_DISPATCHED
-void spherical_five_bar_skeleton(const spherical_five_bar_params *params,
+CF_OUT_OF_LINE void spherical_five_bar_skeleton_whole(const spherical_five_bar_params *params,
     const real_t q[2], real_t points[36])
 {
-    static const signed char points_degrees[36] = { 0, 0, 0, 1, 0, 0, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 0, 0, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1 };
-    spherical_five_bar_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
-        params = &params_scaled;
-    }
     real_t sines[8], cosines[8];
     const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta2 / CLOSEDFORM_C(2.0), params->beta1 / CLOSEDFORM_C(2.0), params->beta1 / CLOSEDFORM_C(2.0) };
     cf_sincos_lanes(8, lanes, sines, cosines);
-    spherical_five_bar_skeleton_kernel(1, params, q, sines, cosines, points);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(36, points_degrees, exponent, points, points);
-    }
+    spherical_five_bar_skeleton_whole_kernel(1, params, q, sines, cosines, points);
 }
 
-CF_RARE void spherical_five_bar_skeleton_other_sizes(size_t n, const spherical_five_bar_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *points, size_t points_stride)
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void spherical_five_bar_skeleton_common_kernel(const int single, const real_t one,
+    const spherical_five_bar_params *params,
+    const real_t q[2], const real_t *sines,
+    const real_t *cosines, real_t points[36],
+    real_t rare[1])
 {
-    for (size_t i = 0; i < n; ++i) {
-        real_t q_i[2];
-        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
-        real_t points_i[36];
-        spherical_five_bar_skeleton(params, q_i, points_i);
-        for (size_t k = 0; k < 36; ++k) points[k * points_stride + i] = points_i[k];
-
-    }
+    const real_t r = params->r;
+    const real_t gamma = params->gamma;
+    const real_t alpha1 = params->alpha1;
+    const real_t alpha2 = params->alpha2;
+    const real_t beta1 = params->beta1;
+    const real_t beta2 = params->beta2;
+    const real_t theta1 = q[0];
+    const real_t theta2 = q[1];
+    const real_t s_beta1_half = sines[0];
+    const real_t s_beta2_half = sines[1];
+    const real_t s_alpha1 = sines[2];
+    const real_t c_alpha1 = cosines[2];
+    const real_t s_gamma = sines[3];
+    const real_t c_gamma = cosines[3];
+    const real_t s2 = sines[4];
+    const real_t c2 = cosines[4];
+    const real_t s_alpha2 = sines[5];
+    const real_t c_alpha2 = cosines[5];
+    const real_t s1 = sines[6];
+    const real_t c1 = cosines[6];
+    const int t1 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t5 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t6 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
+    const real_t t7 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_rounded(single, one, cf_abs(s_beta1_half) * t7);
+    const real_t r_2 = cf_rounded(single, one, cf_abs(s_beta2_half) * t7);
+    const real_t t8 = r_1 + r_2;
+    const real_t c1_x = cf_rounded(single, one, r * c_alpha1);
+    const real_t t9 = r * cf_abs(s_alpha2);
+    const real_t t10 = c2 * t9;
+    const real_t t11 = r * c_alpha2;
+    const real_t t12 = cf_rounded(single, one, c_gamma * t11);
+    const real_t t13 = cf_rounded(single, one, s_gamma * t10) - t12;
+    const real_t t14 = c1_x + t13;
+    const real_t t15 = r * cf_abs(s_alpha1);
+    const real_t c1_y = cf_rounded(single, one, c1 * t15);
+    const real_t t16 = cf_rounded(single, one, s_gamma * t11);
+    const real_t c2_y = t16 + cf_rounded(single, one, c_gamma * t10);
+    const real_t t17 = c1_y - c2_y;
+    const real_t t18 = cf_rounded(single, one, t14 * t14) + cf_rounded(single, one, t17 * t17);
+    const real_t c1_z = cf_rounded(single, one, s1 * t15);
+    const real_t c2_z = cf_rounded(single, one, s2 * t9);
+    const real_t t19 = c1_z - c2_z;
+    const real_t u_u = t18 + cf_rounded(single, one, t19 * t19);
+    const real_t length_a = cf_sqrt(u_u);
+    const real_t t20 = t8 - length_a;
+    const real_t t21 = r_1 - r_2;
+    const real_t t22 = length_a + t21;
+    const real_t t23 = length_a - t21;
+    const real_t t24 = r * (r + r * CLOSEDFORM_C(2.2737367544323206e-13));
+    const real_t t25 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * t24);
+    const real_t product_x = cf_rounded(single, one, t17 * c1_z) - cf_rounded(single, one, c1_y * t19);
+    const real_t t26 = cf_rounded(single, one, product_x * product_x);
+    const real_t t27 = cf_rounded(single, one, t14 * c1_z) - cf_rounded(single, one, c1_x * t19);
+    const real_t m_z = cf_rounded(single, one, t14 * c1_y) - cf_rounded(single, one, c1_x * t17);
+    const real_t product_2 = t26 + cf_rounded(single, one, t27 * t27) + cf_rounded(single, one, m_z * m_z);
+    const real_t t28 = cf_rounded(single, one, r * r);
+    const real_t t29 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t30 = t28 * t29;
+    const real_t nu = product_2 / cf_divisor(single, u_u <= t30, u_u);
+    const real_t beside_a = cf_sqrt(nu);
+    const real_t outer = cf_max(t22, CLOSEDFORM_C(0.0));
+    const real_t inner = cf_max(t23, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t30, outer + inner);
+    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
+    const real_t t31 = cf_root(single, outer * inner * slack * (length_a + t8));
+    const real_t rho = share * t31;
+    const real_t t32 = cf_rounded(single, one, CLOSEDFORM_C(2.0) * beside_a * rho);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, (u_u <= t30) | (product_2 <= t29 * (t28 * u_u)), length_a * beside_a);
+    const real_t over_a = beside_a * part;
+    const real_t t33 = cf_rounded(single, one, c1_x * t14) + cf_rounded(single, one, c1_y * t17);
+    const real_t t34 = cf_rounded(single, one, over_a * (t33 + cf_rounded(single, one, c1_z * t19)));
+    const real_t t35 = share * (length_a + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = length_a * CLOSEDFORM_C(0.5) + t35;
+    const real_t t36 = t34 - along;
+    const real_t t37 = t28 - nu - cf_rounded(single, one, t36 * t36);
+    const real_t t38 = t37 - cf_rounded(single, one, rho * rho);
+    const real_t t39 = t32 - t38;
+    const int t40 = (-t6 <= t20) & (-t6 <= t22) & (-t6 <= t23) & (-t25 <= t39);
+    const real_t t41 = t38 + t32;
+    const real_t t42 = cf_poison(single, (!(t4 & t5)) | (!(t40 & (-t25 <= t41))));
+    const real_t t43 = CLOSEDFORM_C(0.0) + t42;
+    const real_t t44 = c1_x + t42;
+    const real_t t45 = c1_y + t42;
+    const real_t t46 = c1_z + t42;
+    const real_t t47 = t12 + t42;
+    const real_t t48 = t16 + t42;
+    const real_t t49 = -t13 + t42;
+    const real_t t50 = c2_y + t42;
+    const real_t t51 = c2_z + t42;
+    const real_t X = over_a * along;
+    const real_t upper = cf_max(t39, CLOSEDFORM_C(0.0));
+    const real_t lower = cf_max(t41, CLOSEDFORM_C(0.0));
+    const real_t both = upper + lower;
+    const real_t half = rho / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t28, both);
+    const real_t Y = part * over_a * half * (upper - lower);
+    const real_t t52 = t14 * X - (t17 * m_z + t19 * t27) * Y;
+    const real_t t53 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * t53;
+    const real_t t54 = product_x * h;
+    const real_t t55 = t17 * X + (t14 * m_z - t19 * product_x) * Y;
+    const real_t t56 = t27 * h;
+    const real_t t57 = t19 * X + (t14 * t27 + t17 * product_x) * Y;
+    const real_t t58 = m_z * h;
+    const real_t t59 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t59 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t60 = u_u * v_v;
+    const real_t t61 = product_2 - t60 * CLOSEDFORM_C(0.000244140625);
+    const int t62 = (u_u <= t30) | (u_u + v_v <= t30) | (t61 <= CLOSEDFORM_VANISHING * t60);
+    const int t63 = t62 | (product_2 <= t29 * (t28 * u_u)) | (both <= CLOSEDFORM_VANISHING * t28);
+    points[0] = t43;
+    points[1] = t43;
+    points[2] = t43;
+    points[3] = t44;
+    points[4] = t43;
+    points[5] = t43;
+    points[6] = t44;
+    points[7] = t45;
+    points[8] = t46;
+    points[9] = t47;
+    points[10] = t48;
+    points[11] = t43;
+    points[12] = t49;
+    points[13] = t50;
+    points[14] = t51;
+    points[15] = c1_x - (t52 - t54) + t42;
+    points[16] = c1_y - (t55 + t56) + t42;
+    points[17] = c1_z - (t57 - t58) + t42;
+    points[18] = t43;
+    points[19] = t43;
+    points[20] = t43;
+    points[21] = t44;
+    points[22] = t43;
+    points[23] = t43;
+    points[24] = t44;
+    points[25] = t45;
+    points[26] = t46;
+    points[27] = t47;
+    points[28] = t48;
+    points[29] = t43;
+    points[30] = t49;
+    points[31] = t50;
+    points[32] = t51;
+    points[33] = c1_x - (t52 + t54) + t42;
+    points[34] = c1_y - (t55 - t56) + t42;
+    points[35] = c1_z - (t57 + t58) + t42;
+    rare[0] = (t63) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
-CLOSEDFORM_DISPATCHED
-void spherical_five_bar_skeleton_batch(size_t n, const spherical_five_bar_params *params,
+CF_INLINE void spherical_five_bar_skeleton_common_batch(size_t n, const spherical_five_bar_params *params,
     const real_t *q, size_t q_stride,
-    real_t *points, size_t points_stride)
+    real_t *points, size_t points_stride,
+    uint8_t *rare, size_t rare_stride)
 {
+    (void)rare_stride;
     const spherical_five_bar_params local = *params;
-    const real_t dimensions = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
-        spherical_five_bar_skeleton_other_sizes(n, params, q, q_stride, points, points_stride);
-        return;
-    }
+    const real_t one = cf_one();
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
         real_t angle_0[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
+            angle_0[i] = params->beta1 / CLOSEDFORM_C(2.0);
+        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
         real_t angle_1[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->gamma;
-        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
-        cf_sincos_block(length, q + q_stride + start, sines[2], cosines[2]);
+            angle_1[i] = params->beta2 / CLOSEDFORM_C(2.0);
+        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
+        real_t angle_2[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_2[i] = params->alpha1;
+        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
         real_t angle_3[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
-        cf_sincos_block(length, q + start, sines[4], cosines[4]);
+            angle_3[i] = params->gamma;
+        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
         real_t angle_5[CLOSEDFORM_BLOCK];
         for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->beta2 / CLOSEDFORM_C(2.0);
-        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
-        real_t angle_6[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_6[i] = params->beta1 / CLOSEDFORM_C(2.0);
-        cf_sincos_block(length, angle_6, sines[6], cosines[6]);
+            angle_5[i] = params->alpha2;
+        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
+        cf_sincos_block_rounded(length, one, q + start, sines[6], cosines[6]);
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
             const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
             const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
             real_t points_i[36];
-            spherical_five_bar_skeleton_kernel(0, &local, q_i, sines_i, cosines_i, points_i);
+            real_t rare_i[1];
+            spherical_five_bar_skeleton_common_kernel(0, one, &local, q_i, sines_i, cosines_i, points_i, rare_i);
             points[start + i] = points_i[0];
             points[points_stride + start + i] = points_i[1];
             points[2 * points_stride + start + i] = points_i[2];
@@ -742,11 +902,92 @@ void spherical_five_bar_skeleton_batch(size_t n, const spherical_five_bar_params
             points[33 * points_stride + start + i] = points_i[33];
             points[34 * points_stride + start + i] = points_i[34];
             points[35 * points_stride + start + i] = points_i[35];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void spherical_five_bar_skeleton_common(const spherical_five_bar_params *params,
+    const real_t q[2], real_t points[36],
+    uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->alpha1, params->gamma, q[1], params->alpha2, q[0], q[0] };
+    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
+    real_t rare_real[1];
+    spherical_five_bar_skeleton_common_kernel(1, one, params, q, sines, cosines, points, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
+}
+
+CLOSEDFORM_DISPATCHED
+void spherical_five_bar_skeleton(const spherical_five_bar_params *params,
+    const real_t q[2], real_t points[36])
+{
+    static const signed char points_degrees[36] = { 0, 0, 0, 1, 0, 0, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 0, 0, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1 };
+    spherical_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
+        params = &params_scaled;
+    }
+    uint8_t rare[1];
+    spherical_five_bar_skeleton_common(params, q, points, rare);
+    if (CF_UNLIKELY(rare[0])) spherical_five_bar_skeleton_whole(params, q, points);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(36, points_degrees, exponent, points, points);
+    }
+}
+
+CF_RARE void spherical_five_bar_skeleton_other_sizes(size_t n, const spherical_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t points_i[36];
+        spherical_five_bar_skeleton(params, q_i, points_i);
+        for (size_t k = 0; k < 36; ++k) points[k * points_stride + i] = points_i[k];
+
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void spherical_five_bar_skeleton_batch(size_t n, const spherical_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    const real_t dimensions = cf_abs(params->r);
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
+        spherical_five_bar_skeleton_other_sizes(n, params, q, q_stride, points, points_stride);
+        return;
+    }
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        spherical_five_bar_skeleton_common_batch(length, params, q + start, q_stride, points + start, points_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[2];
+            for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+            real_t points_i[36];
+            spherical_five_bar_skeleton_whole(params, q_i, points_i);
+            for (size_t k = 0; k < 36; ++k) points[k * points_stride + i] = points_i[k];
+
         }
     }
 }
 
-CF_INLINE void spherical_five_bar_jacobian_parallel_kernel(const int single,
+/* Every case. */
+CF_INLINE void spherical_five_bar_jacobian_parallel_whole_kernel(const int single,
     const spherical_five_bar_params *params,
     const real_t q[2], const real_t *sines,
     const real_t *cosines, real_t A[18])
@@ -783,115 +1024,351 @@ CF_INLINE void spherical_five_bar_jacobian_parallel_kernel(const int single,
     const real_t t7 = c1_z - s2 * t1;
     const real_t u_u = t4 * t4 + t6 * t6 + t7 * t7;
     const real_t t8 = r * r;
-    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t8;
-    const int same = u_u <= t9;
-    const real_t t10 = cf_rarely(single, same, c1_x, t4);
+    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t10 = t8 * t9;
+    const int same = u_u <= t10;
+    const real_t t11 = cf_rarely(single, same, c1_x, t4);
+    const real_t t12 = cf_rarely(single, same, c1_y, t6);
+    const real_t t13 = cf_rarely(single, same, t7, c1_z);
+    const real_t t14 = cf_rarely(single, same, c1_z, t7);
+    const real_t t15 = cf_rarely(single, same, t6, c1_y);
+    const real_t product_x = t12 * t13 - t14 * t15;
     const real_t v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
-    const int all_same = u_u + v_v <= t9;
+    const int all_same = u_u + v_v <= t10;
     const real_t whole = cf_select(r == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), r);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t11);
+    const real_t t16 = cf_rarely(single, same, t4, c1_x);
+    const real_t product_y = t13 * a_x + t14 * t16;
+    const real_t t17 = product_x * product_x + product_y * product_y;
+    const real_t t18 = t15 * a_x + t12 * t16;
+    const real_t product_2 = t17 + t18 * t18;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t11 = cf_rarely(single, same, c1_y, t6);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t10);
-    const real_t t12 = cf_rarely(single, same, t6, c1_y);
-    const real_t t13 = cf_rarely(single, same, t4, c1_x);
-    const real_t t14 = a_x * t12 + t11 * t13;
-    const real_t t15 = cf_rarely(single, same, c1_z, t7);
-    const real_t t16 = cf_rarely(single, same, t7, c1_z);
-    const real_t m_y = a_x * t16 + t13 * t15;
-    const real_t t17 = over * (t11 * t14 + t15 * m_y);
-    const real_t m_x = t11 * t16 - t12 * t15;
-    const real_t t18 = over * (a_x * t14 - t15 * m_x);
-    const real_t t19 = over * (a_x * m_y + t11 * m_x);
-    const real_t nu = t17 * t17 + t18 * t18 + t19 * t19;
-    const int in_line = nu <= t9;
-    const real_t t20 = whole * t15;
-    const real_t s_w = cf_sign(-(t11 * a_x));
-    const real_t t21 = whole * (t11 - a_x * s_w);
-    const real_t t22 = over * (CLOSEDFORM_C(2.0) * (t20 * t20) + t21 * t21);
-    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t22, nu));
+    const real_t t19 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t20 = product_2 - t19 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t20 <= CLOSEDFORM_VANISHING * t19;
+    const real_t t21 = cf_nonzero(single, mu);
+    const real_t over = CLOSEDFORM_C(1.0) / t21;
+    const real_t t22 = t12 * t18 + t14 * product_y;
+    const real_t t23 = a_x * t18 - t14 * product_x;
+    const real_t t24 = a_x * product_y + t12 * product_x;
+    const real_t m_m = cf_rarely(single, slim, over * (t22 * t22 + t23 * t23 + t24 * t24), product_2);
+    const int in_line = m_m <= t9 * (t8 * mu);
+    const real_t t25 = whole * t14;
+    const real_t s_w = cf_sign(-(t12 * a_x));
+    const real_t t26 = whole * (t12 - a_x * s_w);
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t25 * t25) + t26 * t26, m_m);
+    const real_t nu = w_w / t21;
+    const real_t beside_a = cf_sqrt(nu);
     const real_t length_a = cf_sqrt(mu);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
-    const real_t over_a = length_n * part;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * beside_a);
+    const real_t over_a = beside_a * part;
     const real_t D = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), length_a);
-    const real_t t23 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_abs(s_beta1_half) * t23;
-    const real_t t24 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t23;
-    const real_t t25 = cf_rarely(single, same, r, r_2);
-    const real_t t26 = t24 - t25;
-    const real_t outer = cf_max(t26, CLOSEDFORM_C(0.0));
-    const real_t t27 = D - r_1;
-    const real_t t28 = t25 + t27;
-    const real_t inner = cf_max(t28, CLOSEDFORM_C(0.0));
+    const real_t t27 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_abs(s_beta1_half) * t27;
+    const real_t t28 = D + r_1;
+    const real_t r_2 = cf_abs(s_beta2_half) * t27;
+    const real_t t29 = cf_rarely(single, same, r, r_2);
+    const real_t t30 = t28 - t29;
+    const real_t outer = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t t31 = D - r_1;
+    const real_t t32 = t29 + t31;
+    const real_t inner = cf_max(t32, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t29 = t25 - t27;
-    const real_t slack = cf_max(t29, CLOSEDFORM_C(0.0));
-    const real_t t30 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t along = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t30);
+    const real_t t33 = t29 - t31;
+    const real_t slack = cf_max(t33, CLOSEDFORM_C(0.0));
+    const real_t t34 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t34);
     const real_t X = over_a * along;
-    const real_t t31 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along;
-    const real_t t32 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t31 * t31;
-    const real_t t33 = cf_root(single, outer * inner * slack * (t25 + t24));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t33);
-    const real_t left = t32 + rho * rho;
-    const real_t j = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), length_n);
-    const real_t t34 = CLOSEDFORM_C(2.0) * j * rho;
-    const real_t t35 = left + t34;
-    const real_t upper = cf_max(t35, CLOSEDFORM_C(0.0));
-    const real_t t36 = t34 - left;
-    const real_t lower = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t t35 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), nu);
+    const real_t t36 = over_a * (a_x * t16 - t12 * t15 - t13 * t14) + along;
+    const real_t t37 = t35 - cf_rarely(single, same, r_2 * r_2, t8) + t36 * t36;
+    const real_t t38 = cf_root(single, outer * inner * slack * (t29 + t28));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t38);
+    const real_t left = t37 + rho * rho;
+    const real_t j = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), beside_a);
+    const real_t t39 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t40 = left + t39;
+    const real_t upper = cf_max(t40, CLOSEDFORM_C(0.0));
+    const real_t t41 = t39 - left;
+    const real_t lower = cf_max(t41, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t37 = cf_rarely(single, same, r_2, r);
-    const int t38 = (both <= CLOSEDFORM_VANISHING * (r * t37)) | in_line;
-    const real_t half = rho / cf_divisor(single, t38, both);
-    const real_t Y = cf_select(t38, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
-    const real_t t39 = t10 * X + t17 * Y;
-    const real_t w_x = cf_rarely(single, in_line, -(t20 * s_w), t11 * t19 - t15 * t18);
-    const real_t t40 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * cf_rarely(single, t38, rho, t40);
-    const real_t t41 = w_x * h;
-    const real_t t42 = t39 - t41;
-    const int t43 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t44 = t43 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t45 = t44 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t46 = t45 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t47 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t48 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
-    const int t49 = (-t48 <= t29) & (-t48 <= t26) & (-t48 <= t28);
-    const real_t t50 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t37;
-    const real_t t51 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t50));
-    const int failed = (!(t46 & t47)) | (!(t49 & (-t51 <= t35) & (-t51 <= t36)));
-    const real_t t52 = cf_poison(single, failed);
-    const real_t t53 = t11 * X + t18 * Y;
-    const real_t w_y = cf_rarely(single, in_line, -t20, a_x * t19 + t15 * t17);
-    const real_t t54 = w_y * h;
-    const real_t t55 = t53 - t54;
-    const real_t t56 = t15 * X + t19 * Y;
-    const real_t w_z = cf_rarely(single, in_line, t21, -(a_x * t18 + t11 * t17));
-    const real_t t57 = w_z * h;
-    const real_t t58 = t56 - t57;
-    const real_t t59 = t39 + t41;
-    const real_t t60 = t53 + t54;
-    const real_t t61 = t56 + t57;
-    A[0] = c1_x - t42 + t52;
-    A[1] = c1_y - t55 + t52;
-    A[2] = c1_z - t58 + t52;
-    A[3] = -t42 + t52;
-    A[4] = -t55 + t52;
-    A[5] = -t58 + t52;
-    A[6] = t4 - t42 + t52;
-    A[7] = t6 - t55 + t52;
-    A[8] = t7 - t58 + t52;
-    A[9] = c1_x - t59 + t52;
-    A[10] = c1_y - t60 + t52;
-    A[11] = c1_z - t61 + t52;
-    A[12] = -t59 + t52;
-    A[13] = -t60 + t52;
-    A[14] = -t61 + t52;
-    A[15] = t4 - t59 + t52;
-    A[16] = t6 - t60 + t52;
-    A[17] = t7 - t61 + t52;
+    const real_t t42 = cf_rarely(single, same, r_2, r);
+    const int t43 = (both <= CLOSEDFORM_VANISHING * (r * t42)) | in_line;
+    const real_t half = rho / cf_divisor(single, t43, both);
+    const real_t Y = cf_select(t43, CLOSEDFORM_C(0.0), part * over_a * half * (upper - lower));
+    const real_t t44 = t11 * X + t22 * Y;
+    const real_t m_x = cf_rarely(single, slim, over * (t12 * t24 - t14 * t23), product_x);
+    const real_t w_x = cf_rarely(single, in_line, -(t25 * s_w), m_x);
+    const real_t t45 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t43, rho, t45);
+    const real_t t46 = w_x * h;
+    const real_t t47 = t44 - t46;
+    const int t48 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t50 = t49 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t51 = t50 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t52 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t53 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
+    const int t54 = (-t53 <= t33) & (-t53 <= t30) & (-t53 <= t32);
+    const real_t t55 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t42;
+    const real_t t56 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t55));
+    const int failed = (!(t51 & t52)) | (!(t54 & (-t56 <= t40) & (-t56 <= t41)));
+    const real_t t57 = cf_poison(single, failed);
+    const real_t t58 = t12 * X + t23 * Y;
+    const real_t m_y = cf_rarely(single, slim, over * (a_x * t24 + t14 * t22), product_y);
+    const real_t t59 = cf_rarely(single, in_line, -t25, m_y) * h;
+    const real_t t60 = t58 - t59;
+    const real_t t61 = t14 * X + t24 * Y;
+    const real_t t62 = cf_rarely(single, slim, over * (a_x * t23 + t12 * t22), t18);
+    const real_t t63 = cf_rarely(single, in_line, t26, -t62) * h;
+    const real_t t64 = t61 - t63;
+    const real_t t65 = t44 + t46;
+    const real_t t66 = t58 + t59;
+    const real_t t67 = t61 + t63;
+    A[0] = c1_x - t47 + t57;
+    A[1] = c1_y - t60 + t57;
+    A[2] = c1_z - t64 + t57;
+    A[3] = -t47 + t57;
+    A[4] = -t60 + t57;
+    A[5] = -t64 + t57;
+    A[6] = t4 - t47 + t57;
+    A[7] = t6 - t60 + t57;
+    A[8] = t7 - t64 + t57;
+    A[9] = c1_x - t65 + t57;
+    A[10] = c1_y - t66 + t57;
+    A[11] = c1_z - t67 + t57;
+    A[12] = -t65 + t57;
+    A[13] = -t66 + t57;
+    A[14] = -t67 + t57;
+    A[15] = t4 - t65 + t57;
+    A[16] = t6 - t66 + t57;
+    A[17] = t7 - t67 + t57;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void spherical_five_bar_jacobian_parallel_whole(const spherical_five_bar_params *params,
+    const real_t q[2], real_t A[18])
+{
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    spherical_five_bar_jacobian_parallel_whole_kernel(1, params, q, sines, cosines, A);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void spherical_five_bar_jacobian_parallel_common_kernel(const int single, const real_t one,
+    const spherical_five_bar_params *params,
+    const real_t q[2], const real_t *sines,
+    const real_t *cosines, real_t A[18], real_t rare[1])
+{
+    const real_t r = params->r;
+    const real_t gamma = params->gamma;
+    const real_t alpha1 = params->alpha1;
+    const real_t alpha2 = params->alpha2;
+    const real_t beta1 = params->beta1;
+    const real_t beta2 = params->beta2;
+    const real_t theta1 = q[0];
+    const real_t theta2 = q[1];
+    const real_t s_alpha1 = sines[0];
+    const real_t c_alpha1 = cosines[0];
+    const real_t s_gamma = sines[1];
+    const real_t c_gamma = cosines[1];
+    const real_t s2 = sines[2];
+    const real_t c2 = cosines[2];
+    const real_t s_alpha2 = sines[3];
+    const real_t c_alpha2 = cosines[3];
+    const real_t s1 = sines[4];
+    const real_t c1 = cosines[4];
+    const real_t s_beta1_half = sines[5];
+    const real_t s_beta2_half = sines[6];
+    const real_t c1_x = cf_rounded(single, one, r * c_alpha1);
+    const real_t t1 = r * cf_abs(s_alpha2);
+    const real_t t2 = c2 * t1;
+    const real_t t3 = r * c_alpha2;
+    const real_t t4 = cf_rounded(single, one, s_gamma * t2) - cf_rounded(single, one, c_gamma * t3);
+    const real_t t5 = c1_x + t4;
+    const real_t t6 = r * cf_abs(s_alpha1);
+    const real_t c1_y = cf_rounded(single, one, c1 * t6);
+    const real_t c2_y = cf_rounded(single, one, s_gamma * t3) + cf_rounded(single, one, c_gamma * t2);
+    const real_t t7 = c1_y - c2_y;
+    const real_t c1_z = cf_rounded(single, one, s1 * t6);
+    const real_t t8 = c1_z - cf_rounded(single, one, s2 * t1);
+    const real_t product_x = cf_rounded(single, one, t7 * c1_z) - cf_rounded(single, one, c1_y * t8);
+    const real_t t9 = cf_rounded(single, one, product_x * product_x);
+    const real_t t10 = cf_rounded(single, one, t5 * c1_z) - cf_rounded(single, one, c1_x * t8);
+    const real_t m_z = cf_rounded(single, one, t5 * c1_y) - cf_rounded(single, one, c1_x * t7);
+    const real_t product_2 = t9 + cf_rounded(single, one, t10 * t10) + cf_rounded(single, one, m_z * m_z);
+    const real_t t11 = cf_rounded(single, one, t5 * t5) + cf_rounded(single, one, t7 * t7);
+    const real_t u_u = t11 + cf_rounded(single, one, t8 * t8);
+    const real_t t12 = cf_rounded(single, one, r * r);
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const real_t nu = product_2 / cf_divisor(single, u_u <= t14, u_u);
+    const real_t beside_a = cf_sqrt(nu);
+    const real_t length_a = cf_sqrt(u_u);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t14, length_a * beside_a);
+    const real_t over_a = beside_a * part;
+    const real_t t15 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_rounded(single, one, cf_abs(s_beta1_half) * t15);
+    const real_t r_2 = cf_rounded(single, one, cf_abs(s_beta2_half) * t15);
+    const real_t t16 = r_1 - r_2;
+    const real_t t17 = length_a + t16;
+    const real_t outer = cf_max(t17, CLOSEDFORM_C(0.0));
+    const real_t t18 = length_a - t16;
+    const real_t inner = cf_max(t18, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t14, outer + inner);
+    const real_t t19 = r_1 + r_2;
+    const real_t t20 = t19 - length_a;
+    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
+    const real_t t21 = share * (length_a + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = length_a * CLOSEDFORM_C(0.5) + t21;
+    const real_t X = over_a * along;
+    const real_t t22 = cf_root(single, outer * inner * slack * (length_a + t19));
+    const real_t rho = share * t22;
+    const real_t t23 = cf_rounded(single, one, CLOSEDFORM_C(2.0) * beside_a * rho);
+    const real_t t24 = cf_rounded(single, one, c1_x * t5) + cf_rounded(single, one, c1_y * t7);
+    const real_t t25 = cf_rounded(single, one, over_a * (t24 + cf_rounded(single, one, c1_z * t8)));
+    const real_t t26 = t25 - along;
+    const real_t t27 = t12 - nu - cf_rounded(single, one, t26 * t26);
+    const real_t t28 = t27 - cf_rounded(single, one, rho * rho);
+    const real_t t29 = t23 - t28;
+    const real_t upper = cf_max(t29, CLOSEDFORM_C(0.0));
+    const real_t t30 = t28 + t23;
+    const real_t lower = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t both = upper + lower;
+    const real_t half = rho / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t12, both);
+    const real_t Y = part * over_a * half * (upper - lower);
+    const real_t t31 = t5 * X - (t7 * m_z + t8 * t10) * Y;
+    const real_t t32 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * t32;
+    const real_t t33 = product_x * h;
+    const real_t t34 = t31 - t33;
+    const int t35 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t36 = t35 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t37 = t36 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t39 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t40 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
+    const int t41 = (-t40 <= t20) & (-t40 <= t17) & (-t40 <= t18);
+    const real_t t42 = r * (r + r * CLOSEDFORM_C(2.2737367544323206e-13));
+    const real_t t43 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * t42);
+    const int failed = (!(t38 & t39)) | (!(t41 & (-t43 <= t29) & (-t43 <= t30)));
+    const real_t t44 = cf_poison(single, failed);
+    const real_t t45 = t7 * X + (t5 * m_z - t8 * product_x) * Y;
+    const real_t t46 = t10 * h;
+    const real_t t47 = t45 + t46;
+    const real_t t48 = t8 * X + (t5 * t10 + t7 * product_x) * Y;
+    const real_t t49 = m_z * h;
+    const real_t t50 = t48 - t49;
+    const real_t t51 = t31 + t33;
+    const real_t t52 = t45 - t46;
+    const real_t t53 = t48 + t49;
+    const real_t t54 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t54 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t55 = u_u * v_v;
+    const real_t t56 = product_2 - t55 * CLOSEDFORM_C(0.000244140625);
+    const int t57 = (u_u <= t14) | (u_u + v_v <= t14) | (t56 <= CLOSEDFORM_VANISHING * t55);
+    const int t58 = t57 | (product_2 <= t13 * (t12 * u_u)) | (both <= CLOSEDFORM_VANISHING * t12);
+    A[0] = c1_x - t34 + t44;
+    A[1] = c1_y - t47 + t44;
+    A[2] = c1_z - t50 + t44;
+    A[3] = -t34 + t44;
+    A[4] = -t47 + t44;
+    A[5] = -t50 + t44;
+    A[6] = t5 - t34 + t44;
+    A[7] = t7 - t47 + t44;
+    A[8] = t8 - t50 + t44;
+    A[9] = c1_x - t51 + t44;
+    A[10] = c1_y - t52 + t44;
+    A[11] = c1_z - t53 + t44;
+    A[12] = -t51 + t44;
+    A[13] = -t52 + t44;
+    A[14] = -t53 + t44;
+    A[15] = t5 - t51 + t44;
+    A[16] = t7 - t52 + t44;
+    A[17] = t8 - t53 + t44;
+    rare[0] = (t58) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void spherical_five_bar_jacobian_parallel_common_batch(size_t n, const spherical_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *A, size_t A_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const spherical_five_bar_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = params->alpha1;
+        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
+        real_t angle_1[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_1[i] = params->gamma;
+        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = params->alpha2;
+        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
+        cf_sincos_block_rounded(length, one, q + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
+        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
+        real_t angle_6[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
+        cf_sincos_block_rounded(length, one, angle_6, sines[6], cosines[6]);
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
+            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
+            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+            real_t A_i[18];
+            real_t rare_i[1];
+            spherical_five_bar_jacobian_parallel_common_kernel(0, one, &local, q_i, sines_i, cosines_i, A_i, rare_i);
+            A[start + i] = A_i[0];
+            A[A_stride + start + i] = A_i[1];
+            A[2 * A_stride + start + i] = A_i[2];
+            A[3 * A_stride + start + i] = A_i[3];
+            A[4 * A_stride + start + i] = A_i[4];
+            A[5 * A_stride + start + i] = A_i[5];
+            A[6 * A_stride + start + i] = A_i[6];
+            A[7 * A_stride + start + i] = A_i[7];
+            A[8 * A_stride + start + i] = A_i[8];
+            A[9 * A_stride + start + i] = A_i[9];
+            A[10 * A_stride + start + i] = A_i[10];
+            A[11 * A_stride + start + i] = A_i[11];
+            A[12 * A_stride + start + i] = A_i[12];
+            A[13 * A_stride + start + i] = A_i[13];
+            A[14 * A_stride + start + i] = A_i[14];
+            A[15 * A_stride + start + i] = A_i[15];
+            A[16 * A_stride + start + i] = A_i[16];
+            A[17 * A_stride + start + i] = A_i[17];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void spherical_five_bar_jacobian_parallel_common(const spherical_five_bar_params *params,
+    const real_t q[2], real_t A[18], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
+    real_t rare_real[1];
+    spherical_five_bar_jacobian_parallel_common_kernel(1, one, params, q, sines, cosines, A, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
 }
 
 CLOSEDFORM_DISPATCHED
@@ -902,16 +1379,15 @@ void spherical_five_bar_jacobian_parallel(const spherical_five_bar_params *param
     spherical_five_bar_params params_scaled;
     int exponent = 0;
     const real_t size = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
         params = &params_scaled;
     }
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    spherical_five_bar_jacobian_parallel_kernel(1, params, q, sines, cosines, A);
+    uint8_t rare[1];
+    spherical_five_bar_jacobian_parallel_common(params, q, A, rare);
+    if (CF_UNLIKELY(rare[0])) spherical_five_bar_jacobian_parallel_whole(params, q, A);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(18, A_degrees, exponent, A, A);
     }
@@ -936,67 +1412,29 @@ void spherical_five_bar_jacobian_parallel_batch(size_t n, const spherical_five_b
     const real_t *q, size_t q_stride,
     real_t *A, size_t A_stride)
 {
-    const spherical_five_bar_params local = *params;
     const real_t dimensions = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         spherical_five_bar_jacobian_parallel_other_sizes(n, params, q, q_stride, A, A_stride);
         return;
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->gamma;
-        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
-        cf_sincos_block(length, q + q_stride + start, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
-        cf_sincos_block(length, q + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
-        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
-        real_t angle_6[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
-        cf_sincos_block(length, angle_6, sines[6], cosines[6]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
-            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
-            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        spherical_five_bar_jacobian_parallel_common_batch(length, params, q + start, q_stride, A + start, A_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[2];
+            for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
             real_t A_i[18];
-            spherical_five_bar_jacobian_parallel_kernel(0, &local, q_i, sines_i, cosines_i, A_i);
-            A[start + i] = A_i[0];
-            A[A_stride + start + i] = A_i[1];
-            A[2 * A_stride + start + i] = A_i[2];
-            A[3 * A_stride + start + i] = A_i[3];
-            A[4 * A_stride + start + i] = A_i[4];
-            A[5 * A_stride + start + i] = A_i[5];
-            A[6 * A_stride + start + i] = A_i[6];
-            A[7 * A_stride + start + i] = A_i[7];
-            A[8 * A_stride + start + i] = A_i[8];
-            A[9 * A_stride + start + i] = A_i[9];
-            A[10 * A_stride + start + i] = A_i[10];
-            A[11 * A_stride + start + i] = A_i[11];
-            A[12 * A_stride + start + i] = A_i[12];
-            A[13 * A_stride + start + i] = A_i[13];
-            A[14 * A_stride + start + i] = A_i[14];
-            A[15 * A_stride + start + i] = A_i[15];
-            A[16 * A_stride + start + i] = A_i[16];
-            A[17 * A_stride + start + i] = A_i[17];
+            spherical_five_bar_jacobian_parallel_whole(params, q_i, A_i);
+            for (size_t k = 0; k < 18; ++k) A[k * A_stride + i] = A_i[k];
+
         }
     }
 }
 
-CF_INLINE void spherical_five_bar_jacobian_serial_kernel(const int single,
+/* Every case. */
+CF_INLINE void spherical_five_bar_jacobian_serial_whole_kernel(const int single,
     const spherical_five_bar_params *params,
     const real_t q[2], const real_t *sines,
     const real_t *cosines, real_t B[4])
@@ -1034,103 +1472,314 @@ CF_INLINE void spherical_five_bar_jacobian_serial_kernel(const int single,
     const real_t t7 = c2_z - c1_z;
     const real_t u_u = t5 * t5 + t6 * t6 + t7 * t7;
     const real_t t8 = r * r;
-    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t8;
-    const int same = u_u <= t9;
-    const real_t t10 = cf_rarely(single, same, c1_y, t6);
+    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t10 = t8 * t9;
+    const int same = u_u <= t10;
+    const real_t t11 = cf_rarely(single, same, c1_y, t6);
+    const real_t t12 = cf_rarely(single, same, -t7, c1_z);
+    const real_t t13 = cf_rarely(single, same, c1_z, -t7);
+    const real_t t14 = cf_rarely(single, same, t6, c1_y);
+    const real_t product_x = t11 * t12 - t13 * t14;
     const real_t v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
-    const int all_same = u_u + v_v <= t9;
+    const int all_same = u_u + v_v <= t10;
     const real_t whole = cf_select(r == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), r);
+    const real_t t15 = cf_rarely(single, same, c1_x, t5);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t15);
+    const real_t t16 = cf_rarely(single, same, t5, c1_x);
+    const real_t product_y = t12 * a_x + t13 * t16;
+    const real_t t17 = product_x * product_x + product_y * product_y;
+    const real_t t18 = t14 * a_x + t11 * t16;
+    const real_t product_2 = t17 + t18 * t18;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t11 = cf_rarely(single, same, c1_x, t5);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t11);
-    const real_t t12 = cf_rarely(single, same, t6, c1_y);
-    const real_t t13 = cf_rarely(single, same, t5, c1_x);
-    const real_t t14 = a_x * t12 + t10 * t13;
-    const real_t t15 = cf_rarely(single, same, c1_z, -t7);
-    const real_t t16 = cf_rarely(single, same, -t7, c1_z);
-    const real_t m_y = a_x * t16 + t13 * t15;
-    const real_t t17 = over * (t10 * t14 + t15 * m_y);
-    const real_t m_x = t10 * t16 - t12 * t15;
-    const real_t t18 = over * (a_x * t14 - t15 * m_x);
-    const real_t t19 = over * (a_x * m_y + t10 * m_x);
-    const real_t nu = t17 * t17 + t18 * t18 + t19 * t19;
-    const int in_line = nu <= t9;
-    const real_t t20 = whole * t15;
-    const real_t s_w = cf_sign(-(t10 * a_x));
-    const real_t t21 = whole * (t10 - a_x * s_w);
-    const real_t t22 = over * (CLOSEDFORM_C(2.0) * (t20 * t20) + t21 * t21);
-    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t22, nu));
+    const real_t t19 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t20 = product_2 - t19 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t20 <= CLOSEDFORM_VANISHING * t19;
+    const real_t t21 = cf_nonzero(single, mu);
+    const real_t over = CLOSEDFORM_C(1.0) / t21;
+    const real_t t22 = t11 * t18 + t13 * product_y;
+    const real_t t23 = a_x * t18 - t13 * product_x;
+    const real_t t24 = a_x * product_y + t11 * product_x;
+    const real_t m_m = cf_rarely(single, slim, over * (t22 * t22 + t23 * t23 + t24 * t24), product_2);
+    const int in_line = m_m <= t9 * (t8 * mu);
+    const real_t t25 = whole * t13;
+    const real_t s_w = cf_sign(-(t11 * a_x));
+    const real_t t26 = whole * (t11 - a_x * s_w);
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t25 * t25) + t26 * t26, m_m);
+    const real_t nu = w_w / t21;
+    const real_t beside_a = cf_sqrt(nu);
     const real_t length_a = cf_sqrt(mu);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
-    const real_t over_a = length_n * part;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * beside_a);
+    const real_t over_a = beside_a * part;
     const real_t D = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), length_a);
-    const real_t t23 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_abs(s_beta1_half) * t23;
-    const real_t t24 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t23;
-    const real_t t25 = cf_rarely(single, same, r, r_2);
-    const real_t t26 = t24 - t25;
-    const real_t outer = cf_max(t26, CLOSEDFORM_C(0.0));
-    const real_t t27 = D - r_1;
-    const real_t t28 = t25 + t27;
-    const real_t inner = cf_max(t28, CLOSEDFORM_C(0.0));
+    const real_t t27 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_abs(s_beta1_half) * t27;
+    const real_t t28 = D + r_1;
+    const real_t r_2 = cf_abs(s_beta2_half) * t27;
+    const real_t t29 = cf_rarely(single, same, r, r_2);
+    const real_t t30 = t28 - t29;
+    const real_t outer = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t t31 = D - r_1;
+    const real_t t32 = t29 + t31;
+    const real_t inner = cf_max(t32, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t29 = t25 - t27;
-    const real_t slack = cf_max(t29, CLOSEDFORM_C(0.0));
-    const real_t t30 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t along = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t30);
+    const real_t t33 = t29 - t31;
+    const real_t slack = cf_max(t33, CLOSEDFORM_C(0.0));
+    const real_t t34 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t34);
     const real_t X = over_a * along;
-    const real_t t31 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
-    const real_t t32 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t31 * t31;
-    const real_t t33 = cf_root(single, outer * inner * slack * (t25 + t24));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t33);
-    const real_t left = t32 + rho * rho;
-    const real_t j = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), length_n);
-    const real_t t34 = CLOSEDFORM_C(2.0) * j * rho;
-    const real_t t35 = left + t34;
-    const real_t upper = cf_max(t35, CLOSEDFORM_C(0.0));
-    const real_t t36 = t34 - left;
-    const real_t lower = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t t35 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), nu);
+    const real_t t36 = over_a * (a_x * t16 - t11 * t14 - t12 * t13) + along;
+    const real_t t37 = t35 - cf_rarely(single, same, r_2 * r_2, t8) + t36 * t36;
+    const real_t t38 = cf_root(single, outer * inner * slack * (t29 + t28));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t38);
+    const real_t left = t37 + rho * rho;
+    const real_t j = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), beside_a);
+    const real_t t39 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t40 = left + t39;
+    const real_t upper = cf_max(t40, CLOSEDFORM_C(0.0));
+    const real_t t41 = t39 - left;
+    const real_t lower = cf_max(t41, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t37 = cf_rarely(single, same, r_2, r);
-    const int t38 = (both <= CLOSEDFORM_VANISHING * (r * t37)) | in_line;
-    const real_t half = rho / cf_divisor(single, t38, both);
-    const real_t Y = cf_select(t38, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
-    const real_t t39 = t10 * X + t18 * Y;
-    const real_t w_y = cf_rarely(single, in_line, -t20, a_x * t19 + t15 * t17);
-    const real_t t40 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * cf_rarely(single, t38, rho, t40);
-    const real_t t41 = w_y * h;
-    const real_t t42 = t39 - t41;
-    const real_t t43 = t15 * X + t19 * Y;
-    const real_t w_z = cf_rarely(single, in_line, t21, -(a_x * t18 + t10 * t17));
-    const real_t t44 = w_z * h;
-    const real_t t45 = t43 - t44;
-    const int t46 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t47 = t46 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t50 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t51 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
-    const int t52 = (-t51 <= t29) & (-t51 <= t26) & (-t51 <= t28);
-    const real_t t53 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t37;
-    const real_t t54 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t53));
-    const int failed = (!(t49 & t50)) | (!(t52 & (-t54 <= t35) & (-t54 <= t36)));
-    const real_t t55 = cf_poison(single, failed);
-    const real_t t56 = s_gamma * c2_z;
-    const real_t t57 = t11 * X + t17 * Y;
-    const real_t w_x = cf_rarely(single, in_line, -(t20 * s_w), t10 * t19 - t15 * t18);
-    const real_t t58 = w_x * h;
-    const real_t t59 = c_gamma * c2_z;
-    const real_t B_22 = t56 * (t5 - (t57 - t58)) - t59 * (t6 - t42) - t3 * (t7 + t45);
-    const real_t t60 = t39 + t41;
-    const real_t t61 = t43 + t44;
-    const real_t B_22_below = t56 * (t5 - (t57 + t58)) - t59 * (t6 - t60) - t3 * (t7 + t61);
-    B[0] = c1_z * t42 - c1_y * t45 + t55;
-    B[1] = B_22 + t55;
-    B[2] = c1_z * t60 - c1_y * t61 + t55;
-    B[3] = B_22_below + t55;
+    const real_t t42 = cf_rarely(single, same, r_2, r);
+    const int t43 = (both <= CLOSEDFORM_VANISHING * (r * t42)) | in_line;
+    const real_t half = rho / cf_divisor(single, t43, both);
+    const real_t Y = cf_select(t43, CLOSEDFORM_C(0.0), part * over_a * half * (upper - lower));
+    const real_t t44 = t11 * X + t23 * Y;
+    const real_t m_y = cf_rarely(single, slim, over * (a_x * t24 + t13 * t22), product_y);
+    const real_t t45 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t43, rho, t45);
+    const real_t t46 = cf_rarely(single, in_line, -t25, m_y) * h;
+    const real_t t47 = t44 - t46;
+    const real_t t48 = t13 * X + t24 * Y;
+    const real_t t49 = cf_rarely(single, slim, over * (a_x * t23 + t11 * t22), t18);
+    const real_t t50 = cf_rarely(single, in_line, t26, -t49) * h;
+    const real_t t51 = t48 - t50;
+    const int t52 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t53 = t52 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t54 = t53 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t55 = t54 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t56 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t57 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
+    const int t58 = (-t57 <= t33) & (-t57 <= t30) & (-t57 <= t32);
+    const real_t t59 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t42;
+    const real_t t60 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t59));
+    const int failed = (!(t55 & t56)) | (!(t58 & (-t60 <= t40) & (-t60 <= t41)));
+    const real_t t61 = cf_poison(single, failed);
+    const real_t t62 = s_gamma * c2_z;
+    const real_t t63 = t15 * X + t22 * Y;
+    const real_t m_x = cf_rarely(single, slim, over * (t11 * t24 - t13 * t23), product_x);
+    const real_t w_x = cf_rarely(single, in_line, -(t25 * s_w), m_x);
+    const real_t t64 = w_x * h;
+    const real_t t65 = c_gamma * c2_z;
+    const real_t B_22 = t62 * (t5 - (t63 - t64)) - t65 * (t6 - t47) - t3 * (t7 + t51);
+    const real_t t66 = t44 + t46;
+    const real_t t67 = t48 + t50;
+    const real_t B_22_below = t62 * (t5 - (t63 + t64)) - t65 * (t6 - t66) - t3 * (t7 + t67);
+    B[0] = c1_z * t47 - c1_y * t51 + t61;
+    B[1] = B_22 + t61;
+    B[2] = c1_z * t66 - c1_y * t67 + t61;
+    B[3] = B_22_below + t61;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void spherical_five_bar_jacobian_serial_whole(const spherical_five_bar_params *params,
+    const real_t q[2], real_t B[4])
+{
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    spherical_five_bar_jacobian_serial_whole_kernel(1, params, q, sines, cosines, B);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void spherical_five_bar_jacobian_serial_common_kernel(const int single, const real_t one,
+    const spherical_five_bar_params *params,
+    const real_t q[2], const real_t *sines,
+    const real_t *cosines, real_t B[4], real_t rare[1])
+{
+    const real_t r = params->r;
+    const real_t gamma = params->gamma;
+    const real_t alpha1 = params->alpha1;
+    const real_t alpha2 = params->alpha2;
+    const real_t beta1 = params->beta1;
+    const real_t beta2 = params->beta2;
+    const real_t theta1 = q[0];
+    const real_t theta2 = q[1];
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s_alpha1 = sines[1];
+    const real_t c_alpha1 = cosines[1];
+    const real_t s_gamma = sines[2];
+    const real_t c_gamma = cosines[2];
+    const real_t s_alpha2 = sines[3];
+    const real_t c_alpha2 = cosines[3];
+    const real_t s2 = sines[4];
+    const real_t c2 = cosines[4];
+    const real_t s_beta1_half = sines[5];
+    const real_t s_beta2_half = sines[6];
+    const real_t t1 = r * cf_abs(s_alpha1);
+    const real_t c1_z = cf_rounded(single, one, s1 * t1);
+    const real_t c1_y = cf_rounded(single, one, c1 * t1);
+    const real_t t2 = r * c_alpha2;
+    const real_t t3 = r * cf_abs(s_alpha2);
+    const real_t t4 = c2 * t3;
+    const real_t c2_y = cf_rounded(single, one, s_gamma * t2) + cf_rounded(single, one, c_gamma * t4);
+    const real_t t5 = c1_y - c2_y;
+    const real_t c2_z = cf_rounded(single, one, s2 * t3);
+    const real_t t6 = c2_z - c1_z;
+    const real_t product_x = cf_rounded(single, one, c1_z * t5) + cf_rounded(single, one, c1_y * t6);
+    const real_t t7 = cf_rounded(single, one, product_x * product_x);
+    const real_t c1_x = cf_rounded(single, one, r * c_alpha1);
+    const real_t t8 = cf_rounded(single, one, s_gamma * t4) - cf_rounded(single, one, c_gamma * t2);
+    const real_t t9 = c1_x + t8;
+    const real_t t10 = cf_rounded(single, one, c1_z * t9) + cf_rounded(single, one, c1_x * t6);
+    const real_t m_z = cf_rounded(single, one, c1_y * t9) - cf_rounded(single, one, c1_x * t5);
+    const real_t product_2 = t7 + cf_rounded(single, one, t10 * t10) + cf_rounded(single, one, m_z * m_z);
+    const real_t t11 = cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, t5 * t5);
+    const real_t u_u = t11 + cf_rounded(single, one, t6 * t6);
+    const real_t t12 = cf_rounded(single, one, r * r);
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const real_t nu = product_2 / cf_divisor(single, u_u <= t14, u_u);
+    const real_t beside_a = cf_sqrt(nu);
+    const real_t length_a = cf_sqrt(u_u);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t14, length_a * beside_a);
+    const real_t over_a = beside_a * part;
+    const real_t t15 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_rounded(single, one, cf_abs(s_beta1_half) * t15);
+    const real_t r_2 = cf_rounded(single, one, cf_abs(s_beta2_half) * t15);
+    const real_t t16 = r_1 - r_2;
+    const real_t t17 = length_a + t16;
+    const real_t outer = cf_max(t17, CLOSEDFORM_C(0.0));
+    const real_t t18 = length_a - t16;
+    const real_t inner = cf_max(t18, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t14, outer + inner);
+    const real_t t19 = r_1 + r_2;
+    const real_t t20 = t19 - length_a;
+    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
+    const real_t t21 = share * (length_a + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = length_a * CLOSEDFORM_C(0.5) + t21;
+    const real_t X = over_a * along;
+    const real_t t22 = cf_root(single, outer * inner * slack * (length_a + t19));
+    const real_t rho = share * t22;
+    const real_t t23 = cf_rounded(single, one, CLOSEDFORM_C(2.0) * beside_a * rho);
+    const real_t t24 = cf_rounded(single, one, c1_x * t9) + cf_rounded(single, one, c1_y * t5);
+    const real_t t25 = cf_rounded(single, one, over_a * (t24 - cf_rounded(single, one, c1_z * t6)));
+    const real_t t26 = t25 - along;
+    const real_t t27 = t12 - nu - cf_rounded(single, one, t26 * t26);
+    const real_t t28 = t27 - cf_rounded(single, one, rho * rho);
+    const real_t t29 = t23 - t28;
+    const real_t upper = cf_max(t29, CLOSEDFORM_C(0.0));
+    const real_t t30 = t28 + t23;
+    const real_t lower = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t both = upper + lower;
+    const real_t half = rho / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t12, both);
+    const real_t Y = part * over_a * half * (upper - lower);
+    const real_t t31 = t5 * X + (t9 * m_z + t6 * product_x) * Y;
+    const real_t t32 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * t32;
+    const real_t t33 = t10 * h;
+    const real_t t34 = t31 + t33;
+    const real_t t35 = t6 * X - (t9 * t10 + t5 * product_x) * Y;
+    const real_t t36 = m_z * h;
+    const real_t A_13 = t35 + t36;
+    const int t37 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t39 = t38 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t40 = t39 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t41 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t42 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
+    const int t43 = (-t42 <= t20) & (-t42 <= t17) & (-t42 <= t18);
+    const real_t t44 = r * (r + r * CLOSEDFORM_C(2.2737367544323206e-13));
+    const real_t t45 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * t44);
+    const int failed = (!(t40 & t41)) | (!(t43 & (-t45 <= t29) & (-t45 <= t30)));
+    const real_t t46 = cf_poison(single, failed);
+    const real_t t47 = s_gamma * c2_z;
+    const real_t t48 = t9 * X - (t5 * m_z - t6 * t10) * Y;
+    const real_t t49 = product_x * h;
+    const real_t t50 = c_gamma * c2_z;
+    const real_t B_22 = t47 * (t9 - (t48 - t49)) - t50 * (t5 - t34) - t4 * (t6 - A_13);
+    const real_t t51 = t31 - t33;
+    const real_t A_13_below = t35 - t36;
+    const real_t B_22_below = t47 * (t9 - (t48 + t49)) - t50 * (t5 - t51) - t4 * (t6 - A_13_below);
+    const real_t t52 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t52 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t53 = u_u * v_v;
+    const real_t t54 = product_2 - t53 * CLOSEDFORM_C(0.000244140625);
+    const int t55 = (u_u <= t14) | (u_u + v_v <= t14) | (t54 <= CLOSEDFORM_VANISHING * t53);
+    const int t56 = t55 | (product_2 <= t13 * (t12 * u_u)) | (both <= CLOSEDFORM_VANISHING * t12);
+    B[0] = c1_z * t34 + c1_y * A_13 + t46;
+    B[1] = B_22 + t46;
+    B[2] = c1_z * t51 + c1_y * A_13_below + t46;
+    B[3] = B_22_below + t46;
+    rare[0] = (t56) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void spherical_five_bar_jacobian_serial_common_batch(size_t n, const spherical_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *B, size_t B_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const spherical_five_bar_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
+        cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
+        real_t angle_1[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_1[i] = params->alpha1;
+        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
+        real_t angle_2[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_2[i] = params->gamma;
+        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = params->alpha2;
+        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
+        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
+        real_t angle_6[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
+        cf_sincos_block_rounded(length, one, angle_6, sines[6], cosines[6]);
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
+            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
+            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+            real_t B_i[4];
+            real_t rare_i[1];
+            spherical_five_bar_jacobian_serial_common_kernel(0, one, &local, q_i, sines_i, cosines_i, B_i, rare_i);
+            B[start + i] = B_i[0];
+            B[B_stride + start + i] = B_i[1];
+            B[2 * B_stride + start + i] = B_i[2];
+            B[3 * B_stride + start + i] = B_i[3];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void spherical_five_bar_jacobian_serial_common(const spherical_five_bar_params *params,
+    const real_t q[2], real_t B[4], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, params->alpha2, q[1], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
+    real_t rare_real[1];
+    spherical_five_bar_jacobian_serial_common_kernel(1, one, params, q, sines, cosines, B, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1141,16 +1790,15 @@ void spherical_five_bar_jacobian_serial(const spherical_five_bar_params *params,
     spherical_five_bar_params params_scaled;
     int exponent = 0;
     const real_t size = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
         params = &params_scaled;
     }
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    spherical_five_bar_jacobian_serial_kernel(1, params, q, sines, cosines, B);
+    uint8_t rare[1];
+    spherical_five_bar_jacobian_serial_common(params, q, B, rare);
+    if (CF_UNLIKELY(rare[0])) spherical_five_bar_jacobian_serial_whole(params, q, B);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(4, B_degrees, exponent, B, B);
     }
@@ -1175,53 +1823,29 @@ void spherical_five_bar_jacobian_serial_batch(size_t n, const spherical_five_bar
     const real_t *q, size_t q_stride,
     real_t *B, size_t B_stride)
 {
-    const spherical_five_bar_params local = *params;
     const real_t dimensions = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         spherical_five_bar_jacobian_serial_other_sizes(n, params, q, q_stride, B, B_stride);
         return;
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + start, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha1;
-        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->gamma;
-        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
-        cf_sincos_block(length, q + q_stride + start, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha2;
-        cf_sincos_block(length, angle_4, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
-        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
-        real_t angle_6[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
-        cf_sincos_block(length, angle_6, sines[6], cosines[6]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
-            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
-            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        spherical_five_bar_jacobian_serial_common_batch(length, params, q + start, q_stride, B + start, B_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[2];
+            for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
             real_t B_i[4];
-            spherical_five_bar_jacobian_serial_kernel(0, &local, q_i, sines_i, cosines_i, B_i);
-            B[start + i] = B_i[0];
-            B[B_stride + start + i] = B_i[1];
-            B[2 * B_stride + start + i] = B_i[2];
-            B[3 * B_stride + start + i] = B_i[3];
+            spherical_five_bar_jacobian_serial_whole(params, q_i, B_i);
+            for (size_t k = 0; k < 4; ++k) B[k * B_stride + i] = B_i[k];
+
         }
     }
 }
 
-CF_INLINE void spherical_five_bar_jacobian_kernel(const int single,
+/* Every case. */
+CF_INLINE void spherical_five_bar_jacobian_whole_kernel(const int single,
     const spherical_five_bar_params *params,
     const real_t q[2], const real_t *sines,
     const real_t *cosines, real_t J[12])
@@ -1259,140 +1883,397 @@ CF_INLINE void spherical_five_bar_jacobian_kernel(const int single,
     const real_t t7 = c2_z - c1_z;
     const real_t u_u = t5 * t5 + t6 * t6 + t7 * t7;
     const real_t t8 = r * r;
-    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t8;
-    const int same = u_u <= t9;
-    const real_t t10 = cf_rarely(single, same, c1_y, t6);
+    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t10 = t8 * t9;
+    const int same = u_u <= t10;
+    const real_t t11 = cf_rarely(single, same, c1_y, t6);
+    const real_t t12 = cf_rarely(single, same, -t7, c1_z);
+    const real_t t13 = cf_rarely(single, same, c1_z, -t7);
+    const real_t t14 = cf_rarely(single, same, t6, c1_y);
+    const real_t product_x = t11 * t12 - t13 * t14;
     const real_t v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
-    const int all_same = u_u + v_v <= t9;
+    const int all_same = u_u + v_v <= t10;
     const real_t whole = cf_select(r == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), r);
+    const real_t t15 = cf_rarely(single, same, c1_x, t5);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t15);
+    const real_t t16 = cf_rarely(single, same, t5, c1_x);
+    const real_t product_y = t12 * a_x + t13 * t16;
+    const real_t t17 = product_x * product_x + product_y * product_y;
+    const real_t t18 = t14 * a_x + t11 * t16;
+    const real_t product_2 = t17 + t18 * t18;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t11 = cf_rarely(single, same, c1_x, t5);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t11);
-    const real_t t12 = cf_rarely(single, same, t6, c1_y);
-    const real_t t13 = cf_rarely(single, same, t5, c1_x);
-    const real_t t14 = a_x * t12 + t10 * t13;
-    const real_t t15 = cf_rarely(single, same, c1_z, -t7);
-    const real_t t16 = cf_rarely(single, same, -t7, c1_z);
-    const real_t m_y = a_x * t16 + t13 * t15;
-    const real_t t17 = over * (t10 * t14 + t15 * m_y);
-    const real_t m_x = t10 * t16 - t12 * t15;
-    const real_t t18 = over * (a_x * t14 - t15 * m_x);
-    const real_t t19 = over * (a_x * m_y + t10 * m_x);
-    const real_t nu = t17 * t17 + t18 * t18 + t19 * t19;
-    const int in_line = nu <= t9;
-    const real_t t20 = whole * t15;
-    const real_t s_w = cf_sign(-(t10 * a_x));
-    const real_t t21 = whole * (t10 - a_x * s_w);
-    const real_t t22 = over * (CLOSEDFORM_C(2.0) * (t20 * t20) + t21 * t21);
-    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t22, nu));
+    const real_t t19 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t20 = product_2 - t19 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t20 <= CLOSEDFORM_VANISHING * t19;
+    const real_t t21 = cf_nonzero(single, mu);
+    const real_t over = CLOSEDFORM_C(1.0) / t21;
+    const real_t t22 = t11 * t18 + t13 * product_y;
+    const real_t t23 = a_x * t18 - t13 * product_x;
+    const real_t t24 = a_x * product_y + t11 * product_x;
+    const real_t m_m = cf_rarely(single, slim, over * (t22 * t22 + t23 * t23 + t24 * t24), product_2);
+    const int in_line = m_m <= t9 * (t8 * mu);
+    const real_t t25 = whole * t13;
+    const real_t s_w = cf_sign(-(t11 * a_x));
+    const real_t t26 = whole * (t11 - a_x * s_w);
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t25 * t25) + t26 * t26, m_m);
+    const real_t nu = w_w / t21;
+    const real_t beside_a = cf_sqrt(nu);
     const real_t length_a = cf_sqrt(mu);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
-    const real_t over_a = length_n * part;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * beside_a);
+    const real_t over_a = beside_a * part;
     const real_t D = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), length_a);
-    const real_t t23 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_abs(s_beta1_half) * t23;
-    const real_t t24 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t23;
-    const real_t t25 = cf_rarely(single, same, r, r_2);
-    const real_t t26 = t24 - t25;
-    const real_t outer = cf_max(t26, CLOSEDFORM_C(0.0));
-    const real_t t27 = D - r_1;
-    const real_t t28 = t25 + t27;
-    const real_t inner = cf_max(t28, CLOSEDFORM_C(0.0));
+    const real_t t27 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_abs(s_beta1_half) * t27;
+    const real_t t28 = D + r_1;
+    const real_t r_2 = cf_abs(s_beta2_half) * t27;
+    const real_t t29 = cf_rarely(single, same, r, r_2);
+    const real_t t30 = t28 - t29;
+    const real_t outer = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t t31 = D - r_1;
+    const real_t t32 = t29 + t31;
+    const real_t inner = cf_max(t32, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t29 = t25 - t27;
-    const real_t slack = cf_max(t29, CLOSEDFORM_C(0.0));
-    const real_t t30 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t along = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t30);
+    const real_t t33 = t29 - t31;
+    const real_t slack = cf_max(t33, CLOSEDFORM_C(0.0));
+    const real_t t34 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t34);
     const real_t X = over_a * along;
-    const real_t t31 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
-    const real_t t32 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t31 * t31;
-    const real_t t33 = cf_root(single, outer * inner * slack * (t25 + t24));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t33);
-    const real_t left = t32 + rho * rho;
-    const real_t j = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), length_n);
-    const real_t t34 = CLOSEDFORM_C(2.0) * j * rho;
-    const real_t t35 = left + t34;
-    const real_t upper = cf_max(t35, CLOSEDFORM_C(0.0));
-    const real_t t36 = t34 - left;
-    const real_t lower = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t t35 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), nu);
+    const real_t t36 = over_a * (a_x * t16 - t11 * t14 - t12 * t13) + along;
+    const real_t t37 = t35 - cf_rarely(single, same, r_2 * r_2, t8) + t36 * t36;
+    const real_t t38 = cf_root(single, outer * inner * slack * (t29 + t28));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t38);
+    const real_t left = t37 + rho * rho;
+    const real_t j = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), beside_a);
+    const real_t t39 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t40 = left + t39;
+    const real_t upper = cf_max(t40, CLOSEDFORM_C(0.0));
+    const real_t t41 = t39 - left;
+    const real_t lower = cf_max(t41, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t37 = cf_rarely(single, same, r_2, r);
-    const int t38 = (both <= CLOSEDFORM_VANISHING * (r * t37)) | in_line;
-    const real_t half = rho / cf_divisor(single, t38, both);
-    const real_t Y = cf_rarely(single, t38, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
-    const real_t t39 = t10 * X + t18 * Y;
-    const real_t w_y = cf_rarely(single, in_line, -t20, a_x * t19 + t15 * t17);
-    const real_t t40 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * cf_rarely(single, t38, rho, t40);
-    const real_t t41 = w_y * h;
-    const real_t t42 = t39 - t41;
-    const real_t t43 = t15 * X + t19 * Y;
-    const real_t w_z = cf_rarely(single, in_line, t21, -(a_x * t18 + t10 * t17));
-    const real_t t44 = w_z * h;
-    const real_t t45 = t43 - t44;
-    const real_t B_11 = c1_z * t42 - c1_y * t45;
-    const real_t A_02 = c1_y - t42;
-    const real_t t46 = t7 + t45;
-    const real_t A_03 = c1_z - t45;
-    const real_t A_22 = t6 - t42;
-    const real_t Delta = mu * nu * h;
-    const real_t t47 = cf_nonzero(single, Delta);
-    const int t48 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t50 = t49 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t51 = t50 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t52 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t53 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
-    const int t54 = (-t53 <= t29) & (-t53 <= t26) & (-t53 <= t28);
-    const real_t t55 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t37;
-    const real_t t56 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t55));
-    const int failed = (!(t51 & t52)) | (!(t54 & (-t56 <= t35) & (-t56 <= t36)));
-    const real_t t57 = cf_poison(single, failed);
-    const real_t t58 = B_11 * (A_02 * t46 + A_03 * A_22) / t47 + t57;
-    const real_t t59 = s_gamma * c2_z;
-    const real_t t60 = t11 * X + t17 * Y;
-    const real_t w_x = cf_rarely(single, in_line, -(t20 * s_w), t10 * t19 - t15 * t18);
-    const real_t t61 = w_x * h;
-    const real_t t62 = t60 - t61;
-    const real_t A_21 = t5 - t62;
-    const real_t t63 = c_gamma * c2_z;
-    const real_t B_22 = t59 * A_21 - t63 * A_22 - t3 * t46;
-    const real_t t64 = -(B_22 * (t45 * A_02 - t42 * A_03) / t47) + t57;
-    const real_t A_01 = c1_x - t62;
-    const real_t t65 = -(B_11 * (t46 * A_01 + A_03 * A_21) / t47) + t57;
-    const real_t t66 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / t47) + t57;
-    const real_t t67 = -(B_22 * (t42 * A_01 - A_02 * t62) / t47) + t57;
-    const real_t t68 = t39 + t41;
-    const real_t t69 = t43 + t44;
-    const real_t B_11_below = c1_z * t68 - c1_y * t69;
-    const real_t A_02_below = c1_y - t68;
-    const real_t t70 = t7 + t69;
-    const real_t A_03_below = c1_z - t69;
-    const real_t A_22_below = t6 - t68;
-    const real_t t71 = B_11_below * (A_02_below * t70 + A_03_below * A_22_below);
-    const real_t t72 = t60 + t61;
-    const real_t A_21_below = t5 - t72;
-    const real_t B_22_below = t59 * A_21_below - t63 * A_22_below - t3 * t70;
-    const real_t t73 = B_22_below * (t69 * A_02_below - t68 * A_03_below);
-    const real_t A_01_below = c1_x - t72;
-    const real_t t74 = B_11_below * (t70 * A_01_below + A_03_below * A_21_below);
-    const real_t t75 = B_22_below * (t69 * A_01_below - A_03_below * t72);
-    const real_t t76 = A_22_below * A_01_below - A_02_below * A_21_below;
-    const real_t t77 = B_22_below * (t68 * A_01_below - A_02_below * t72);
-    J[0] = t58;
-    J[1] = t64;
-    J[2] = t65;
-    J[3] = B_22 * (t45 * A_01 - A_03 * t62) / t47 + t57;
-    J[4] = t66;
-    J[5] = t67;
-    J[6] = -(t71 / t47) + t57;
-    J[7] = t73 / t47 + t57;
-    J[8] = t74 / t47 + t57;
-    J[9] = -(t75 / t47) + t57;
-    J[10] = B_11_below * t76 / t47 + t57;
-    J[11] = t77 / t47 + t57;
+    const real_t t42 = cf_rarely(single, same, r_2, r);
+    const int t43 = (both <= CLOSEDFORM_VANISHING * (r * t42)) | in_line;
+    const real_t half = rho / cf_divisor(single, t43, both);
+    const real_t Y = cf_rarely(single, t43, CLOSEDFORM_C(0.0), part * over_a * half * (upper - lower));
+    const real_t t44 = t11 * X + t23 * Y;
+    const real_t m_y = cf_rarely(single, slim, over * (a_x * t24 + t13 * t22), product_y);
+    const real_t t45 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t43, rho, t45);
+    const real_t t46 = cf_rarely(single, in_line, -t25, m_y) * h;
+    const real_t t47 = t44 - t46;
+    const real_t t48 = t13 * X + t24 * Y;
+    const real_t t49 = cf_rarely(single, slim, over * (a_x * t23 + t11 * t22), t18);
+    const real_t t50 = cf_rarely(single, in_line, t26, -t49) * h;
+    const real_t t51 = t48 - t50;
+    const real_t B_11 = c1_z * t47 - c1_y * t51;
+    const real_t A_02 = c1_y - t47;
+    const real_t t52 = t7 + t51;
+    const real_t A_03 = c1_z - t51;
+    const real_t A_22 = t6 - t47;
+    const real_t Delta = m_m * h;
+    const real_t t53 = cf_nonzero(single, Delta);
+    const int t54 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t55 = t54 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t56 = t55 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t57 = t56 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t58 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t59 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
+    const int t60 = (-t59 <= t33) & (-t59 <= t30) & (-t59 <= t32);
+    const real_t t61 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t42;
+    const real_t t62 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t61));
+    const int failed = (!(t57 & t58)) | (!(t60 & (-t62 <= t40) & (-t62 <= t41)));
+    const real_t t63 = cf_poison(single, failed);
+    const real_t t64 = B_11 * (A_02 * t52 + A_03 * A_22) / t53 + t63;
+    const real_t t65 = s_gamma * c2_z;
+    const real_t t66 = t15 * X + t22 * Y;
+    const real_t m_x = cf_rarely(single, slim, over * (t11 * t24 - t13 * t23), product_x);
+    const real_t w_x = cf_rarely(single, in_line, -(t25 * s_w), m_x);
+    const real_t t67 = w_x * h;
+    const real_t t68 = t66 - t67;
+    const real_t A_21 = t5 - t68;
+    const real_t t69 = c_gamma * c2_z;
+    const real_t B_22 = t65 * A_21 - t69 * A_22 - t3 * t52;
+    const real_t t70 = -(B_22 * (t51 * A_02 - t47 * A_03) / t53) + t63;
+    const real_t A_01 = c1_x - t68;
+    const real_t t71 = -(B_11 * (t52 * A_01 + A_03 * A_21) / t53) + t63;
+    const real_t t72 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / t53) + t63;
+    const real_t t73 = -(B_22 * (t47 * A_01 - A_02 * t68) / t53) + t63;
+    const real_t t74 = t44 + t46;
+    const real_t t75 = t48 + t50;
+    const real_t B_11_below = c1_z * t74 - c1_y * t75;
+    const real_t A_02_below = c1_y - t74;
+    const real_t t76 = t7 + t75;
+    const real_t A_03_below = c1_z - t75;
+    const real_t A_22_below = t6 - t74;
+    const real_t t77 = B_11_below * (A_02_below * t76 + A_03_below * A_22_below);
+    const real_t t78 = t66 + t67;
+    const real_t A_21_below = t5 - t78;
+    const real_t B_22_below = t65 * A_21_below - t69 * A_22_below - t3 * t76;
+    const real_t t79 = B_22_below * (t75 * A_02_below - t74 * A_03_below);
+    const real_t A_01_below = c1_x - t78;
+    const real_t t80 = B_11_below * (t76 * A_01_below + A_03_below * A_21_below);
+    const real_t t81 = B_22_below * (t75 * A_01_below - A_03_below * t78);
+    const real_t t82 = A_22_below * A_01_below - A_02_below * A_21_below;
+    const real_t t83 = B_22_below * (t74 * A_01_below - A_02_below * t78);
+    J[0] = t64;
+    J[1] = t70;
+    J[2] = t71;
+    J[3] = B_22 * (t51 * A_01 - A_03 * t68) / t53 + t63;
+    J[4] = t72;
+    J[5] = t73;
+    J[6] = -(t77 / t53) + t63;
+    J[7] = t79 / t53 + t63;
+    J[8] = t80 / t53 + t63;
+    J[9] = -(t81 / t53) + t63;
+    J[10] = B_11_below * t82 / t53 + t63;
+    J[11] = t83 / t53 + t63;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void spherical_five_bar_jacobian_whole(const spherical_five_bar_params *params,
+    const real_t q[2], real_t J[12])
+{
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    spherical_five_bar_jacobian_whole_kernel(1, params, q, sines, cosines, J);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void spherical_five_bar_jacobian_common_kernel(const int single, const real_t one,
+    const spherical_five_bar_params *params,
+    const real_t q[2], const real_t *sines,
+    const real_t *cosines, real_t J[12], real_t rare[1])
+{
+    const real_t r = params->r;
+    const real_t gamma = params->gamma;
+    const real_t alpha1 = params->alpha1;
+    const real_t alpha2 = params->alpha2;
+    const real_t beta1 = params->beta1;
+    const real_t beta2 = params->beta2;
+    const real_t theta1 = q[0];
+    const real_t theta2 = q[1];
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s_alpha1 = sines[1];
+    const real_t c_alpha1 = cosines[1];
+    const real_t s_gamma = sines[2];
+    const real_t c_gamma = cosines[2];
+    const real_t s_alpha2 = sines[3];
+    const real_t c_alpha2 = cosines[3];
+    const real_t s2 = sines[4];
+    const real_t c2 = cosines[4];
+    const real_t s_beta1_half = sines[5];
+    const real_t s_beta2_half = sines[6];
+    const real_t t1 = r * cf_abs(s_alpha1);
+    const real_t c1_z = cf_rounded(single, one, s1 * t1);
+    const real_t c1_y = cf_rounded(single, one, c1 * t1);
+    const real_t t2 = r * c_alpha2;
+    const real_t t3 = r * cf_abs(s_alpha2);
+    const real_t t4 = c2 * t3;
+    const real_t c2_y = cf_rounded(single, one, s_gamma * t2) + cf_rounded(single, one, c_gamma * t4);
+    const real_t t5 = c1_y - c2_y;
+    const real_t c2_z = cf_rounded(single, one, s2 * t3);
+    const real_t t6 = c2_z - c1_z;
+    const real_t product_x = cf_rounded(single, one, c1_z * t5) + cf_rounded(single, one, c1_y * t6);
+    const real_t t7 = cf_rounded(single, one, product_x * product_x);
+    const real_t c1_x = cf_rounded(single, one, r * c_alpha1);
+    const real_t t8 = cf_rounded(single, one, s_gamma * t4) - cf_rounded(single, one, c_gamma * t2);
+    const real_t t9 = c1_x + t8;
+    const real_t t10 = cf_rounded(single, one, c1_z * t9) + cf_rounded(single, one, c1_x * t6);
+    const real_t m_z = cf_rounded(single, one, c1_y * t9) - cf_rounded(single, one, c1_x * t5);
+    const real_t product_2 = t7 + cf_rounded(single, one, t10 * t10) + cf_rounded(single, one, m_z * m_z);
+    const real_t t11 = cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, t5 * t5);
+    const real_t u_u = t11 + cf_rounded(single, one, t6 * t6);
+    const real_t t12 = cf_rounded(single, one, r * r);
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const real_t nu = product_2 / cf_divisor(single, u_u <= t14, u_u);
+    const real_t beside_a = cf_sqrt(nu);
+    const real_t length_a = cf_sqrt(u_u);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t14, length_a * beside_a);
+    const real_t over_a = beside_a * part;
+    const real_t t15 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_rounded(single, one, cf_abs(s_beta1_half) * t15);
+    const real_t r_2 = cf_rounded(single, one, cf_abs(s_beta2_half) * t15);
+    const real_t t16 = r_1 - r_2;
+    const real_t t17 = length_a + t16;
+    const real_t outer = cf_max(t17, CLOSEDFORM_C(0.0));
+    const real_t t18 = length_a - t16;
+    const real_t inner = cf_max(t18, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t14, outer + inner);
+    const real_t t19 = r_1 + r_2;
+    const real_t t20 = t19 - length_a;
+    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
+    const real_t t21 = share * (length_a + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = length_a * CLOSEDFORM_C(0.5) + t21;
+    const real_t X = over_a * along;
+    const real_t t22 = cf_root(single, outer * inner * slack * (length_a + t19));
+    const real_t rho = share * t22;
+    const real_t t23 = cf_rounded(single, one, CLOSEDFORM_C(2.0) * beside_a * rho);
+    const real_t t24 = cf_rounded(single, one, c1_x * t9) + cf_rounded(single, one, c1_y * t5);
+    const real_t t25 = cf_rounded(single, one, over_a * (t24 - cf_rounded(single, one, c1_z * t6)));
+    const real_t t26 = t25 - along;
+    const real_t t27 = t12 - nu - cf_rounded(single, one, t26 * t26);
+    const real_t t28 = t27 - cf_rounded(single, one, rho * rho);
+    const real_t t29 = t23 - t28;
+    const real_t upper = cf_max(t29, CLOSEDFORM_C(0.0));
+    const real_t t30 = t28 + t23;
+    const real_t lower = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t both = upper + lower;
+    const real_t half = rho / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t12, both);
+    const real_t Y = part * over_a * half * (upper - lower);
+    const real_t t31 = t5 * X + (t9 * m_z + t6 * product_x) * Y;
+    const real_t t32 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * t32;
+    const real_t t33 = t10 * h;
+    const real_t t34 = t31 + t33;
+    const real_t t35 = t6 * X - (t9 * t10 + t5 * product_x) * Y;
+    const real_t t36 = m_z * h;
+    const real_t A_13 = t35 + t36;
+    const real_t B_11 = c1_z * t34 + c1_y * A_13;
+    const real_t A_02 = c1_y - t34;
+    const real_t t37 = t6 - A_13;
+    const real_t A_03 = c1_z + A_13;
+    const real_t A_22 = t5 - t34;
+    const real_t Delta = product_2 * h;
+    const real_t t38 = cf_nonzero(single, Delta);
+    const int t39 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t40 = t39 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t41 = t40 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t42 = t41 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t43 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t44 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
+    const int t45 = (-t44 <= t20) & (-t44 <= t17) & (-t44 <= t18);
+    const real_t t46 = r * (r + r * CLOSEDFORM_C(2.2737367544323206e-13));
+    const real_t t47 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * t46);
+    const int failed = (!(t42 & t43)) | (!(t45 & (-t47 <= t29) & (-t47 <= t30)));
+    const real_t t48 = cf_poison(single, failed);
+    const real_t t49 = B_11 * (A_02 * t37 + A_03 * A_22) / t38 + t48;
+    const real_t t50 = s_gamma * c2_z;
+    const real_t t51 = t9 * X - (t5 * m_z - t6 * t10) * Y;
+    const real_t t52 = product_x * h;
+    const real_t t53 = t51 - t52;
+    const real_t A_21 = t9 - t53;
+    const real_t t54 = c_gamma * c2_z;
+    const real_t B_22 = t50 * A_21 - t54 * A_22 - t4 * t37;
+    const real_t t55 = B_22 * (A_13 * A_02 + t34 * A_03) / t38 + t48;
+    const real_t A_01 = c1_x - t53;
+    const real_t t56 = -(B_11 * (t37 * A_01 + A_03 * A_21) / t38) + t48;
+    const real_t t57 = -(B_22 * (A_13 * A_01 + A_03 * t53) / t38) + t48;
+    const real_t t58 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / t38) + t48;
+    const real_t t59 = -(B_22 * (t34 * A_01 - A_02 * t53) / t38) + t48;
+    const real_t t60 = t31 - t33;
+    const real_t A_13_below = t35 - t36;
+    const real_t B_11_below = c1_z * t60 + c1_y * A_13_below;
+    const real_t A_02_below = c1_y - t60;
+    const real_t t61 = t6 - A_13_below;
+    const real_t A_03_below = c1_z + A_13_below;
+    const real_t A_22_below = t5 - t60;
+    const real_t t62 = B_11_below * (A_02_below * t61 + A_03_below * A_22_below);
+    const real_t t63 = t51 + t52;
+    const real_t A_21_below = t9 - t63;
+    const real_t B_22_below = t50 * A_21_below - t54 * A_22_below - t4 * t61;
+    const real_t t64 = B_22_below * (A_13_below * A_02_below + t60 * A_03_below);
+    const real_t A_01_below = c1_x - t63;
+    const real_t t65 = B_11_below * (t61 * A_01_below + A_03_below * A_21_below);
+    const real_t t66 = B_22_below * (A_13_below * A_01_below + A_03_below * t63);
+    const real_t t67 = A_22_below * A_01_below - A_02_below * A_21_below;
+    const real_t t68 = B_22_below * (t60 * A_01_below - A_02_below * t63);
+    const real_t t69 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t69 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t70 = u_u * v_v;
+    const real_t t71 = product_2 - t70 * CLOSEDFORM_C(0.000244140625);
+    const int t72 = (u_u <= t14) | (u_u + v_v <= t14) | (t71 <= CLOSEDFORM_VANISHING * t70);
+    const int t73 = t72 | (product_2 <= t13 * (t12 * u_u)) | (both <= CLOSEDFORM_VANISHING * t12);
+    J[0] = t49;
+    J[1] = t55;
+    J[2] = t56;
+    J[3] = t57;
+    J[4] = t58;
+    J[5] = t59;
+    J[6] = -(t62 / t38) + t48;
+    J[7] = -(t64 / t38) + t48;
+    J[8] = t65 / t38 + t48;
+    J[9] = t66 / t38 + t48;
+    J[10] = B_11_below * t67 / t38 + t48;
+    J[11] = t68 / t38 + t48;
+    rare[0] = (t73) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void spherical_five_bar_jacobian_common_batch(size_t n, const spherical_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const spherical_five_bar_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
+        cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
+        real_t angle_1[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_1[i] = params->alpha1;
+        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
+        real_t angle_2[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_2[i] = params->gamma;
+        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = params->alpha2;
+        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
+        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
+        real_t angle_6[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
+        cf_sincos_block_rounded(length, one, angle_6, sines[6], cosines[6]);
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
+            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
+            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+            real_t J_i[12];
+            real_t rare_i[1];
+            spherical_five_bar_jacobian_common_kernel(0, one, &local, q_i, sines_i, cosines_i, J_i, rare_i);
+            J[start + i] = J_i[0];
+            J[J_stride + start + i] = J_i[1];
+            J[2 * J_stride + start + i] = J_i[2];
+            J[3 * J_stride + start + i] = J_i[3];
+            J[4 * J_stride + start + i] = J_i[4];
+            J[5 * J_stride + start + i] = J_i[5];
+            J[6 * J_stride + start + i] = J_i[6];
+            J[7 * J_stride + start + i] = J_i[7];
+            J[8 * J_stride + start + i] = J_i[8];
+            J[9 * J_stride + start + i] = J_i[9];
+            J[10 * J_stride + start + i] = J_i[10];
+            J[11 * J_stride + start + i] = J_i[11];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void spherical_five_bar_jacobian_common(const spherical_five_bar_params *params,
+    const real_t q[2], real_t J[12], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, params->alpha2, q[1], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
+    real_t rare_real[1];
+    spherical_five_bar_jacobian_common_kernel(1, one, params, q, sines, cosines, J, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1403,16 +2284,15 @@ void spherical_five_bar_jacobian(const spherical_five_bar_params *params,
     spherical_five_bar_params params_scaled;
     int exponent = 0;
     const real_t size = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
         params = &params_scaled;
     }
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    spherical_five_bar_jacobian_kernel(1, params, q, sines, cosines, J);
+    uint8_t rare[1];
+    spherical_five_bar_jacobian_common(params, q, J, rare);
+    if (CF_UNLIKELY(rare[0])) spherical_five_bar_jacobian_whole(params, q, J);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(12, J_degrees, exponent, J, J);
     }
@@ -1437,61 +2317,29 @@ void spherical_five_bar_jacobian_batch(size_t n, const spherical_five_bar_params
     const real_t *q, size_t q_stride,
     real_t *J, size_t J_stride)
 {
-    const spherical_five_bar_params local = *params;
     const real_t dimensions = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         spherical_five_bar_jacobian_other_sizes(n, params, q, q_stride, J, J_stride);
         return;
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + start, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha1;
-        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->gamma;
-        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
-        cf_sincos_block(length, q + q_stride + start, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha2;
-        cf_sincos_block(length, angle_4, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
-        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
-        real_t angle_6[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
-        cf_sincos_block(length, angle_6, sines[6], cosines[6]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
-            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
-            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        spherical_five_bar_jacobian_common_batch(length, params, q + start, q_stride, J + start, J_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[2];
+            for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
             real_t J_i[12];
-            spherical_five_bar_jacobian_kernel(0, &local, q_i, sines_i, cosines_i, J_i);
-            J[start + i] = J_i[0];
-            J[J_stride + start + i] = J_i[1];
-            J[2 * J_stride + start + i] = J_i[2];
-            J[3 * J_stride + start + i] = J_i[3];
-            J[4 * J_stride + start + i] = J_i[4];
-            J[5 * J_stride + start + i] = J_i[5];
-            J[6 * J_stride + start + i] = J_i[6];
-            J[7 * J_stride + start + i] = J_i[7];
-            J[8 * J_stride + start + i] = J_i[8];
-            J[9 * J_stride + start + i] = J_i[9];
-            J[10 * J_stride + start + i] = J_i[10];
-            J[11 * J_stride + start + i] = J_i[11];
+            spherical_five_bar_jacobian_whole(params, q_i, J_i);
+            for (size_t k = 0; k < 12; ++k) J[k * J_stride + i] = J_i[k];
+
         }
     }
 }
 
-CF_INLINE void spherical_five_bar_singularities_kernel(const int single,
+/* Every case. */
+CF_INLINE void spherical_five_bar_singularities_whole_kernel(const int single,
     const spherical_five_bar_params *params,
     const real_t q[2], const real_t *sines,
     const real_t *cosines, real_t factors[6])
@@ -1529,106 +2377,324 @@ CF_INLINE void spherical_five_bar_singularities_kernel(const int single,
     const real_t t7 = c2_z - c1_z;
     const real_t u_u = t5 * t5 + t6 * t6 + t7 * t7;
     const real_t t8 = r * r;
-    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t8;
-    const int same = u_u <= t9;
-    const real_t t10 = cf_rarely(single, same, c1_y, t6);
+    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t10 = t8 * t9;
+    const int same = u_u <= t10;
+    const real_t t11 = cf_rarely(single, same, c1_y, t6);
+    const real_t t12 = cf_rarely(single, same, -t7, c1_z);
+    const real_t t13 = cf_rarely(single, same, c1_z, -t7);
+    const real_t t14 = cf_rarely(single, same, t6, c1_y);
+    const real_t product_x = t11 * t12 - t13 * t14;
     const real_t v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
-    const int all_same = u_u + v_v <= t9;
+    const int all_same = u_u + v_v <= t10;
     const real_t whole = cf_select(r == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), r);
+    const real_t t15 = cf_rarely(single, same, c1_x, t5);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t15);
+    const real_t t16 = cf_rarely(single, same, t5, c1_x);
+    const real_t product_y = t12 * a_x + t13 * t16;
+    const real_t t17 = product_x * product_x + product_y * product_y;
+    const real_t t18 = t14 * a_x + t11 * t16;
+    const real_t product_2 = t17 + t18 * t18;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t11 = cf_rarely(single, same, c1_x, t5);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t11);
-    const real_t t12 = cf_rarely(single, same, t6, c1_y);
-    const real_t t13 = cf_rarely(single, same, t5, c1_x);
-    const real_t t14 = a_x * t12 + t10 * t13;
-    const real_t t15 = cf_rarely(single, same, c1_z, -t7);
-    const real_t t16 = cf_rarely(single, same, -t7, c1_z);
-    const real_t m_y = a_x * t16 + t13 * t15;
-    const real_t t17 = over * (t10 * t14 + t15 * m_y);
-    const real_t m_x = t10 * t16 - t12 * t15;
-    const real_t t18 = over * (a_x * t14 - t15 * m_x);
-    const real_t t19 = over * (a_x * m_y + t10 * m_x);
-    const real_t nu = t17 * t17 + t18 * t18 + t19 * t19;
-    const int in_line = nu <= t9;
-    const real_t t20 = whole * t15;
-    const real_t s_w = cf_sign(-(t10 * a_x));
-    const real_t t21 = whole * (t10 - a_x * s_w);
-    const real_t t22 = over * (CLOSEDFORM_C(2.0) * (t20 * t20) + t21 * t21);
-    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t22, nu));
+    const real_t t19 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t20 = product_2 - t19 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t20 <= CLOSEDFORM_VANISHING * t19;
+    const real_t t21 = cf_nonzero(single, mu);
+    const real_t over = CLOSEDFORM_C(1.0) / t21;
+    const real_t t22 = t11 * t18 + t13 * product_y;
+    const real_t t23 = a_x * t18 - t13 * product_x;
+    const real_t t24 = a_x * product_y + t11 * product_x;
+    const real_t m_m = cf_rarely(single, slim, over * (t22 * t22 + t23 * t23 + t24 * t24), product_2);
+    const int in_line = m_m <= t9 * (t8 * mu);
+    const real_t t25 = whole * t13;
+    const real_t s_w = cf_sign(-(t11 * a_x));
+    const real_t t26 = whole * (t11 - a_x * s_w);
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t25 * t25) + t26 * t26, m_m);
+    const real_t nu = w_w / t21;
+    const real_t beside_a = cf_sqrt(nu);
     const real_t length_a = cf_sqrt(mu);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
-    const real_t over_a = length_n * part;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * beside_a);
+    const real_t over_a = beside_a * part;
     const real_t D = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), length_a);
-    const real_t t23 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_abs(s_beta1_half) * t23;
-    const real_t t24 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t23;
-    const real_t t25 = cf_rarely(single, same, r, r_2);
-    const real_t t26 = t24 - t25;
-    const real_t outer = cf_max(t26, CLOSEDFORM_C(0.0));
-    const real_t t27 = D - r_1;
-    const real_t t28 = t25 + t27;
-    const real_t inner = cf_max(t28, CLOSEDFORM_C(0.0));
+    const real_t t27 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_abs(s_beta1_half) * t27;
+    const real_t t28 = D + r_1;
+    const real_t r_2 = cf_abs(s_beta2_half) * t27;
+    const real_t t29 = cf_rarely(single, same, r, r_2);
+    const real_t t30 = t28 - t29;
+    const real_t outer = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t t31 = D - r_1;
+    const real_t t32 = t29 + t31;
+    const real_t inner = cf_max(t32, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t29 = t25 - t27;
-    const real_t slack = cf_max(t29, CLOSEDFORM_C(0.0));
-    const real_t t30 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t along = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t30);
+    const real_t t33 = t29 - t31;
+    const real_t slack = cf_max(t33, CLOSEDFORM_C(0.0));
+    const real_t t34 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t34);
     const real_t X = over_a * along;
-    const real_t t31 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along;
-    const real_t t32 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t31 * t31;
-    const real_t t33 = cf_root(single, outer * inner * slack * (t25 + t24));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t33);
-    const real_t left = t32 + rho * rho;
-    const real_t j = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), length_n);
-    const real_t t34 = CLOSEDFORM_C(2.0) * j * rho;
-    const real_t t35 = left + t34;
-    const real_t upper = cf_max(t35, CLOSEDFORM_C(0.0));
-    const real_t t36 = t34 - left;
-    const real_t lower = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t t35 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), nu);
+    const real_t t36 = over_a * (a_x * t16 - t11 * t14 - t12 * t13) + along;
+    const real_t t37 = t35 - cf_rarely(single, same, r_2 * r_2, t8) + t36 * t36;
+    const real_t t38 = cf_root(single, outer * inner * slack * (t29 + t28));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t38);
+    const real_t left = t37 + rho * rho;
+    const real_t j = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), beside_a);
+    const real_t t39 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t40 = left + t39;
+    const real_t upper = cf_max(t40, CLOSEDFORM_C(0.0));
+    const real_t t41 = t39 - left;
+    const real_t lower = cf_max(t41, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t37 = cf_rarely(single, same, r_2, r);
-    const int t38 = (both <= CLOSEDFORM_VANISHING * (r * t37)) | in_line;
-    const real_t half = rho / cf_divisor(single, t38, both);
-    const real_t Y = cf_select(t38, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
-    const real_t t39 = t10 * X + t18 * Y;
-    const real_t w_y = cf_rarely(single, in_line, -t20, a_x * t19 + t15 * t17);
-    const real_t t40 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * cf_rarely(single, t38, rho, t40);
-    const real_t t41 = w_y * h;
-    const real_t t42 = t39 - t41;
-    const real_t t43 = t15 * X + t19 * Y;
-    const real_t w_z = cf_rarely(single, in_line, t21, -(a_x * t18 + t10 * t17));
-    const real_t t44 = w_z * h;
-    const real_t t45 = t43 - t44;
-    const int t46 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t47 = t46 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t48 = t47 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t49 = t48 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t50 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t51 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
-    const int t52 = (-t51 <= t29) & (-t51 <= t26) & (-t51 <= t28);
-    const real_t t53 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t37;
-    const real_t t54 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t53));
-    const int failed = (!(t49 & t50)) | (!(t52 & (-t54 <= t35) & (-t54 <= t36)));
-    const real_t t55 = cf_poison(single, failed);
-    const real_t t56 = s_gamma * c2_z;
-    const real_t t57 = t11 * X + t17 * Y;
-    const real_t w_x = cf_rarely(single, in_line, -(t20 * s_w), t10 * t19 - t15 * t18);
-    const real_t t58 = w_x * h;
-    const real_t t59 = c_gamma * c2_z;
-    const real_t B_22 = t56 * (t5 - (t57 - t58)) - t59 * (t6 - t42) - t3 * (t7 + t45);
-    const real_t Delta = mu * nu * h;
-    const real_t t60 = t39 + t41;
-    const real_t t61 = t43 + t44;
-    const real_t B_22_below = t56 * (t5 - (t57 + t58)) - t59 * (t6 - t60) - t3 * (t7 + t61);
-    factors[0] = c1_z * t42 - c1_y * t45 + t55;
-    factors[1] = B_22 + t55;
-    factors[2] = Delta + t55;
-    factors[3] = c1_z * t60 - c1_y * t61 + t55;
-    factors[4] = B_22_below + t55;
-    factors[5] = -Delta + t55;
+    const real_t t42 = cf_rarely(single, same, r_2, r);
+    const int t43 = (both <= CLOSEDFORM_VANISHING * (r * t42)) | in_line;
+    const real_t half = rho / cf_divisor(single, t43, both);
+    const real_t Y = cf_select(t43, CLOSEDFORM_C(0.0), part * over_a * half * (upper - lower));
+    const real_t t44 = t11 * X + t23 * Y;
+    const real_t m_y = cf_rarely(single, slim, over * (a_x * t24 + t13 * t22), product_y);
+    const real_t t45 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t43, rho, t45);
+    const real_t t46 = cf_rarely(single, in_line, -t25, m_y) * h;
+    const real_t t47 = t44 - t46;
+    const real_t t48 = t13 * X + t24 * Y;
+    const real_t t49 = cf_rarely(single, slim, over * (a_x * t23 + t11 * t22), t18);
+    const real_t t50 = cf_rarely(single, in_line, t26, -t49) * h;
+    const real_t t51 = t48 - t50;
+    const int t52 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t53 = t52 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t54 = t53 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t55 = t54 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t56 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t57 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
+    const int t58 = (-t57 <= t33) & (-t57 <= t30) & (-t57 <= t32);
+    const real_t t59 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t42;
+    const real_t t60 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t59));
+    const int failed = (!(t55 & t56)) | (!(t58 & (-t60 <= t40) & (-t60 <= t41)));
+    const real_t t61 = cf_poison(single, failed);
+    const real_t t62 = s_gamma * c2_z;
+    const real_t t63 = t15 * X + t22 * Y;
+    const real_t m_x = cf_rarely(single, slim, over * (t11 * t24 - t13 * t23), product_x);
+    const real_t w_x = cf_rarely(single, in_line, -(t25 * s_w), m_x);
+    const real_t t64 = w_x * h;
+    const real_t t65 = c_gamma * c2_z;
+    const real_t B_22 = t62 * (t5 - (t63 - t64)) - t65 * (t6 - t47) - t3 * (t7 + t51);
+    const real_t Delta = m_m * h;
+    const real_t t66 = t44 + t46;
+    const real_t t67 = t48 + t50;
+    const real_t B_22_below = t62 * (t5 - (t63 + t64)) - t65 * (t6 - t66) - t3 * (t7 + t67);
+    factors[0] = c1_z * t47 - c1_y * t51 + t61;
+    factors[1] = B_22 + t61;
+    factors[2] = Delta + t61;
+    factors[3] = c1_z * t66 - c1_y * t67 + t61;
+    factors[4] = B_22_below + t61;
+    factors[5] = -Delta + t61;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void spherical_five_bar_singularities_whole(const spherical_five_bar_params *params,
+    const real_t q[2], real_t factors[6])
+{
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    spherical_five_bar_singularities_whole_kernel(1, params, q, sines, cosines, factors);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void spherical_five_bar_singularities_common_kernel(const int single, const real_t one,
+    const spherical_five_bar_params *params,
+    const real_t q[2], const real_t *sines,
+    const real_t *cosines, real_t factors[6],
+    real_t rare[1])
+{
+    const real_t r = params->r;
+    const real_t gamma = params->gamma;
+    const real_t alpha1 = params->alpha1;
+    const real_t alpha2 = params->alpha2;
+    const real_t beta1 = params->beta1;
+    const real_t beta2 = params->beta2;
+    const real_t theta1 = q[0];
+    const real_t theta2 = q[1];
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s_alpha1 = sines[1];
+    const real_t c_alpha1 = cosines[1];
+    const real_t s_gamma = sines[2];
+    const real_t c_gamma = cosines[2];
+    const real_t s_alpha2 = sines[3];
+    const real_t c_alpha2 = cosines[3];
+    const real_t s2 = sines[4];
+    const real_t c2 = cosines[4];
+    const real_t s_beta1_half = sines[5];
+    const real_t s_beta2_half = sines[6];
+    const real_t t1 = r * cf_abs(s_alpha1);
+    const real_t c1_z = cf_rounded(single, one, s1 * t1);
+    const real_t c1_y = cf_rounded(single, one, c1 * t1);
+    const real_t t2 = r * c_alpha2;
+    const real_t t3 = r * cf_abs(s_alpha2);
+    const real_t t4 = c2 * t3;
+    const real_t c2_y = cf_rounded(single, one, s_gamma * t2) + cf_rounded(single, one, c_gamma * t4);
+    const real_t t5 = c1_y - c2_y;
+    const real_t c2_z = cf_rounded(single, one, s2 * t3);
+    const real_t t6 = c2_z - c1_z;
+    const real_t product_x = cf_rounded(single, one, c1_z * t5) + cf_rounded(single, one, c1_y * t6);
+    const real_t t7 = cf_rounded(single, one, product_x * product_x);
+    const real_t c1_x = cf_rounded(single, one, r * c_alpha1);
+    const real_t t8 = cf_rounded(single, one, s_gamma * t4) - cf_rounded(single, one, c_gamma * t2);
+    const real_t t9 = c1_x + t8;
+    const real_t t10 = cf_rounded(single, one, c1_z * t9) + cf_rounded(single, one, c1_x * t6);
+    const real_t m_z = cf_rounded(single, one, c1_y * t9) - cf_rounded(single, one, c1_x * t5);
+    const real_t product_2 = t7 + cf_rounded(single, one, t10 * t10) + cf_rounded(single, one, m_z * m_z);
+    const real_t t11 = cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, t5 * t5);
+    const real_t u_u = t11 + cf_rounded(single, one, t6 * t6);
+    const real_t t12 = cf_rounded(single, one, r * r);
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const real_t nu = product_2 / cf_divisor(single, u_u <= t14, u_u);
+    const real_t beside_a = cf_sqrt(nu);
+    const real_t length_a = cf_sqrt(u_u);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t14, length_a * beside_a);
+    const real_t over_a = beside_a * part;
+    const real_t t15 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_rounded(single, one, cf_abs(s_beta1_half) * t15);
+    const real_t r_2 = cf_rounded(single, one, cf_abs(s_beta2_half) * t15);
+    const real_t t16 = r_1 - r_2;
+    const real_t t17 = length_a + t16;
+    const real_t outer = cf_max(t17, CLOSEDFORM_C(0.0));
+    const real_t t18 = length_a - t16;
+    const real_t inner = cf_max(t18, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t14, outer + inner);
+    const real_t t19 = r_1 + r_2;
+    const real_t t20 = t19 - length_a;
+    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
+    const real_t t21 = share * (length_a + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = length_a * CLOSEDFORM_C(0.5) + t21;
+    const real_t X = over_a * along;
+    const real_t t22 = cf_root(single, outer * inner * slack * (length_a + t19));
+    const real_t rho = share * t22;
+    const real_t t23 = cf_rounded(single, one, CLOSEDFORM_C(2.0) * beside_a * rho);
+    const real_t t24 = cf_rounded(single, one, c1_x * t9) + cf_rounded(single, one, c1_y * t5);
+    const real_t t25 = cf_rounded(single, one, over_a * (t24 - cf_rounded(single, one, c1_z * t6)));
+    const real_t t26 = t25 - along;
+    const real_t t27 = t12 - nu - cf_rounded(single, one, t26 * t26);
+    const real_t t28 = t27 - cf_rounded(single, one, rho * rho);
+    const real_t t29 = t23 - t28;
+    const real_t upper = cf_max(t29, CLOSEDFORM_C(0.0));
+    const real_t t30 = t28 + t23;
+    const real_t lower = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t both = upper + lower;
+    const real_t half = rho / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t12, both);
+    const real_t Y = part * over_a * half * (upper - lower);
+    const real_t t31 = t5 * X + (t9 * m_z + t6 * product_x) * Y;
+    const real_t t32 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * t32;
+    const real_t t33 = t10 * h;
+    const real_t t34 = t31 + t33;
+    const real_t t35 = t6 * X - (t9 * t10 + t5 * product_x) * Y;
+    const real_t t36 = m_z * h;
+    const real_t A_13 = t35 + t36;
+    const int t37 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t38 = t37 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t39 = t38 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t40 = t39 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t41 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t42 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
+    const int t43 = (-t42 <= t20) & (-t42 <= t17) & (-t42 <= t18);
+    const real_t t44 = r * (r + r * CLOSEDFORM_C(2.2737367544323206e-13));
+    const real_t t45 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * t44);
+    const int failed = (!(t40 & t41)) | (!(t43 & (-t45 <= t29) & (-t45 <= t30)));
+    const real_t t46 = cf_poison(single, failed);
+    const real_t t47 = s_gamma * c2_z;
+    const real_t t48 = t9 * X - (t5 * m_z - t6 * t10) * Y;
+    const real_t t49 = product_x * h;
+    const real_t t50 = c_gamma * c2_z;
+    const real_t B_22 = t47 * (t9 - (t48 - t49)) - t50 * (t5 - t34) - t4 * (t6 - A_13);
+    const real_t Delta = product_2 * h;
+    const real_t t51 = t31 - t33;
+    const real_t A_13_below = t35 - t36;
+    const real_t B_22_below = t47 * (t9 - (t48 + t49)) - t50 * (t5 - t51) - t4 * (t6 - A_13_below);
+    const real_t t52 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t52 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t53 = u_u * v_v;
+    const real_t t54 = product_2 - t53 * CLOSEDFORM_C(0.000244140625);
+    const int t55 = (u_u <= t14) | (u_u + v_v <= t14) | (t54 <= CLOSEDFORM_VANISHING * t53);
+    const int t56 = t55 | (product_2 <= t13 * (t12 * u_u)) | (both <= CLOSEDFORM_VANISHING * t12);
+    factors[0] = c1_z * t34 + c1_y * A_13 + t46;
+    factors[1] = B_22 + t46;
+    factors[2] = Delta + t46;
+    factors[3] = c1_z * t51 + c1_y * A_13_below + t46;
+    factors[4] = B_22_below + t46;
+    factors[5] = -Delta + t46;
+    rare[0] = (t56) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void spherical_five_bar_singularities_common_batch(size_t n, const spherical_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const spherical_five_bar_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
+        cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
+        real_t angle_1[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_1[i] = params->alpha1;
+        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
+        real_t angle_2[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_2[i] = params->gamma;
+        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = params->alpha2;
+        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
+        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
+        real_t angle_6[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
+        cf_sincos_block_rounded(length, one, angle_6, sines[6], cosines[6]);
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
+            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
+            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+            real_t factors_i[6];
+            real_t rare_i[1];
+            spherical_five_bar_singularities_common_kernel(0, one, &local, q_i, sines_i, cosines_i, factors_i, rare_i);
+            factors[start + i] = factors_i[0];
+            factors[factors_stride + start + i] = factors_i[1];
+            factors[2 * factors_stride + start + i] = factors_i[2];
+            factors[3 * factors_stride + start + i] = factors_i[3];
+            factors[4 * factors_stride + start + i] = factors_i[4];
+            factors[5 * factors_stride + start + i] = factors_i[5];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void spherical_five_bar_singularities_common(const spherical_five_bar_params *params,
+    const real_t q[2], real_t factors[6],
+    uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, params->alpha2, q[1], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
+    real_t rare_real[1];
+    spherical_five_bar_singularities_common_kernel(1, one, params, q, sines, cosines, factors, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1639,16 +2705,15 @@ void spherical_five_bar_singularities(const spherical_five_bar_params *params,
     spherical_five_bar_params params_scaled;
     int exponent = 0;
     const real_t size = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
         params = &params_scaled;
     }
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[0], params->alpha1, params->gamma, q[1], params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    spherical_five_bar_singularities_kernel(1, params, q, sines, cosines, factors);
+    uint8_t rare[1];
+    spherical_five_bar_singularities_common(params, q, factors, rare);
+    if (CF_UNLIKELY(rare[0])) spherical_five_bar_singularities_whole(params, q, factors);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(6, factors_degrees, exponent, factors, factors);
     }
@@ -1673,55 +2738,29 @@ void spherical_five_bar_singularities_batch(size_t n, const spherical_five_bar_p
     const real_t *q, size_t q_stride,
     real_t *factors, size_t factors_stride)
 {
-    const spherical_five_bar_params local = *params;
     const real_t dimensions = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         spherical_five_bar_singularities_other_sizes(n, params, q, q_stride, factors, factors_stride);
         return;
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + start, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha1;
-        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->gamma;
-        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
-        cf_sincos_block(length, q + q_stride + start, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha2;
-        cf_sincos_block(length, angle_4, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
-        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
-        real_t angle_6[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
-        cf_sincos_block(length, angle_6, sines[6], cosines[6]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
-            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
-            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        spherical_five_bar_singularities_common_batch(length, params, q + start, q_stride, factors + start, factors_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[2];
+            for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
             real_t factors_i[6];
-            spherical_five_bar_singularities_kernel(0, &local, q_i, sines_i, cosines_i, factors_i);
-            factors[start + i] = factors_i[0];
-            factors[factors_stride + start + i] = factors_i[1];
-            factors[2 * factors_stride + start + i] = factors_i[2];
-            factors[3 * factors_stride + start + i] = factors_i[3];
-            factors[4 * factors_stride + start + i] = factors_i[4];
-            factors[5 * factors_stride + start + i] = factors_i[5];
+            spherical_five_bar_singularities_whole(params, q_i, factors_i);
+            for (size_t k = 0; k < 6; ++k) factors[k * factors_stride + i] = factors_i[k];
+
         }
     }
 }
 
-CF_INLINE void spherical_five_bar_condition_number_kernel(const int single,
+/* Every case. */
+CF_INLINE void spherical_five_bar_condition_number_whole_kernel(const int single,
     const spherical_five_bar_params *params,
     const real_t q[2], const real_t *sines,
     const real_t *cosines, real_t kappa[2])
@@ -1758,153 +2797,410 @@ CF_INLINE void spherical_five_bar_condition_number_kernel(const int single,
     const real_t t7 = c1_z - s2 * t1;
     const real_t u_u = t4 * t4 + t6 * t6 + t7 * t7;
     const real_t t8 = r * r;
-    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING * t8;
-    const int same = u_u <= t9;
-    const real_t t10 = cf_rarely(single, same, c1_x, t4);
+    const real_t t9 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t10 = t8 * t9;
+    const int same = u_u <= t10;
+    const real_t t11 = cf_rarely(single, same, c1_x, t4);
+    const real_t t12 = cf_rarely(single, same, c1_y, t6);
+    const real_t t13 = cf_rarely(single, same, t7, c1_z);
+    const real_t t14 = cf_rarely(single, same, c1_z, t7);
+    const real_t t15 = cf_rarely(single, same, t6, c1_y);
+    const real_t product_x = t12 * t13 - t14 * t15;
     const real_t v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
-    const int all_same = u_u + v_v <= t9;
+    const int all_same = u_u + v_v <= t10;
     const real_t whole = cf_select(r == CLOSEDFORM_C(0.0), CLOSEDFORM_C(1.0), r);
+    const real_t a_x = cf_rarely(single, all_same, whole, -t11);
+    const real_t t16 = cf_rarely(single, same, t4, c1_x);
+    const real_t product_y = t13 * a_x + t14 * t16;
+    const real_t t17 = product_x * product_x + product_y * product_y;
+    const real_t t18 = t15 * a_x + t12 * t16;
+    const real_t product_2 = t17 + t18 * t18;
     const real_t mu = cf_rarely(single, all_same, whole * whole, cf_rarely(single, same, v_v, u_u));
-    const real_t over = CLOSEDFORM_C(1.0) / cf_nonzero(single, mu);
-    const real_t t11 = cf_rarely(single, same, c1_y, t6);
-    const real_t a_x = cf_rarely(single, all_same, whole, -t10);
-    const real_t t12 = cf_rarely(single, same, t6, c1_y);
-    const real_t t13 = cf_rarely(single, same, t4, c1_x);
-    const real_t t14 = a_x * t12 + t11 * t13;
-    const real_t t15 = cf_rarely(single, same, c1_z, t7);
-    const real_t t16 = cf_rarely(single, same, t7, c1_z);
-    const real_t m_y = a_x * t16 + t13 * t15;
-    const real_t t17 = over * (t11 * t14 + t15 * m_y);
-    const real_t m_x = t11 * t16 - t12 * t15;
-    const real_t t18 = over * (a_x * t14 - t15 * m_x);
-    const real_t t19 = over * (a_x * m_y + t11 * m_x);
-    const real_t nu = t17 * t17 + t18 * t18 + t19 * t19;
-    const int in_line = nu <= t9;
-    const real_t t20 = whole * t15;
-    const real_t s_w = cf_sign(-(t11 * a_x));
-    const real_t t21 = whole * (t11 - a_x * s_w);
-    const real_t t22 = over * (CLOSEDFORM_C(2.0) * (t20 * t20) + t21 * t21);
-    const real_t length_n = cf_sqrt(cf_rarely(single, in_line, t22, nu));
+    const real_t t19 = mu * cf_rarely(single, same, u_u, v_v);
+    const real_t t20 = product_2 - t19 * CLOSEDFORM_C(0.000244140625);
+    const int slim = t20 <= CLOSEDFORM_VANISHING * t19;
+    const real_t t21 = cf_nonzero(single, mu);
+    const real_t over = CLOSEDFORM_C(1.0) / t21;
+    const real_t t22 = t12 * t18 + t14 * product_y;
+    const real_t t23 = a_x * t18 - t14 * product_x;
+    const real_t t24 = a_x * product_y + t12 * product_x;
+    const real_t m_m = cf_rarely(single, slim, over * (t22 * t22 + t23 * t23 + t24 * t24), product_2);
+    const int in_line = m_m <= t9 * (t8 * mu);
+    const real_t t25 = whole * t14;
+    const real_t s_w = cf_sign(-(t12 * a_x));
+    const real_t t26 = whole * (t12 - a_x * s_w);
+    const real_t w_w = cf_rarely(single, in_line, CLOSEDFORM_C(2.0) * (t25 * t25) + t26 * t26, m_m);
+    const real_t nu = w_w / t21;
+    const real_t beside_a = cf_sqrt(nu);
     const real_t length_a = cf_sqrt(mu);
-    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * length_n);
-    const real_t over_a = length_n * part;
+    const real_t part = CLOSEDFORM_C(1.0) / cf_nonzero(single, length_a * beside_a);
+    const real_t over_a = beside_a * part;
     const real_t D = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), length_a);
-    const real_t t23 = r * CLOSEDFORM_C(2.0);
-    const real_t r_1 = cf_abs(s_beta1_half) * t23;
-    const real_t t24 = D + r_1;
-    const real_t r_2 = cf_abs(s_beta2_half) * t23;
-    const real_t t25 = cf_rarely(single, same, r, r_2);
-    const real_t t26 = t24 - t25;
-    const real_t outer = cf_max(t26, CLOSEDFORM_C(0.0));
-    const real_t t27 = D - r_1;
-    const real_t t28 = t25 + t27;
-    const real_t inner = cf_max(t28, CLOSEDFORM_C(0.0));
+    const real_t t27 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_abs(s_beta1_half) * t27;
+    const real_t t28 = D + r_1;
+    const real_t r_2 = cf_abs(s_beta2_half) * t27;
+    const real_t t29 = cf_rarely(single, same, r, r_2);
+    const real_t t30 = t28 - t29;
+    const real_t outer = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t t31 = D - r_1;
+    const real_t t32 = t29 + t31;
+    const real_t inner = cf_max(t32, CLOSEDFORM_C(0.0));
     const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, outer + inner);
-    const real_t t29 = t25 - t27;
-    const real_t slack = cf_max(t29, CLOSEDFORM_C(0.0));
-    const real_t t30 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
-    const real_t along = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t30);
+    const real_t t33 = t29 - t31;
+    const real_t slack = cf_max(t33, CLOSEDFORM_C(0.0));
+    const real_t t34 = share * (D + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = cf_rarely(single, all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5) + t34);
     const real_t X = over_a * along;
-    const real_t t31 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along;
-    const real_t t32 = nu - cf_rarely(single, same, r_2 * r_2, t8) + t31 * t31;
-    const real_t t33 = cf_root(single, outer * inner * slack * (t25 + t24));
-    const real_t rho = cf_rarely(single, all_same, r_1, share * t33);
-    const real_t left = t32 + rho * rho;
-    const real_t j = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), length_n);
-    const real_t t34 = CLOSEDFORM_C(2.0) * j * rho;
-    const real_t t35 = left + t34;
-    const real_t upper = cf_max(t35, CLOSEDFORM_C(0.0));
-    const real_t t36 = t34 - left;
-    const real_t lower = cf_max(t36, CLOSEDFORM_C(0.0));
+    const real_t t35 = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), nu);
+    const real_t t36 = over_a * (a_x * t16 - t12 * t15 - t13 * t14) + along;
+    const real_t t37 = t35 - cf_rarely(single, same, r_2 * r_2, t8) + t36 * t36;
+    const real_t t38 = cf_root(single, outer * inner * slack * (t29 + t28));
+    const real_t rho = cf_rarely(single, all_same, r_1, share * t38);
+    const real_t left = t37 + rho * rho;
+    const real_t j = cf_rarely(single, in_line, CLOSEDFORM_C(0.0), beside_a);
+    const real_t t39 = CLOSEDFORM_C(2.0) * j * rho;
+    const real_t t40 = left + t39;
+    const real_t upper = cf_max(t40, CLOSEDFORM_C(0.0));
+    const real_t t41 = t39 - left;
+    const real_t lower = cf_max(t41, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
-    const real_t t37 = cf_rarely(single, same, r_2, r);
-    const int t38 = (both <= CLOSEDFORM_VANISHING * (r * t37)) | in_line;
-    const real_t half = rho / cf_divisor(single, t38, both);
-    const real_t Y = cf_rarely(single, t38, CLOSEDFORM_C(0.0), length_a * part * half * (upper - lower));
-    const real_t t39 = t10 * X + t17 * Y;
-    const real_t w_x = cf_rarely(single, in_line, -(t20 * s_w), t11 * t19 - t15 * t18);
-    const real_t t40 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * cf_rarely(single, t38, rho, t40);
-    const real_t t41 = w_x * h;
-    const real_t t42 = t39 - t41;
-    const real_t A_01 = c1_x - t42;
-    const real_t t43 = t11 * X + t18 * Y;
-    const real_t w_y = cf_rarely(single, in_line, -t20, a_x * t19 + t15 * t17);
-    const real_t t44 = w_y * h;
-    const real_t t45 = t43 - t44;
-    const real_t A_02 = c1_y - t45;
-    const real_t t46 = t15 * X + t19 * Y;
-    const real_t w_z = cf_rarely(single, in_line, t21, -(a_x * t18 + t11 * t17));
-    const real_t t47 = w_z * h;
-    const real_t t48 = t46 - t47;
-    const real_t A_03 = c1_z - t48;
+    const real_t t42 = cf_rarely(single, same, r_2, r);
+    const int t43 = (both <= CLOSEDFORM_VANISHING * (r * t42)) | in_line;
+    const real_t half = rho / cf_divisor(single, t43, both);
+    const real_t Y = cf_rarely(single, t43, CLOSEDFORM_C(0.0), part * over_a * half * (upper - lower));
+    const real_t t44 = t11 * X + t22 * Y;
+    const real_t m_x = cf_rarely(single, slim, over * (t12 * t24 - t14 * t23), product_x);
+    const real_t w_x = cf_rarely(single, in_line, -(t25 * s_w), m_x);
+    const real_t t45 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * cf_rarely(single, t43, rho, t45);
+    const real_t t46 = w_x * h;
+    const real_t t47 = t44 - t46;
+    const real_t A_01 = c1_x - t47;
+    const real_t t48 = t12 * X + t23 * Y;
+    const real_t m_y = cf_rarely(single, slim, over * (a_x * t24 + t14 * t22), product_y);
+    const real_t t49 = cf_rarely(single, in_line, -t25, m_y) * h;
+    const real_t t50 = t48 - t49;
+    const real_t A_02 = c1_y - t50;
+    const real_t t51 = t14 * X + t24 * Y;
+    const real_t t52 = cf_rarely(single, slim, over * (a_x * t23 + t12 * t22), t18);
+    const real_t t53 = cf_rarely(single, in_line, t26, -t52) * h;
+    const real_t t54 = t51 - t53;
+    const real_t A_03 = c1_z - t54;
     const real_t strut = cf_sqrt(A_01 * A_01 + A_02 * A_02 + A_03 * A_03);
-    const real_t t49 = cf_nonzero(single, strut);
-    const real_t radial_x = A_01 / t49;
-    const real_t radial_y = A_02 / t49;
-    const real_t radial_z = A_03 / t49;
-    const real_t t50 = t42 * radial_x + t45 * radial_y + t48 * radial_z;
-    const real_t t51 = t42 - radial_x * t50;
-    const real_t t52 = t45 - radial_y * t50;
-    const real_t t53 = t48 - radial_z * t50;
-    const real_t square1 = t51 * t51 + t52 * t52 + t53 * t53;
-    const real_t A_21 = t4 - t42;
-    const real_t A_22 = t6 - t45;
-    const real_t A_23 = t7 - t48;
+    const real_t t55 = cf_nonzero(single, strut);
+    const real_t radial_x = A_01 / t55;
+    const real_t radial_y = A_02 / t55;
+    const real_t radial_z = A_03 / t55;
+    const real_t t56 = t47 * radial_x + t50 * radial_y + t54 * radial_z;
+    const real_t t57 = t47 - radial_x * t56;
+    const real_t t58 = t50 - radial_y * t56;
+    const real_t t59 = t54 - radial_z * t56;
+    const real_t square1 = t57 * t57 + t58 * t58 + t59 * t59;
+    const real_t A_21 = t4 - t47;
+    const real_t A_22 = t6 - t50;
+    const real_t A_23 = t7 - t54;
     const real_t off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23;
     const real_t t2_x = A_21 - radial_x * off2;
     const real_t t2_y = A_22 - radial_y * off2;
     const real_t t2_z = A_23 - radial_z * off2;
     const real_t square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z;
-    const real_t t54 = square1 - square2;
-    const real_t t55 = t51 * t2_x + t52 * t2_y + t53 * t2_z;
-    const real_t t56 = cf_sqrt(t54 * t54 + CLOSEDFORM_C(4.0) * (t55 * t55));
-    const real_t t57 = CLOSEDFORM_C(2.0) * (mu * nu * h);
-    const real_t t58 = cf_quotient(single, strut * (square1 + square2 + t56), t57);
-    const int t59 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
-    const int t60 = t59 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
-    const int t61 = t60 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
-    const int t62 = t61 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
-    const int t63 = cf_nought(theta1) + cf_nought(theta2) == 0;
-    const real_t t64 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
-    const int t65 = (-t64 <= t29) & (-t64 <= t26) & (-t64 <= t28);
-    const real_t t66 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t37;
-    const real_t t67 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t66));
-    const int failed = (!(t62 & t63)) | (!(t65 & (-t67 <= t35) & (-t67 <= t36)));
-    const real_t t68 = cf_poison(single, failed);
-    const real_t t69 = t39 + t41;
-    const real_t A_01_below = c1_x - t69;
-    const real_t t70 = t43 + t44;
-    const real_t A_02_below = c1_y - t70;
-    const real_t t71 = A_01_below * A_01_below + A_02_below * A_02_below;
-    const real_t t72 = t46 + t47;
-    const real_t A_03_below = c1_z - t72;
-    const real_t strut_below = cf_sqrt(t71 + A_03_below * A_03_below);
-    const real_t t73 = cf_nonzero(single, strut_below);
-    const real_t radial_x_below = A_01_below / t73;
-    const real_t radial_y_below = A_02_below / t73;
-    const real_t radial_z_below = A_03_below / t73;
-    const real_t t74 = t69 * radial_x_below + t70 * radial_y_below + t72 * radial_z_below;
-    const real_t t75 = t69 - radial_x_below * t74;
-    const real_t t76 = t70 - radial_y_below * t74;
-    const real_t t77 = t72 - radial_z_below * t74;
-    const real_t square1_below = t75 * t75 + t76 * t76 + t77 * t77;
-    const real_t A_21_below = t4 - t69;
-    const real_t A_22_below = t6 - t70;
-    const real_t t78 = radial_x_below * A_21_below + radial_y_below * A_22_below;
-    const real_t A_23_below = t7 - t72;
-    const real_t off2_below = t78 + radial_z_below * A_23_below;
+    const real_t t60 = square1 - square2;
+    const real_t t61 = t57 * t2_x + t58 * t2_y + t59 * t2_z;
+    const real_t t62 = cf_sqrt(t60 * t60 + CLOSEDFORM_C(4.0) * (t61 * t61));
+    const real_t t63 = CLOSEDFORM_C(2.0) * (m_m * h);
+    const real_t t64 = cf_quotient(single, strut * (square1 + square2 + t62), t63);
+    const int t65 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t66 = t65 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t67 = t66 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t68 = t67 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t69 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t70 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
+    const int t71 = (-t70 <= t33) & (-t70 <= t30) & (-t70 <= t32);
+    const real_t t72 = r * CLOSEDFORM_C(2.2737367544323206e-13) + t42;
+    const real_t t73 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * (r * t72));
+    const int failed = (!(t68 & t69)) | (!(t71 & (-t73 <= t40) & (-t73 <= t41)));
+    const real_t t74 = cf_poison(single, failed);
+    const real_t t75 = t44 + t46;
+    const real_t A_01_below = c1_x - t75;
+    const real_t t76 = t48 + t49;
+    const real_t A_02_below = c1_y - t76;
+    const real_t t77 = A_01_below * A_01_below + A_02_below * A_02_below;
+    const real_t t78 = t51 + t53;
+    const real_t A_03_below = c1_z - t78;
+    const real_t strut_below = cf_sqrt(t77 + A_03_below * A_03_below);
+    const real_t t79 = cf_nonzero(single, strut_below);
+    const real_t radial_x_below = A_01_below / t79;
+    const real_t radial_y_below = A_02_below / t79;
+    const real_t radial_z_below = A_03_below / t79;
+    const real_t t80 = t75 * radial_x_below + t76 * radial_y_below + t78 * radial_z_below;
+    const real_t t81 = t75 - radial_x_below * t80;
+    const real_t t82 = t76 - radial_y_below * t80;
+    const real_t t83 = t78 - radial_z_below * t80;
+    const real_t square1_below = t81 * t81 + t82 * t82 + t83 * t83;
+    const real_t A_21_below = t4 - t75;
+    const real_t A_22_below = t6 - t76;
+    const real_t t84 = radial_x_below * A_21_below + radial_y_below * A_22_below;
+    const real_t A_23_below = t7 - t78;
+    const real_t off2_below = t84 + radial_z_below * A_23_below;
     const real_t t2_x_below = A_21_below - radial_x_below * off2_below;
     const real_t t2_y_below = A_22_below - radial_y_below * off2_below;
-    const real_t t79 = t2_x_below * t2_x_below + t2_y_below * t2_y_below;
+    const real_t t85 = t2_x_below * t2_x_below + t2_y_below * t2_y_below;
     const real_t t2_z_below = A_23_below - radial_z_below * off2_below;
-    const real_t square2_below = t79 + t2_z_below * t2_z_below;
-    const real_t t80 = square1_below - square2_below;
-    const real_t t81 = t75 * t2_x_below + t76 * t2_y_below + t77 * t2_z_below;
-    const real_t t82 = cf_sqrt(t80 * t80 + CLOSEDFORM_C(4.0) * (t81 * t81));
-    const real_t t83 = strut_below * (square1_below + square2_below + t82);
-    kappa[0] = t58 + t68;
-    kappa[1] = cf_quotient(single, t83, t57) + t68;
+    const real_t square2_below = t85 + t2_z_below * t2_z_below;
+    const real_t t86 = square1_below - square2_below;
+    const real_t t87 = t81 * t2_x_below + t82 * t2_y_below + t83 * t2_z_below;
+    const real_t t88 = cf_sqrt(t86 * t86 + CLOSEDFORM_C(4.0) * (t87 * t87));
+    const real_t t89 = strut_below * (square1_below + square2_below + t88);
+    kappa[0] = t64 + t74;
+    kappa[1] = cf_quotient(single, t89, t63) + t74;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_OUT_OF_LINE void spherical_five_bar_condition_number_whole(const spherical_five_bar_params *params,
+    const real_t q[2], real_t kappa[2])
+{
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    spherical_five_bar_condition_number_whole_kernel(1, params, q, sines, cosines, kappa);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void spherical_five_bar_condition_number_common_kernel(const int single, const real_t one,
+    const spherical_five_bar_params *params,
+    const real_t q[2], const real_t *sines,
+    const real_t *cosines, real_t kappa[2],
+    real_t rare[1])
+{
+    const real_t r = params->r;
+    const real_t gamma = params->gamma;
+    const real_t alpha1 = params->alpha1;
+    const real_t alpha2 = params->alpha2;
+    const real_t beta1 = params->beta1;
+    const real_t beta2 = params->beta2;
+    const real_t theta1 = q[0];
+    const real_t theta2 = q[1];
+    const real_t s_alpha1 = sines[0];
+    const real_t c_alpha1 = cosines[0];
+    const real_t s_gamma = sines[1];
+    const real_t c_gamma = cosines[1];
+    const real_t s2 = sines[2];
+    const real_t c2 = cosines[2];
+    const real_t s_alpha2 = sines[3];
+    const real_t c_alpha2 = cosines[3];
+    const real_t s1 = sines[4];
+    const real_t c1 = cosines[4];
+    const real_t s_beta1_half = sines[5];
+    const real_t s_beta2_half = sines[6];
+    const real_t c1_x = cf_rounded(single, one, r * c_alpha1);
+    const real_t t1 = r * cf_abs(s_alpha2);
+    const real_t t2 = c2 * t1;
+    const real_t t3 = r * c_alpha2;
+    const real_t t4 = cf_rounded(single, one, s_gamma * t2) - cf_rounded(single, one, c_gamma * t3);
+    const real_t t5 = c1_x + t4;
+    const real_t t6 = r * cf_abs(s_alpha1);
+    const real_t c1_y = cf_rounded(single, one, c1 * t6);
+    const real_t c2_y = cf_rounded(single, one, s_gamma * t3) + cf_rounded(single, one, c_gamma * t2);
+    const real_t t7 = c1_y - c2_y;
+    const real_t c1_z = cf_rounded(single, one, s1 * t6);
+    const real_t t8 = c1_z - cf_rounded(single, one, s2 * t1);
+    const real_t product_x = cf_rounded(single, one, t7 * c1_z) - cf_rounded(single, one, c1_y * t8);
+    const real_t t9 = cf_rounded(single, one, product_x * product_x);
+    const real_t t10 = cf_rounded(single, one, t5 * c1_z) - cf_rounded(single, one, c1_x * t8);
+    const real_t m_z = cf_rounded(single, one, t5 * c1_y) - cf_rounded(single, one, c1_x * t7);
+    const real_t product_2 = t9 + cf_rounded(single, one, t10 * t10) + cf_rounded(single, one, m_z * m_z);
+    const real_t t11 = cf_rounded(single, one, t5 * t5) + cf_rounded(single, one, t7 * t7);
+    const real_t u_u = t11 + cf_rounded(single, one, t8 * t8);
+    const real_t t12 = cf_rounded(single, one, r * r);
+    const real_t t13 = CLOSEDFORM_VANISHING * CLOSEDFORM_VANISHING;
+    const real_t t14 = t12 * t13;
+    const real_t nu = product_2 / cf_divisor(single, u_u <= t14, u_u);
+    const real_t beside_a = cf_sqrt(nu);
+    const real_t length_a = cf_sqrt(u_u);
+    const real_t part = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t14, length_a * beside_a);
+    const real_t over_a = beside_a * part;
+    const real_t t15 = r * CLOSEDFORM_C(2.0);
+    const real_t r_1 = cf_rounded(single, one, cf_abs(s_beta1_half) * t15);
+    const real_t r_2 = cf_rounded(single, one, cf_abs(s_beta2_half) * t15);
+    const real_t t16 = r_1 - r_2;
+    const real_t t17 = length_a + t16;
+    const real_t outer = cf_max(t17, CLOSEDFORM_C(0.0));
+    const real_t t18 = length_a - t16;
+    const real_t inner = cf_max(t18, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, u_u <= t14, outer + inner);
+    const real_t t19 = r_1 + r_2;
+    const real_t t20 = t19 - length_a;
+    const real_t slack = cf_max(t20, CLOSEDFORM_C(0.0));
+    const real_t t21 = share * (length_a + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t along = length_a * CLOSEDFORM_C(0.5) + t21;
+    const real_t X = over_a * along;
+    const real_t t22 = cf_root(single, outer * inner * slack * (length_a + t19));
+    const real_t rho = share * t22;
+    const real_t t23 = cf_rounded(single, one, CLOSEDFORM_C(2.0) * beside_a * rho);
+    const real_t t24 = cf_rounded(single, one, c1_x * t5) + cf_rounded(single, one, c1_y * t7);
+    const real_t t25 = cf_rounded(single, one, over_a * (t24 + cf_rounded(single, one, c1_z * t8)));
+    const real_t t26 = t25 - along;
+    const real_t t27 = t12 - nu - cf_rounded(single, one, t26 * t26);
+    const real_t t28 = t27 - cf_rounded(single, one, rho * rho);
+    const real_t t29 = t23 - t28;
+    const real_t upper = cf_max(t29, CLOSEDFORM_C(0.0));
+    const real_t t30 = t28 + t23;
+    const real_t lower = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t both = upper + lower;
+    const real_t half = rho / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t12, both);
+    const real_t Y = part * over_a * half * (upper - lower);
+    const real_t t31 = t5 * X - (t7 * m_z + t8 * t10) * Y;
+    const real_t t32 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * t32;
+    const real_t t33 = product_x * h;
+    const real_t t34 = t31 - t33;
+    const real_t A_01 = c1_x - t34;
+    const real_t t35 = t7 * X + (t5 * m_z - t8 * product_x) * Y;
+    const real_t t36 = t10 * h;
+    const real_t t37 = t35 + t36;
+    const real_t A_02 = c1_y - t37;
+    const real_t t38 = t8 * X + (t5 * t10 + t7 * product_x) * Y;
+    const real_t t39 = m_z * h;
+    const real_t t40 = t38 - t39;
+    const real_t A_03 = c1_z - t40;
+    const real_t strut = cf_sqrt(A_01 * A_01 + A_02 * A_02 + A_03 * A_03);
+    const real_t radial_x = A_01 / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t12, strut);
+    const real_t radial_y = A_02 / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t12, strut);
+    const real_t radial_z = A_03 / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t12, strut);
+    const real_t t41 = t34 * radial_x + t37 * radial_y + t40 * radial_z;
+    const real_t t42 = t34 - radial_x * t41;
+    const real_t t43 = t37 - radial_y * t41;
+    const real_t t44 = t40 - radial_z * t41;
+    const real_t square1 = t42 * t42 + t43 * t43 + t44 * t44;
+    const real_t A_21 = t5 - t34;
+    const real_t A_22 = t7 - t37;
+    const real_t A_23 = t8 - t40;
+    const real_t off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23;
+    const real_t t2_x = A_21 - radial_x * off2;
+    const real_t t2_y = A_22 - radial_y * off2;
+    const real_t t2_z = A_23 - radial_z * off2;
+    const real_t square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z;
+    const real_t t45 = square1 - square2;
+    const real_t t46 = t42 * t2_x + t43 * t2_y + t44 * t2_z;
+    const real_t t47 = cf_sqrt(t45 * t45 + CLOSEDFORM_C(4.0) * (t46 * t46));
+    const real_t t48 = CLOSEDFORM_C(2.0) * (product_2 * h);
+    const real_t t49 = cf_quotient(single, strut * (square1 + square2 + t47), t48);
+    const int t50 = cf_nought(r) + cf_nought(gamma) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(beta1) + cf_nought(beta2) == 0;
+    const int t51 = t50 & (CLOSEDFORM_C(0.0) <= r) & (CLOSEDFORM_C(0.0) <= gamma);
+    const int t52 = t51 & (CLOSEDFORM_C(0.0) <= alpha1) & (CLOSEDFORM_C(0.0) <= alpha2);
+    const int t53 = t52 & (CLOSEDFORM_C(0.0) <= beta1) & (CLOSEDFORM_C(0.0) <= beta2);
+    const int t54 = cf_nought(theta1) + cf_nought(theta2) == 0;
+    const real_t t55 = CLOSEDFORM_FEASIBILITY * (r * CLOSEDFORM_C(0.3125));
+    const int t56 = (-t55 <= t20) & (-t55 <= t17) & (-t55 <= t18);
+    const real_t t57 = r * (r + r * CLOSEDFORM_C(2.2737367544323206e-13));
+    const real_t t58 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * t57);
+    const int failed = (!(t53 & t54)) | (!(t56 & (-t58 <= t29) & (-t58 <= t30)));
+    const real_t t59 = cf_poison(single, failed);
+    const real_t t60 = t31 + t33;
+    const real_t A_01_below = c1_x - t60;
+    const real_t t61 = t35 - t36;
+    const real_t A_02_below = c1_y - t61;
+    const real_t t62 = A_01_below * A_01_below + A_02_below * A_02_below;
+    const real_t t63 = t38 + t39;
+    const real_t A_03_below = c1_z - t63;
+    const real_t strut_below = cf_sqrt(t62 + A_03_below * A_03_below);
+    const real_t radial_x_below = A_01_below / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t12, strut_below);
+    const real_t radial_y_below = A_02_below / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t12, strut_below);
+    const real_t radial_z_below = A_03_below / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t12, strut_below);
+    const real_t t64 = t60 * radial_x_below + t61 * radial_y_below + t63 * radial_z_below;
+    const real_t t65 = t60 - radial_x_below * t64;
+    const real_t t66 = t61 - radial_y_below * t64;
+    const real_t t67 = t63 - radial_z_below * t64;
+    const real_t square1_below = t65 * t65 + t66 * t66 + t67 * t67;
+    const real_t A_21_below = t5 - t60;
+    const real_t A_22_below = t7 - t61;
+    const real_t t68 = radial_x_below * A_21_below + radial_y_below * A_22_below;
+    const real_t A_23_below = t8 - t63;
+    const real_t off2_below = t68 + radial_z_below * A_23_below;
+    const real_t t2_x_below = A_21_below - radial_x_below * off2_below;
+    const real_t t2_y_below = A_22_below - radial_y_below * off2_below;
+    const real_t t69 = t2_x_below * t2_x_below + t2_y_below * t2_y_below;
+    const real_t t2_z_below = A_23_below - radial_z_below * off2_below;
+    const real_t square2_below = t69 + t2_z_below * t2_z_below;
+    const real_t t70 = square1_below - square2_below;
+    const real_t t71 = t65 * t2_x_below + t66 * t2_y_below + t67 * t2_z_below;
+    const real_t t72 = cf_sqrt(t70 * t70 + CLOSEDFORM_C(4.0) * (t71 * t71));
+    const real_t t73 = strut_below * (square1_below + square2_below + t72);
+    const real_t t74 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t74 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t75 = u_u * v_v;
+    const real_t t76 = product_2 - t75 * CLOSEDFORM_C(0.000244140625);
+    const int t77 = (u_u <= t14) | (u_u + v_v <= t14) | (t76 <= CLOSEDFORM_VANISHING * t75);
+    const int t78 = t77 | (product_2 <= t13 * (t12 * u_u)) | (both <= CLOSEDFORM_VANISHING * t12);
+    kappa[0] = t49 + t59;
+    kappa[1] = cf_quotient(single, t73, t48) + t59;
+    rare[0] = (t78) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void spherical_five_bar_condition_number_common_batch(size_t n, const spherical_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *kappa, size_t kappa_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const spherical_five_bar_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = params->alpha1;
+        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
+        real_t angle_1[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_1[i] = params->gamma;
+        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = params->alpha2;
+        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
+        cf_sincos_block_rounded(length, one, q + start, sines[4], cosines[4]);
+        real_t angle_5[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
+        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
+        real_t angle_6[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
+        cf_sincos_block_rounded(length, one, angle_6, sines[6], cosines[6]);
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
+            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
+            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+            real_t kappa_i[2];
+            real_t rare_i[1];
+            spherical_five_bar_condition_number_common_kernel(0, one, &local, q_i, sines_i, cosines_i, kappa_i, rare_i);
+            kappa[start + i] = kappa_i[0];
+            kappa[kappa_stride + start + i] = kappa_i[1];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void spherical_five_bar_condition_number_common(const spherical_five_bar_params *params,
+    const real_t q[2], real_t kappa[2], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_lanes_rounded(8, one, lanes, sines, cosines);
+    real_t rare_real[1];
+    spherical_five_bar_condition_number_common_kernel(1, one, params, q, sines, cosines, kappa, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1914,16 +3210,15 @@ void spherical_five_bar_condition_number(const spherical_five_bar_params *params
     spherical_five_bar_params params_scaled;
     int exponent = 0;
     const real_t size = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_6) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.r = CF_LIBM(ldexp)(params->r, -exponent);
         params = &params_scaled;
     }
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { params->alpha1, params->gamma, q[1], params->alpha2, q[0], params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    spherical_five_bar_condition_number_kernel(1, params, q, sines, cosines, kappa);
+    uint8_t rare[1];
+    spherical_five_bar_condition_number_common(params, q, kappa, rare);
+    if (CF_UNLIKELY(rare[0])) spherical_five_bar_condition_number_whole(params, q, kappa);
 }
 
 CF_RARE void spherical_five_bar_condition_number_other_sizes(size_t n, const spherical_five_bar_params *params,
@@ -1945,46 +3240,23 @@ void spherical_five_bar_condition_number_batch(size_t n, const spherical_five_ba
     const real_t *q, size_t q_stride,
     real_t *kappa, size_t kappa_stride)
 {
-    const spherical_five_bar_params local = *params;
     const real_t dimensions = cf_abs(params->r);
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_6) & CF_SIGN) != 0)) {
         spherical_five_bar_condition_number_other_sizes(n, params, q, q_stride, kappa, kappa_stride);
         return;
     }
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->gamma;
-        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
-        cf_sincos_block(length, q + q_stride + start, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
-        cf_sincos_block(length, q + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
-        cf_sincos_block(length, angle_5, sines[5], cosines[5]);
-        real_t angle_6[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
-        cf_sincos_block(length, angle_6, sines[6], cosines[6]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
-            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
-            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        spherical_five_bar_condition_number_common_batch(length, params, q + start, q_stride, kappa + start, kappa_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[2];
+            for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
             real_t kappa_i[2];
-            spherical_five_bar_condition_number_kernel(0, &local, q_i, sines_i, cosines_i, kappa_i);
-            kappa[start + i] = kappa_i[0];
-            kappa[kappa_stride + start + i] = kappa_i[1];
+            spherical_five_bar_condition_number_whole(params, q_i, kappa_i);
+            for (size_t k = 0; k < 2; ++k) kappa[k * kappa_stride + i] = kappa_i[k];
+
         }
     }
 }

@@ -14,7 +14,7 @@
  *   determinant: 2 add, 10 multiply, 3 sincos, 1 sqrt
  *   singularities: 3 add, 11 multiply, 4 sincos, 1 sqrt
  *   arm_angle: 6 compare and select, 7 add, 1 atan2, 2 divide, 14 multiply, 3 sincos, 2 sqrt
- *   ik: 114 compare and select, 138 add, 13 atan2, 9 divide, 173 multiply, 1 sincos, 9 sqrt
+ *   ik: 113 compare and select, 138 add, 13 atan2, 9 divide, 173 multiply, 1 sincos, 9 sqrt
  */
 #include "srs_arm.h"
 
@@ -1492,7 +1492,7 @@ CF_INLINE void srs_arm_ik_kernel(const int single, const real_t one,
     const real_t t131 = cf_wrap_cut(angles[7]) + t56;
     const real_t t132 = cf_wrap_cut(angles[8]) + t56;
     const real_t t133 = cf_wrap_cut(angles[9]) + t56;
-    const real_t t134 = cf_wrap_cut(angles[3]) + t56;
+    const real_t t134 = angles[3] + t56;
     const real_t t135 = cf_wrap_cut(-angles[10]) + t56;
     const real_t t136 = cf_wrap_cut(angles[11]) + t56;
     const real_t t137 = cf_wrap_cut(angles[12]) + t56;

@@ -12,8 +12,8 @@
  *   singularities: 2 sincos
  *   jacobian_space: 14 add, 43 multiply, 4 sincos
  *   jacobian_body: 14 add, 41 multiply, 4 sincos
- *   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 115 multiply, 8 sqrt
- *   ik where nothing vanishes: 81 compare and select, 95 add, 16 atan2, 4 divide, 90 multiply, 6
+ *   ik: 105 compare and select, 111 add, 16 atan2, 6 divide, 115 multiply, 8 sqrt
+ *   ik where nothing vanishes: 79 compare and select, 95 add, 16 atan2, 4 divide, 90 multiply, 6
  *     sqrt
  */
 #include "stanford_arm.h"
@@ -990,7 +990,7 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const real_t one,
         angles[15] = cf_atan2(opposite[15], adjacent[15]);
     }
     const real_t t89 = cf_wrap_cut(angles[0]) + t35;
-    const real_t t90 = cf_wrap_cut(angles[1]) + t35;
+    const real_t t90 = angles[1] + t35;
     const real_t t91 = cf_wrap_cut(-angles[5]) + t35;
     const real_t t92 = cf_wrap(flip_wrist_right_back_flip - angles[6]);
     const real_t t93 = cf_wrap(flip_wrist_right_back_flip - angles[8]);
@@ -998,7 +998,7 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const real_t one,
     const real_t t95 = cf_wrap_cut(-angles[1]) + t35;
     const real_t t96 = cf_wrap(flip_wrist_left_out_flip - angles[10]);
     const real_t t97 = cf_wrap(flip_wrist_left_out_flip - angles[12]);
-    const real_t t98 = cf_wrap_cut(angles[5]) + t35;
+    const real_t t98 = angles[5] + t35;
     const real_t t99 = cf_wrap(flip_wrist_left_back_flip - angles[13]);
     const real_t t100 = cf_wrap(flip_wrist_left_back_flip - angles[15]);
     q[0] = t89;
@@ -1209,7 +1209,7 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const real_t one,
         angles[15] = cf_atan2(opposite[15], adjacent[15]);
     }
     const real_t t72 = cf_wrap_cut(angles[0]) + t36;
-    const real_t t73 = cf_wrap_cut(angles[1]) + t36;
+    const real_t t73 = angles[1] + t36;
     const real_t t74 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[2]);
     const real_t t75 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[4]);
     const real_t t76 = cf_wrap_cut(-angles[5]) + t36;
@@ -1219,7 +1219,7 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const real_t one,
     const real_t t80 = cf_wrap_cut(-angles[1]) + t36;
     const real_t t81 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[10]);
     const real_t t82 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[12]);
-    const real_t t83 = cf_wrap_cut(angles[5]) + t36;
+    const real_t t83 = angles[5] + t36;
     const real_t t84 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[13]);
     const real_t t85 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[15]);
     q[0] = t72;

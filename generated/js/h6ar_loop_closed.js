@@ -3,7 +3,7 @@
 // Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 //     manipulator.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 60 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
+//   fk: 59 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
 //     sincos, 6 sqrt
 //   pose: 57 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 6 sqrt
 //   skeleton: 57 compare and select, 175 add, 21 divide, 201 multiply, 6 sincos, 6 sqrt
@@ -273,13 +273,12 @@ function _fk(v, o) {
     const t74 = t72 <= t45 && t72 <= t42 && t73 <= t60 && t73 <= t61;
     const t75 = !(t70 && 0.0 <= lp && t71) || !t74 ? NaN : 0;
     const t76 = d1 + L1 * stheta2A - ctheta23A * t66 + stheta23A * t65;
-    const t77 = Math.atan2(-t58, tilted);
-    const t78 = -Math.atan2(-t55, d);
+    const t77 = -Math.atan2(-t55, d);
     o[0] = s1 * t64 + c1 * t67 + t75;
     o[1] = s1 * t67 - c1 * t64 + t75;
     o[2] = t76 + t75;
-    o[3] = (t77 <= -Math.PI ? Math.PI : t77) + t75;
-    o[4] = (t78 <= -Math.PI ? Math.PI : t78) + t75;
+    o[3] = Math.atan2(-t58, tilted) + t75;
+    o[4] = (t77 <= -Math.PI ? Math.PI : t77) + t75;
     o[5] = _runtime.wrap(principal) + t75;
 }
 

@@ -10,7 +10,7 @@
 //   singularities: 1 sincos
 //   jacobian_space: 4 add, 8 multiply, 2 sincos
 //   jacobian_body: 4 add, 8 multiply, 2 sincos
-//   ik: 32 add, 38 compare and select, 5 atan2, 5 divide, 39 multiply, 1 sincos, 2 sqrt
+//   ik: 32 add, 37 compare and select, 5 atan2, 5 divide, 39 multiply, 1 sincos, 2 sqrt
 
 /**
  * SCARA arm (RRPR).
@@ -721,7 +721,7 @@ function _ik(v, o) {
     const t37 = -t36;
     const t38 = invalid ? 3 : unreachable ? 1 : no_link_elbow || folded_elbow ? 2 : 0;
     o[0] = (t19 <= -Math.PI ? Math.PI : t19) + t24;
-    o[1] = (t26 <= -Math.PI ? Math.PI : t26) + t24;
+    o[1] = t26 + t24;
     o[2] = t27;
     o[3] = (t31 <= -Math.PI ? Math.PI : t31) + t24;
     o[4] = (t32 <= -Math.PI ? Math.PI : t32) + t24;

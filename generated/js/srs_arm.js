@@ -13,7 +13,7 @@
 //   determinant: 2 add, 10 multiply, 3 sincos, 1 sqrt
 //   singularities: 3 add, 11 multiply, 4 sincos, 1 sqrt
 //   arm_angle: 6 compare and select, 7 add, 1 atan2, 2 divide, 14 multiply, 3 sincos, 2 sqrt
-//   ik: 114 compare and select, 138 add, 13 atan2, 9 divide, 173 multiply, 1 sincos, 9 sqrt
+//   ik: 113 compare and select, 138 add, 13 atan2, 9 divide, 173 multiply, 1 sincos, 9 sqrt
 
 /**
  * Seven-joint arm with a spherical shoulder and wrist (SRS).
@@ -1407,7 +1407,7 @@ function _ik(v, o) {
     const t99 = y_plane_x * s_shoulder_down_front_noflip + R1_22 * c_shoulder_down_front_noflip;
     const t100 = Math.atan2(t97 + s_shoulder_down_front_noflip * t98, t99);
     const t101 = (t100 <= -Math.PI ? Math.PI : t100) + t46;
-    const t102 = (t55 <= -Math.PI ? Math.PI : t55) + t46;
+    const t102 = t55 + t46;
     const t103 = T13 * t98 - T23 * shoulder_21_down_front_noflip;
     const t104 = t58 - c_polar * c_bearing_down_front_noflip;
     const t105 = t103 + T33 * t104;

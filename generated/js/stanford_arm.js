@@ -11,8 +11,8 @@
 //   singularities: 2 sincos
 //   jacobian_space: 14 add, 43 multiply, 4 sincos
 //   jacobian_body: 14 add, 41 multiply, 4 sincos
-//   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 115 multiply, 8 sqrt
-//   ik where nothing vanishes: 81 compare and select, 95 add, 16 atan2, 4 divide, 90 multiply, 6
+//   ik: 105 compare and select, 111 add, 16 atan2, 6 divide, 115 multiply, 8 sqrt
+//   ik where nothing vanishes: 79 compare and select, 95 add, 16 atan2, 4 divide, 90 multiply, 6
 //     sqrt
 
 /**
@@ -860,7 +860,7 @@ function _ik(v, o) {
     const t30 = T34 * t29;
     const c2 = on_axis_boom ? 1.0 : t30;
     const t31 = Math.atan2(s2, c2);
-    const t32 = (t31 <= -Math.PI ? Math.PI : t31) + t27;
+    const t32 = t31 + t27;
     const t33 = r_boom + t27;
     const t34 = T13 * s1 - T23 * c1;
     const t35 = t34 * t34;
@@ -950,7 +950,7 @@ function _ik(v, o) {
     const t92 = _runtime.wrap(flip_wrist_left_out_flip - t81);
     const t93 = -t85;
     const t94 = _runtime.wrap(flip_wrist_left_out_flip - t90);
-    const t95 = (t53 <= -Math.PI ? Math.PI : t53) + t27;
+    const t95 = t53 + t27;
     const t96 = t36 - c2_right_back_noflip * R1_13_left_out_noflip;
     const h_wrist_left_back_noflip = Math.sqrt(t77 + t96 * t96);
     const aligned_wrist_left_back_noflip = h_wrist_left_back_noflip <= t38;
@@ -1089,7 +1089,7 @@ function _ik_common(v, o) {
     const t27 = invalid || unreachable ? NaN : 0;
     const t28 = (t12 <= -Math.PI ? Math.PI : t12) + t27;
     const t29 = Math.atan2(root1, T34);
-    const t30 = (t29 <= -Math.PI ? Math.PI : t29) + t27;
+    const t30 = t29 + t27;
     const r_boom = Math.sqrt(t25 + root1 * root1);
     const t31 = r_boom + t27;
     const t32 = T13 * s1 + T23 * t11;
@@ -1157,7 +1157,7 @@ function _ik_common(v, o) {
     const t82 = Math.atan2(t79, -t81);
     const t83 = -t82;
     const t84 = -t77;
-    const t85 = (t53 <= -Math.PI ? Math.PI : t53) + t27;
+    const t85 = t53 + t27;
     const t86 = Math.atan2(t68, -R2_13_left_out_noflip);
     const t87 = -t86;
     const t88 = Math.atan2(t76, -R2_33_left_out_noflip);

@@ -2,17 +2,27 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 45 compare and select, 64 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
-#   fk where nothing vanishes: 62 add, 27 compare and select, 7 divide, 77 multiply, 6 sincos, 1
+#   fk: 52 compare and select, 67 add, 8 divide, 93 multiply, 6 sincos, 1 sqrt
+#   fk where nothing vanishes: 60 add, 29 compare and select, 7 divide, 71 multiply, 6 sincos, 1
 #     sqrt
-#   skeleton: 44 compare and select, 179 add, 14 divide, 86 multiply, 6 sincos, 1 sqrt
-#   jacobian_parallel: 44 compare and select, 85 add, 8 divide, 86 multiply, 6 sincos, 1 sqrt
-#   jacobian_serial: 44 compare and select, 85 add, 8 divide, 110 multiply, 6 sincos, 1 sqrt
-#   jacobian: 44 compare and select, 115 add, 26 divide, 165 multiply, 6 sincos, 1 sqrt
-#   determinant: 44 compare and select, 81 add, 10 divide, 115 multiply, 6 sincos, 1 sqrt
-#   singularities: 44 compare and select, 87 add, 8 divide, 111 multiply, 6 sincos, 1 sqrt
-#   condition_number: 44 compare and select, 119 add, 10 divide, 162 multiply, 6 sincos, 3 sqrt
-#   constraint: 44 compare and select, 91 add, 8 divide, 148 multiply, 6 sincos, 1 sqrt
+#   skeleton: 51 compare and select, 182 add, 14 divide, 93 multiply, 6 sincos, 1 sqrt
+#   jacobian_parallel: 51 compare and select, 88 add, 8 divide, 93 multiply, 6 sincos, 1 sqrt
+#   jacobian_parallel where nothing vanishes: 81 add, 28 compare and select, 7 divide, 71
+#     multiply, 6 sincos, 1 sqrt
+#   jacobian_serial: 51 compare and select, 88 add, 8 divide, 117 multiply, 6 sincos, 1 sqrt
+#   jacobian_serial where nothing vanishes: 81 add, 28 compare and select, 7 divide, 95 multiply,
+#     6 sincos, 1 sqrt
+#   jacobian: 51 compare and select, 118 add, 26 divide, 172 multiply, 6 sincos, 1 sqrt
+#   determinant: 51 compare and select, 84 add, 10 divide, 122 multiply, 6 sincos, 1 sqrt
+#   determinant where nothing vanishes: 77 add, 28 compare and select, 9 divide, 100 multiply, 6
+#     sincos, 1 sqrt
+#   singularities: 51 compare and select, 90 add, 8 divide, 118 multiply, 6 sincos, 1 sqrt
+#   singularities where nothing vanishes: 83 add, 28 compare and select, 7 divide, 96 multiply, 6
+#     sincos, 1 sqrt
+#   condition_number: 51 compare and select, 122 add, 10 divide, 169 multiply, 6 sincos, 3 sqrt
+#   constraint: 51 compare and select, 94 add, 8 divide, 155 multiply, 6 sincos, 1 sqrt
+#   constraint where nothing vanishes: 87 add, 28 compare and select, 7 divide, 123 multiply, 6
+#     sincos, 1 sqrt
 #   ik: 139 compare and select, 130 add, 6 atan2, 13 divide, 151 multiply, 3 sincos, 9 sqrt
 #   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -174,100 +184,109 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     u_u = u_z * u_z + t5 * t5 + t7 * t7
     size = f + e + L + l
     t8 = size * size
-    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
-    same = u_u <= t9
-    t10 = L * c3
+    t9 = _runtime.VANISHING * _runtime.VANISHING
+    t10 = t8 * t9
+    same = u_u <= t10
+    t11 = L * c3
     del c3
-    t11 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t10)
+    t12 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11)
     del c_alpha3
-    d_x = _runtime.select(same, t11, t5)
+    d_x = _runtime.select(same, t12, t5)
+    t13 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
+    del s_alpha3, t11
+    t14 = _runtime.select(same, t13, t7)
     v_z = t1 - L * s3
     del s3
-    t12 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t10)
-    del s_alpha3, t10
-    v_v = v_z * v_z + t11 * t11 + t12 * t12
-    all_same = u_u + v_v <= t9
+    v_v = v_z * v_z + t12 * t12 + t13 * t13
+    all_same = u_u + v_v <= t10
+    del t10
     whole = _runtime.select(size == 0.0, 1.0, size)
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
-    t13 = _runtime.select(same, t12, t7)
     a_x = _runtime.select(all_same, whole, d_x)
-    t14 = _runtime.select(same, t7, t12)
-    del t12, t7
-    t15 = _runtime.select(same, t5, t11)
-    del t11, t5
-    t16 = a_x * t14 - t13 * t15
+    t15 = _runtime.select(same, t7, t13)
+    del t13, t7
+    t16 = _runtime.select(same, t5, t12)
+    del t12, t5
+    t17 = a_x * t15 - t14 * t16
     d_z = _runtime.select(same, v_z, u_z)
-    t17 = _runtime.select(same, u_z, v_z)
-    del same, u_z, v_z
-    t18 = a_x * t17 - t15 * d_z
-    t19 = over * (t13 * t16 + d_z * t18)
-    t20 = t13 * t17 - t14 * d_z
-    t21 = over * (a_x * t16 - d_z * t20)
-    del t16
-    n_z = over * (a_x * t18 + t13 * t20)
-    del over, t18, t20
-    nu = t19 * t19 + t21 * t21 + n_z * n_z
-    in_line = nu <= t9
+    t18 = _runtime.select(same, u_z, v_z)
+    del u_z, v_z
+    t19 = a_x * t18 - t16 * d_z
+    t20 = t14 * t17 + d_z * t19
+    t21 = t14 * t18 - t15 * d_z
+    product_2 = t21 * t21 + t19 * t19 + t17 * t17
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t22 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t22 * 0.000244140625 <= _runtime.VANISHING * t22
+    del t22
+    over = 1.0 / mu
+    t23 = a_x * t17 - d_z * t21
+    n_z = a_x * t19 + t14 * t21
+    m_m = _runtime.select(slim, over * (t20 * t20 + t23 * t23 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t9 * (t8 * mu)
     del t9
     g_1 = whole * d_z
-    s_w = _runtime.sign(t13 * a_x)
-    t22 = whole * (t13 + a_x * s_w)
+    s_w = _runtime.sign(t14 * a_x)
+    t24 = whole * (t14 + a_x * s_w)
     del whole
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t22 * t22), 1.0 / (mu * nu))
-    t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
-    del t14, t15, t17
-    t24 = _runtime.select(in_line, 0.0, mu * part * t23 * 0.5)
-    t25 = d_x * 0.5 - (t3 - t19 * t24)
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t24 * t24, m_m)
+    del m_m
+    part = 1.0 / w_w
+    del w_w
+    t25 = t16 * (d_x - t16) + t15 * (t14 - t15) + t18 * (d_z - t18)
+    del t15, t16, t18
+    t26 = _runtime.select(in_line, 0.0, part * t25 * 0.5)
+    t27 = d_x * 0.5 - (t3 - t20 * t26)
     del d_x, t3
-    w_x = _runtime.select(in_line, g_1 * s_w, t13 * n_z - d_z * t21)
-    del s_w
-    t26 = _runtime.select(all_same, 0.0, nu * (t24 * t24) + mu * 0.25)
-    del all_same, mu, nu
-    t27 = l * l - t26
-    del t26
-    slack = np.maximum(t27, 0.0)
-    t28 = l * size * 0.75
+    m_x = _runtime.select(slim, over * (t14 * n_z - d_z * t23), t21)
+    del t21
+    t28 = _runtime.select(in_line, 0.0, part * (t25 * t25))
+    t29 = _runtime.select(all_same, 0.0, mu * (1.0 + t28) * 0.25)
+    del all_same, mu, t28
+    t30 = l * l - t29
+    del t29
+    slack = np.maximum(t30, 0.0)
+    t31 = l * size * 0.75
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t28, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part * slack))
     del part, slack
-    t29 = w_x * h
-    del w_x
-    t30 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t31 = t30 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t30
-    t32 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    invalid = np.logical_not(t31 & t32)
-    del t31, t32
-    t33 = np.abs(_runtime.select(in_line, -t23, 0.0)) <= t8 * _runtime.FEASIBILITY
-    del t23, t8
-    unreachable = np.logical_not(t33 & (-(_runtime.FEASIBILITY * t28) <= t27))
-    del t27, t28, t33
-    t34 = _runtime.poison(invalid | unreachable)
-    t35 = t13 * 0.5 - (t6 + t21 * t24)
+    t32 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t33 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t34 = t33 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t33
+    t35 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    invalid = np.logical_not(t34 & t35)
+    del t34, t35
+    t36 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t8 * _runtime.FEASIBILITY
+    del t25, t8
+    unreachable = np.logical_not(t36 & (-(_runtime.FEASIBILITY * t31) <= t30))
+    del t30, t31, t36
+    t37 = _runtime.poison(invalid | unreachable)
+    t38 = t14 * 0.5 - (t6 + t23 * t26)
     del t6
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t19))
-    del g_1
-    t36 = h * w_y
-    del w_y
-    t37 = d_z * 0.5 - (t1 + n_z * t24)
-    del d_z, n_z, t1, t24
-    w_z = _runtime.select(in_line, -t22, a_x * t21 + t13 * t19)
-    del a_x, t13, t19, t21, t22
-    t38 = h * w_z
-    del h, w_z
-    t39 = _runtime.status(invalid, unreachable, in_line)
+    t39 = _runtime.select(slim, over * (a_x * n_z + d_z * t20), t19)
+    del t19
+    t40 = h * _runtime.select(in_line, g_1, -t39)
+    del g_1, t39
+    t41 = d_z * 0.5 - (t1 + n_z * t26)
+    del d_z, n_z, t1, t26
+    m_z = _runtime.select(slim, over * (a_x * t23 + t14 * t20), t17)
+    del a_x, over, slim, t14, t17, t20, t23
+    t42 = h * _runtime.select(in_line, -t24, m_z)
+    del h, m_z, t24
+    t43 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t25 - t29 + t34,
-        t35 - t36 + t34,
-        t37 - t38 + t34,
-        t29 + t25 + t34,
-        t36 + t35 + t34,
-        t38 + t37 + t34,
-        t39,
-        t39,
+        t27 - t32 + t37,
+        t38 - t40 + t37,
+        t41 - t42 + t37,
+        t32 + t27 + t37,
+        t40 + t38 + t37,
+        t42 + t41 + t37,
+        t43,
+        t43,
     )
 
 
@@ -287,84 +306,81 @@ def _fk_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del c2
     t4 = t2 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t3)
     del c_alpha2
-    t5 = L * s1
-    del s1
-    u_z = t5 - L * s2
-    del s2
-    t6 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t1
+    t5 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t1
     del s_alpha1, t1
-    t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t3)
+    t6 = t5 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t3)
     del s_alpha2, t3
-    u_u = u_z * u_z + t4 * t4 + t7 * t7
-    over = 1.0 / u_u
-    t8 = L * c3
+    t7 = L * c3
     del c3
-    t9 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8)
+    t8 = t5 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t7)
     del s_alpha3
-    t10 = t2 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8)
-    del c_alpha3, t8
-    t11 = t4 * t9 - t7 * t10
-    v_z = t5 - L * s3
+    t9 = t2 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t7)
+    del c_alpha3, t7
+    m_z = t4 * t8 - t6 * t9
+    t10 = L * s1
+    del s1
+    u_z = t10 - L * s2
+    del s2
+    v_z = t10 - L * s3
     del s3
-    t12 = v_z * t4 - u_z * t10
-    t13 = over * (t7 * t11 + u_z * t12)
-    t14 = v_z * t7 - u_z * t9
-    t15 = over * (t4 * t11 - u_z * t14)
-    del t11
-    n_z = over * (t4 * t12 + t7 * t14)
-    del over, t12, t14
-    nu = t13 * t13 + t15 * t15 + n_z * n_z
-    part = 1.0 / (u_u * nu)
-    t16 = v_z * (u_z - v_z) + t10 * (t4 - t10) + t9 * (t7 - t9)
-    t17 = u_u * part * t16 * 0.5
-    del t16
-    t18 = t4 * 0.5 - (t2 - t13 * t17)
+    t11 = v_z * t4 - u_z * t9
+    t12 = v_z * t6 - u_z * t8
+    product_2 = t12 * t12 + t11 * t11 + m_z * m_z
+    part = 1.0 / product_2
+    t13 = v_z * (u_z - v_z) + t9 * (t4 - t9) + t8 * (t6 - t8)
+    t14 = part * t13 * 0.5
+    t15 = t4 * 0.5 - (t2 - (t6 * m_z + u_z * t11) * t14)
     del t2
-    t19 = l * l - (nu * (t17 * t17) + u_u * 0.25)
-    slack = np.maximum(t19, 0.0)
+    u_u = u_z * u_z + t4 * t4 + t6 * t6
+    t16 = l * l - u_u * (1.0 + part * (t13 * t13)) * 0.25
+    del t13
+    slack = np.maximum(t16, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t20 = (t7 * n_z - u_z * t15) * h
-    t21 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t22 = t21 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t21
-    t23 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    invalid = np.logical_not(t22 & t23)
-    del t22, t23
+    t17 = t12 * h
+    t18 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t19 = t18 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t18
+    t20 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    invalid = np.logical_not(t19 & t20)
+    del t19, t20
     size = f + e + L + l
-    t24 = size * size
-    t25 = l * size * 0.75
+    t21 = size * size
+    t22 = l * size * 0.75
     del size
-    t26 = (np.abs(0.0) <= t24 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t25) <= t19)
-    del t19
-    unreachable = np.logical_not(t26)
-    del t26
-    t27 = _runtime.poison(invalid | unreachable)
-    t28 = h * (t4 * n_z + u_z * t13)
-    t29 = t7 * 0.5 - (t6 + t15 * t17)
-    del t6
-    t30 = h * (t4 * t15 + t7 * t13)
-    del h, t13, t15, t4, t7
-    t31 = n_z * t17 + (t5 - u_z * 0.5)
-    del n_z, t17, t5, u_z
-    t32 = _runtime.status(invalid, unreachable, np.False_)
+    t23 = (np.abs(0.0) <= t21 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t22) <= t16)
+    del t16
+    unreachable = np.logical_not(t23)
+    del t23
+    t24 = _runtime.poison(invalid | unreachable)
+    t25 = t11 * h
+    t26 = t6 * 0.5 - (t5 + t14 * (t4 * m_z - u_z * t12))
+    del t5
+    t27 = m_z * h
+    del h, m_z
+    t28 = t14 * (t4 * t11 + t6 * t12) + (t10 - u_z * 0.5)
+    del t10, t11, t12, t14, t4, t6, u_z
+    t29 = _runtime.status(invalid, unreachable, np.False_)
     del invalid, unreachable
-    t33 = _runtime.VANISHING * _runtime.VANISHING * t24
-    del t24
-    all_same = u_u + (v_z * v_z + t10 * t10 + t9 * t9) <= t33
-    del t10, t9, v_z
-    t34 = (u_u <= t33) | all_same | (nu <= t33) | (slack <= _runtime.VANISHING * t25)
-    del all_same, nu, slack, t25, t33, u_u
+    t30 = _runtime.VANISHING * _runtime.VANISHING
+    t31 = t21 * t30
+    v_v = v_z * v_z + t9 * t9 + t8 * t8
+    del t8, t9, v_z
+    t32 = u_u * v_v
+    slim = product_2 - t32 * 0.000244140625 <= _runtime.VANISHING * t32
+    del t32
+    t33 = (u_u <= t31) | (u_u + v_v <= t31) | slim | (product_2 <= t30 * (t21 * u_u))
+    del product_2, slim, t21, t30, t31, u_u, v_v
     return (
-        t18 - t20 + t27,
-        t28 + t29 + t27,
-        -(t30 + t31) + t27,
-        t20 + t18 + t27,
-        t29 - t28 + t27,
-        t30 - t31 + t27,
-        t32,
-        t32,
-        t34,
+        t15 - t17 + t24,
+        t25 + t26 + t24,
+        -(t27 + t28) + t24,
+        t17 + t15 + t24,
+        t26 - t25 + t24,
+        t27 - t28 + t24,
+        t29,
+        t29,
+        t33 | (slack <= _runtime.VANISHING * t22),
     )
 
 
@@ -376,7 +392,7 @@ _FK = _runtime.Kernel(
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
     common=_fk_common,
-    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -428,8 +444,8 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s3, c3 = _runtime.sincos(theta3)
     s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
+    s3, c3 = _runtime.sincos(theta3)
     t1 = f * c_alpha1
     t2 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
     t3 = t2 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
@@ -464,302 +480,312 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del s_alpha2, t13
     t23 = t19 - (t20 - t22)
     u_u = u_z * u_z + t15 * t15 + t23 * t23
-    t24 = L * s3
-    del s3
-    v_z = t5 - t24
-    t25 = e * c_alpha3
-    t26 = f * c_alpha3
-    t27 = L * c3
-    del c3
-    t28 = t26 + c_alpha3 * t27
-    del c_alpha3
-    t29 = t10 - (t25 - t28)
-    t30 = e * s_alpha3
-    t31 = f * s_alpha3
-    t32 = t31 + s_alpha3 * t27
-    del s_alpha3, t27
-    t33 = t19 - (t30 - t32)
-    v_v = v_z * v_z + t29 * t29 + t33 * t33
     size = f + e + L + l
-    t34 = size * size
-    t35 = _runtime.VANISHING * _runtime.VANISHING * t34
-    all_same = u_u + v_v <= t35
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t35
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
-    t36 = _runtime.select(same, t33, t23)
-    d_x = _runtime.select(same, t29, t15)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t37 = _runtime.select(same, t23, t33)
-    del t23, t33
-    t38 = _runtime.select(same, t15, t29)
-    del t15, t29
-    t39 = a_x * t37 - t36 * t38
+    t24 = size * size
+    t25 = _runtime.VANISHING * _runtime.VANISHING
+    t26 = t24 * t25
+    same = u_u <= t26
+    t27 = e * s_alpha3
+    t28 = f * s_alpha3
+    t29 = L * c3
+    del c3
+    t30 = t28 + s_alpha3 * t29
+    del s_alpha3
+    t31 = t19 - (t27 - t30)
+    t32 = _runtime.select(same, t31, t23)
+    t33 = L * s3
+    del s3
+    v_z = t5 - t33
+    t34 = _runtime.select(same, u_z, v_z)
     d_z = _runtime.select(same, v_z, u_z)
-    t40 = _runtime.select(same, u_z, v_z)
-    del same, u_z, v_z
-    t41 = a_x * t40 - t38 * d_z
-    t42 = over * (t36 * t39 + d_z * t41)
-    t43 = t36 * t40 - t37 * d_z
-    t44 = over * (a_x * t39 - d_z * t43)
-    del t39
-    n_z = over * (a_x * t41 + t36 * t43)
-    del over, t41, t43
-    nu = t42 * t42 + t44 * t44 + n_z * n_z
-    in_line = nu <= t35
-    del t35
-    t45 = t38 * (d_x - t38) + t37 * (t36 - t37) + t40 * (d_z - t40)
-    del t37, t38, t40
-    t46 = np.abs(_runtime.select(in_line, -t45, 0.0)) <= t34 * _runtime.FEASIBILITY
-    del t34
-    t47 = 0.9375 * (l * size)
+    del u_z
+    t35 = _runtime.select(same, t23, t31)
+    del t23
+    t36 = t32 * t34 - d_z * t35
+    t37 = e * c_alpha3
+    t38 = f * c_alpha3
+    t39 = t38 + c_alpha3 * t29
+    del c_alpha3, t29
+    t40 = t10 - (t37 - t39)
+    v_v = v_z * v_z + t40 * t40 + t31 * t31
+    del t31, v_z
+    all_same = u_u + v_v <= t26
+    del t26
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    d_x = _runtime.select(same, t40, t15)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t41 = _runtime.select(same, t15, t40)
+    del t15, t40
+    t42 = t34 * a_x - d_z * t41
+    t43 = t35 * a_x - t32 * t41
+    product_2 = t36 * t36 + t42 * t42 + t43 * t43
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t44 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t44 * 0.000244140625 <= _runtime.VANISHING * t44
+    del t44
+    over = 1.0 / mu
+    t45 = t32 * t43 + d_z * t42
+    t46 = a_x * t43 - d_z * t36
+    n_z = a_x * t42 + t32 * t36
+    m_m = _runtime.select(slim, over * (t45 * t45 + t46 * t46 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t25 * (t24 * mu)
+    del t25
+    t47 = t41 * (d_x - t41) + t35 * (t32 - t35) - t34 * (t34 - d_z)
+    del t34, t35, t41
+    t48 = np.abs(_runtime.select(in_line, -t47, 0.0)) <= t24 * _runtime.FEASIBILITY
+    del t24
+    t49 = 0.9375 * (l * size)
     del size
     g_1 = whole * d_z
-    s_w = _runtime.sign(t36 * a_x)
-    t48 = whole * (t36 + a_x * s_w)
+    s_w = _runtime.sign(t32 * a_x)
+    t50 = whole * (t32 + a_x * s_w)
     del whole
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t48 * t48), 1.0 / (mu * nu))
-    t49 = _runtime.select(in_line, 0.0, mu * t45 * part * 0.5)
-    del t45
-    t50 = _runtime.select(all_same, 0.0, nu * (t49 * t49) + mu * 0.25)
-    del all_same, mu, nu
-    t51 = l * l - t50
-    del t50
-    unreachable = np.logical_not(t46 & (-(_runtime.FEASIBILITY * t47) <= t51))
-    del t46
-    t52 = _runtime.poison(np.logical_not(t3 & t4) | unreachable)
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t50 * t50, m_m)
+    del m_m
+    part = 1.0 / w_w
+    del w_w
+    t51 = _runtime.select(in_line, 0.0, part * (t47 * t47))
+    t52 = _runtime.select(all_same, 0.0, mu * (1.0 + t51) * 0.25)
+    del all_same, mu, t51
+    t53 = l * l - t52
+    del t52
+    unreachable = np.logical_not(t48 & (-(_runtime.FEASIBILITY * t49) <= t53))
+    del t48
+    t54 = _runtime.poison(np.logical_not(t3 & t4) | unreachable)
     del t3, t4, unreachable
-    t53 = t1 + t52
+    t55 = t1 + t54
     del t1
-    t54 = t17 + t52
+    t56 = t17 + t54
     del t17
-    t55 = 0.0 + t52
-    t56 = t9 + t52
-    t57 = t18 + t52
-    t58 = -t5 + t52
-    t59 = t42 * t49 + d_x * 0.5
+    t57 = 0.0 + t54
+    t58 = t9 + t54
+    t59 = t18 + t54
+    t60 = -t5 + t54
+    t61 = _runtime.select(in_line, 0.0, t47 * part * 0.5)
+    del t47
+    t62 = t45 * t61 + d_x * 0.5
     del d_x
-    w_x = _runtime.select(in_line, g_1 * s_w, t36 * n_z - d_z * t44)
-    del s_w
-    slack = np.maximum(t51, 0.0)
-    del t51
-    h = _runtime.select(slack <= _runtime.VANISHING * t47, 0.0, np.sqrt(part * slack))
-    del part, slack, t47
-    t60 = w_x * h
-    del w_x
-    t61 = t10 - (t59 - t60)
-    t62 = t7 - t61
-    t63 = t44 * t49 - t36 * 0.5
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t42))
-    del g_1
-    t64 = h * w_y
-    del w_y
-    t65 = t19 + (t63 + t64)
-    t66 = t16 - t65
-    t67 = n_z * t49 - d_z * 0.5
-    del d_z, n_z, t49
-    w_z = _runtime.select(in_line, -t48, a_x * t44 + t36 * t42)
-    del a_x, in_line, t36, t42, t44, t48
-    t68 = h * w_z
-    del h, w_z
-    t69 = -(t5 + (t67 + t68)) + t52
-    t70 = t16 * 0.5
-    t71 = t9 - t70 + t52
-    t72 = t7 * 0.5
-    t73 = t72 + t18 + t52
-    t74 = t70 + t9 + t52
+    m_x = _runtime.select(slim, over * (t32 * n_z - d_z * t46), t36)
+    del t36
+    slack = np.maximum(t53, 0.0)
+    del t53
+    h = _runtime.select(slack <= _runtime.VANISHING * t49, 0.0, np.sqrt(part * slack))
+    del part, slack, t49
+    t63 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t64 = t10 - (t62 - t63)
+    t65 = t7 - t64
+    t66 = t46 * t61 - t32 * 0.5
+    t67 = _runtime.select(slim, over * (a_x * n_z + d_z * t45), t42)
+    del t42
+    t68 = h * _runtime.select(in_line, g_1, -t67)
+    del g_1, t67
+    t69 = t19 + (t66 + t68)
+    t70 = t16 - t69
+    t71 = n_z * t61 - d_z * 0.5
+    del d_z, n_z, t61
+    m_z = _runtime.select(slim, over * (a_x * t46 + t32 * t45), t43)
+    del a_x, over, slim, t32, t43, t45, t46
+    t72 = h * _runtime.select(in_line, -t50, m_z)
+    del h, in_line, m_z, t50
+    t73 = -(t5 + (t71 + t72)) + t54
+    t74 = t16 * 0.5
+    t75 = t9 - t74 + t54
+    t76 = t7 * 0.5
+    t77 = t76 + t18 + t54
+    t78 = t74 + t9 + t54
     del t9
-    t75 = t18 - t72 + t52
+    t79 = t18 - t76 + t54
     del t18
-    t76 = t12 + t52
+    t80 = t12 + t54
     del t12
-    t77 = t21 + t52
+    t81 = t21 + t54
     del t21
-    t78 = t14 + t52
-    t79 = t22 + t52
-    t80 = -t6 + t52
+    t82 = t14 + t54
+    t83 = t22 + t54
+    t84 = -t6 + t54
     del t6
-    t81 = t11 - t61
-    t82 = t20 - t65
-    t83 = t20 * 0.5
-    t84 = t14 - t83 + t52
-    t85 = t11 * 0.5
-    t86 = t85 + t22 + t52
-    t87 = t83 + t14 + t52
+    t85 = t11 - t64
+    t86 = t20 - t69
+    t87 = t20 * 0.5
+    t88 = t14 - t87 + t54
+    t89 = t11 * 0.5
+    t90 = t89 + t22 + t54
+    t91 = t87 + t14 + t54
     del t14
-    t88 = t22 - t85 + t52
+    t92 = t22 - t89 + t54
     del t22
-    t89 = t26 + t52
-    del t26
-    t90 = t31 + t52
-    del t31
-    t91 = t28 + t52
-    t92 = t32 + t52
-    t93 = -t24 + t52
-    del t24
-    t94 = t25 - t61
-    t95 = t30 - t65
-    t96 = t30 * 0.5
-    t97 = t28 - t96 + t52
-    t98 = t25 * 0.5
-    t99 = t98 + t32 + t52
-    t100 = t96 + t28 + t52
+    t93 = t38 + t54
+    del t38
+    t94 = t28 + t54
     del t28
-    t101 = t32 - t98 + t52
-    del t32
-    t102 = t10 - (t59 + t60)
-    del t10, t59, t60
-    t103 = t7 - t102
-    del t7
-    t104 = t19 + (t63 - t64)
-    del t19, t63, t64
-    t105 = t16 - t104
-    del t16
-    t106 = -(t5 + (t67 - t68)) + t52
-    del t5, t67, t68
-    t107 = t11 - t102
-    del t11
-    t108 = t20 - t104
-    del t20
-    t109 = t25 - t102
-    del t25
-    t110 = t30 - t104
+    t95 = t39 + t54
+    t96 = t30 + t54
+    t97 = -t33 + t54
+    del t33
+    t98 = t37 - t64
+    t99 = t27 - t69
+    t100 = t27 * 0.5
+    t101 = t39 - t100 + t54
+    t102 = t37 * 0.5
+    t103 = t102 + t30 + t54
+    t104 = t100 + t39 + t54
+    del t39
+    t105 = t30 - t102 + t54
     del t30
+    t106 = t10 - (t62 + t63)
+    del t10, t62, t63
+    t107 = t7 - t106
+    del t7
+    t108 = t19 + (t66 - t68)
+    del t19, t66, t68
+    t109 = t16 - t108
+    del t16
+    t110 = -(t5 + (t71 - t72)) + t54
+    del t5, t71, t72
+    t111 = t11 - t106
+    del t11
+    t112 = t20 - t108
+    del t20
+    t113 = t37 - t106
+    del t37
+    t114 = t27 - t108
+    del t27
     return (
-        t53,
-        t54,
         t55,
         t56,
         t57,
         t58,
-        t62 + t52,
-        t66 + t52,
-        t69,
-        t71,
+        t59,
+        t60,
+        t65 + t54,
+        t70 + t54,
         t73,
-        t58,
-        t74,
         t75,
-        t58,
-        t62 - t70 + t52,
-        t72 + t66 + t52,
-        t69,
-        t70 + t62 + t52,
-        t66 - t72 + t52,
-        t69,
-        t76,
         t77,
-        t55,
+        t60,
         t78,
         t79,
+        t60,
+        t65 - t74 + t54,
+        t76 + t70 + t54,
+        t73,
+        t74 + t65 + t54,
+        t70 - t76 + t54,
+        t73,
         t80,
-        t81 + t52,
-        t82 + t52,
-        t69,
+        t81,
+        t57,
+        t82,
+        t83,
         t84,
-        t86,
-        t80,
-        t87,
+        t85 + t54,
+        t86 + t54,
+        t73,
         t88,
-        t80,
-        t81 - t83 + t52,
-        t85 + t82 + t52,
-        t69,
-        t83 + t81 + t52,
-        t82 - t85 + t52,
-        t69,
-        t89,
         t90,
-        t55,
+        t84,
         t91,
         t92,
+        t84,
+        t85 - t87 + t54,
+        t89 + t86 + t54,
+        t73,
+        t87 + t85 + t54,
+        t86 - t89 + t54,
+        t73,
         t93,
-        t94 + t52,
-        t95 + t52,
-        t69,
+        t94,
+        t57,
+        t95,
+        t96,
         t97,
-        t99,
-        t93,
-        t100,
+        t98 + t54,
+        t99 + t54,
+        t73,
         t101,
-        t93,
-        t94 - t96 + t52,
-        t98 + t95 + t52,
-        t69,
-        t96 + t94 + t52,
-        t95 - t98 + t52,
-        t69,
-        -t61 + t52,
-        -t65 + t52,
-        t69,
-        t53,
-        t54,
+        t103,
+        t97,
+        t104,
+        t105,
+        t97,
+        t98 - t100 + t54,
+        t102 + t99 + t54,
+        t73,
+        t100 + t98 + t54,
+        t99 - t102 + t54,
+        t73,
+        -t64 + t54,
+        -t69 + t54,
+        t73,
         t55,
         t56,
         t57,
         t58,
-        t103 + t52,
-        t105 + t52,
-        t106,
-        t71,
-        t73,
-        t58,
-        t74,
+        t59,
+        t60,
+        t107 + t54,
+        t109 + t54,
+        t110,
         t75,
-        t58,
-        t103 - t70 + t52,
-        t72 + t105 + t52,
-        t106,
-        t70 + t103 + t52,
-        t105 - t72 + t52,
-        t106,
-        t76,
         t77,
-        t55,
+        t60,
         t78,
         t79,
+        t60,
+        t107 - t74 + t54,
+        t76 + t109 + t54,
+        t110,
+        t74 + t107 + t54,
+        t109 - t76 + t54,
+        t110,
         t80,
-        t107 + t52,
-        t108 + t52,
-        t106,
+        t81,
+        t57,
+        t82,
+        t83,
         t84,
-        t86,
-        t80,
-        t87,
+        t111 + t54,
+        t112 + t54,
+        t110,
         t88,
-        t80,
-        t107 - t83 + t52,
-        t85 + t108 + t52,
-        t106,
-        t83 + t107 + t52,
-        t108 - t85 + t52,
-        t106,
-        t89,
         t90,
-        t55,
+        t84,
         t91,
         t92,
+        t84,
+        t111 - t87 + t54,
+        t89 + t112 + t54,
+        t110,
+        t87 + t111 + t54,
+        t112 - t89 + t54,
+        t110,
         t93,
-        t109 + t52,
-        t110 + t52,
-        t106,
+        t94,
+        t57,
+        t95,
+        t96,
         t97,
-        t99,
-        t93,
-        t100,
+        t113 + t54,
+        t114 + t54,
+        t110,
         t101,
-        t93,
-        t109 - t96 + t52,
-        t98 + t110 + t52,
-        t106,
-        t96 + t109 + t52,
-        t110 - t98 + t52,
-        t106,
-        -t102 + t52,
-        -t104 + t52,
-        t106,
+        t103,
+        t97,
+        t104,
+        t105,
+        t97,
+        t113 - t100 + t54,
+        t102 + t114 + t54,
+        t110,
+        t100 + t113 + t54,
+        t114 - t102 + t54,
+        t110,
+        -t106 + t54,
+        -t108 + t54,
+        t110,
     )
 
 
@@ -770,7 +796,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Array("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -814,8 +840,8 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     s2, c2 = _runtime.sincos(theta2)
     s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s3, c3 = _runtime.sincos(theta3)
     s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
+    s3, c3 = _runtime.sincos(theta3)
     t1 = L * s1
     del s1
     u_z = t1 - L * s2
@@ -833,114 +859,230 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4)
     del s_alpha2, t4
     u_u = u_z * u_z + t5 * t5 + t7 * t7
+    size = f + e + L + l
+    t8 = size * size
+    t9 = _runtime.VANISHING * _runtime.VANISHING
+    t10 = t8 * t9
+    same = u_u <= t10
+    t11 = L * c3
+    del c3
+    t12 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
+    del s_alpha3, t6
+    t13 = _runtime.select(same, t12, t7)
     v_z = t1 - L * s3
     del s3, t1
-    t8 = L * c3
-    del c3
-    t9 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8)
-    del c_alpha3, t3
-    t10 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8)
-    del s_alpha3, t6, t8
-    v_v = v_z * v_z + t9 * t9 + t10 * t10
-    size = f + e + L + l
-    t11 = size * size
-    t12 = _runtime.VANISHING * _runtime.VANISHING * t11
-    all_same = u_u + v_v <= t12
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t12
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
-    t13 = _runtime.select(same, t10, t7)
-    d_x = _runtime.select(same, t9, t5)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t14 = _runtime.select(same, t7, t10)
-    t15 = _runtime.select(same, t5, t9)
-    t16 = a_x * t14 - t13 * t15
+    t14 = _runtime.select(same, u_z, v_z)
+    t15 = _runtime.select(same, t7, t12)
     d_z = _runtime.select(same, v_z, u_z)
-    t17 = _runtime.select(same, u_z, v_z)
-    del same
-    t18 = a_x * t17 - t15 * d_z
-    t19 = over * (t13 * t16 + d_z * t18)
-    t20 = t13 * t17 - t14 * d_z
-    t21 = over * (a_x * t16 - d_z * t20)
-    del t16
-    n_z = over * (a_x * t18 + t13 * t20)
-    del over, t18, t20
-    nu = t19 * t19 + t21 * t21 + n_z * n_z
-    in_line = nu <= t12
-    del t12
+    t16 = t13 * t14 - t15 * d_z
+    t17 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11)
+    del c_alpha3, t11, t3
+    v_v = v_z * v_z + t17 * t17 + t12 * t12
+    all_same = u_u + v_v <= t10
+    del t10
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    d_x = _runtime.select(same, t17, t5)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t18 = _runtime.select(same, t5, t17)
+    t19 = a_x * t14 - t18 * d_z
+    t20 = a_x * t15 - t13 * t18
+    product_2 = t16 * t16 + t19 * t19 + t20 * t20
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t21 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t21 * 0.000244140625 <= _runtime.VANISHING * t21
+    del t21
+    over = 1.0 / mu
+    t22 = t13 * t20 + d_z * t19
+    t23 = a_x * t20 - d_z * t16
+    n_z = a_x * t19 + t13 * t16
+    m_m = _runtime.select(slim, over * (t22 * t22 + t23 * t23 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t9 * (t8 * mu)
+    del t9
     g_1 = whole * d_z
     s_w = _runtime.sign(t13 * a_x)
-    w_x = _runtime.select(in_line, g_1 * s_w, t13 * n_z - d_z * t21)
-    t22 = whole * (t13 + a_x * s_w)
-    del s_w, whole
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t22 * t22), 1.0 / (mu * nu))
-    t23 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
-    del t14, t15, t17
-    t24 = _runtime.select(in_line, 0.0, mu * part * t23 * 0.5)
-    t25 = _runtime.select(all_same, 0.0, nu * (t24 * t24) + mu * 0.25)
-    del all_same, mu, nu
-    t26 = l * l - t25
-    del t25
-    slack = np.maximum(t26, 0.0)
-    t27 = 0.9375 * (l * size)
+    m_x = _runtime.select(slim, over * (t13 * n_z - d_z * t23), t16)
+    del t16
+    t24 = whole * (t13 + a_x * s_w)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t24 * t24, m_m)
+    del m_m
+    part = 1.0 / w_w
+    del w_w
+    t25 = t18 * (d_x - t18) + t15 * (t13 - t15) + t14 * (d_z - t14)
+    del t14, t15, t18
+    t26 = _runtime.select(in_line, 0.0, part * (t25 * t25))
+    t27 = _runtime.select(all_same, 0.0, mu * (1.0 + t26) * 0.25)
+    del all_same, mu, t26
+    t28 = l * l - t27
+    del t27
+    slack = np.maximum(t28, 0.0)
+    t29 = 0.9375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t27, 0.0, np.sqrt(part * slack))
-    del part, slack
-    t28 = w_x * h
-    del w_x
-    t29 = t19 * t24 + d_x * 0.5
+    h = _runtime.select(slack <= _runtime.VANISHING * t29, 0.0, np.sqrt(part * slack))
+    del slack
+    t30 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t31 = _runtime.select(in_line, 0.0, part * t25 * 0.5)
+    del part
+    t32 = t22 * t31 + d_x * 0.5
     del d_x
-    t30 = t28 - t29
-    t31 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t32 = t31 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t31
-    t33 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t34 = np.abs(_runtime.select(in_line, -t23, 0.0)) <= t11 * _runtime.FEASIBILITY
-    del t11, t23
-    unreachable = np.logical_not(t34 & (-(_runtime.FEASIBILITY * t27) <= t26))
-    del t26, t27, t34
-    t35 = _runtime.poison(np.logical_not(t32 & t33) | unreachable)
-    del t32, t33, unreachable
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t19))
-    del g_1
-    t36 = h * w_y
-    del w_y
-    t37 = t21 * t24 - t13 * 0.5
-    t38 = t36 + t37
-    w_z = _runtime.select(in_line, -t22, a_x * t21 + t13 * t19)
-    del a_x, in_line, t13, t19, t21, t22
-    t39 = h * w_z
-    del h, w_z
-    t40 = n_z * t24 - d_z * 0.5
-    del d_z, n_z, t24
-    t41 = t39 + t40
-    A_11_above = t28 + t29
-    del t28, t29
-    A_12_above = t36 - t37
-    del t36, t37
-    A_13_above = t39 - t40
-    del t39, t40
+    t33 = t30 - t32
+    t34 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t35 = t34 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t34
+    t36 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t37 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t8 * _runtime.FEASIBILITY
+    del t25, t8
+    unreachable = np.logical_not(t37 & (-(_runtime.FEASIBILITY * t29) <= t28))
+    del t28, t29, t37
+    t38 = _runtime.poison(np.logical_not(t35 & t36) | unreachable)
+    del t35, t36, unreachable
+    t39 = _runtime.select(slim, over * (a_x * n_z + d_z * t22), t19)
+    del t19
+    t40 = h * _runtime.select(in_line, g_1, -t39)
+    del g_1, t39
+    t41 = t23 * t31 - t13 * 0.5
+    t42 = t40 + t41
+    m_z = _runtime.select(slim, over * (a_x * t23 + t13 * t22), t20)
+    del a_x, over, slim, t13, t20, t22, t23
+    t43 = h * _runtime.select(in_line, -t24, m_z)
+    del h, in_line, m_z, t24
+    t44 = n_z * t31 - d_z * 0.5
+    del d_z, n_z, t31
+    t45 = t43 + t44
+    A_11_above = t30 + t32
+    del t30, t32
+    A_12_above = t40 - t41
+    del t40, t41
+    A_13_above = t43 - t44
+    del t43, t44
     return (
-        -t30 + t35,
-        -t38 + t35,
-        -t41 + t35,
-        -(t5 + t30) + t35,
-        -(t7 + t38) + t35,
-        -(u_z + t41) + t35,
-        -(t9 + t30) + t35,
-        -(t10 + t38) + t35,
-        -(v_z + t41) + t35,
-        A_11_above + t35,
-        A_12_above + t35,
-        A_13_above + t35,
-        A_11_above - t5 + t35,
-        A_12_above - t7 + t35,
-        A_13_above - u_z + t35,
-        A_11_above - t9 + t35,
-        A_12_above - t10 + t35,
-        A_13_above - v_z + t35,
+        -t33 + t38,
+        -t42 + t38,
+        -t45 + t38,
+        -(t5 + t33) + t38,
+        -(t7 + t42) + t38,
+        -(u_z + t45) + t38,
+        -(t17 + t33) + t38,
+        -(t12 + t42) + t38,
+        -(v_z + t45) + t38,
+        A_11_above + t38,
+        A_12_above + t38,
+        A_13_above + t38,
+        A_11_above - t5 + t38,
+        A_12_above - t7 + t38,
+        A_13_above - u_z + t38,
+        A_11_above - t17 + t38,
+        A_12_above - t12 + t38,
+        A_13_above - v_z + t38,
+    )
+
+
+def _jacobian_parallel_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    # Where nothing vanishes; last, whether something does.
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
+    t1 = L * s1
+    del s1
+    v_z = t1 - L * s3
+    del s3
+    t2 = L * c1
+    del c1
+    t3 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t2
+    del s_alpha1
+    t4 = L * c2
+    del c2
+    t5 = t3 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4)
+    del s_alpha2
+    u_z = t1 - L * s2
+    del s2, t1
+    t6 = L * c3
+    del c3
+    t7 = t3 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t6)
+    del s_alpha3, t3
+    t8 = v_z * t5 - u_z * t7
+    t9 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t2
+    del c_alpha1, t2
+    t10 = t9 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t4)
+    del c_alpha2, t4
+    t11 = t9 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t6)
+    del c_alpha3, t6, t9
+    t12 = v_z * t10 - u_z * t11
+    m_z = t10 * t7 - t5 * t11
+    product_2 = t8 * t8 + t12 * t12 + m_z * m_z
+    part = 1.0 / product_2
+    u_u = u_z * u_z + t10 * t10 + t5 * t5
+    t13 = v_z * (u_z - v_z) + t11 * (t10 - t11) + t7 * (t5 - t7)
+    t14 = l * l - u_u * (1.0 + part * (t13 * t13)) * 0.25
+    slack = np.maximum(t14, 0.0)
+    h = np.sqrt(part * slack)
+    t15 = t8 * h
+    t16 = part * t13 * 0.5
+    del part, t13
+    t17 = (t5 * m_z + u_z * t12) * t16 + t10 * 0.5
+    t18 = t15 - t17
+    t19 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t20 = t19 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t19
+    t21 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    size = f + e + L + l
+    t22 = size * size
+    t23 = 0.9375 * (l * size)
+    del size
+    t24 = (np.abs(0.0) <= t22 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t23) <= t14)
+    del t14
+    failed = np.logical_not(t20 & t21) | np.logical_not(t24)
+    del t20, t21, t24
+    t25 = _runtime.poison(failed)
+    del failed
+    t26 = t12 * h
+    t27 = t16 * (t10 * m_z - u_z * t8) - t5 * 0.5
+    A_12 = t26 - t27
+    t28 = m_z * h
+    del h, m_z
+    t29 = u_z * 0.5 - t16 * (t10 * t12 + t5 * t8)
+    del t12, t16, t8
+    t30 = t28 - t29
+    A_11_above = t15 + t17
+    del t15, t17
+    t31 = t26 + t27
+    del t26, t27
+    A_13_above = t28 + t29
+    del t28, t29
+    t32 = _runtime.VANISHING * _runtime.VANISHING
+    t33 = t22 * t32
+    v_v = v_z * v_z + t11 * t11 + t7 * t7
+    t34 = u_u * v_v
+    slim = product_2 - t34 * 0.000244140625 <= _runtime.VANISHING * t34
+    del t34
+    t35 = (u_u <= t33) | (u_u + v_v <= t33) | slim | (product_2 <= t32 * (t22 * u_u))
+    del product_2, slim, t22, t32, t33, u_u, v_v
+    return (
+        -t18 + t25,
+        A_12 + t25,
+        -t30 + t25,
+        -(t10 + t18) + t25,
+        A_12 - t5 + t25,
+        -(u_z + t30) + t25,
+        -(t11 + t18) + t25,
+        A_12 - t7 + t25,
+        -(v_z + t30) + t25,
+        A_11_above + t25,
+        -t31 + t25,
+        A_13_above + t25,
+        A_11_above - t10 + t25,
+        -(t5 + t31) + t25,
+        A_13_above - u_z + t25,
+        A_11_above - t11 + t25,
+        -(t7 + t31) + t25,
+        A_13_above - v_z + t25,
+        t35 | (slack <= _runtime.VANISHING * t23),
     )
 
 
@@ -951,7 +1093,8 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Array("A", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    common=_jacobian_parallel_common,
+    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -993,8 +1136,8 @@ def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s3, c3 = _runtime.sincos(theta3)
     s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
+    s3, c3 = _runtime.sincos(theta3)
     t1 = L * s1
     del s1
     t2 = c_alpha1 * t1
@@ -1011,120 +1154,242 @@ def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
     u_u = u_z * u_z + t7 * t7 + t9 * t9
-    t10 = L * s3
-    del s3
-    v_z = t1 - t10
-    t11 = L * c3
-    del c3
-    t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11)
-    del t5
-    t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
-    del t8
-    v_v = v_z * v_z + t12 * t12 + t13 * t13
     size = f + e + L + l
-    t14 = size * size
-    t15 = _runtime.VANISHING * _runtime.VANISHING * t14
-    all_same = u_u + v_v <= t15
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t15
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
-    t16 = _runtime.select(same, t13, t9)
-    d_x = _runtime.select(same, t12, t7)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t17 = _runtime.select(same, t9, t13)
-    t18 = _runtime.select(same, t7, t12)
-    t19 = a_x * t17 - t16 * t18
+    t10 = size * size
+    t11 = _runtime.VANISHING * _runtime.VANISHING
+    t12 = t10 * t11
+    same = u_u <= t12
+    t13 = L * c3
+    del c3
+    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
+    del t8
+    t15 = _runtime.select(same, t14, t9)
+    t16 = L * s3
+    del s3
+    v_z = t1 - t16
+    t17 = _runtime.select(same, u_z, v_z)
+    t18 = _runtime.select(same, t9, t14)
     d_z = _runtime.select(same, v_z, u_z)
-    t20 = _runtime.select(same, u_z, v_z)
-    del same
-    t21 = a_x * t20 - t18 * d_z
-    t22 = over * (t16 * t19 + d_z * t21)
-    t23 = t16 * t20 - t17 * d_z
-    t24 = over * (a_x * t19 - d_z * t23)
-    del t19
-    n_z = over * (a_x * t21 + t16 * t23)
-    del over, t21, t23
-    nu = t22 * t22 + t24 * t24 + n_z * n_z
-    in_line = nu <= t15
-    del t15
+    t19 = t15 * t17 - t18 * d_z
+    t20 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
+    del t5
+    v_v = v_z * v_z + t20 * t20 + t14 * t14
+    all_same = u_u + v_v <= t12
+    del t12
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    d_x = _runtime.select(same, t20, t7)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t21 = _runtime.select(same, t7, t20)
+    t22 = a_x * t17 - t21 * d_z
+    t23 = a_x * t18 - t15 * t21
+    product_2 = t19 * t19 + t22 * t22 + t23 * t23
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t24 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t24 * 0.000244140625 <= _runtime.VANISHING * t24
+    del t24
+    over = 1.0 / mu
+    t25 = t15 * t23 + d_z * t22
+    t26 = a_x * t23 - d_z * t19
+    n_z = a_x * t22 + t15 * t19
+    m_m = _runtime.select(slim, over * (t25 * t25 + t26 * t26 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t11 * (t10 * mu)
+    del t11
     g_1 = whole * d_z
-    s_w = _runtime.sign(t16 * a_x)
-    w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
-    t25 = whole * (t16 + a_x * s_w)
-    del s_w, whole
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / (mu * nu))
-    t26 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
-    del t17, t18, t20
-    t27 = _runtime.select(in_line, 0.0, mu * part * t26 * 0.5)
-    t28 = _runtime.select(all_same, 0.0, nu * (t27 * t27) + mu * 0.25)
-    del all_same, mu, nu
-    t29 = l * l - t28
-    del t28
-    slack = np.maximum(t29, 0.0)
-    t30 = 0.9375 * (l * size)
+    s_w = _runtime.sign(t15 * a_x)
+    m_x = _runtime.select(slim, over * (t15 * n_z - d_z * t26), t19)
+    del t19
+    t27 = whole * (t15 + a_x * s_w)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t27 * t27, m_m)
+    del m_m
+    part = 1.0 / w_w
+    del w_w
+    t28 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
+    del t17, t18, t21
+    t29 = _runtime.select(in_line, 0.0, part * (t28 * t28))
+    t30 = _runtime.select(all_same, 0.0, mu * (1.0 + t29) * 0.25)
+    del all_same, mu, t29
+    t31 = l * l - t30
+    del t30
+    slack = np.maximum(t31, 0.0)
+    t32 = 0.9375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t30, 0.0, np.sqrt(part * slack))
-    del part, slack
-    t31 = w_x * h
-    del w_x
-    t32 = t22 * t27 + d_x * 0.5
+    h = _runtime.select(slack <= _runtime.VANISHING * t32, 0.0, np.sqrt(part * slack))
+    del slack
+    t33 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t34 = _runtime.select(in_line, 0.0, part * t28 * 0.5)
+    del part
+    t35 = t25 * t34 + d_x * 0.5
     del d_x
-    t33 = t31 - t32
-    t34 = s_alpha1 * t1
+    t36 = t33 - t35
+    t37 = s_alpha1 * t1
     del s_alpha1, t1
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t22))
-    del g_1
-    t35 = h * w_y
-    del w_y
-    t36 = t24 * t27 - t16 * 0.5
-    t37 = t35 + t36
-    w_z = _runtime.select(in_line, -t25, a_x * t24 + t16 * t22)
-    del a_x, t16, t22, t24, t25
-    t38 = h * w_z
-    del h, w_z
-    t39 = n_z * t27 - d_z * 0.5
-    del d_z, n_z, t27
-    t40 = t38 + t39
-    t41 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t42 = t41 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t41
-    t43 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t44 = np.abs(_runtime.select(in_line, -t26, 0.0)) <= t14 * _runtime.FEASIBILITY
-    del in_line, t14, t26
-    unreachable = np.logical_not(t44 & (-(_runtime.FEASIBILITY * t30) <= t29))
-    del t29, t30, t44
-    t45 = _runtime.poison(np.logical_not(t42 & t43) | unreachable)
-    del t42, t43, unreachable
-    t46 = c_alpha2 * t3
+    t38 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
+    del t22
+    t39 = h * _runtime.select(in_line, g_1, -t38)
+    del g_1, t38
+    t40 = t26 * t34 - t15 * 0.5
+    t41 = t39 + t40
+    m_z = _runtime.select(slim, over * (a_x * t26 + t15 * t25), t23)
+    del a_x, over, slim, t15, t23, t25, t26
+    t42 = h * _runtime.select(in_line, -t27, m_z)
+    del h, m_z, t27
+    t43 = n_z * t34 - d_z * 0.5
+    del d_z, n_z, t34
+    t44 = t42 + t43
+    t45 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t46 = t45 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t45
+    t47 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t48 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= t10 * _runtime.FEASIBILITY
+    del in_line, t10, t28
+    unreachable = np.logical_not(t48 & (-(_runtime.FEASIBILITY * t32) <= t31))
+    del t31, t32, t48
+    t49 = _runtime.poison(np.logical_not(t46 & t47) | unreachable)
+    del t46, t47, unreachable
+    t50 = c_alpha2 * t3
     del c_alpha2
-    t47 = s_alpha2 * t3
+    t51 = s_alpha2 * t3
     del s_alpha2, t3
-    B_22 = t46 * (t7 + t33) + t47 * (t9 + t37) + t6 * (u_z + t40)
-    t48 = c_alpha3 * t10
+    B_22 = t50 * (t7 + t36) + t51 * (t9 + t41) + t6 * (u_z + t44)
+    t52 = c_alpha3 * t16
     del c_alpha3
-    t49 = s_alpha3 * t10
-    del s_alpha3, t10
-    B_33 = t48 * (t12 + t33) + t49 * (t13 + t37) + t11 * (v_z + t40)
-    A_11_above = t31 + t32
-    del t31, t32
-    A_12_above = t35 - t36
-    del t35, t36
-    t50 = t38 - t39
-    del t38, t39
-    t51 = t2 * A_11_above + t34 * A_12_above + t4 * t50
-    t52 = t46 * (t7 - A_11_above) + t47 * (t9 - A_12_above)
-    del t46, t47, t7, t9
-    t53 = t48 * (t12 - A_11_above) + t49 * (t13 - A_12_above)
-    del A_11_above, A_12_above, t12, t13, t48, t49
+    t53 = s_alpha3 * t16
+    del s_alpha3, t16
+    B_33 = t52 * (t20 + t36) + t53 * (t14 + t41) + t13 * (v_z + t44)
+    A_11_above = t33 + t35
+    del t33, t35
+    A_12_above = t39 - t40
+    del t39, t40
+    t54 = t42 - t43
+    del t42, t43
+    t55 = t2 * A_11_above + t37 * A_12_above + t4 * t54
+    t56 = t50 * (t7 - A_11_above) + t51 * (t9 - A_12_above)
+    del t50, t51, t7, t9
+    t57 = t52 * (t20 - A_11_above) + t53 * (t14 - A_12_above)
+    del A_11_above, A_12_above, t14, t20, t52, t53
     return (
-        t2 * t33 + t34 * t37 + t4 * t40 + t45,
-        B_22 + t45,
-        B_33 + t45,
-        -t51 + t45,
-        t52 + t6 * (u_z - t50) + t45,
-        t53 + t11 * (v_z - t50) + t45,
+        t2 * t36 + t37 * t41 + t4 * t44 + t49,
+        B_22 + t49,
+        B_33 + t49,
+        -t55 + t49,
+        t56 + t6 * (u_z - t54) + t49,
+        t57 + t13 * (v_z - t54) + t49,
+    )
+
+
+def _jacobian_serial_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    # Where nothing vanishes; last, whether something does.
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
+    t1 = L * s1
+    del s1
+    t2 = c_alpha1 * t1
+    t3 = L * s3
+    del s3
+    v_z = t1 - t3
+    t4 = L * c1
+    del c1
+    t5 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
+    t6 = L * c2
+    del c2
+    t7 = t5 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
+    t8 = L * s2
+    del s2
+    u_z = t1 - t8
+    t9 = L * c3
+    del c3
+    t10 = t5 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t9)
+    del t5
+    t11 = v_z * t7 - u_z * t10
+    t12 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
+    del c_alpha1
+    t13 = t12 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
+    t14 = t12 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t9)
+    del t12
+    t15 = v_z * t13 - u_z * t14
+    m_z = t13 * t10 - t7 * t14
+    product_2 = t11 * t11 + t15 * t15 + m_z * m_z
+    part = 1.0 / product_2
+    u_u = u_z * u_z + t13 * t13 + t7 * t7
+    t16 = v_z * (u_z - v_z) + t14 * (t13 - t14) + t10 * (t7 - t10)
+    t17 = l * l - u_u * (1.0 + part * (t16 * t16)) * 0.25
+    slack = np.maximum(t17, 0.0)
+    h = np.sqrt(part * slack)
+    t18 = t11 * h
+    t19 = part * t16 * 0.5
+    del part, t16
+    t20 = (t7 * m_z + u_z * t15) * t19 + t13 * 0.5
+    t21 = t18 - t20
+    t22 = s_alpha1 * t1
+    del s_alpha1, t1
+    t23 = t15 * h
+    t24 = t19 * (t13 * m_z - u_z * t11) - t7 * 0.5
+    A_12 = t23 - t24
+    t25 = m_z * h
+    del h, m_z
+    t26 = u_z * 0.5 - t19 * (t13 * t15 + t7 * t11)
+    del t11, t15, t19
+    t27 = t25 - t26
+    t28 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t29 = t28 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t28
+    t30 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    size = f + e + L + l
+    t31 = size * size
+    t32 = 0.9375 * (l * size)
+    del size
+    t33 = (np.abs(0.0) <= t31 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t32) <= t17)
+    del t17
+    failed = np.logical_not(t29 & t30) | np.logical_not(t33)
+    del t29, t30, t33
+    t34 = _runtime.poison(failed)
+    del failed
+    t35 = c_alpha2 * t8
+    del c_alpha2
+    t36 = s_alpha2 * t8
+    del s_alpha2, t8
+    B_22 = t35 * (t13 + t21) + t36 * (t7 - A_12) + t6 * (u_z + t27)
+    t37 = c_alpha3 * t3
+    del c_alpha3
+    t38 = s_alpha3 * t3
+    del s_alpha3, t3
+    B_33 = t37 * (t14 + t21) + t38 * (t10 - A_12) + t9 * (v_z + t27)
+    A_11_above = t18 + t20
+    del t18, t20
+    t39 = t23 + t24
+    del t23, t24
+    t40 = t25 + t26
+    del t25, t26
+    t41 = -(t2 * A_11_above - t22 * t39 + t4 * t40) + t34
+    B_22_above = t35 * (t13 - A_11_above) + t36 * (t7 + t39) + t6 * (u_z - t40)
+    del t13, t35, t36, t6, t7, u_z
+    B_33_above = t37 * (t14 - A_11_above) + t38 * (t10 + t39) + t9 * (v_z - t40)
+    del A_11_above, t37, t38, t39, t40, t9
+    t42 = _runtime.VANISHING * _runtime.VANISHING
+    t43 = t31 * t42
+    v_v = v_z * v_z + t14 * t14 + t10 * t10
+    del t10, t14, v_z
+    t44 = u_u * v_v
+    slim = product_2 - t44 * 0.000244140625 <= _runtime.VANISHING * t44
+    del t44
+    t45 = (u_u <= t43) | (u_u + v_v <= t43) | slim | (product_2 <= t42 * (t31 * u_u))
+    del product_2, slim, t31, t42, t43, u_u, v_v
+    return (
+        t2 * t21 - t22 * A_12 + t4 * t27 + t34,
+        B_22 + t34,
+        B_33 + t34,
+        t41,
+        B_22_above + t34,
+        B_33_above + t34,
+        t45 | (slack <= _runtime.VANISHING * t32),
     )
 
 
@@ -1135,7 +1400,8 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Array("B", (2, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    common=_jacobian_serial_common,
+    size=_runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 2), (4, 2), (5, 2)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1177,8 +1443,8 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s3, c3 = _runtime.sincos(theta3)
     s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
+    s3, c3 = _runtime.sincos(theta3)
     t1 = L * s1
     del s1
     t2 = c_alpha1 * t1
@@ -1195,172 +1461,180 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
     u_u = u_z * u_z + t7 * t7 + t9 * t9
-    t10 = L * s3
-    del s3
-    v_z = t1 - t10
-    t11 = L * c3
-    del c3
-    t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11)
-    del t5
-    t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
-    del t8
-    v_v = v_z * v_z + t12 * t12 + t13 * t13
     size = f + e + L + l
-    t14 = size * size
-    t15 = _runtime.VANISHING * _runtime.VANISHING * t14
-    all_same = u_u + v_v <= t15
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t15
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
-    t16 = _runtime.select(same, t13, t9)
-    d_x = _runtime.select(same, t12, t7)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t17 = _runtime.select(same, t9, t13)
-    t18 = _runtime.select(same, t7, t12)
-    t19 = a_x * t17 - t16 * t18
+    t10 = size * size
+    t11 = _runtime.VANISHING * _runtime.VANISHING
+    t12 = t10 * t11
+    same = u_u <= t12
+    t13 = L * c3
+    del c3
+    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
+    del t8
+    t15 = _runtime.select(same, t14, t9)
+    t16 = L * s3
+    del s3
+    v_z = t1 - t16
+    t17 = _runtime.select(same, u_z, v_z)
+    t18 = _runtime.select(same, t9, t14)
     d_z = _runtime.select(same, v_z, u_z)
-    t20 = _runtime.select(same, u_z, v_z)
-    del same
-    t21 = a_x * t20 - t18 * d_z
-    t22 = over * (t16 * t19 + d_z * t21)
-    t23 = t16 * t20 - t17 * d_z
-    t24 = over * (a_x * t19 - d_z * t23)
-    del t19
-    n_z = over * (a_x * t21 + t16 * t23)
-    del over, t21, t23
-    nu = t22 * t22 + t24 * t24 + n_z * n_z
-    in_line = nu <= t15
-    del t15
-    g_1 = whole * d_z
-    s_w = _runtime.sign(t16 * a_x)
-    w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
-    t25 = whole * (t16 + a_x * s_w)
-    del s_w, whole
-    t26 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / t26)
-    t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
-    del t17, t18, t20
-    t28 = _runtime.select(in_line, 0.0, mu * part * t27 * 0.5)
-    t29 = _runtime.select(all_same, 0.0, nu * (t28 * t28) + mu * 0.25)
-    del all_same, mu, nu
-    t30 = l * l - t29
-    del t29
-    slack = np.maximum(t30, 0.0)
-    t31 = 0.9375 * (l * size)
-    del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part * slack))
-    del part, slack
-    t32 = w_x * h
-    del w_x
-    t33 = t22 * t28 + d_x * 0.5
-    del d_x
-    t34 = t32 - t33
-    t35 = s_alpha1 * t1
-    del s_alpha1, t1
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t22))
-    del g_1
-    t36 = h * w_y
-    del w_y
-    t37 = t24 * t28 - t16 * 0.5
-    t38 = t36 + t37
-    w_z = _runtime.select(in_line, -t25, a_x * t24 + t16 * t22)
-    del a_x, t16, t22, t24, t25
-    t39 = h * w_z
-    del w_z
-    t40 = n_z * t28 - d_z * 0.5
-    del d_z, n_z, t28
-    t41 = t39 + t40
-    t42 = t2 * t34 + t35 * t38 + t4 * t41
-    t43 = t9 + t38
-    t44 = v_z + t41
-    t45 = u_z + t41
-    t46 = t13 + t38
-    Delta = t26 * h
-    del h, t26
-    t47 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t48 = t47 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t47
-    t49 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t50 = np.abs(_runtime.select(in_line, -t27, 0.0)) <= t14 * _runtime.FEASIBILITY
-    del in_line, t14, t27
-    unreachable = np.logical_not(t50 & (-(_runtime.FEASIBILITY * t31) <= t30))
-    del t30, t31, t50
-    t51 = _runtime.poison(np.logical_not(t48 & t49) | unreachable)
-    del t48, t49, unreachable
-    t52 = -(t42 * (t43 * t44 - t45 * t46) / Delta) + t51
-    t53 = c_alpha2 * t3
-    del c_alpha2
-    t54 = t7 + t34
-    t55 = s_alpha2 * t3
-    del s_alpha2, t3
-    t56 = t53 * t54 + t55 * t43 + t6 * t45
-    t57 = c_alpha3 * t10
-    del c_alpha3
-    t58 = t12 + t34
-    t59 = s_alpha3 * t10
-    del s_alpha3, t10
-    t60 = t57 * t58 + t59 * t46 + t11 * t44
-    t61 = -(t60 * (t38 * t45 - t41 * t43) / Delta) + t51
-    t62 = -(t56 * (t34 * t44 - t41 * t58) / Delta) + t51
-    t63 = -(t42 * (t46 * t54 - t43 * t58) / Delta) + t51
-    t64 = -(t60 * (t34 * t43 - t38 * t54) / Delta) + t51
-    del t43
-    A_11_above = t32 + t33
-    del t32, t33
-    A_12_above = t36 - t37
-    del t36, t37
-    t65 = t39 - t40
-    del t39, t40
-    t66 = t2 * A_11_above + t35 * A_12_above + t4 * t65
-    del t2, t35, t4
-    t67 = t9 - A_12_above
-    del t9
-    t68 = v_z - t65
-    del v_z
-    t69 = u_z - t65
-    del u_z
-    t70 = t13 - A_12_above
-    del t13
-    t71 = -(t66 * (t67 * t68 - t69 * t70) / Delta) + t51
-    t72 = t7 - A_11_above
-    del t7
-    t73 = t53 * t72 + t55 * t67 + t6 * t69
-    del t53, t55, t6
-    t74 = t73 * (A_12_above * t68 - t65 * t70) / Delta + t51
-    t75 = t12 - A_11_above
+    t19 = t15 * t17 - t18 * d_z
+    t20 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
+    del t5
+    v_v = v_z * v_z + t20 * t20 + t14 * t14
+    all_same = u_u + v_v <= t12
     del t12
-    t76 = t57 * t75 + t59 * t70 + t11 * t68
-    del t11, t57, t59
-    t77 = -(t76 * (A_12_above * t69 - t65 * t67) / Delta)
-    t78 = -(t73 * (A_11_above * t68 - t65 * t75) / Delta)
-    t79 = t76 * (A_11_above * t69 - t65 * t72) / Delta + t51
-    del t65
-    t80 = -(t66 * (t70 * t72 - t67 * t75) / Delta) + t51
-    t81 = t73 * (A_11_above * t70 - A_12_above * t75) / Delta
-    del t70, t73
-    t82 = t76 * (A_11_above * t67 - A_12_above * t72) / Delta
-    del A_11_above, A_12_above, t67, t76
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    d_x = _runtime.select(same, t20, t7)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t21 = _runtime.select(same, t7, t20)
+    t22 = a_x * t17 - t21 * d_z
+    t23 = a_x * t18 - t15 * t21
+    product_2 = t19 * t19 + t22 * t22 + t23 * t23
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t24 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t24 * 0.000244140625 <= _runtime.VANISHING * t24
+    del t24
+    over = 1.0 / mu
+    t25 = t15 * t23 + d_z * t22
+    t26 = a_x * t23 - d_z * t19
+    n_z = a_x * t22 + t15 * t19
+    m_m = _runtime.select(slim, over * (t25 * t25 + t26 * t26 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t11 * (t10 * mu)
+    del t11
+    g_1 = whole * d_z
+    s_w = _runtime.sign(t15 * a_x)
+    m_x = _runtime.select(slim, over * (t15 * n_z - d_z * t26), t19)
+    del t19
+    t27 = whole * (t15 + a_x * s_w)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t27 * t27, m_m)
+    part = 1.0 / w_w
+    del w_w
+    t28 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
+    del t17, t18, t21
+    t29 = _runtime.select(in_line, 0.0, part * (t28 * t28))
+    t30 = _runtime.select(all_same, 0.0, mu * (1.0 + t29) * 0.25)
+    del all_same, mu, t29
+    t31 = l * l - t30
+    del t30
+    slack = np.maximum(t31, 0.0)
+    t32 = 0.9375 * (l * size)
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t32, 0.0, np.sqrt(part * slack))
+    del slack
+    t33 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t34 = _runtime.select(in_line, 0.0, part * t28 * 0.5)
+    del part
+    t35 = t25 * t34 + d_x * 0.5
+    del d_x
+    t36 = t33 - t35
+    t37 = s_alpha1 * t1
+    del s_alpha1, t1
+    t38 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
+    del t22
+    t39 = h * _runtime.select(in_line, g_1, -t38)
+    del g_1, t38
+    t40 = t26 * t34 - t15 * 0.5
+    t41 = t39 + t40
+    m_z = _runtime.select(slim, over * (a_x * t26 + t15 * t25), t23)
+    del a_x, over, slim, t15, t23, t25, t26
+    t42 = h * _runtime.select(in_line, -t27, m_z)
+    del m_z, t27
+    t43 = n_z * t34 - d_z * 0.5
+    del d_z, n_z, t34
+    t44 = t42 + t43
+    t45 = t2 * t36 + t37 * t41 + t4 * t44
+    t46 = t9 + t41
+    t47 = v_z + t44
+    t48 = u_z + t44
+    t49 = t14 + t41
+    Delta = m_m * h
+    del h, m_m
+    t50 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t51 = t50 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t50
+    t52 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t53 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= t10 * _runtime.FEASIBILITY
+    del in_line, t10, t28
+    unreachable = np.logical_not(t53 & (-(_runtime.FEASIBILITY * t32) <= t31))
+    del t31, t32, t53
+    t54 = _runtime.poison(np.logical_not(t51 & t52) | unreachable)
+    del t51, t52, unreachable
+    t55 = -(t45 * (t46 * t47 - t48 * t49) / Delta) + t54
+    t56 = c_alpha2 * t3
+    del c_alpha2
+    t57 = t7 + t36
+    t58 = s_alpha2 * t3
+    del s_alpha2, t3
+    t59 = t56 * t57 + t58 * t46 + t6 * t48
+    t60 = c_alpha3 * t16
+    del c_alpha3
+    t61 = t20 + t36
+    t62 = s_alpha3 * t16
+    del s_alpha3, t16
+    t63 = t60 * t61 + t62 * t49 + t13 * t47
+    t64 = -(t63 * (t41 * t48 - t44 * t46) / Delta) + t54
+    t65 = -(t59 * (t36 * t47 - t44 * t61) / Delta) + t54
+    t66 = -(t45 * (t49 * t57 - t46 * t61) / Delta) + t54
+    t67 = -(t63 * (t36 * t46 - t41 * t57) / Delta) + t54
+    del t46
+    A_11_above = t33 + t35
+    del t33, t35
+    A_12_above = t39 - t40
+    del t39, t40
+    t68 = t42 - t43
+    del t42, t43
+    t69 = t2 * A_11_above + t37 * A_12_above + t4 * t68
+    del t2, t37, t4
+    t70 = t9 - A_12_above
+    del t9
+    t71 = v_z - t68
+    del v_z
+    t72 = u_z - t68
+    del u_z
+    t73 = t14 - A_12_above
+    del t14
+    t74 = -(t69 * (t70 * t71 - t72 * t73) / Delta) + t54
+    t75 = t7 - A_11_above
+    del t7
+    t76 = t56 * t75 + t58 * t70 + t6 * t72
+    del t56, t58, t6
+    t77 = t76 * (A_12_above * t71 - t68 * t73) / Delta + t54
+    t78 = t20 - A_11_above
+    del t20
+    t79 = t60 * t78 + t62 * t73 + t13 * t71
+    del t13, t60, t62
+    t80 = -(t79 * (A_12_above * t72 - t68 * t70) / Delta)
+    t81 = -(t76 * (A_11_above * t71 - t68 * t78) / Delta)
+    t82 = t79 * (A_11_above * t72 - t68 * t75) / Delta + t54
+    del t68
+    t83 = -(t69 * (t73 * t75 - t70 * t78) / Delta) + t54
+    t84 = t76 * (A_11_above * t73 - A_12_above * t78) / Delta
+    del t73, t76
+    t85 = t79 * (A_11_above * t70 - A_12_above * t75) / Delta
+    del A_11_above, A_12_above, t70, t79
     return (
-        t52,
-        t56 * (t38 * t44 - t41 * t46) / Delta + t51,
-        t61,
-        t42 * (t44 * t54 - t45 * t58) / Delta + t51,
-        t62,
-        t60 * (t34 * t45 - t41 * t54) / Delta + t51,
-        t63,
-        t56 * (t34 * t46 - t38 * t58) / Delta + t51,
+        t55,
+        t59 * (t41 * t47 - t44 * t49) / Delta + t54,
         t64,
-        t71,
+        t45 * (t47 * t57 - t48 * t61) / Delta + t54,
+        t65,
+        t63 * (t36 * t48 - t44 * t57) / Delta + t54,
+        t66,
+        t59 * (t36 * t49 - t41 * t61) / Delta + t54,
+        t67,
         t74,
-        t77 + t51,
-        t66 * (t68 * t72 - t69 * t75) / Delta + t51,
-        t78 + t51,
-        t79,
-        t80,
-        t81 + t51,
-        -t82 + t51,
+        t77,
+        t80 + t54,
+        t69 * (t71 * t75 - t72 * t78) / Delta + t54,
+        t81 + t54,
+        t82,
+        t83,
+        t84 + t54,
+        -t85 + t54,
     )
 
 
@@ -1371,7 +1645,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1414,8 +1688,8 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s3, c3 = _runtime.sincos(theta3)
     s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
+    s3, c3 = _runtime.sincos(theta3)
     t1 = L * s1
     del s1
     t2 = c_alpha1 * t1
@@ -1432,124 +1706,245 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
     u_u = u_z * u_z + t7 * t7 + t9 * t9
-    t10 = L * s3
-    del s3
-    v_z = t1 - t10
-    t11 = L * c3
-    del c3
-    t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11)
-    del t5
-    t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
-    del t8
-    v_v = v_z * v_z + t12 * t12 + t13 * t13
     size = f + e + L + l
-    t14 = size * size
-    t15 = _runtime.VANISHING * _runtime.VANISHING * t14
-    all_same = u_u + v_v <= t15
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t15
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
-    t16 = _runtime.select(same, t13, t9)
-    d_x = _runtime.select(same, t12, t7)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t17 = _runtime.select(same, t9, t13)
-    t18 = _runtime.select(same, t7, t12)
-    t19 = a_x * t17 - t16 * t18
+    t10 = size * size
+    t11 = _runtime.VANISHING * _runtime.VANISHING
+    t12 = t10 * t11
+    same = u_u <= t12
+    t13 = L * c3
+    del c3
+    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
+    del t8
+    t15 = _runtime.select(same, t14, t9)
+    t16 = L * s3
+    del s3
+    v_z = t1 - t16
+    t17 = _runtime.select(same, u_z, v_z)
+    t18 = _runtime.select(same, t9, t14)
     d_z = _runtime.select(same, v_z, u_z)
-    t20 = _runtime.select(same, u_z, v_z)
-    del same
-    t21 = a_x * t20 - t18 * d_z
-    t22 = over * (t16 * t19 + d_z * t21)
-    t23 = t16 * t20 - t17 * d_z
-    t24 = over * (a_x * t19 - d_z * t23)
-    del t19
-    n_z = over * (a_x * t21 + t16 * t23)
-    del over, t21, t23
-    nu = t22 * t22 + t24 * t24 + n_z * n_z
-    in_line = nu <= t15
-    del t15
+    t19 = t15 * t17 - t18 * d_z
+    t20 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
+    del t5
+    v_v = v_z * v_z + t20 * t20 + t14 * t14
+    all_same = u_u + v_v <= t12
+    del t12
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    d_x = _runtime.select(same, t20, t7)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t21 = _runtime.select(same, t7, t20)
+    t22 = a_x * t17 - t21 * d_z
+    t23 = a_x * t18 - t15 * t21
+    product_2 = t19 * t19 + t22 * t22 + t23 * t23
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t24 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t24 * 0.000244140625 <= _runtime.VANISHING * t24
+    del t24
+    over = 1.0 / mu
+    t25 = t15 * t23 + d_z * t22
+    t26 = a_x * t23 - d_z * t19
+    n_z = a_x * t22 + t15 * t19
+    m_m = _runtime.select(slim, over * (t25 * t25 + t26 * t26 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t11 * (t10 * mu)
+    del t11
     g_1 = whole * d_z
-    s_w = _runtime.sign(t16 * a_x)
-    w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
-    t25 = whole * (t16 + a_x * s_w)
-    del s_w, whole
-    t26 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / t26)
-    t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
-    del t17, t18, t20
-    t28 = _runtime.select(in_line, 0.0, mu * part * t27 * 0.5)
-    t29 = _runtime.select(all_same, 0.0, nu * (t28 * t28) + mu * 0.25)
-    del all_same, mu, nu
-    t30 = l * l - t29
-    del t29
-    slack = np.maximum(t30, 0.0)
-    t31 = 0.9375 * (l * size)
+    s_w = _runtime.sign(t15 * a_x)
+    m_x = _runtime.select(slim, over * (t15 * n_z - d_z * t26), t19)
+    del t19
+    t27 = whole * (t15 + a_x * s_w)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t27 * t27, m_m)
+    part = 1.0 / w_w
+    del w_w
+    t28 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
+    del t17, t18, t21
+    t29 = _runtime.select(in_line, 0.0, part * (t28 * t28))
+    t30 = _runtime.select(all_same, 0.0, mu * (1.0 + t29) * 0.25)
+    del all_same, mu, t29
+    t31 = l * l - t30
+    del t30
+    slack = np.maximum(t31, 0.0)
+    t32 = 0.9375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part * slack))
-    del part, slack
-    t32 = w_x * h
-    del w_x
-    t33 = t22 * t28 + d_x * 0.5
+    h = _runtime.select(slack <= _runtime.VANISHING * t32, 0.0, np.sqrt(part * slack))
+    del slack
+    t33 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t34 = _runtime.select(in_line, 0.0, part * t28 * 0.5)
+    del part
+    t35 = t25 * t34 + d_x * 0.5
     del d_x
-    t34 = t32 - t33
-    t35 = s_alpha1 * t1
+    t36 = t33 - t35
+    t37 = s_alpha1 * t1
     del s_alpha1, t1
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t22))
-    del g_1
-    t36 = h * w_y
-    del w_y
-    t37 = t24 * t28 - t16 * 0.5
-    t38 = t36 + t37
-    w_z = _runtime.select(in_line, -t25, a_x * t24 + t16 * t22)
-    del a_x, t16, t22, t24, t25
-    t39 = h * w_z
-    del w_z
-    t40 = n_z * t28 - d_z * 0.5
-    del d_z, n_z, t28
+    t38 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
+    del t22
+    t39 = h * _runtime.select(in_line, g_1, -t38)
+    del g_1, t38
+    t40 = t26 * t34 - t15 * 0.5
     t41 = t39 + t40
-    t42 = c_alpha2 * t3
+    m_z = _runtime.select(slim, over * (a_x * t26 + t15 * t25), t23)
+    del a_x, over, slim, t15, t23, t25, t26
+    t42 = h * _runtime.select(in_line, -t27, m_z)
+    del m_z, t27
+    t43 = n_z * t34 - d_z * 0.5
+    del d_z, n_z, t34
+    t44 = t42 + t43
+    t45 = c_alpha2 * t3
     del c_alpha2
-    t43 = s_alpha2 * t3
+    t46 = s_alpha2 * t3
     del s_alpha2, t3
-    t44 = t42 * (t7 + t34) + t43 * (t9 + t38) + t6 * (u_z + t41)
-    t45 = c_alpha3 * t10
+    t47 = t45 * (t7 + t36) + t46 * (t9 + t41) + t6 * (u_z + t44)
+    t48 = c_alpha3 * t16
     del c_alpha3
-    t46 = s_alpha3 * t10
-    del s_alpha3, t10
-    t47 = t45 * (t12 + t34) + t46 * (t13 + t38) + t11 * (v_z + t41)
-    t48 = (t2 * t34 + t35 * t38 + t4 * t41) * t44 * t47
-    del t34, t38, t41, t44, t47
-    Delta = t26 * h
-    del h, t26
-    t49 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t50 = t49 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t49
-    t51 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t52 = np.abs(_runtime.select(in_line, -t27, 0.0)) <= t14 * _runtime.FEASIBILITY
-    del in_line, t14, t27
-    unreachable = np.logical_not(t52 & (-(_runtime.FEASIBILITY * t31) <= t30))
-    del t30, t31, t52
-    t53 = _runtime.poison(np.logical_not(t50 & t51) | unreachable)
-    del t50, t51, unreachable
-    A_11_above = t32 + t33
-    del t32, t33
-    A_12_above = t36 - t37
-    del t36, t37
-    t54 = t39 - t40
+    t49 = s_alpha3 * t16
+    del s_alpha3, t16
+    t50 = t48 * (t20 + t36) + t49 * (t14 + t41) + t13 * (v_z + t44)
+    t51 = (t2 * t36 + t37 * t41 + t4 * t44) * t47 * t50
+    del t36, t41, t44, t47, t50
+    Delta = m_m * h
+    del h, m_m
+    t52 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t53 = t52 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t52
+    t54 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t55 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= t10 * _runtime.FEASIBILITY
+    del in_line, t10, t28
+    unreachable = np.logical_not(t55 & (-(_runtime.FEASIBILITY * t32) <= t31))
+    del t31, t32, t55
+    t56 = _runtime.poison(np.logical_not(t53 & t54) | unreachable)
+    del t53, t54, unreachable
+    A_11_above = t33 + t35
+    del t33, t35
+    A_12_above = t39 - t40
     del t39, t40
-    t55 = t2 * A_11_above + t35 * A_12_above + t4 * t54
-    del t2, t35, t4
-    t56 = t42 * (t7 - A_11_above) + t43 * (t9 - A_12_above)
-    del t42, t43, t7, t9
-    t57 = t45 * (t12 - A_11_above) + t46 * (t13 - A_12_above)
-    del A_11_above, A_12_above, t12, t13, t45, t46
-    t58 = t55 * (t56 + t6 * (u_z - t54)) * (t57 + t11 * (v_z - t54))
-    del t11, t54, t55, t56, t57, t6, u_z, v_z
+    t57 = t42 - t43
+    del t42, t43
+    t58 = t2 * A_11_above + t37 * A_12_above + t4 * t57
+    del t2, t37, t4
+    t59 = t45 * (t7 - A_11_above) + t46 * (t9 - A_12_above)
+    del t45, t46, t7, t9
+    t60 = t48 * (t20 - A_11_above) + t49 * (t14 - A_12_above)
+    del A_11_above, A_12_above, t14, t20, t48, t49
+    t61 = t58 * (t59 + t6 * (u_z - t57)) * (t60 + t13 * (v_z - t57))
+    del t13, t57, t58, t59, t6, t60, u_z, v_z
     return (
-        -(t48 / Delta) + t53,
-        -(t58 / Delta) + t53,
+        -(t51 / Delta) + t56,
+        -(t61 / Delta) + t56,
+    )
+
+
+def _determinant_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    # Where nothing vanishes; last, whether something does.
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
+    t1 = L * s1
+    del s1
+    t2 = c_alpha1 * t1
+    t3 = L * s3
+    del s3
+    v_z = t1 - t3
+    t4 = L * c1
+    del c1
+    t5 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
+    t6 = L * c2
+    del c2
+    t7 = t5 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
+    t8 = L * s2
+    del s2
+    u_z = t1 - t8
+    t9 = L * c3
+    del c3
+    t10 = t5 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t9)
+    del t5
+    t11 = v_z * t7 - u_z * t10
+    t12 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
+    del c_alpha1
+    t13 = t12 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
+    t14 = t12 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t9)
+    del t12
+    t15 = v_z * t13 - u_z * t14
+    m_z = t13 * t10 - t7 * t14
+    product_2 = t11 * t11 + t15 * t15 + m_z * m_z
+    part = 1.0 / product_2
+    u_u = u_z * u_z + t13 * t13 + t7 * t7
+    t16 = v_z * (u_z - v_z) + t14 * (t13 - t14) + t10 * (t7 - t10)
+    t17 = l * l - u_u * (1.0 + part * (t16 * t16)) * 0.25
+    slack = np.maximum(t17, 0.0)
+    h = np.sqrt(part * slack)
+    t18 = t11 * h
+    t19 = part * t16 * 0.5
+    del part, t16
+    t20 = (t7 * m_z + u_z * t15) * t19 + t13 * 0.5
+    t21 = t18 - t20
+    t22 = s_alpha1 * t1
+    del s_alpha1, t1
+    t23 = t15 * h
+    t24 = t19 * (t13 * m_z - u_z * t11) - t7 * 0.5
+    A_12 = t23 - t24
+    t25 = m_z * h
+    del m_z
+    t26 = u_z * 0.5 - t19 * (t13 * t15 + t7 * t11)
+    del t11, t15, t19
+    t27 = t25 - t26
+    t28 = c_alpha2 * t8
+    del c_alpha2
+    t29 = s_alpha2 * t8
+    del s_alpha2, t8
+    t30 = t28 * (t13 + t21) + t29 * (t7 - A_12) + t6 * (u_z + t27)
+    t31 = c_alpha3 * t3
+    del c_alpha3
+    t32 = s_alpha3 * t3
+    del s_alpha3, t3
+    t33 = t31 * (t14 + t21) + t32 * (t10 - A_12) + t9 * (v_z + t27)
+    t34 = (t2 * t21 - t22 * A_12 + t4 * t27) * t30 * t33
+    del A_12, t21, t27, t30, t33
+    Delta = product_2 * h
+    del h
+    t35 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t36 = t35 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t35
+    t37 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    size = f + e + L + l
+    t38 = size * size
+    t39 = 0.9375 * (l * size)
+    del size
+    t40 = (np.abs(0.0) <= t38 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t39) <= t17)
+    del t17
+    failed = np.logical_not(t36 & t37) | np.logical_not(t40)
+    del t36, t37, t40
+    t41 = _runtime.poison(failed)
+    del failed
+    A_11_above = t18 + t20
+    del t18, t20
+    t42 = t23 + t24
+    del t23, t24
+    t43 = t25 + t26
+    del t25, t26
+    t44 = t28 * (t13 - A_11_above) + t29 * (t7 + t42) + t6 * (u_z - t43)
+    del t13, t28, t29, t6, t7, u_z
+    t45 = (t2 * A_11_above - t22 * t42 + t4 * t43) * t44
+    del t2, t22, t4, t44
+    t46 = t31 * (t14 - A_11_above) + t32 * (t10 + t42) + t9 * (v_z - t43)
+    del A_11_above, t31, t32, t42, t43, t9
+    t47 = _runtime.VANISHING * _runtime.VANISHING
+    t48 = t38 * t47
+    v_v = v_z * v_z + t14 * t14 + t10 * t10
+    del t10, t14, v_z
+    t49 = u_u * v_v
+    slim = product_2 - t49 * 0.000244140625 <= _runtime.VANISHING * t49
+    del t49
+    t50 = (u_u <= t48) | (u_u + v_v <= t48) | slim | (product_2 <= t47 * (t38 * u_u))
+    del product_2, slim, t38, t47, t48, u_u, v_v
+    return (
+        -(t34 / Delta) + t41,
+        -(t45 * t46 / Delta) + t41,
+        t50 | (slack <= _runtime.VANISHING * t39),
     )
 
 
@@ -1560,6 +1955,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("det", (2,)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    common=_determinant_common,
     size=_runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
@@ -1602,8 +1998,8 @@ def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     s1, c1 = _runtime.sincos(theta1)
     s2, c2 = _runtime.sincos(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s3, c3 = _runtime.sincos(theta3)
     s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
+    s3, c3 = _runtime.sincos(theta3)
     t1 = L * s1
     del s1
     t2 = c_alpha1 * t1
@@ -1620,125 +2016,249 @@ def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
     t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
     u_u = u_z * u_z + t7 * t7 + t9 * t9
-    t10 = L * s3
-    del s3
-    v_z = t1 - t10
-    t11 = L * c3
-    del c3
-    t12 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11)
-    del t5
-    t13 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
-    del t8
-    v_v = v_z * v_z + t12 * t12 + t13 * t13
     size = f + e + L + l
-    t14 = size * size
-    t15 = _runtime.VANISHING * _runtime.VANISHING * t14
-    all_same = u_u + v_v <= t15
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t15
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
-    t16 = _runtime.select(same, t13, t9)
-    d_x = _runtime.select(same, t12, t7)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t17 = _runtime.select(same, t9, t13)
-    t18 = _runtime.select(same, t7, t12)
-    t19 = a_x * t17 - t16 * t18
+    t10 = size * size
+    t11 = _runtime.VANISHING * _runtime.VANISHING
+    t12 = t10 * t11
+    same = u_u <= t12
+    t13 = L * c3
+    del c3
+    t14 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t13)
+    del t8
+    t15 = _runtime.select(same, t14, t9)
+    t16 = L * s3
+    del s3
+    v_z = t1 - t16
+    t17 = _runtime.select(same, u_z, v_z)
+    t18 = _runtime.select(same, t9, t14)
     d_z = _runtime.select(same, v_z, u_z)
-    t20 = _runtime.select(same, u_z, v_z)
-    del same
-    t21 = a_x * t20 - t18 * d_z
-    t22 = over * (t16 * t19 + d_z * t21)
-    t23 = t16 * t20 - t17 * d_z
-    t24 = over * (a_x * t19 - d_z * t23)
-    del t19
-    n_z = over * (a_x * t21 + t16 * t23)
-    del over, t21, t23
-    nu = t22 * t22 + t24 * t24 + n_z * n_z
-    in_line = nu <= t15
-    del t15
+    t19 = t15 * t17 - t18 * d_z
+    t20 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t13)
+    del t5
+    v_v = v_z * v_z + t20 * t20 + t14 * t14
+    all_same = u_u + v_v <= t12
+    del t12
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    d_x = _runtime.select(same, t20, t7)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t21 = _runtime.select(same, t7, t20)
+    t22 = a_x * t17 - t21 * d_z
+    t23 = a_x * t18 - t15 * t21
+    product_2 = t19 * t19 + t22 * t22 + t23 * t23
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t24 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t24 * 0.000244140625 <= _runtime.VANISHING * t24
+    del t24
+    over = 1.0 / mu
+    t25 = t15 * t23 + d_z * t22
+    t26 = a_x * t23 - d_z * t19
+    n_z = a_x * t22 + t15 * t19
+    m_m = _runtime.select(slim, over * (t25 * t25 + t26 * t26 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t11 * (t10 * mu)
+    del t11
     g_1 = whole * d_z
-    s_w = _runtime.sign(t16 * a_x)
-    w_x = _runtime.select(in_line, g_1 * s_w, t16 * n_z - d_z * t24)
-    t25 = whole * (t16 + a_x * s_w)
-    del s_w, whole
-    t26 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t25 * t25), 1.0 / t26)
-    t27 = t18 * (d_x - t18) + t17 * (t16 - t17) + t20 * (d_z - t20)
-    del t17, t18, t20
-    t28 = _runtime.select(in_line, 0.0, mu * part * t27 * 0.5)
-    t29 = _runtime.select(all_same, 0.0, nu * (t28 * t28) + mu * 0.25)
-    del all_same, mu, nu
-    t30 = l * l - t29
-    del t29
-    slack = np.maximum(t30, 0.0)
-    t31 = 0.9375 * (l * size)
+    s_w = _runtime.sign(t15 * a_x)
+    m_x = _runtime.select(slim, over * (t15 * n_z - d_z * t26), t19)
+    del t19
+    t27 = whole * (t15 + a_x * s_w)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t27 * t27, m_m)
+    part = 1.0 / w_w
+    del w_w
+    t28 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
+    del t17, t18, t21
+    t29 = _runtime.select(in_line, 0.0, part * (t28 * t28))
+    t30 = _runtime.select(all_same, 0.0, mu * (1.0 + t29) * 0.25)
+    del all_same, mu, t29
+    t31 = l * l - t30
+    del t30
+    slack = np.maximum(t31, 0.0)
+    t32 = 0.9375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part * slack))
-    del part, slack
-    t32 = w_x * h
-    del w_x
-    t33 = t22 * t28 + d_x * 0.5
+    h = _runtime.select(slack <= _runtime.VANISHING * t32, 0.0, np.sqrt(part * slack))
+    del slack
+    t33 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t34 = _runtime.select(in_line, 0.0, part * t28 * 0.5)
+    del part
+    t35 = t25 * t34 + d_x * 0.5
     del d_x
-    t34 = t32 - t33
-    t35 = s_alpha1 * t1
+    t36 = t33 - t35
+    t37 = s_alpha1 * t1
     del s_alpha1, t1
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t22))
-    del g_1
-    t36 = h * w_y
-    del w_y
-    t37 = t24 * t28 - t16 * 0.5
-    t38 = t36 + t37
-    w_z = _runtime.select(in_line, -t25, a_x * t24 + t16 * t22)
-    del a_x, t16, t22, t24, t25
-    t39 = h * w_z
-    del w_z
-    t40 = n_z * t28 - d_z * 0.5
-    del d_z, n_z, t28
+    t38 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
+    del t22
+    t39 = h * _runtime.select(in_line, g_1, -t38)
+    del g_1, t38
+    t40 = t26 * t34 - t15 * 0.5
     t41 = t39 + t40
-    t42 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t43 = t42 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t42
-    t44 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t45 = np.abs(_runtime.select(in_line, -t27, 0.0)) <= t14 * _runtime.FEASIBILITY
-    del in_line, t14, t27
-    unreachable = np.logical_not(t45 & (-(_runtime.FEASIBILITY * t31) <= t30))
-    del t30, t31, t45
-    t46 = _runtime.poison(np.logical_not(t43 & t44) | unreachable)
-    del t43, t44, unreachable
-    t47 = c_alpha2 * t3
+    m_z = _runtime.select(slim, over * (a_x * t26 + t15 * t25), t23)
+    del a_x, over, slim, t15, t23, t25, t26
+    t42 = h * _runtime.select(in_line, -t27, m_z)
+    del m_z, t27
+    t43 = n_z * t34 - d_z * 0.5
+    del d_z, n_z, t34
+    t44 = t42 + t43
+    t45 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t46 = t45 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t45
+    t47 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t48 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= t10 * _runtime.FEASIBILITY
+    del in_line, t10, t28
+    unreachable = np.logical_not(t48 & (-(_runtime.FEASIBILITY * t32) <= t31))
+    del t31, t32, t48
+    t49 = _runtime.poison(np.logical_not(t46 & t47) | unreachable)
+    del t46, t47, unreachable
+    t50 = c_alpha2 * t3
     del c_alpha2
-    t48 = s_alpha2 * t3
+    t51 = s_alpha2 * t3
     del s_alpha2, t3
-    B_22 = t47 * (t7 + t34) + t48 * (t9 + t38) + t6 * (u_z + t41)
-    t49 = c_alpha3 * t10
+    B_22 = t50 * (t7 + t36) + t51 * (t9 + t41) + t6 * (u_z + t44)
+    t52 = c_alpha3 * t16
     del c_alpha3
-    t50 = s_alpha3 * t10
-    del s_alpha3, t10
-    B_33 = t49 * (t12 + t34) + t50 * (t13 + t38) + t11 * (v_z + t41)
-    Delta = t26 * h
-    del h, t26
-    A_11_above = t32 + t33
-    del t32, t33
-    A_12_above = t36 - t37
-    del t36, t37
-    t51 = t39 - t40
+    t53 = s_alpha3 * t16
+    del s_alpha3, t16
+    B_33 = t52 * (t20 + t36) + t53 * (t14 + t41) + t13 * (v_z + t44)
+    Delta = m_m * h
+    del h, m_m
+    A_11_above = t33 + t35
+    del t33, t35
+    A_12_above = t39 - t40
     del t39, t40
-    t52 = t2 * A_11_above + t35 * A_12_above + t4 * t51
-    t53 = t47 * (t7 - A_11_above) + t48 * (t9 - A_12_above)
-    del t47, t48, t7, t9
-    t54 = t49 * (t12 - A_11_above) + t50 * (t13 - A_12_above)
-    del A_11_above, A_12_above, t12, t13, t49, t50
+    t54 = t42 - t43
+    del t42, t43
+    t55 = t2 * A_11_above + t37 * A_12_above + t4 * t54
+    t56 = t50 * (t7 - A_11_above) + t51 * (t9 - A_12_above)
+    del t50, t51, t7, t9
+    t57 = t52 * (t20 - A_11_above) + t53 * (t14 - A_12_above)
+    del A_11_above, A_12_above, t14, t20, t52, t53
     return (
-        t2 * t34 + t35 * t38 + t4 * t41 + t46,
-        B_22 + t46,
-        B_33 + t46,
-        -Delta + t46,
-        -t52 + t46,
-        t53 + t6 * (u_z - t51) + t46,
-        t54 + t11 * (v_z - t51) + t46,
-        Delta + t46,
+        t2 * t36 + t37 * t41 + t4 * t44 + t49,
+        B_22 + t49,
+        B_33 + t49,
+        -Delta + t49,
+        -t55 + t49,
+        t56 + t6 * (u_z - t54) + t49,
+        t57 + t13 * (v_z - t54) + t49,
+        Delta + t49,
+    )
+
+
+def _singularities_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    # Where nothing vanishes; last, whether something does.
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
+    t1 = L * s1
+    del s1
+    t2 = c_alpha1 * t1
+    t3 = L * s3
+    del s3
+    v_z = t1 - t3
+    t4 = L * c1
+    del c1
+    t5 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
+    t6 = L * c2
+    del c2
+    t7 = t5 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
+    t8 = L * s2
+    del s2
+    u_z = t1 - t8
+    t9 = L * c3
+    del c3
+    t10 = t5 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t9)
+    del t5
+    t11 = v_z * t7 - u_z * t10
+    t12 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
+    del c_alpha1
+    t13 = t12 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
+    t14 = t12 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t9)
+    del t12
+    t15 = v_z * t13 - u_z * t14
+    m_z = t13 * t10 - t7 * t14
+    product_2 = t11 * t11 + t15 * t15 + m_z * m_z
+    part = 1.0 / product_2
+    u_u = u_z * u_z + t13 * t13 + t7 * t7
+    t16 = v_z * (u_z - v_z) + t14 * (t13 - t14) + t10 * (t7 - t10)
+    t17 = l * l - u_u * (1.0 + part * (t16 * t16)) * 0.25
+    slack = np.maximum(t17, 0.0)
+    h = np.sqrt(part * slack)
+    t18 = t11 * h
+    t19 = part * t16 * 0.5
+    del part, t16
+    t20 = (t7 * m_z + u_z * t15) * t19 + t13 * 0.5
+    t21 = t18 - t20
+    t22 = s_alpha1 * t1
+    del s_alpha1, t1
+    t23 = t15 * h
+    t24 = t19 * (t13 * m_z - u_z * t11) - t7 * 0.5
+    A_12 = t23 - t24
+    t25 = m_z * h
+    del m_z
+    t26 = u_z * 0.5 - t19 * (t13 * t15 + t7 * t11)
+    del t11, t15, t19
+    t27 = t25 - t26
+    t28 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t29 = t28 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t28
+    t30 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    size = f + e + L + l
+    t31 = size * size
+    t32 = 0.9375 * (l * size)
+    del size
+    t33 = (np.abs(0.0) <= t31 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t32) <= t17)
+    del t17
+    failed = np.logical_not(t29 & t30) | np.logical_not(t33)
+    del t29, t30, t33
+    t34 = _runtime.poison(failed)
+    del failed
+    t35 = c_alpha2 * t8
+    del c_alpha2
+    t36 = s_alpha2 * t8
+    del s_alpha2, t8
+    B_22 = t35 * (t13 + t21) + t36 * (t7 - A_12) + t6 * (u_z + t27)
+    t37 = c_alpha3 * t3
+    del c_alpha3
+    t38 = s_alpha3 * t3
+    del s_alpha3, t3
+    B_33 = t37 * (t14 + t21) + t38 * (t10 - A_12) + t9 * (v_z + t27)
+    Delta = product_2 * h
+    del h
+    A_11_above = t18 + t20
+    del t18, t20
+    t39 = t23 + t24
+    del t23, t24
+    t40 = t25 + t26
+    del t25, t26
+    t41 = -(t2 * A_11_above - t22 * t39 + t4 * t40) + t34
+    B_22_above = t35 * (t13 - A_11_above) + t36 * (t7 + t39) + t6 * (u_z - t40)
+    del t13, t35, t36, t6, t7, u_z
+    B_33_above = t37 * (t14 - A_11_above) + t38 * (t10 + t39) + t9 * (v_z - t40)
+    del A_11_above, t37, t38, t39, t40, t9
+    t42 = _runtime.VANISHING * _runtime.VANISHING
+    t43 = t31 * t42
+    v_v = v_z * v_z + t14 * t14 + t10 * t10
+    del t10, t14, v_z
+    t44 = u_u * v_v
+    slim = product_2 - t44 * 0.000244140625 <= _runtime.VANISHING * t44
+    del t44
+    t45 = (u_u <= t43) | (u_u + v_v <= t43) | slim | (product_2 <= t42 * (t31 * u_u))
+    del product_2, slim, t31, t42, t43, u_u, v_v
+    return (
+        t2 * t21 - t22 * A_12 + t4 * t27 + t34,
+        B_22 + t34,
+        B_33 + t34,
+        -Delta + t34,
+        t41,
+        B_22_above + t34,
+        B_33_above + t34,
+        Delta + t34,
+        t45 | (slack <= _runtime.VANISHING * t32),
     )
 
 
@@ -1749,7 +2269,8 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 4)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 3), (4, 2), (5, 2), (6, 2), (7, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    common=_singularities_common,
+    size=_runtime.Size((3, 4, 5, 6), ((0, 2), (1, 2), (2, 2), (3, 3), (4, 2), (5, 2), (6, 2), (7, 3)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1791,8 +2312,8 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     s2, c2 = _runtime.sincos(theta2)
     s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s3, c3 = _runtime.sincos(theta3)
     s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
+    s3, c3 = _runtime.sincos(theta3)
     t1 = L * s1
     del s1
     u_z = t1 - L * s2
@@ -1810,161 +2331,169 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t7 = t6 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t4)
     del s_alpha2, t4
     u_u = u_z * u_z + t5 * t5 + t7 * t7
+    size = f + e + L + l
+    t8 = size * size
+    t9 = _runtime.VANISHING * _runtime.VANISHING
+    t10 = t8 * t9
+    same = u_u <= t10
+    t11 = L * c3
+    del c3
+    t12 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t11)
+    del s_alpha3, t6
+    t13 = _runtime.select(same, t12, t7)
     v_z = t1 - L * s3
     del s3, t1
-    t8 = L * c3
-    del c3
-    t9 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8)
-    del c_alpha3, t3
-    t10 = t6 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8)
-    del s_alpha3, t6, t8
-    v_v = v_z * v_z + t9 * t9 + t10 * t10
-    size = f + e + L + l
-    t11 = size * size
-    t12 = _runtime.VANISHING * _runtime.VANISHING * t11
-    all_same = u_u + v_v <= t12
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t12
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
-    t13 = _runtime.select(same, t10, t7)
-    d_x = _runtime.select(same, t9, t5)
-    a_x = _runtime.select(all_same, whole, d_x)
-    t14 = _runtime.select(same, t7, t10)
-    t15 = _runtime.select(same, t5, t9)
-    t16 = a_x * t14 - t13 * t15
+    t14 = _runtime.select(same, u_z, v_z)
+    t15 = _runtime.select(same, t7, t12)
     d_z = _runtime.select(same, v_z, u_z)
-    t17 = _runtime.select(same, u_z, v_z)
-    del same
-    t18 = a_x * t17 - t15 * d_z
-    t19 = over * (t13 * t16 + d_z * t18)
-    t20 = t13 * t17 - t14 * d_z
-    t21 = over * (a_x * t16 - d_z * t20)
-    del t16
-    n_z = over * (a_x * t18 + t13 * t20)
-    del over, t18, t20
-    nu = t19 * t19 + t21 * t21 + n_z * n_z
-    in_line = nu <= t12
-    del t12
+    t16 = t13 * t14 - t15 * d_z
+    t17 = t3 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t11)
+    del c_alpha3, t11, t3
+    v_v = v_z * v_z + t17 * t17 + t12 * t12
+    all_same = u_u + v_v <= t10
+    del t10
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    d_x = _runtime.select(same, t17, t5)
+    a_x = _runtime.select(all_same, whole, d_x)
+    t18 = _runtime.select(same, t5, t17)
+    t19 = a_x * t14 - t18 * d_z
+    t20 = a_x * t15 - t13 * t18
+    product_2 = t16 * t16 + t19 * t19 + t20 * t20
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t21 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t21 * 0.000244140625 <= _runtime.VANISHING * t21
+    del t21
+    over = 1.0 / mu
+    t22 = t13 * t20 + d_z * t19
+    t23 = a_x * t20 - d_z * t16
+    n_z = a_x * t19 + t13 * t16
+    m_m = _runtime.select(slim, over * (t22 * t22 + t23 * t23 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t9 * (t8 * mu)
+    del t9
     g_1 = whole * d_z
     s_w = _runtime.sign(t13 * a_x)
-    w_x = _runtime.select(in_line, g_1 * s_w, t13 * n_z - d_z * t21)
-    t22 = whole * (t13 + a_x * s_w)
-    del s_w, whole
-    t23 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t22 * t22), 1.0 / t23)
-    t24 = t15 * (d_x - t15) + t14 * (t13 - t14) + t17 * (d_z - t17)
-    del t14, t15, t17
-    t25 = _runtime.select(in_line, 0.0, mu * part * t24 * 0.5)
-    t26 = _runtime.select(all_same, 0.0, nu * (t25 * t25) + mu * 0.25)
-    del all_same, mu, nu
-    t27 = l * l - t26
-    del t26
-    slack = np.maximum(t27, 0.0)
-    t28 = 0.9375 * (l * size)
+    m_x = _runtime.select(slim, over * (t13 * n_z - d_z * t23), t16)
+    del t16
+    t24 = whole * (t13 + a_x * s_w)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t24 * t24, m_m)
+    part = 1.0 / w_w
+    del w_w
+    t25 = t18 * (d_x - t18) + t15 * (t13 - t15) + t14 * (d_z - t14)
+    del t14, t15, t18
+    t26 = _runtime.select(in_line, 0.0, part * (t25 * t25))
+    t27 = _runtime.select(all_same, 0.0, mu * (1.0 + t26) * 0.25)
+    del all_same, mu, t26
+    t28 = l * l - t27
+    del t27
+    slack = np.maximum(t28, 0.0)
+    t29 = 0.9375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t28, 0.0, np.sqrt(part * slack))
-    del part, slack
-    t29 = w_x * h
-    del w_x
-    t30 = t19 * t25 + d_x * 0.5
+    h = _runtime.select(slack <= _runtime.VANISHING * t29, 0.0, np.sqrt(part * slack))
+    del slack
+    t30 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t31 = _runtime.select(in_line, 0.0, part * t25 * 0.5)
+    del part
+    t32 = t22 * t31 + d_x * 0.5
     del d_x
-    t31 = t29 - t30
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t19))
-    del g_1
-    t32 = h * w_y
-    del w_y
-    t33 = t21 * t25 - t13 * 0.5
-    t34 = t32 + t33
-    w_z = _runtime.select(in_line, -t22, a_x * t21 + t13 * t19)
-    del a_x, t13, t19, t21, t22
-    t35 = h * w_z
-    del w_z
-    t36 = n_z * t25 - d_z * 0.5
-    del d_z, n_z, t25
+    t33 = t30 - t32
+    t34 = _runtime.select(slim, over * (a_x * n_z + d_z * t22), t19)
+    del t19
+    t35 = h * _runtime.select(in_line, g_1, -t34)
+    del g_1, t34
+    t36 = t23 * t31 - t13 * 0.5
     t37 = t35 + t36
-    t38 = t5 + t31
-    t39 = t7 + t34
-    t40 = u_z + t37
-    t41 = t31 * t31 + t34 * t34 + t37 * t37 + (t38 * t38 + t39 * t39 + t40 * t40)
-    t42 = t9 + t31
-    t43 = t10 + t34
-    t44 = v_z + t37
-    t45 = t31 * t39 - t34 * t38
-    t46 = t31 * t40 - t37 * t38
-    t47 = t31 * t43 - t34 * t42
-    t48 = t31 * t44 - t37 * t42
-    del t31
-    t49 = t45 * t45 + t46 * t46 + t47 * t47 + t48 * t48
-    del t45, t46, t47, t48
-    t50 = t34 * t40 - t37 * t39
-    t51 = t34 * t44 - t37 * t43
-    del t34, t37
-    t52 = t38 * t43 - t39 * t42
-    t53 = t38 * t44 - t40 * t42
-    del t38
-    t54 = t49 + t50 * t50 + t51 * t51 + t52 * t52 + t53 * t53
-    del t49, t50, t51, t52, t53
-    t55 = t39 * t44 - t40 * t43
-    del t39, t40
-    t56 = (t41 + (t42 * t42 + t43 * t43 + t44 * t44)) * (t54 + t55 * t55)
-    del t41, t42, t43, t44, t54, t55
-    t57 = 3.0 * (t23 * h)
-    del h, t23
-    t58 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t59 = t58 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t58
-    t60 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t61 = np.abs(_runtime.select(in_line, -t24, 0.0)) <= t11 * _runtime.FEASIBILITY
-    del in_line, t11, t24
-    unreachable = np.logical_not(t61 & (-(_runtime.FEASIBILITY * t28) <= t27))
-    del t27, t28, t61
-    t62 = _runtime.poison(np.logical_not(t59 & t60) | unreachable)
-    del t59, t60, unreachable
-    A_11_above = t29 + t30
-    del t29, t30
-    A_12_above = t32 - t33
-    del t32, t33
-    t63 = A_11_above * A_11_above + A_12_above * A_12_above
-    t64 = t35 - t36
+    m_z = _runtime.select(slim, over * (a_x * t23 + t13 * t22), t20)
+    del a_x, over, slim, t13, t20, t22, t23
+    t38 = h * _runtime.select(in_line, -t24, m_z)
+    del m_z, t24
+    t39 = n_z * t31 - d_z * 0.5
+    del d_z, n_z, t31
+    t40 = t38 + t39
+    t41 = t5 + t33
+    t42 = t7 + t37
+    t43 = u_z + t40
+    t44 = t33 * t33 + t37 * t37 + t40 * t40 + (t41 * t41 + t42 * t42 + t43 * t43)
+    t45 = t17 + t33
+    t46 = t12 + t37
+    t47 = v_z + t40
+    t48 = t33 * t42 - t37 * t41
+    t49 = t33 * t43 - t40 * t41
+    t50 = t33 * t46 - t37 * t45
+    t51 = t33 * t47 - t40 * t45
+    del t33
+    t52 = t48 * t48 + t49 * t49 + t50 * t50 + t51 * t51
+    del t48, t49, t50, t51
+    t53 = t37 * t43 - t40 * t42
+    t54 = t37 * t47 - t40 * t46
+    del t37, t40
+    t55 = t41 * t46 - t42 * t45
+    t56 = t41 * t47 - t43 * t45
+    del t41
+    t57 = t52 + t53 * t53 + t54 * t54 + t55 * t55 + t56 * t56
+    del t52, t53, t54, t55, t56
+    t58 = t42 * t47 - t43 * t46
+    del t42, t43
+    t59 = (t44 + (t45 * t45 + t46 * t46 + t47 * t47)) * (t57 + t58 * t58)
+    del t44, t45, t46, t47, t57, t58
+    t60 = 3.0 * (m_m * h)
+    del h, m_m
+    t61 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t62 = t61 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t61
+    t63 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t64 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t8 * _runtime.FEASIBILITY
+    del in_line, t25, t8
+    unreachable = np.logical_not(t64 & (-(_runtime.FEASIBILITY * t29) <= t28))
+    del t28, t29, t64
+    t65 = _runtime.poison(np.logical_not(t62 & t63) | unreachable)
+    del t62, t63, unreachable
+    A_11_above = t30 + t32
+    del t30, t32
+    A_12_above = t35 - t36
     del t35, t36
-    t65 = t5 - A_11_above
+    t66 = A_11_above * A_11_above + A_12_above * A_12_above
+    t67 = t38 - t39
+    del t38, t39
+    t68 = t5 - A_11_above
     del t5
-    t66 = t7 - A_12_above
+    t69 = t7 - A_12_above
     del t7
-    t67 = u_z - t64
+    t70 = u_z - t67
     del u_z
-    t68 = t63 + t64 * t64 + (t65 * t65 + t66 * t66 + t67 * t67)
-    del t63
-    t69 = t9 - A_11_above
-    del t9
-    t70 = t10 - A_12_above
-    del t10
-    t71 = v_z - t64
+    t71 = t66 + t67 * t67 + (t68 * t68 + t69 * t69 + t70 * t70)
+    del t66
+    t72 = t17 - A_11_above
+    del t17
+    t73 = t12 - A_12_above
+    del t12
+    t74 = v_z - t67
     del v_z
-    t72 = A_11_above * t66 - A_12_above * t65
-    t73 = A_11_above * t67 - t64 * t65
-    t74 = A_11_above * t70 - A_12_above * t69
-    t75 = A_11_above * t71 - t64 * t69
+    t75 = A_11_above * t69 - A_12_above * t68
+    t76 = A_11_above * t70 - t67 * t68
+    t77 = A_11_above * t73 - A_12_above * t72
+    t78 = A_11_above * t74 - t67 * t72
     del A_11_above
-    t76 = t72 * t72 + t73 * t73 + t74 * t74 + t75 * t75
-    del t72, t73, t74, t75
-    t77 = A_12_above * t67 - t64 * t66
-    t78 = A_12_above * t71 - t64 * t70
-    del A_12_above, t64
-    t79 = t65 * t70 - t66 * t69
-    t80 = t65 * t71 - t67 * t69
-    del t65
-    t81 = t76 + t77 * t77 + t78 * t78 + t79 * t79 + t80 * t80
-    del t76, t77, t78, t79, t80
-    t82 = t66 * t71 - t67 * t70
-    del t66, t67
-    t83 = (t68 + (t69 * t69 + t70 * t70 + t71 * t71)) * (t81 + t82 * t82)
-    del t68, t69, t70, t71, t81, t82
+    t79 = t75 * t75 + t76 * t76 + t77 * t77 + t78 * t78
+    del t75, t76, t77, t78
+    t80 = A_12_above * t70 - t67 * t69
+    t81 = A_12_above * t74 - t67 * t73
+    del A_12_above, t67
+    t82 = t68 * t73 - t69 * t72
+    t83 = t68 * t74 - t70 * t72
+    del t68
+    t84 = t79 + t80 * t80 + t81 * t81 + t82 * t82 + t83 * t83
+    del t79, t80, t81, t82, t83
+    t85 = t69 * t74 - t70 * t73
+    del t69, t70
+    t86 = (t71 + (t72 * t72 + t73 * t73 + t74 * t74)) * (t84 + t85 * t85)
+    del t71, t72, t73, t74, t84, t85
     return (
-        np.sqrt(t56) / t57 + t62,
-        np.sqrt(t83) / t57 + t62,
+        np.sqrt(t59) / t60 + t65,
+        np.sqrt(t86) / t60 + t65,
     )
 
 
@@ -2047,148 +2576,306 @@ def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     v_v = v_z * v_z + t10 * t10 + t11 * t11
     size = f + e + L + l
     t12 = size * size
-    t13 = _runtime.VANISHING * _runtime.VANISHING * t12
-    all_same = u_u + v_v <= t13
+    t13 = _runtime.VANISHING * _runtime.VANISHING
+    t14 = t12 * t13
+    all_same = u_u + v_v <= t14
     whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t13
+    same = u_u <= t14
+    del t14
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
-    t14 = _runtime.select(same, t11, t8)
+    t15 = _runtime.select(same, t11, t8)
+    t16 = _runtime.select(same, u_z, v_z)
+    t17 = _runtime.select(same, t8, t11)
+    d_z = _runtime.select(same, v_z, u_z)
+    t18 = t15 * t16 - t17 * d_z
     d_x = _runtime.select(same, t10, t6)
     a_x = _runtime.select(all_same, whole, d_x)
-    t15 = _runtime.select(same, t8, t11)
-    t16 = _runtime.select(same, t6, t10)
-    t17 = a_x * t15 - t14 * t16
-    d_z = _runtime.select(same, v_z, u_z)
-    t18 = _runtime.select(same, u_z, v_z)
-    del same
-    t19 = a_x * t18 - t16 * d_z
-    t20 = over * (t14 * t17 + d_z * t19)
-    t21 = t14 * t18 - t15 * d_z
-    t22 = over * (a_x * t17 - d_z * t21)
-    del t17
-    n_z = over * (a_x * t19 + t14 * t21)
-    del over, t19, t21
-    nu = t20 * t20 + t22 * t22 + n_z * n_z
-    in_line = nu <= t13
+    t19 = _runtime.select(same, t6, t10)
+    t20 = a_x * t16 - t19 * d_z
+    t21 = a_x * t17 - t15 * t19
+    product_2 = t18 * t18 + t20 * t20 + t21 * t21
+    t22 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t22 * 0.000244140625 <= _runtime.VANISHING * t22
+    del t22
+    over = 1.0 / mu
+    t23 = t15 * t21 + d_z * t20
+    t24 = a_x * t21 - d_z * t18
+    n_z = a_x * t20 + t15 * t18
+    m_m = _runtime.select(slim, over * (t23 * t23 + t24 * t24 + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t13 * (t12 * mu)
     del t13
     g_1 = whole * d_z
-    s_w = _runtime.sign(t14 * a_x)
-    t23 = whole * (t14 + a_x * s_w)
+    s_w = _runtime.sign(t15 * a_x)
+    t25 = whole * (t15 + a_x * s_w)
     del whole
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + t23 * t23), 1.0 / (mu * nu))
-    t24 = t16 * (d_x - t16) + t15 * (t14 - t15) + t18 * (d_z - t18)
-    del t15, t16, t18
-    t25 = _runtime.select(in_line, 0.0, mu * part * t24 * 0.5)
-    t26 = _runtime.select(all_same, 0.0, nu * (t25 * t25) + mu * 0.25)
-    del all_same, mu, nu
-    t27 = l * l - t26
-    del t26
-    slack = np.maximum(t27, 0.0)
-    t28 = 0.9375 * (l * size)
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t25 * t25, m_m)
+    del m_m
+    part = 1.0 / w_w
+    del w_w
+    t26 = t19 * (d_x - t19) + t17 * (t15 - t17) + t16 * (d_z - t16)
+    del t16, t17, t19
+    t27 = _runtime.select(in_line, 0.0, part * (t26 * t26))
+    t28 = _runtime.select(all_same, 0.0, mu * (1.0 + t27) * 0.25)
+    del all_same, mu, t27
+    t29 = l * l - t28
+    del t28
+    slack = np.maximum(t29, 0.0)
+    t30 = 0.9375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t28, 0.0, np.sqrt(part * slack))
-    del part, slack
-    w_z = _runtime.select(in_line, -t23, a_x * t22 + t14 * t20)
-    del t23
-    t29 = h * w_z
-    del w_z
-    t30 = n_z * t25 - d_z * 0.5
-    t31 = t29 + t30
-    t32 = s_alpha3 * t31
-    t33 = t1 * t32
-    t34 = u_z + t31
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t20))
-    del a_x
-    t35 = h * w_y
-    del w_y
-    t36 = t22 * t25 - t14 * 0.5
-    t37 = t35 + t36
-    t38 = t34 * (t11 + t37)
-    t39 = c_alpha3 * t1
-    w_x = _runtime.select(in_line, g_1 * s_w, t14 * n_z - d_z * t22)
-    del d_z, g_1, n_z, s_w, t14, t22
-    t40 = w_x * h
-    del h, w_x
-    t41 = t20 * t25 + d_x * 0.5
-    del d_x, t20, t25
-    t42 = t40 - t41
-    t43 = v_z + t31
-    t44 = t34 * t43
-    t45 = t42 * t44
-    t46 = c_alpha1 * c_alpha2
+    h = _runtime.select(slack <= _runtime.VANISHING * t30, 0.0, np.sqrt(part * slack))
+    del slack
+    m_z = _runtime.select(slim, over * (a_x * t24 + t15 * t23), t21)
+    del t21
+    t31 = h * _runtime.select(in_line, -t25, m_z)
+    del m_z, t25
+    t32 = _runtime.select(in_line, 0.0, part * t26 * 0.5)
+    del part
+    t33 = n_z * t32 - d_z * 0.5
+    t34 = t31 + t33
+    t35 = s_alpha3 * t34
+    t36 = t1 * t35
+    t37 = u_z + t34
+    t38 = _runtime.select(slim, over * (a_x * n_z + d_z * t23), t20)
+    del a_x, t20
+    t39 = h * _runtime.select(in_line, g_1, -t38)
+    del t38
+    t40 = t24 * t32 - t15 * 0.5
+    t41 = t39 + t40
+    t42 = t37 * (t11 + t41)
+    t43 = c_alpha3 * t1
+    m_x = _runtime.select(slim, over * (t15 * n_z - d_z * t24), t18)
+    del d_z, n_z, over, slim, t15, t18, t24
+    t44 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del g_1, h, m_x, s_w
+    t45 = t23 * t32 + d_x * 0.5
+    del d_x, t23, t32
+    t46 = t44 - t45
+    t47 = v_z + t34
+    t48 = t37 * t47
+    t49 = t46 * t48
+    t50 = c_alpha1 * c_alpha2
     del c_alpha1
-    t47 = s_alpha3 * t46
-    t48 = s_alpha1 * s_alpha2
+    t51 = s_alpha3 * t50
+    t52 = s_alpha1 * s_alpha2
     del s_alpha2
-    t49 = c_alpha3 * t48
-    t50 = t44 * t37
-    del t44
-    t51 = s_alpha1 * c_alpha2
+    t53 = c_alpha3 * t52
+    t54 = t48 * t41
+    del t48
+    t55 = s_alpha1 * c_alpha2
     del c_alpha2, s_alpha1
-    t52 = s_alpha3 * t51
-    t53 = t39 * t45 - t47 * t45 + t49 * t50 - t52 * t50
-    del t45, t50
-    t54 = c_alpha3 * t31
-    del t31
-    t55 = t51 * t54
-    t56 = t43 * (t6 + t42)
-    t57 = t43 * (t8 + t37)
-    del t37, t43
-    t58 = t53 - t55 * t56 + t46 * t56 * t32 - t48 * t54 * t57
-    del t53, t56
-    t59 = t34 * (t10 + t42)
-    del t34, t42
-    t60 = t58 + t57 * t33 + t55 * t59 - t1 * t54 * t59 + t51 * t32 * t38
-    del t32, t54, t55, t57, t58, t59
-    t61 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t62 = t61 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t61
-    t63 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t64 = np.abs(_runtime.select(in_line, -t24, 0.0)) <= t12 * _runtime.FEASIBILITY
-    del in_line, t12, t24
-    unreachable = np.logical_not(t64 & (-(_runtime.FEASIBILITY * t28) <= t27))
-    del t27, t28, t64
-    t65 = _runtime.poison(np.logical_not(t62 & t63) | unreachable)
-    del t62, t63, unreachable
-    A_11_above = t40 + t41
-    del t40, t41
-    t66 = t29 - t30
-    del t29, t30
-    t67 = u_z - t66
+    t56 = s_alpha3 * t55
+    t57 = t43 * t49 - t51 * t49 + t53 * t54 - t56 * t54
+    del t49, t54
+    t58 = c_alpha3 * t34
+    del t34
+    t59 = t55 * t58
+    t60 = t47 * (t6 + t46)
+    t61 = t47 * (t8 + t41)
+    del t41, t47
+    t62 = t57 - t59 * t60 + t50 * t60 * t35 - t52 * t58 * t61
+    del t57, t60
+    t63 = t37 * (t10 + t46)
+    del t37, t46
+    t64 = t62 + t61 * t36 + t59 * t63 - t1 * t58 * t63 + t55 * t35 * t42
+    del t35, t58, t59, t61, t62, t63
+    t65 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t66 = t65 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t65
+    t67 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t68 = np.abs(_runtime.select(in_line, -t26, 0.0)) <= t12 * _runtime.FEASIBILITY
+    del in_line, t12, t26
+    unreachable = np.logical_not(t68 & (-(_runtime.FEASIBILITY * t30) <= t29))
+    del t29, t30, t68
+    t69 = _runtime.poison(np.logical_not(t66 & t67) | unreachable)
+    del t66, t67, unreachable
+    A_11_above = t44 + t45
+    del t44, t45
+    t70 = t31 - t33
+    del t31, t33
+    t71 = u_z - t70
     del u_z
-    t68 = v_z - t66
+    t72 = v_z - t70
     del v_z
-    t69 = t67 * t68
-    t70 = A_11_above * t69
-    A_12_above = t35 - t36
-    del t35, t36
-    t71 = t69 * A_12_above
-    del t69
-    t72 = t39 * t70 - t47 * t70 + t49 * t71 - t52 * t71
-    del t39, t47, t49, t52, t70, t71
-    t73 = c_alpha3 * t66
+    t73 = t71 * t72
+    t74 = A_11_above * t73
+    A_12_above = t39 - t40
+    del t39, t40
+    t75 = t73 * A_12_above
+    del t73
+    t76 = t43 * t74 - t51 * t74 + t53 * t75 - t56 * t75
+    del t43, t51, t53, t56, t74, t75
+    t77 = c_alpha3 * t70
     del c_alpha3
-    t74 = t51 * t73
-    t75 = t68 * (t6 - A_11_above)
+    t78 = t55 * t77
+    t79 = t72 * (t6 - A_11_above)
     del t6
-    t76 = s_alpha3 * t66
-    del s_alpha3, t66
-    t77 = t68 * (t8 - A_12_above)
-    del t68, t8
-    t78 = t72 - t74 * t75 + t46 * t75 * t76 - t48 * t73 * t77
-    del t46, t48, t72, t75
-    t79 = t1 * t76
-    t80 = t67 * (t10 - A_11_above)
+    t80 = s_alpha3 * t70
+    del s_alpha3, t70
+    t81 = t72 * (t8 - A_12_above)
+    del t72, t8
+    t82 = t76 - t78 * t79 + t50 * t79 * t80 - t52 * t77 * t81
+    del t50, t52, t76, t79
+    t83 = t1 * t80
+    t84 = t71 * (t10 - A_11_above)
     del A_11_above, t10
-    t81 = t67 * (t11 - A_12_above)
-    del A_12_above, t11, t67
-    t82 = t78 + t77 * t79 + t74 * t80 - t1 * t73 * t80 + t51 * t76 * t81
-    del t1, t51, t73, t74, t76, t77, t78, t80
+    t85 = t71 * (t11 - A_12_above)
+    del A_12_above, t11, t71
+    t86 = t82 + t81 * t83 + t78 * t84 - t1 * t77 * t84 + t55 * t80 * t85
+    del t1, t55, t77, t78, t80, t81, t82, t84
     return (
-        t33 * t38 - t60 + t65,
-        t82 - t79 * t81 + t65,
+        t36 * t42 - t64 + t69,
+        t86 - t83 * t85 + t69,
+    )
+
+
+def _constraint_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    # Where nothing vanishes; last, whether something does.
+    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s3, c3 = _runtime.sincos_as_in_c(theta3)
+    t1 = c_alpha1 * s_alpha2
+    t2 = s_alpha3 * t1
+    t3 = L * c1
+    del c1
+    t4 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t3
+    t5 = L * c2
+    del c2
+    t6 = t4 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t5)
+    t7 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t3
+    del t3
+    t8 = L * c3
+    del c3
+    t9 = t7 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t8)
+    t10 = t7 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t5)
+    del t5, t7
+    t11 = t4 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t8)
+    del t4, t8
+    m_z = t6 * t9 - t10 * t11
+    t12 = L * s1
+    del s1
+    v_z = t12 - L * s3
+    del s3
+    u_z = t12 - L * s2
+    del s2, t12
+    t13 = v_z * t10 - u_z * t9
+    t14 = v_z * t6 - u_z * t11
+    product_2 = t13 * t13 + t14 * t14 + m_z * m_z
+    part = 1.0 / product_2
+    u_u = u_z * u_z + t6 * t6 + t10 * t10
+    t15 = v_z * (u_z - v_z) + t11 * (t6 - t11) + t9 * (t10 - t9)
+    t16 = l * l - u_u * (1.0 + part * (t15 * t15)) * 0.25
+    slack = np.maximum(t16, 0.0)
+    h = np.sqrt(part * slack)
+    t17 = m_z * h
+    t18 = part * t15 * 0.5
+    del part, t15
+    t19 = u_z * 0.5 - t18 * (t6 * t14 + t10 * t13)
+    t20 = t17 - t19
+    t21 = u_z + t20
+    t22 = t20 * t21
+    t23 = t14 * h
+    t24 = t18 * (t6 * m_z - u_z * t13) - t10 * 0.5
+    A_12 = t23 - t24
+    t25 = t22 * (t9 - A_12)
+    t26 = c_alpha3 * t1
+    del t1
+    t27 = t13 * h
+    del h, t13
+    t28 = (t10 * m_z + u_z * t14) * t18 + t6 * 0.5
+    del m_z, t14, t18
+    t29 = t27 - t28
+    t30 = v_z + t20
+    t31 = t21 * t30
+    del t21
+    t32 = t29 * t31
+    t33 = s_alpha3 * (c_alpha1 * c_alpha2)
+    del c_alpha1
+    t34 = c_alpha3 * (s_alpha1 * s_alpha2)
+    del s_alpha2
+    t35 = t31 * A_12
+    del t31
+    t36 = s_alpha1 * c_alpha2
+    del c_alpha2, s_alpha1
+    t37 = s_alpha3 * t36
+    del s_alpha3
+    t38 = t26 * t32 - t33 * t32 - t34 * t35 + t37 * t35
+    del t32, t35
+    t39 = c_alpha3 * t36
+    del c_alpha3, t36
+    t40 = t20 * t30
+    del t20, t30
+    t41 = (t6 + t29) * t40
+    t42 = t40 * (t10 - A_12)
+    del A_12, t40
+    t43 = t38 - t39 * t41 + t33 * t41 - t34 * t42 + t2 * t42
+    del t38, t41, t42
+    t44 = (t11 + t29) * t22
+    del t22, t29
+    t45 = t2 * t25 - (t43 + t39 * t44 - t26 * t44 + t37 * t25)
+    del t25, t43, t44
+    t46 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t47 = t46 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t46
+    t48 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    size = f + e + L + l
+    t49 = size * size
+    t50 = 0.9375 * (l * size)
+    del size
+    t51 = (np.abs(0.0) <= t49 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t50) <= t16)
+    del t16
+    failed = np.logical_not(t47 & t48) | np.logical_not(t51)
+    del t47, t48, t51
+    t52 = _runtime.poison(failed)
+    del failed
+    A_11_above = t27 + t28
+    del t27, t28
+    t53 = t17 + t19
+    del t17, t19
+    t54 = u_z - t53
+    del u_z
+    t55 = v_z - t53
+    t56 = t54 * t55
+    t57 = A_11_above * t56
+    t58 = t23 + t24
+    del t23, t24
+    t59 = t56 * t58
+    del t56
+    t60 = t26 * t57 - t33 * t57 - t34 * t59 + t37 * t59
+    del t57, t59
+    t61 = t53 * t55
+    del t55
+    t62 = (t6 - A_11_above) * t61
+    del t6
+    t63 = t61 * (t10 + t58)
+    del t10, t61
+    t64 = t60 - t39 * t62 + t33 * t62 - t34 * t63 + t2 * t63
+    del t33, t34, t60, t62, t63
+    t65 = t53 * t54
+    del t53, t54
+    t66 = (t11 - A_11_above) * t65
+    del A_11_above
+    t67 = t65 * (t9 + t58)
+    del t58, t65
+    t68 = t64 + t39 * t66 - t26 * t66 + t37 * t67 - t2 * t67
+    del t2, t26, t37, t39, t64, t66, t67
+    t69 = _runtime.VANISHING * _runtime.VANISHING
+    t70 = t49 * t69
+    v_v = v_z * v_z + t11 * t11 + t9 * t9
+    del t11, t9, v_z
+    t71 = u_u * v_v
+    slim = product_2 - t71 * 0.000244140625 <= _runtime.VANISHING * t71
+    del t71
+    t72 = (u_u <= t70) | (u_u + v_v <= t70) | slim | (product_2 <= t69 * (t49 * u_u))
+    del product_2, slim, t49, t69, t70, u_u, v_v
+    return (
+        t45 + t52,
+        t68 + t52,
+        t72 | (slack <= _runtime.VANISHING * t50),
     )
 
 
@@ -2199,7 +2886,8 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Array("factors", (2, 1)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    common=_constraint_common,
+    size=_runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 

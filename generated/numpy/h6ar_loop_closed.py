@@ -3,7 +3,7 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 60 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
+#   fk: 59 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
 #     sincos, 6 sqrt
 #   pose: 57 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 6 sqrt
 #   skeleton: 57 compare and select, 175 add, 21 divide, 201 multiply, 6 sincos, 6 sqrt
@@ -325,16 +325,14 @@ def _fk(theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs
     del invalid, t72
     t74 = d1 + L1 * stheta2A - ctheta23A * t64 + stheta23A * t63
     del ctheta23A, stheta23A, stheta2A, t63, t64
-    t75 = _runtime.wrap_cut(np.arctan2(-t56, tilted)) + t73
-    del t56, tilted
-    t76 = _runtime.wrap_cut(-np.arctan2(-t53, d)) + t73
+    t75 = _runtime.wrap_cut(-np.arctan2(-t53, d)) + t73
     del t53
     return (
         s1 * t62 + c1 * t65 + t73,
         s1 * t65 - c1 * t62 + t73,
         t74 + t73,
+        np.arctan2(-t56, tilted) + t73,
         t75,
-        t76,
         _runtime.wrap(principal) + t73,
     )
 

@@ -2,24 +2,31 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 44 compare and select, 50 add, 12 divide, 61 multiply, 1 sqrt
-#   fk where nothing vanishes: 28 compare and select, 48 add, 11 divide, 51 multiply, 1 sqrt
-#   skeleton: 43 compare and select, 124 add, 14 divide, 61 multiply, 1 sqrt
-#   jacobian_parallel: 43 compare and select, 68 add, 12 divide, 61 multiply, 1 sqrt
-#   jacobian_parallel where nothing vanishes: 27 compare and select, 66 add, 11 divide, 51
+#   fk: 51 compare and select, 53 add, 12 divide, 68 multiply, 1 sqrt
+#   fk where nothing vanishes: 30 compare and select, 46 add, 11 divide, 45 multiply, 1 sqrt
+#   skeleton: 50 compare and select, 127 add, 14 divide, 68 multiply, 1 sqrt
+#   skeleton where nothing vanishes: 29 compare and select, 120 add, 13 divide, 45 multiply, 1
+#     sqrt
+#   jacobian_parallel: 50 compare and select, 71 add, 12 divide, 68 multiply, 1 sqrt
+#   jacobian_parallel where nothing vanishes: 29 compare and select, 64 add, 11 divide, 45
 #     multiply, 1 sqrt
-#   jacobian_serial: 41 compare and select, 44 add, 10 divide, 52 multiply, 1 sqrt
-#   jacobian_serial where nothing vanishes: 27 compare and select, 42 add, 9 divide, 43 multiply,
+#   jacobian_serial: 46 compare and select, 47 add, 10 divide, 57 multiply, 1 sqrt
+#   jacobian_serial where nothing vanishes: 29 compare and select, 40 add, 9 divide, 37 multiply,
 #     1 sqrt
-#   jacobian: 43 compare and select, 88 add, 30 divide, 112 multiply, 1 sqrt
-#   determinant: 41 compare and select, 40 add, 12 divide, 57 multiply, 1 sqrt
-#   determinant where nothing vanishes: 27 compare and select, 38 add, 11 divide, 48 multiply, 1
+#   jacobian: 50 compare and select, 91 add, 30 divide, 119 multiply, 1 sqrt
+#   jacobian where nothing vanishes: 29 compare and select, 84 add, 29 divide, 96 multiply, 1 sqrt
+#   determinant: 46 compare and select, 43 add, 12 divide, 62 multiply, 1 sqrt
+#   determinant where nothing vanishes: 29 compare and select, 36 add, 11 divide, 42 multiply, 1
 #     sqrt
-#   singularities: 41 compare and select, 46 add, 10 divide, 53 multiply, 1 sqrt
-#   singularities where nothing vanishes: 27 compare and select, 44 add, 9 divide, 44 multiply, 1
+#   singularities: 46 compare and select, 49 add, 10 divide, 58 multiply, 1 sqrt
+#   singularities where nothing vanishes: 29 compare and select, 42 add, 9 divide, 38 multiply, 1
 #     sqrt
-#   condition_number: 43 compare and select, 104 add, 14 divide, 131 multiply, 3 sqrt
-#   constraint: 43 compare and select, 62 add, 18 divide, 85 multiply, 1 sqrt
+#   condition_number: 50 compare and select, 107 add, 14 divide, 138 multiply, 3 sqrt
+#   condition_number where nothing vanishes: 29 compare and select, 100 add, 13 divide, 115
+#     multiply, 3 sqrt
+#   constraint: 50 compare and select, 65 add, 18 divide, 92 multiply, 1 sqrt
+#   constraint where nothing vanishes: 29 compare and select, 58 add, 17 divide, 69 multiply, 1
+#     sqrt
 #   ik: 60 compare and select, 63 add, 5 divide, 44 multiply, 6 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
@@ -144,97 +151,107 @@ _DEFAULT = Parameters()
 
 
 def _fk(rho1, rho2, rho3, f, e, l):
-    t1 = rho1 - rho2
     c1_x = f - e
-    t2 = c1_x - (e * 0.5 - f * 0.5)
+    t1 = c1_x - (e * 0.5 - f * 0.5)
+    t2 = rho1 - rho2
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t3 = t2 * t2 + c3_y * c3_y
-    u_u = t1 * t1 + t3
-    t4 = rho1 - rho3
-    v_v = t4 * t4 + t3
-    del t3
+    t3 = t1 * t1 + c3_y * c3_y
+    u_u = t2 * t2 + t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t5 = size * size
-    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
-    all_same = u_u + v_v <= t6
-    whole = _runtime.select(size == 0.0, 1.0, size)
+    t4 = size * size
+    t5 = _runtime.VANISHING * _runtime.VANISHING
+    t6 = t4 * t5
     same = u_u <= t6
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
     d_y = _runtime.select(same, c3_y, -c3_y)
-    a_x = _runtime.select(all_same, whole, -t2)
-    t7 = _runtime.select(same, -c3_y, c3_y)
-    del c3_y
-    m_z = a_x * t7 + t2 * d_y
-    t8 = _runtime.select(same, t4, t1)
-    t9 = _runtime.select(same, t1, t4)
-    del same, t1, t4
-    m_y = a_x * t9 + t2 * t8
-    t10 = over * (d_y * m_z + t8 * m_y)
-    t11 = d_y * t9 - t7 * t8
-    n_y = over * (a_x * m_z - t8 * t11)
-    del m_z
-    t12 = over * (a_x * m_y + d_y * t11)
-    del m_y, over, t11
-    nu = t10 * t10 + n_y * n_y + t12 * t12
-    in_line = nu <= t6
+    t7 = rho1 - rho3
+    v_v = t7 * t7 + t3
+    del t3
+    all_same = u_u + v_v <= t6
     del t6
-    t13 = whole * t8
-    s_w = _runtime.sign(d_y * a_x)
-    t14 = _runtime.select(in_line, t13 * s_w, d_y * t12 - t8 * n_y)
-    g_2 = whole * (d_y + a_x * s_w)
-    del s_w, whole
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / (mu * nu))
-    t15 = t7 * (d_y - t7) + t9 * (t8 - t9)
-    del t7, t9
-    t16 = _runtime.select(in_line, 0.0, mu * part * t15 * 0.5)
-    t17 = _runtime.select(all_same, 0.0, nu * (t16 * t16) + mu * 0.25)
-    del all_same, mu, nu
-    t18 = l * l - t17
-    del t17
-    slack = np.maximum(t18, 0.0)
-    t19 = l * size * 0.1875
-    del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
-    del part, slack
-    t20 = t14 * h
-    del t14
-    t21 = t2 * 0.5 - (c1_x + t10 * t16)
-    del c1_x, t2
-    t22 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t23 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t24 = t22 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t23
-    del t22, t23
-    invalid = np.logical_not(t24)
-    del t24
-    t25 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del t15, t5
-    unreachable = np.logical_not(t25 & (-(_runtime.FEASIBILITY * t19) <= t18))
-    del t18, t19, t25
-    t26 = _runtime.poison(invalid | unreachable)
-    t27 = n_y * t16 - d_y * 0.5
-    w_y = _runtime.select(in_line, -t13, a_x * t12 + t8 * t10)
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    a_x = _runtime.select(all_same, whole, -t1)
+    t8 = _runtime.select(same, -c3_y, c3_y)
+    del c3_y
+    product_z = a_x * t8 + t1 * d_y
+    t9 = _runtime.select(same, t7, t2)
+    t10 = _runtime.select(same, t2, t7)
+    del t2, t7
+    product_y = a_x * t10 + t1 * t9
+    t11 = d_y * product_z + t9 * product_y
+    t12 = d_y * t10 - t8 * t9
+    product_2 = t12 * t12 + product_y * product_y + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t13 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
     del t13
-    t28 = h * w_y
-    del w_y
-    t29 = t8 * 0.5 - (rho1 + t12 * t16)
-    del t12, t16, t8
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t10)
-    del a_x, d_y, g_2, n_y, t10
-    t30 = h * w_z
-    del h, w_z
-    t31 = _runtime.status(invalid, unreachable, in_line)
+    over = 1.0 / mu
+    n_y = a_x * product_z - t9 * t12
+    t14 = a_x * product_y + d_y * t12
+    m_m = _runtime.select(slim, over * (t11 * t11 + n_y * n_y + t14 * t14), product_2)
+    del product_2
+    in_line = m_m <= t5 * (t4 * mu)
+    del t5
+    t15 = whole * t9
+    s_w = _runtime.sign(d_y * a_x)
+    g_2 = whole * (d_y + a_x * s_w)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    del m_m
+    part = 1.0 / w_w
+    del w_w
+    t16 = t8 * (d_y - t8) + t10 * (t9 - t10)
+    del t10, t8
+    t17 = _runtime.select(in_line, 0.0, part * t16 * 0.5)
+    t18 = c1_x - t1 * 0.5 + t11 * t17
+    del c1_x, t1
+    t19 = _runtime.select(slim, over * (d_y * t14 - t9 * n_y), t12)
+    del t12
+    t20 = _runtime.select(in_line, 0.0, part * (t16 * t16))
+    t21 = _runtime.select(all_same, 0.0, mu * (1.0 + t20) * 0.25)
+    del all_same, mu, t20
+    t22 = l * l - t21
+    del t21
+    slack = np.maximum(t22, 0.0)
+    t23 = l * size * 0.1875
+    del size
+    h = _runtime.select(slack <= _runtime.VANISHING * t23, 0.0, np.sqrt(part * slack))
+    del part, slack
+    t24 = _runtime.select(in_line, t15 * s_w, t19) * h
+    del s_w, t19
+    t25 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t26 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t27 = t25 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t26
+    del t25, t26
+    invalid = np.logical_not(t27)
+    del t27
+    t28 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t4 * _runtime.FEASIBILITY
+    del t16, t4
+    unreachable = np.logical_not(t28 & (-(_runtime.FEASIBILITY * t23) <= t22))
+    del t22, t23, t28
+    t29 = _runtime.poison(invalid | unreachable)
+    t30 = n_y * t17 - d_y * 0.5
+    m_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), product_y)
+    del product_y
+    t31 = h * _runtime.select(in_line, -t15, m_y)
+    del m_y, t15
+    t32 = t9 * 0.5 - (rho1 + t14 * t17)
+    del t14, t17, t9
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t11
+    t33 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, h, m_z
+    t34 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t20 - t21 + t26,
-        -(t27 + t28) + t26,
-        -(t29 + t30) + t26,
-        -(t21 + t20) + t26,
-        t28 - t27 + t26,
-        t30 - t29 + t26,
-        t31,
-        t31,
+        t18 + t24 + t29,
+        -(t30 + t31) + t29,
+        -(t32 + t33) + t29,
+        t18 - t24 + t29,
+        t31 - t30 + t29,
+        t33 - t32 + t29,
+        t34,
+        t34,
     )
 
 
@@ -249,64 +266,63 @@ def _fk_common(rho1, rho2, rho3, f, e, l):
     t4 = rho1 - rho2
     t5 = rho1 - rho3
     t6 = t1 * t5 - t1 * t4
-    t7 = t1 * t1 + c3_y * c3_y
-    u_u = t4 * t4 + t7
-    over = 1.0 / u_u
-    t8 = (c3_y * t3 - t4 * t6) * over
-    t9 = u_u * (c3_y * (c3_y + c3_y) - t5 * (t4 - t5))
-    t10 = c3_y * t5 + c3_y * t4
-    n_y = (t1 * t3 + t4 * t10) * over
-    del t3
-    t11 = (t1 * t6 + c3_y * t10) * over
-    del over, t10, t6
-    nu = t8 * t8 + n_y * n_y + t11 * t11
-    part = 1.0 / (u_u * nu)
-    t12 = t9 * part * 0.5
-    del t9
-    t13 = c1_x - t1 * 0.5 - t8 * t12
+    t7 = c3_y * t5 + c3_y * t4
+    product_2 = t7 * t7 + t6 * t6 + t3 * t3
+    part = 1.0 / product_2
+    t8 = c3_y * (c3_y + c3_y) - t5 * (t4 - t5)
+    t9 = part * t8 * 0.5
+    t10 = c1_x - t1 * 0.5 - (c3_y * t3 - t4 * t6) * t9
     del c1_x
-    t14 = l * l - (nu * (t12 * t12) + u_u * 0.25)
-    slack = np.maximum(t14, 0.0)
+    t11 = t1 * t1 + c3_y * c3_y
+    u_u = t4 * t4 + t11
+    t12 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
+    del t8
+    slack = np.maximum(t12, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t15 = (c3_y * t11 + t4 * n_y) * h
-    t16 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t17 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t18 = t16 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t17
-    del t16, t17
-    invalid = np.logical_not(t18)
-    del t18
+    t13 = t7 * h
+    t14 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t16 = t14 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t15
+    del t14, t15
+    invalid = np.logical_not(t16)
+    del t16
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t19 = size * size
-    t20 = l * size * 0.1875
+    t17 = size * size
+    t18 = l * size * 0.1875
     del size
-    t21 = (np.abs(0.0) <= t19 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t20) <= t14)
-    del t14
-    unreachable = np.logical_not(t21)
-    del t21
-    t22 = _runtime.poison(invalid | unreachable)
-    t23 = h * (t1 * t11 - t4 * t8)
-    t24 = c3_y * 0.5 - n_y * t12
-    t25 = h * (t1 * n_y + c3_y * t8)
-    del c3_y, h, n_y, t1, t8
-    t26 = t4 * 0.5 - (rho1 - t11 * t12)
-    del t11, t12, t4
-    t27 = _runtime.status(invalid, unreachable, np.False_)
-    del invalid, unreachable
-    t28 = _runtime.VANISHING * _runtime.VANISHING * t19
+    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t12)
+    del t12
+    unreachable = np.logical_not(t19)
     del t19
-    t29 = (u_u <= t28) | (u_u + (t5 * t5 + t7) <= t28) | (nu <= t28)
-    del nu, t28, t5, t7, u_u
+    t20 = _runtime.poison(invalid | unreachable)
+    t21 = t9 * (t1 * t3 + t4 * t7) - c3_y * 0.5
+    t22 = t6 * h
+    t23 = t3 * h
+    del h, t3
+    t24 = t4 * 0.5 - (rho1 - t9 * (t1 * t6 + c3_y * t7))
+    del c3_y, t1, t4, t6, t7, t9
+    t25 = _runtime.status(invalid, unreachable, np.False_)
+    del invalid, unreachable
+    t26 = _runtime.VANISHING * _runtime.VANISHING
+    t27 = t17 * t26
+    v_v = t5 * t5 + t11
+    del t11, t5
+    t28 = u_u * v_v
+    slim = product_2 - t28 * 0.000244140625 <= _runtime.VANISHING * t28
+    del t28
+    t29 = (u_u <= t27) | (u_u + v_v <= t27) | slim | (product_2 <= t26 * (t17 * u_u))
+    del product_2, slim, t17, t26, t27, u_u, v_v
     return (
-        t13 - t15 + t22,
-        t23 - t24 + t22,
-        t25 - t26 + t22,
-        t13 + t15 + t22,
-        -(t24 + t23) + t22,
-        -(t26 + t25) + t22,
-        t27,
-        t27,
-        t29 | (slack <= _runtime.VANISHING * t20),
+        t10 - t13 + t20,
+        t21 + t22 + t20,
+        t23 - t24 + t20,
+        t10 + t13 + t20,
+        t21 - t22 + t20,
+        -(t24 + t23) + t20,
+        t25,
+        t25,
+        t29 | (slack <= _runtime.VANISHING * t18),
     )
 
 
@@ -318,7 +334,7 @@ _FK = _runtime.Kernel(
     Parameters._fields,
     ('f', 'e', 'l'),
     common=_fk_common,
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -381,266 +397,524 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     c3_y = t9 - t10
     t11 = t7 * t7 + c3_y * c3_y
     u_u = t4 * t4 + t11
-    t12 = rho1 - rho3
-    v_v = t12 * t12 + t11
-    del t11
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t13 = size * size
-    t14 = _runtime.VANISHING * _runtime.VANISHING * t13
-    all_same = u_u + v_v <= t14
-    whole = _runtime.select(size == 0.0, 1.0, size)
+    t12 = size * size
+    t13 = _runtime.VANISHING * _runtime.VANISHING
+    t14 = t12 * t13
     same = u_u <= t14
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
     d_y = _runtime.select(same, c3_y, -c3_y)
-    a_x = _runtime.select(all_same, whole, -t7)
-    t15 = _runtime.select(same, -c3_y, c3_y)
+    t15 = rho1 - rho3
+    t16 = _runtime.select(same, t4, t15)
+    t17 = _runtime.select(same, t15, t4)
+    del t4
+    t18 = _runtime.select(same, -c3_y, c3_y)
     del c3_y
-    m_z = a_x * t15 + t7 * d_y
-    t16 = _runtime.select(same, t12, t4)
-    t17 = _runtime.select(same, t4, t12)
-    del same, t12, t4
-    m_y = a_x * t17 + t7 * t16
-    t18 = over * (d_y * m_z + t16 * m_y)
-    t19 = d_y * t17 - t15 * t16
-    n_y = over * (a_x * m_z - t16 * t19)
-    del m_z
-    t20 = over * (a_x * m_y + d_y * t19)
-    del m_y, over, t19
-    nu = t18 * t18 + n_y * n_y + t20 * t20
-    in_line = nu <= t14
+    t19 = d_y * t16 - t17 * t18
+    v_v = t15 * t15 + t11
+    del t11, t15
+    all_same = u_u + v_v <= t14
     del t14
-    t21 = t15 * (d_y - t15) + t17 * (t16 - t17)
-    del t15, t17
-    t22 = np.abs(_runtime.select(in_line, -t21, 0.0)) <= t13 * _runtime.FEASIBILITY
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    a_x = _runtime.select(all_same, whole, -t7)
+    product_y = t16 * a_x + t7 * t17
+    product_z = t18 * a_x + t7 * d_y
+    product_2 = t19 * t19 + product_y * product_y + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t20 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t20 * 0.000244140625 <= _runtime.VANISHING * t20
+    del t20
+    over = 1.0 / mu
+    t21 = d_y * product_z + t17 * product_y
+    n_y = a_x * product_z - t17 * t19
+    t22 = a_x * product_y + d_y * t19
+    m_m = _runtime.select(slim, over * (t21 * t21 + n_y * n_y + t22 * t22), product_2)
+    del product_2
+    in_line = m_m <= t13 * (t12 * mu)
     del t13
-    t23 = 0.234375 * (l * size)
+    t23 = t18 * (d_y - t18) - t16 * (t16 - t17)
+    del t16, t18
+    t24 = np.abs(_runtime.select(in_line, -t23, 0.0)) <= t12 * _runtime.FEASIBILITY
+    del t12
+    t25 = 0.234375 * (l * size)
     del size
-    t24 = whole * t16
+    t26 = whole * t17
     s_w = _runtime.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     del whole
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t24 * t24) + g_2 * g_2), 1.0 / (mu * nu))
-    t25 = _runtime.select(in_line, 0.0, mu * t21 * part * 0.5)
-    del t21
-    t26 = _runtime.select(all_same, 0.0, nu * (t25 * t25) + mu * 0.25)
-    del all_same, mu, nu
-    t27 = l * l - t26
-    del t26
-    unreachable = np.logical_not(t22 & (-(_runtime.FEASIBILITY * t23) <= t27))
-    del t22
-    t28 = _runtime.poison(np.logical_not(t3) | unreachable)
-    del t3, unreachable
-    t29 = f + t28
-    t30 = 0.0 + t28
-    t31 = rho1 + t28
-    t32 = e + c1_x
-    t33 = t7 * 0.5 - t18 * t25
-    del t7
-    t34 = _runtime.select(in_line, t24 * s_w, d_y * t20 - t16 * n_y)
-    del s_w
-    slack = np.maximum(t27, 0.0)
-    del t27
-    h = _runtime.select(slack <= _runtime.VANISHING * t23, 0.0, np.sqrt(part * slack))
-    del part, slack, t23
-    t35 = t34 * h
-    del t34
-    t36 = t33 - t35
-    t37 = t32 - t36 + t28
-    t38 = n_y * t25 - d_y * 0.5
-    w_y = _runtime.select(in_line, -t24, a_x * t20 + t16 * t18)
+    w_w = _runtime.select(in_line, 2.0 * (t26 * t26) + g_2 * g_2, m_m)
+    del m_m
+    part = 1.0 / w_w
+    del w_w
+    t27 = _runtime.select(in_line, 0.0, part * (t23 * t23))
+    t28 = _runtime.select(all_same, 0.0, mu * (1.0 + t27) * 0.25)
+    del all_same, mu, t27
+    t29 = l * l - t28
+    del t28
+    unreachable = np.logical_not(t24 & (-(_runtime.FEASIBILITY * t25) <= t29))
     del t24
-    t39 = h * w_y
-    del w_y
-    t40 = t38 + t39
-    t41 = -t40 + t28
-    t42 = t20 * t25 - t16 * 0.5
-    del t16, t20, t25
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t18)
-    del a_x, d_y, g_2, in_line, n_y, t18
-    t43 = h * w_z
-    del h, w_z
-    t44 = rho1 + (t42 - t43) + t28
-    t45 = t5 + t28
-    t46 = -t5 + t28
-    t47 = -t6 + t28
-    t48 = t10 + t28
-    t49 = rho2 + t28
-    t50 = c1_x - t5
-    t51 = t50 - t36
-    t52 = t51 + t28
-    t53 = t8 * 0.25
+    t30 = _runtime.poison(np.logical_not(t3) | unreachable)
+    del t3, unreachable
+    t31 = f + t30
+    t32 = 0.0 + t30
+    t33 = rho1 + t30
+    t34 = e + c1_x
+    t35 = _runtime.select(in_line, 0.0, t23 * part * 0.5)
+    del t23
+    t36 = t7 * 0.5 - t21 * t35
+    del t7
+    t37 = _runtime.select(slim, over * (d_y * t22 - t17 * n_y), t19)
+    del t19
+    slack = np.maximum(t29, 0.0)
+    del t29
+    h = _runtime.select(slack <= _runtime.VANISHING * t25, 0.0, np.sqrt(part * slack))
+    del part, slack, t25
+    t38 = _runtime.select(in_line, t26 * s_w, t37) * h
+    del s_w, t37
+    t39 = t36 - t38
+    t40 = t34 - t39 + t30
+    t41 = n_y * t35 - d_y * 0.5
+    m_y = _runtime.select(slim, over * (a_x * t22 + t17 * t21), product_y)
+    del product_y
+    t42 = h * _runtime.select(in_line, -t26, m_y)
+    del m_y, t26
+    t43 = t41 + t42
+    t44 = -t43 + t30
+    t45 = t22 * t35 - t17 * 0.5
+    del t17, t22, t35
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t21), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t21
+    t46 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, h, in_line, m_z
+    t47 = rho1 + (t45 - t46) + t30
+    t48 = t5 + t30
+    t49 = -t5 + t30
+    t50 = -t6 + t30
+    t51 = t10 + t30
+    t52 = rho2 + t30
+    t53 = c1_x - t5
+    t54 = t53 - t39
+    t55 = t54 + t30
+    t56 = t8 * 0.25
     del t8
-    t54 = -(t6 + t53) + t28
-    t55 = e * 0.25
-    t56 = t10 - t55
-    t57 = t56 + t28
-    t58 = t53 - t6 + t28
+    t57 = -(t6 + t56) + t30
+    t58 = e * 0.25
+    t59 = t10 - t58
+    t60 = t59 + t30
+    t61 = t56 - t6 + t30
     del t6
-    t59 = t10 + t55
-    t60 = t59 + t28
-    t61 = t51 - t53 + t28
-    t62 = t9 - t55
-    t63 = t53 + t51 + t28
-    del t51
-    t64 = t9 + t55
-    del t55
-    t65 = -t10 + t28
+    t62 = t10 + t58
+    t63 = t62 + t30
+    t64 = t54 - t56 + t30
+    t65 = t9 - t58
+    t66 = t56 + t54 + t30
+    del t54
+    t67 = t9 + t58
+    del t58
+    t68 = -t10 + t30
     del t10
-    t66 = rho3 + t28
-    t67 = -t59 + t28
+    t69 = rho3 + t30
+    t70 = -t62 + t30
+    del t62
+    t71 = -t59 + t30
     del t59
-    t68 = -t56 + t28
-    del t56
-    t69 = t33 + t35
-    del t33, t35
-    t70 = t32 - t69 + t28
-    del t32
-    t71 = t38 - t39
-    del t38, t39
-    t72 = -t71 + t28
-    t73 = rho1 + (t42 + t43) + t28
-    del t42, t43
-    t74 = t50 - t69
-    del t50
-    t75 = t74 + t28
-    t76 = t74 - t53 + t28
-    t77 = t53 + t74 + t28
-    del t53, t74
+    t72 = t36 + t38
+    del t36, t38
+    t73 = t34 - t72 + t30
+    del t34
+    t74 = t41 - t42
+    del t41, t42
+    t75 = -t74 + t30
+    t76 = rho1 + (t45 + t46) + t30
+    del t45, t46
+    t77 = t53 - t72
+    del t53
+    t78 = t77 + t30
+    t79 = t77 - t56 + t30
+    t80 = t56 + t77 + t30
+    del t56, t77
     return (
-        t29,
-        t30,
-        t30,
-        t29,
-        t30,
         t31,
-        t37,
-        t41,
-        t44,
-        t29,
-        t45,
+        t32,
+        t32,
         t31,
-        t29,
-        t46,
-        t31,
-        t37,
-        t5 - t40 + t28,
-        t44,
-        t37,
-        -(t5 + t40) + t28,
+        t32,
+        t33,
+        t40,
         t44,
         t47,
+        t31,
         t48,
-        t30,
-        t47,
-        t48,
+        t33,
+        t31,
         t49,
+        t33,
+        t40,
+        t5 - t43 + t30,
+        t47,
+        t40,
+        -(t5 + t43) + t30,
+        t47,
+        t50,
+        t51,
+        t32,
+        t50,
+        t51,
         t52,
-        t9 - t40 + t28,
-        t44,
-        t54,
+        t55,
+        t9 - t43 + t30,
+        t47,
         t57,
-        t49,
-        t58,
         t60,
-        t49,
-        t61,
-        t62 - t40 + t28,
-        t44,
-        t63,
-        t64 - t40 + t28,
-        t44,
-        t47,
-        t65,
-        t30,
-        t47,
-        t65,
-        t66,
         t52,
-        -(t9 + t40) + t28,
-        t44,
-        t58,
-        t67,
-        t66,
-        t54,
-        t68,
-        t66,
-        t63,
-        -(t64 + t40) + t28,
-        t44,
         t61,
-        -(t62 + t40) + t28,
-        t44,
-        c1_x - t36 + t28,
-        t41,
-        t44,
-        t29,
-        t30,
-        t30,
-        t29,
-        t30,
-        t31,
-        t70,
-        t72,
-        t73,
-        t29,
-        t45,
-        t31,
-        t29,
-        t46,
-        t31,
-        t70,
-        t5 - t71 + t28,
-        t73,
-        t70,
-        -(t5 + t71) + t28,
-        t73,
+        t63,
+        t52,
+        t64,
+        t65 - t43 + t30,
         t47,
-        t48,
-        t30,
-        t47,
-        t48,
-        t49,
-        t75,
-        t9 - t71 + t28,
-        t73,
-        t54,
-        t57,
-        t49,
-        t58,
-        t60,
-        t49,
-        t76,
-        t62 - t71 + t28,
-        t73,
-        t77,
-        t64 - t71 + t28,
-        t73,
-        t47,
-        t65,
-        t30,
-        t47,
-        t65,
         t66,
-        t75,
-        -(t9 + t71) + t28,
-        t73,
-        t58,
-        t67,
-        t66,
-        t54,
+        t67 - t43 + t30,
+        t47,
+        t50,
         t68,
+        t32,
+        t50,
+        t68,
+        t69,
+        t55,
+        -(t9 + t43) + t30,
+        t47,
+        t61,
+        t70,
+        t69,
+        t57,
+        t71,
+        t69,
         t66,
-        t77,
-        -(t64 + t71) + t28,
+        -(t67 + t43) + t30,
+        t47,
+        t64,
+        -(t65 + t43) + t30,
+        t47,
+        c1_x - t39 + t30,
+        t44,
+        t47,
+        t31,
+        t32,
+        t32,
+        t31,
+        t32,
+        t33,
         t73,
+        t75,
         t76,
-        -(t62 + t71) + t28,
+        t31,
+        t48,
+        t33,
+        t31,
+        t49,
+        t33,
         t73,
-        c1_x - t69 + t28,
-        t72,
+        t5 - t74 + t30,
+        t76,
         t73,
+        -(t5 + t74) + t30,
+        t76,
+        t50,
+        t51,
+        t32,
+        t50,
+        t51,
+        t52,
+        t78,
+        t9 - t74 + t30,
+        t76,
+        t57,
+        t60,
+        t52,
+        t61,
+        t63,
+        t52,
+        t79,
+        t65 - t74 + t30,
+        t76,
+        t80,
+        t67 - t74 + t30,
+        t76,
+        t50,
+        t68,
+        t32,
+        t50,
+        t68,
+        t69,
+        t78,
+        -(t9 + t74) + t30,
+        t76,
+        t61,
+        t70,
+        t69,
+        t57,
+        t71,
+        t69,
+        t80,
+        -(t67 + t74) + t30,
+        t76,
+        t79,
+        -(t65 + t74) + t30,
+        t76,
+        c1_x - t72 + t30,
+        t75,
+        t76,
+    )
+
+
+def _skeleton_common(rho1, rho2, rho3, f, e, l):
+    # Where nothing vanishes; last, whether something does.
+    t1 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t2 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t3 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t2
+    del t1, t2
+    size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t4 = size * size
+    t5 = 0.234375 * (l * size)
+    del size
+    t6 = rho1 - rho2
+    c1_x = f - e
+    t7 = e * 0.5
+    t8 = f * 0.5
+    t9 = c1_x - (t7 - t8)
+    t10 = e * 1.7320508075688772
+    t11 = t10 * 0.5
+    t12 = f * 1.7320508075688772 * 0.5
+    c3_y = t11 - t12
+    t13 = t9 * t9 + c3_y * c3_y
+    u_u = t6 * t6 + t13
+    t14 = rho1 - rho3
+    t15 = c3_y * t14 + c3_y * t6
+    t16 = t9 * t14 - t9 * t6
+    t17 = c3_y * t9
+    t18 = t17 + t17
+    del t17
+    product_2 = t15 * t15 + t16 * t16 + t18 * t18
+    part = 1.0 / product_2
+    t19 = c3_y * (c3_y + c3_y) - t14 * (t6 - t14)
+    t20 = l * l - u_u * (1.0 + part * (t19 * t19)) * 0.25
+    t21 = (np.abs(0.0) <= t4 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t5) <= t20)
+    t22 = _runtime.poison(np.logical_not(t3) | np.logical_not(t21))
+    del t21, t3
+    t23 = f + t22
+    t24 = 0.0 + t22
+    t25 = rho1 + t22
+    t26 = e + c1_x
+    t27 = part * t19 * 0.5
+    del t19
+    t28 = t9 * 0.5 + (c3_y * t18 - t6 * t16) * t27
+    slack = np.maximum(t20, 0.0)
+    del t20
+    h = np.sqrt(part * slack)
+    del part
+    t29 = t15 * h
+    t30 = t28 + t29
+    t31 = t26 - t30 + t22
+    t32 = t27 * (t9 * t18 + t6 * t15) - c3_y * 0.5
+    t33 = t16 * h
+    A_12 = t32 + t33
+    t34 = A_12 + t22
+    t35 = t27 * (t9 * t16 + c3_y * t15) + t6 * 0.5
+    del c3_y, t15, t16, t27, t6, t9
+    t36 = t18 * h
+    del h, t18
+    t37 = rho1 - (t35 - t36) + t22
+    t38 = t7 + t22
+    t39 = -t7 + t22
+    t40 = -t8 + t22
+    t41 = t12 + t22
+    t42 = rho2 + t22
+    t43 = c1_x - t7
+    t44 = t43 - t30
+    t45 = t44 + t22
+    t46 = t10 * 0.25
+    del t10
+    t47 = -(t8 + t46) + t22
+    t48 = e * 0.25
+    t49 = t12 - t48
+    t50 = t49 + t22
+    t51 = t46 - t8 + t22
+    del t8
+    t52 = t12 + t48
+    t53 = t52 + t22
+    t54 = t44 - t46 + t22
+    t55 = t11 - t48
+    t56 = t46 + t44 + t22
+    del t44
+    t57 = t11 + t48
+    del t48
+    t58 = -t12 + t22
+    del t12
+    t59 = rho3 + t22
+    t60 = -t52 + t22
+    del t52
+    t61 = -t49 + t22
+    del t49
+    t62 = t28 - t29
+    del t28, t29
+    t63 = t26 - t62 + t22
+    del t26
+    A_12_above = t32 - t33
+    del t32, t33
+    t64 = A_12_above + t22
+    t65 = rho1 - (t35 + t36) + t22
+    del t35, t36
+    t66 = t43 - t62
+    del t43
+    t67 = t66 + t22
+    t68 = t66 - t46 + t22
+    t69 = t46 + t66 + t22
+    del t46, t66
+    t70 = _runtime.VANISHING * _runtime.VANISHING
+    t71 = t4 * t70
+    v_v = t14 * t14 + t13
+    del t13, t14
+    t72 = u_u * v_v
+    slim = product_2 - t72 * 0.000244140625 <= _runtime.VANISHING * t72
+    del t72
+    t73 = (u_u <= t71) | (u_u + v_v <= t71) | slim | (product_2 <= t70 * (t4 * u_u))
+    del product_2, slim, t4, t70, t71, u_u, v_v
+    return (
+        t23,
+        t24,
+        t24,
+        t23,
+        t24,
+        t25,
+        t31,
+        t34,
+        t37,
+        t23,
+        t38,
+        t25,
+        t23,
+        t39,
+        t25,
+        t31,
+        t7 + A_12 + t22,
+        t37,
+        t31,
+        A_12 - t7 + t22,
+        t37,
+        t40,
+        t41,
+        t24,
+        t40,
+        t41,
+        t42,
+        t45,
+        t11 + A_12 + t22,
+        t37,
+        t47,
+        t50,
+        t42,
+        t51,
+        t53,
+        t42,
+        t54,
+        t55 + A_12 + t22,
+        t37,
+        t56,
+        t57 + A_12 + t22,
+        t37,
+        t40,
+        t58,
+        t24,
+        t40,
+        t58,
+        t59,
+        t45,
+        A_12 - t11 + t22,
+        t37,
+        t51,
+        t60,
+        t59,
+        t47,
+        t61,
+        t59,
+        t56,
+        A_12 - t57 + t22,
+        t37,
+        t54,
+        A_12 - t55 + t22,
+        t37,
+        c1_x - t30 + t22,
+        t34,
+        t37,
+        t23,
+        t24,
+        t24,
+        t23,
+        t24,
+        t25,
+        t63,
+        t64,
+        t65,
+        t23,
+        t38,
+        t25,
+        t23,
+        t39,
+        t25,
+        t63,
+        t7 + A_12_above + t22,
+        t65,
+        t63,
+        A_12_above - t7 + t22,
+        t65,
+        t40,
+        t41,
+        t24,
+        t40,
+        t41,
+        t42,
+        t67,
+        t11 + A_12_above + t22,
+        t65,
+        t47,
+        t50,
+        t42,
+        t51,
+        t53,
+        t42,
+        t68,
+        t55 + A_12_above + t22,
+        t65,
+        t69,
+        t57 + A_12_above + t22,
+        t65,
+        t40,
+        t58,
+        t24,
+        t40,
+        t58,
+        t59,
+        t67,
+        A_12_above - t11 + t22,
+        t65,
+        t51,
+        t60,
+        t59,
+        t47,
+        t61,
+        t59,
+        t69,
+        A_12_above - t57 + t22,
+        t65,
+        t68,
+        A_12_above - t55 + t22,
+        t65,
+        c1_x - t62 + t22,
+        t64,
+        t65,
+        t73 | (slack <= _runtime.VANISHING * t5),
     )
 
 
@@ -651,7 +925,8 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Array("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (3, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (69, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    common=_skeleton_common,
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (3, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (69, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -696,109 +971,117 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
     t3 = t1 * t1 + c3_y * c3_y
     u_u = t2 * t2 + t3
-    t4 = rho1 - rho3
-    v_v = t4 * t4 + t3
-    del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t5 = size * size
-    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
-    all_same = u_u + v_v <= t6
-    whole = _runtime.select(size == 0.0, 1.0, size)
+    t4 = size * size
+    t5 = _runtime.VANISHING * _runtime.VANISHING
+    t6 = t4 * t5
     same = u_u <= t6
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
     d_y = _runtime.select(same, c3_y, -c3_y)
-    a_x = _runtime.select(all_same, whole, -t1)
-    t7 = _runtime.select(same, -c3_y, c3_y)
-    m_z = a_x * t7 + t1 * d_y
-    t8 = _runtime.select(same, t4, t2)
-    t9 = _runtime.select(same, t2, t4)
-    del same
-    m_y = a_x * t9 + t1 * t8
-    t10 = over * (d_y * m_z + t8 * m_y)
-    t11 = d_y * t9 - t7 * t8
-    n_y = over * (a_x * m_z - t8 * t11)
-    del m_z
-    t12 = over * (a_x * m_y + d_y * t11)
-    del m_y, over, t11
-    nu = t10 * t10 + n_y * n_y + t12 * t12
-    in_line = nu <= t6
+    t7 = rho1 - rho3
+    v_v = t7 * t7 + t3
+    del t3
+    all_same = u_u + v_v <= t6
     del t6
-    t13 = whole * t8
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    a_x = _runtime.select(all_same, whole, -t1)
+    t8 = _runtime.select(same, -c3_y, c3_y)
+    product_z = a_x * t8 + t1 * d_y
+    t9 = _runtime.select(same, t7, t2)
+    t10 = _runtime.select(same, t2, t7)
+    product_y = a_x * t10 + t1 * t9
+    t11 = d_y * product_z + t9 * product_y
+    t12 = d_y * t10 - t8 * t9
+    product_2 = t12 * t12 + product_y * product_y + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t13 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
+    del t13
+    over = 1.0 / mu
+    n_y = a_x * product_z - t9 * t12
+    t14 = a_x * product_y + d_y * t12
+    m_m = _runtime.select(slim, over * (t11 * t11 + n_y * n_y + t14 * t14), product_2)
+    del product_2
+    in_line = m_m <= t5 * (t4 * mu)
+    del t5
+    t15 = whole * t9
     s_w = _runtime.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     del whole
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / (mu * nu))
-    t14 = t7 * (d_y - t7) + t9 * (t8 - t9)
-    del t7, t9
-    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
-    t16 = t1 * 0.5 - t10 * t15
-    t17 = _runtime.select(in_line, t13 * s_w, d_y * t12 - t8 * n_y)
-    del s_w
-    t18 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
-    del all_same, mu, nu
-    t19 = l * l - t18
-    del t18
-    slack = np.maximum(t19, 0.0)
-    t20 = 0.234375 * (l * size)
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    del m_m
+    part = 1.0 / w_w
+    del w_w
+    t16 = t8 * (d_y - t8) + t10 * (t9 - t10)
+    del t10, t8
+    t17 = _runtime.select(in_line, 0.0, part * t16 * 0.5)
+    t18 = t1 * 0.5 - t11 * t17
+    t19 = _runtime.select(slim, over * (d_y * t14 - t9 * n_y), t12)
+    del t12
+    t20 = _runtime.select(in_line, 0.0, part * (t16 * t16))
+    t21 = _runtime.select(all_same, 0.0, mu * (1.0 + t20) * 0.25)
+    del all_same, mu, t20
+    t22 = l * l - t21
+    del t21
+    slack = np.maximum(t22, 0.0)
+    t23 = 0.234375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t23, 0.0, np.sqrt(part * slack))
     del part, slack
-    t21 = t17 * h
-    del t17
-    t22 = t16 - t21
-    t23 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t24 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t25 = t23 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t24
-    del t23, t24
-    t26 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del t14, t5
-    unreachable = np.logical_not(t26 & (-(_runtime.FEASIBILITY * t20) <= t19))
-    del t19, t20, t26
-    t27 = _runtime.poison(np.logical_not(t25) | unreachable)
-    del t25, unreachable
-    t28 = n_y * t15 - d_y * 0.5
-    w_y = _runtime.select(in_line, -t13, a_x * t12 + t8 * t10)
-    del t13
-    t29 = h * w_y
-    del w_y
-    t30 = t28 + t29
-    t31 = t12 * t15 - t8 * 0.5
-    del t12, t15, t8
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t10)
-    del a_x, d_y, g_2, in_line, n_y, t10
-    t32 = h * w_z
-    del h, w_z
-    A_13 = t31 - t32
-    t33 = t1 - t22 + t27
-    t34 = t16 + t21
-    del t16, t21
-    t35 = t28 - t29
-    del t28, t29
-    A_13_above = t31 + t32
+    t24 = _runtime.select(in_line, t15 * s_w, t19) * h
+    del s_w, t19
+    t25 = t18 - t24
+    t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
+    del t26, t27
+    t29 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t4 * _runtime.FEASIBILITY
+    del t16, t4
+    unreachable = np.logical_not(t29 & (-(_runtime.FEASIBILITY * t23) <= t22))
+    del t22, t23, t29
+    t30 = _runtime.poison(np.logical_not(t28) | unreachable)
+    del t28, unreachable
+    t31 = n_y * t17 - d_y * 0.5
+    m_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), product_y)
+    del product_y
+    t32 = h * _runtime.select(in_line, -t15, m_y)
+    del m_y, t15
+    t33 = t31 + t32
+    t34 = t14 * t17 - t9 * 0.5
+    del t14, t17, t9
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t11
+    t35 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, h, in_line, m_z
+    A_13 = t34 - t35
+    t36 = t1 - t25 + t30
+    t37 = t18 + t24
+    del t18, t24
+    t38 = t31 - t32
     del t31, t32
-    t36 = t1 - t34 + t27
+    A_13_above = t34 + t35
+    del t34, t35
+    t39 = t1 - t37 + t30
     del t1
     return (
-        -t22 + t27,
-        -t30 + t27,
-        A_13 + t27,
-        t33,
-        c3_y - t30 + t27,
-        t2 + A_13 + t27,
-        t33,
-        -(c3_y + t30) + t27,
-        t4 + A_13 + t27,
-        -t34 + t27,
-        -t35 + t27,
-        A_13_above + t27,
+        -t25 + t30,
+        -t33 + t30,
+        A_13 + t30,
         t36,
-        c3_y - t35 + t27,
-        t2 + A_13_above + t27,
+        c3_y - t33 + t30,
+        t2 + A_13 + t30,
         t36,
-        -(c3_y + t35) + t27,
-        t4 + A_13_above + t27,
+        -(c3_y + t33) + t30,
+        t7 + A_13 + t30,
+        -t37 + t30,
+        -t38 + t30,
+        A_13_above + t30,
+        t39,
+        c3_y - t38 + t30,
+        t2 + A_13_above + t30,
+        t39,
+        -(c3_y + t38) + t30,
+        t7 + A_13_above + t30,
     )
 
 
@@ -812,80 +1095,79 @@ def _jacobian_parallel_common(rho1, rho2, rho3, f, e, l):
     t4 = rho1 - rho2
     t5 = rho1 - rho3
     t6 = t1 * t5 - t1 * t4
-    t7 = t1 * t1 + c3_y * c3_y
-    u_u = t4 * t4 + t7
-    over = 1.0 / u_u
-    t8 = (c3_y * t3 - t4 * t6) * over
-    t9 = u_u * (c3_y * (c3_y + c3_y) - t5 * (t4 - t5))
-    t10 = c3_y * t5 + c3_y * t4
-    n_y = (t1 * t3 + t4 * t10) * over
-    del t3
-    t11 = (t1 * t6 + c3_y * t10) * over
-    del over, t10, t6
-    nu = t8 * t8 + n_y * n_y + t11 * t11
-    part = 1.0 / (u_u * nu)
-    t12 = t9 * part * 0.5
-    del t9
-    t13 = t1 * 0.5 + t8 * t12
-    t14 = l * l - (nu * (t12 * t12) + u_u * 0.25)
-    slack = np.maximum(t14, 0.0)
+    t7 = c3_y * t5 + c3_y * t4
+    product_2 = t7 * t7 + t6 * t6 + t3 * t3
+    part = 1.0 / product_2
+    t8 = c3_y * (c3_y + c3_y) - t5 * (t4 - t5)
+    t9 = part * t8 * 0.5
+    t10 = t1 * 0.5 + (c3_y * t3 - t4 * t6) * t9
+    t11 = t1 * t1 + c3_y * c3_y
+    u_u = t4 * t4 + t11
+    t12 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
+    del t8
+    slack = np.maximum(t12, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t15 = (c3_y * t11 + t4 * n_y) * h
-    t16 = t13 + t15
-    t17 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t18 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t19 = t17 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t18
-    del t17, t18
+    t13 = t7 * h
+    t14 = t10 + t13
+    t15 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t16 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t17 = t15 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t16
+    del t15, t16
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t20 = size * size
-    t21 = 0.234375 * (l * size)
+    t18 = size * size
+    t19 = 0.234375 * (l * size)
     del size
-    t22 = (np.abs(0.0) <= t20 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t21) <= t14)
-    del t14
-    t23 = _runtime.poison(np.logical_not(t19) | np.logical_not(t22))
-    del t19, t22
-    t24 = c3_y * 0.5 - n_y * t12
-    t25 = h * (t1 * t11 - t4 * t8)
+    t20 = (np.abs(0.0) <= t18 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t19) <= t12)
+    del t12
+    t21 = _runtime.poison(np.logical_not(t17) | np.logical_not(t20))
+    del t17, t20
+    t22 = t9 * (t1 * t3 + t4 * t7) - c3_y * 0.5
+    t23 = t6 * h
+    A_12 = t22 + t23
+    t24 = t9 * (t1 * t6 + c3_y * t7) + t4 * 0.5
+    del t6, t7, t9
+    t25 = t3 * h
+    del h, t3
     t26 = t24 - t25
-    t27 = t4 * 0.5 + t11 * t12
-    del t11, t12
-    t28 = h * (t1 * n_y + c3_y * t8)
-    del h, n_y, t8
-    t29 = t27 - t28
-    t30 = t1 - t16 + t23
-    t31 = t13 - t15
-    del t13, t15
-    t32 = t24 + t25
+    t27 = t1 - t14 + t21
+    t28 = t10 - t13
+    del t10, t13
+    A_12_above = t22 - t23
+    del t22, t23
+    t29 = t24 + t25
     del t24, t25
-    t33 = t27 + t28
-    del t27, t28
-    t34 = t1 - t31 + t23
+    t30 = t1 - t28 + t21
     del t1
-    t35 = _runtime.VANISHING * _runtime.VANISHING * t20
-    del t20
-    t36 = (u_u <= t35) | (u_u + (t5 * t5 + t7) <= t35) | (nu <= t35)
-    del nu, t35, t7, u_u
+    t31 = _runtime.VANISHING * _runtime.VANISHING
+    t32 = t18 * t31
+    v_v = t5 * t5 + t11
+    del t11
+    t33 = u_u * v_v
+    slim = product_2 - t33 * 0.000244140625 <= _runtime.VANISHING * t33
+    del t33
+    t34 = (u_u <= t32) | (u_u + v_v <= t32) | slim | (product_2 <= t31 * (t18 * u_u))
+    del product_2, slim, t18, t31, t32, u_u, v_v
     return (
-        -t16 + t23,
-        -t26 + t23,
-        -t29 + t23,
+        -t14 + t21,
+        A_12 + t21,
+        -t26 + t21,
+        t27,
+        c3_y + A_12 + t21,
+        t4 - t26 + t21,
+        t27,
+        A_12 - c3_y + t21,
+        t5 - t26 + t21,
+        -t28 + t21,
+        A_12_above + t21,
+        -t29 + t21,
         t30,
-        c3_y - t26 + t23,
-        t4 - t29 + t23,
+        c3_y + A_12_above + t21,
+        t4 - t29 + t21,
         t30,
-        -(c3_y + t26) + t23,
-        t5 - t29 + t23,
-        -t31 + t23,
-        -t32 + t23,
-        -t33 + t23,
-        t34,
-        c3_y - t32 + t23,
-        t4 - t33 + t23,
-        t34,
-        -(c3_y + t32) + t23,
-        t5 - t33 + t23,
-        t36 | (slack <= _runtime.VANISHING * t21),
+        A_12_above - c3_y + t21,
+        t5 - t29 + t21,
+        t34 | (slack <= _runtime.VANISHING * t19),
     )
 
 
@@ -897,7 +1179,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     Parameters._fields,
     ('f', 'e', 'l'),
     common=_jacobian_parallel_common,
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -945,135 +1227,143 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t5 = size * size
-    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
-    all_same = u_u + v_v <= t6
+    t6 = _runtime.VANISHING * _runtime.VANISHING
+    t7 = t5 * t6
+    all_same = u_u + v_v <= t7
     whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t6
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
     a_x = _runtime.select(all_same, whole, -t2)
-    t7 = _runtime.select(same, t1, t4)
-    t8 = _runtime.select(same, t4, t1)
-    m_y = a_x * t7 + t2 * t8
+    same = u_u <= t7
+    del t7
+    t8 = _runtime.select(same, t1, t4)
+    t9 = _runtime.select(same, t4, t1)
+    product_y = a_x * t8 + t2 * t9
     d_y = _runtime.select(same, c3_y, -c3_y)
-    t9 = _runtime.select(same, -c3_y, c3_y)
-    del c3_y, same
-    t10 = t7 * d_y - t8 * t9
-    t11 = over * (a_x * m_y + d_y * t10)
-    m_z = a_x * t9 + t2 * d_y
+    t10 = _runtime.select(same, -c3_y, c3_y)
+    del c3_y
+    t11 = t8 * d_y - t9 * t10
+    t12 = a_x * product_y + d_y * t11
+    product_z = a_x * t10 + t2 * d_y
     del t2
-    t12 = over * (d_y * m_z + t8 * m_y)
-    del m_y
-    n_y = over * (a_x * m_z - t8 * t10)
-    del m_z, over, t10
-    nu = t12 * t12 + n_y * n_y + t11 * t11
-    in_line = nu <= t6
+    product_2 = t11 * t11 + product_y * product_y + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t13 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
+    del t13
+    over = 1.0 / mu
+    t14 = d_y * product_z + t9 * product_y
+    del product_y
+    n_y = a_x * product_z - t9 * t11
+    del t11
+    m_m = _runtime.select(slim, over * (t14 * t14 + n_y * n_y + t12 * t12), product_2)
+    del product_2
+    in_line = m_m <= t6 * (t5 * mu)
     del t6
-    t13 = whole * t8
+    t15 = whole * t9
     g_2 = whole * (d_y + a_x * _runtime.sign(a_x * d_y))
     del whole
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / (mu * nu))
-    del t13
-    t14 = t9 * (d_y - t9) - t7 * (t7 - t8)
-    del t7, t9
-    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
-    t16 = t11 * t15 - t8 * 0.5
-    del t11, t8
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t12)
-    del a_x, d_y, g_2, n_y, t12
-    t17 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
-    del all_same, mu, nu, t15
-    t18 = l * l - t17
-    del t17
-    slack = np.maximum(t18, 0.0)
-    t19 = 0.234375 * (l * size)
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    del m_m, t15
+    part = 1.0 / w_w
+    del w_w
+    t16 = t10 * (d_y - t10) - t8 * (t8 - t9)
+    del t10, t8
+    t17 = _runtime.select(in_line, 0.0, part * t16 * 0.5)
+    t18 = t12 * t17 - t9 * 0.5
+    del t12, t17, t9
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t14
+    t19 = _runtime.select(in_line, 0.0, part * (t16 * t16))
+    t20 = _runtime.select(all_same, 0.0, mu * (1.0 + t19) * 0.25)
+    del all_same, mu, t19
+    t21 = l * l - t20
+    del t20
+    slack = np.maximum(t21, 0.0)
+    t22 = 0.234375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t19, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t22, 0.0, np.sqrt(part * slack))
     del part, slack
-    t20 = w_z * h
-    del h, w_z
-    A_13 = t16 - t20
-    t21 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t22 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t23 = t21 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t22
-    del t21, t22
-    t24 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del in_line, t14, t5
-    unreachable = np.logical_not(t24 & (-(_runtime.FEASIBILITY * t19) <= t18))
-    del t18, t19, t24
-    t25 = _runtime.poison(np.logical_not(t23) | unreachable)
-    del t23, unreachable
-    A_13_above = t16 + t20
-    del t16, t20
+    t23 = _runtime.select(in_line, -g_2, m_z) * h
+    del g_2, h, m_z
+    A_13 = t18 - t23
+    t24 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t25 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t26 = t24 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t25
+    del t24, t25
+    t27 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del in_line, t16, t5
+    unreachable = np.logical_not(t27 & (-(_runtime.FEASIBILITY * t22) <= t21))
+    del t21, t22, t27
+    t28 = _runtime.poison(np.logical_not(t26) | unreachable)
+    del t26, unreachable
+    A_13_above = t18 + t23
+    del t18, t23
     return (
-        A_13 + t25,
-        t1 + A_13 + t25,
-        t4 + A_13 + t25,
-        A_13_above + t25,
-        t1 + A_13_above + t25,
-        t4 + A_13_above + t25,
+        A_13 + t28,
+        t1 + A_13 + t28,
+        t4 + A_13 + t28,
+        A_13_above + t28,
+        t1 + A_13_above + t28,
+        t4 + A_13_above + t28,
     )
 
 
 def _jacobian_serial_common(rho1, rho2, rho3, f, e, l):
     # Where nothing vanishes; last, whether something does.
-    t1 = rho1 - rho2
-    t2 = f - e - (e * 0.5 - f * 0.5)
-    t3 = rho1 - rho3
-    t4 = t2 * t3 - t2 * t1
+    t1 = f - e - (e * 0.5 - f * 0.5)
+    t2 = rho1 - rho3
+    t3 = rho1 - rho2
+    t4 = t1 * t2 - t1 * t3
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = c3_y * t3 + c3_y * t1
-    t6 = t2 * t2 + c3_y * c3_y
-    u_u = t1 * t1 + t6
-    over = 1.0 / u_u
-    t7 = (t2 * t4 + c3_y * t5) * over
-    t8 = u_u * (c3_y * (c3_y + c3_y) - t3 * (t1 - t3))
-    t9 = c3_y * t2
-    t10 = t9 + t9
-    del t9
-    t11 = (c3_y * t10 - t1 * t4) * over
-    del t4
-    n_y = (t2 * t10 + t1 * t5) * over
-    del over, t10, t5
-    nu = t11 * t11 + n_y * n_y + t7 * t7
-    part = 1.0 / (u_u * nu)
-    t12 = t8 * part * 0.5
+    t5 = c3_y * t2 + c3_y * t3
+    t6 = c3_y * t1
+    t7 = t6 + t6
+    del t6
+    product_2 = t5 * t5 + t4 * t4 + t7 * t7
+    part = 1.0 / product_2
+    t8 = c3_y * (c3_y + c3_y) - t2 * (t3 - t2)
+    t9 = (t1 * t4 + c3_y * t5) * (part * t8 * 0.5) + t3 * 0.5
+    del t4, t5
+    t10 = t1 * t1 + c3_y * c3_y
+    del c3_y, t1
+    u_u = t3 * t3 + t10
+    t11 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
     del t8
-    t13 = t1 * 0.5 + t7 * t12
-    del t7
-    t14 = l * l - (nu * (t12 * t12) + u_u * 0.25)
-    del t12
-    slack = np.maximum(t14, 0.0)
-    t15 = (t2 * n_y + c3_y * t11) * np.sqrt(part * slack)
-    del c3_y, n_y, part, t11, t2
-    t16 = t13 - t15
-    t17 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t18 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t19 = t17 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t18
-    del t17, t18
+    slack = np.maximum(t11, 0.0)
+    t12 = t7 * np.sqrt(part * slack)
+    del part, t7
+    t13 = t9 - t12
+    t14 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t16 = t14 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t15
+    del t14, t15
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t20 = size * size
-    t21 = 0.234375 * (l * size)
+    t17 = size * size
+    t18 = 0.234375 * (l * size)
     del size
-    t22 = (np.abs(0.0) <= t20 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t21) <= t14)
-    del t14
-    t23 = _runtime.poison(np.logical_not(t19) | np.logical_not(t22))
-    del t19, t22
-    t24 = t13 + t15
-    del t13, t15
-    t25 = _runtime.VANISHING * _runtime.VANISHING * t20
-    del t20
-    t26 = (u_u <= t25) | (u_u + (t3 * t3 + t6) <= t25) | (nu <= t25)
-    del nu, t25, t6, u_u
+    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t11)
+    del t11
+    t20 = _runtime.poison(np.logical_not(t16) | np.logical_not(t19))
+    del t16, t19
+    t21 = t9 + t12
+    del t12, t9
+    v_v = t2 * t2 + t10
+    del t10
+    t22 = _runtime.VANISHING * _runtime.VANISHING
+    t23 = t17 * t22
+    t24 = u_u * v_v
+    slim = product_2 - t24 * 0.000244140625 <= _runtime.VANISHING * t24
+    del t24
+    t25 = (u_u + v_v <= t23) | (u_u <= t23) | slim | (product_2 <= t22 * (t17 * u_u))
+    del product_2, slim, t17, t22, t23, u_u, v_v
     return (
-        -t16 + t23,
-        t1 - t16 + t23,
-        t3 - t16 + t23,
-        -t24 + t23,
-        t1 - t24 + t23,
-        t3 - t24 + t23,
-        t26 | (slack <= _runtime.VANISHING * t21),
+        -t13 + t20,
+        t3 - t13 + t20,
+        t2 - t13 + t20,
+        -t21 + t20,
+        t3 - t21 + t20,
+        t2 - t21 + t20,
+        t25 | (slack <= _runtime.VANISHING * t18),
     )
 
 
@@ -1085,7 +1375,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     Parameters._fields,
     ('f', 'e', 'l'),
     common=_jacobian_serial_common,
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1133,142 +1423,269 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t5 = size * size
-    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
-    all_same = u_u + v_v <= t6
+    t6 = _runtime.VANISHING * _runtime.VANISHING
+    t7 = t5 * t6
+    all_same = u_u + v_v <= t7
     whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t6
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
     a_x = _runtime.select(all_same, whole, -t2)
-    t7 = _runtime.select(same, t1, t4)
-    t8 = _runtime.select(same, t4, t1)
-    m_y = a_x * t7 + t2 * t8
+    same = u_u <= t7
+    del t7
+    t8 = _runtime.select(same, t1, t4)
+    t9 = _runtime.select(same, t4, t1)
+    product_y = a_x * t8 + t2 * t9
     d_y = _runtime.select(same, c3_y, -c3_y)
-    t9 = _runtime.select(same, -c3_y, c3_y)
-    del same
-    t10 = t7 * d_y - t8 * t9
-    t11 = over * (a_x * m_y + d_y * t10)
-    m_z = a_x * t9 + t2 * d_y
-    t12 = over * (d_y * m_z + t8 * m_y)
-    del m_y
-    n_y = over * (a_x * m_z - t8 * t10)
-    del m_z, over, t10
-    nu = t12 * t12 + n_y * n_y + t11 * t11
-    in_line = nu <= t6
+    t10 = _runtime.select(same, -c3_y, c3_y)
+    t11 = t8 * d_y - t9 * t10
+    t12 = a_x * product_y + d_y * t11
+    product_z = a_x * t10 + t2 * d_y
+    product_2 = t11 * t11 + product_y * product_y + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t13 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
+    del t13
+    over = 1.0 / mu
+    t14 = d_y * product_z + t9 * product_y
+    n_y = a_x * product_z - t9 * t11
+    m_m = _runtime.select(slim, over * (t14 * t14 + n_y * n_y + t12 * t12), product_2)
+    del product_2
+    in_line = m_m <= t6 * (t5 * mu)
     del t6
-    t13 = whole * t8
+    t15 = whole * t9
     s_w = _runtime.sign(a_x * d_y)
     g_2 = whole * (d_y + a_x * s_w)
     del whole
-    t14 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / t14)
-    t15 = t9 * (d_y - t9) - t7 * (t7 - t8)
-    del t7, t9
-    t16 = _runtime.select(in_line, 0.0, mu * part * t15 * 0.5)
-    t17 = t11 * t16 - t8 * 0.5
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t12)
-    del g_2
-    t18 = _runtime.select(all_same, 0.0, nu * (t16 * t16) + mu * 0.25)
-    del all_same, mu, nu
-    t19 = l * l - t18
-    del t18
-    slack = np.maximum(t19, 0.0)
-    t20 = 0.234375 * (l * size)
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    part = 1.0 / w_w
+    del w_w
+    t16 = t10 * (d_y - t10) - t8 * (t8 - t9)
+    del t10, t8
+    t17 = _runtime.select(in_line, 0.0, part * t16 * 0.5)
+    t18 = t12 * t17 - t9 * 0.5
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), product_z)
+    del product_z
+    t19 = _runtime.select(in_line, 0.0, part * (t16 * t16))
+    t20 = _runtime.select(all_same, 0.0, mu * (1.0 + t19) * 0.25)
+    del all_same, mu, t19
+    t21 = l * l - t20
+    del t20
+    slack = np.maximum(t21, 0.0)
+    t22 = 0.234375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t22, 0.0, np.sqrt(part * slack))
     del part, slack
-    t21 = w_z * h
-    del w_z
-    A_13 = t17 - t21
-    t22 = n_y * t16 - d_y * 0.5
-    w_y = _runtime.select(in_line, -t13, a_x * t11 + t8 * t12)
-    del a_x
-    t23 = h * w_y
-    del w_y
-    t24 = t22 + t23
-    A_22 = c3_y - t24
+    t23 = _runtime.select(in_line, -g_2, m_z) * h
+    del g_2, m_z
+    A_13 = t18 - t23
+    t24 = n_y * t17 - d_y * 0.5
+    m_y = _runtime.select(slim, over * (a_x * t12 + t9 * t14), product_y)
+    del a_x, product_y
+    t25 = h * _runtime.select(in_line, -t15, m_y)
+    del m_y
+    t26 = t24 + t25
+    A_22 = c3_y - t26
     A_33 = t4 + A_13
     A_23 = t1 + A_13
-    t25 = c3_y + t24
-    Delta = t14 * h
-    del t14
-    t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
-    del t26, t27
-    t29 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del t15, t5
-    unreachable = np.logical_not(t29 & (-(_runtime.FEASIBILITY * t20) <= t19))
-    del t19, t20, t29
-    t30 = _runtime.poison(np.logical_not(t28) | unreachable)
-    del t28, unreachable
-    t31 = -(A_13 * (A_22 * A_33 + A_23 * t25) / Delta) + t30
-    t32 = -(A_23 * (t24 * A_33 - A_13 * t25) / Delta) + t30
-    t33 = A_33 * (t24 * A_23 + A_13 * A_22) / Delta + t30
-    t34 = t2 * 0.5 - t12 * t16
-    del t12, t16
-    t35 = _runtime.select(in_line, t13 * s_w, d_y * t11 - t8 * n_y)
-    del d_y, in_line, n_y, s_w, t11, t13, t8
-    t36 = h * t35
-    del h, t35
-    t37 = t34 - t36
-    A_21 = t2 - t37
-    t38 = A_13 * (A_33 * A_21 - A_23 * A_21) / Delta + t30
-    t39 = A_13 * A_21
-    t40 = A_13 * (t25 * A_21 + A_22 * A_21) / Delta + t30
+    t27 = c3_y + t26
+    Delta = m_m * h
+    del m_m
+    t28 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t29 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t30 = t28 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t29
+    del t28, t29
+    t31 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del t16, t5
+    unreachable = np.logical_not(t31 & (-(_runtime.FEASIBILITY * t22) <= t21))
+    del t21, t22, t31
+    t32 = _runtime.poison(np.logical_not(t30) | unreachable)
+    del t30, unreachable
+    t33 = -(A_13 * (A_22 * A_33 + A_23 * t27) / Delta) + t32
+    t34 = -(A_23 * (t26 * A_33 - A_13 * t27) / Delta) + t32
+    t35 = A_33 * (t26 * A_23 + A_13 * A_22) / Delta + t32
+    t36 = t2 * 0.5 - t14 * t17
+    del t14, t17
+    t37 = _runtime.select(slim, over * (d_y * t12 - t9 * n_y), t11)
+    del d_y, n_y, over, slim, t11, t12, t9
+    t38 = h * _runtime.select(in_line, t15 * s_w, t37)
+    del h, in_line, s_w, t15, t37
+    t39 = t36 - t38
+    A_21 = t2 - t39
+    t40 = A_13 * (A_33 * A_21 - A_23 * A_21) / Delta + t32
+    t41 = A_13 * A_21
+    t42 = A_13 * (t27 * A_21 + A_22 * A_21) / Delta + t32
     del A_13
-    t41 = t24 * A_21
-    del A_21, t24
-    A_13_above = t17 + t21
-    del t17, t21
-    t42 = t22 - t23
-    del t22, t23
-    A_22_above = c3_y - t42
+    t43 = t26 * A_21
+    del A_21, t26
+    A_13_above = t18 + t23
+    del t18, t23
+    t44 = t24 - t25
+    del t24, t25
+    A_22_above = c3_y - t44
     A_33_above = t4 + A_13_above
     del t4
     A_23_above = t1 + A_13_above
     del t1
-    t43 = c3_y + t42
+    t45 = c3_y + t44
     del c3_y
-    t44 = A_13_above * (A_22_above * A_33_above + A_23_above * t43)
-    t45 = A_23_above * (t42 * A_33_above - A_13_above * t43)
-    t46 = A_33_above * (t42 * A_23_above + A_13_above * A_22_above)
-    t47 = t34 + t36
-    del t34, t36
-    A_21_above = t2 - t47
+    t46 = A_13_above * (A_22_above * A_33_above + A_23_above * t45)
+    t47 = A_23_above * (t44 * A_33_above - A_13_above * t45)
+    t48 = A_33_above * (t44 * A_23_above + A_13_above * A_22_above)
+    t49 = t36 + t38
+    del t36, t38
+    A_21_above = t2 - t49
     del t2
-    t48 = A_33_above * A_21_above - A_23_above * A_21_above
-    t49 = A_13_above * A_21_above
-    t50 = A_23_above * (A_33_above * t47 + t49) / Delta
-    t51 = A_33_above * (t49 + A_23_above * t47) / Delta
-    del t49
-    t52 = A_13_above * (t43 * A_21_above + A_22_above * A_21_above)
-    t53 = t42 * A_21_above
-    del A_21_above, t42
-    t54 = -(A_23_above * (t43 * t47 + t53) / Delta) + t30
-    del A_23_above, t43
-    t55 = A_33_above * (t53 - A_22_above * t47) / Delta
-    del A_22_above, A_33_above, t47, t53
+    t50 = A_33_above * A_21_above - A_23_above * A_21_above
+    t51 = A_13_above * A_21_above
+    t52 = A_23_above * (A_33_above * t49 + t51) / Delta
+    t53 = A_33_above * (t51 + A_23_above * t49) / Delta
+    del t51
+    t54 = A_13_above * (t45 * A_21_above + A_22_above * A_21_above)
+    t55 = t44 * A_21_above
+    del A_21_above, t44
+    t56 = -(A_23_above * (t45 * t49 + t55) / Delta) + t32
+    del A_23_above, t45
+    t57 = A_33_above * (t55 - A_22_above * t49) / Delta
+    del A_22_above, A_33_above, t49, t55
     return (
-        t31,
-        t32,
         t33,
-        t38,
-        A_23 * (A_33 * t37 + t39) / Delta + t30,
-        -(A_33 * (t39 + A_23 * t37) / Delta) + t30,
+        t34,
+        t35,
         t40,
-        A_23 * (t25 * t37 + t41) / Delta + t30,
-        -(A_33 * (t41 - A_22 * t37) / Delta) + t30,
-        t44 / Delta + t30,
-        t45 / Delta + t30,
-        -(t46 / Delta) + t30,
-        -(A_13_above * t48 / Delta) + t30,
-        -t50 + t30,
-        t51 + t30,
-        -(t52 / Delta) + t30,
-        t54,
-        t55 + t30,
+        A_23 * (A_33 * t39 + t41) / Delta + t32,
+        -(A_33 * (t41 + A_23 * t39) / Delta) + t32,
+        t42,
+        A_23 * (t27 * t39 + t43) / Delta + t32,
+        -(A_33 * (t43 - A_22 * t39) / Delta) + t32,
+        t46 / Delta + t32,
+        t47 / Delta + t32,
+        -(t48 / Delta) + t32,
+        -(A_13_above * t50 / Delta) + t32,
+        -t52 + t32,
+        t53 + t32,
+        -(t54 / Delta) + t32,
+        t56,
+        t57 + t32,
+    )
+
+
+def _jacobian_common(rho1, rho2, rho3, f, e, l):
+    # Where nothing vanishes; last, whether something does.
+    t1 = f - e - (e * 0.5 - f * 0.5)
+    t2 = rho1 - rho3
+    t3 = rho1 - rho2
+    t4 = t1 * t2 - t1 * t3
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t5 = c3_y * t2 + c3_y * t3
+    t6 = c3_y * t1
+    t7 = t6 + t6
+    del t6
+    product_2 = t5 * t5 + t4 * t4 + t7 * t7
+    part = 1.0 / product_2
+    t8 = c3_y * (c3_y + c3_y) - t2 * (t3 - t2)
+    t9 = part * t8 * 0.5
+    t10 = (t1 * t4 + c3_y * t5) * t9 + t3 * 0.5
+    t11 = t1 * t1 + c3_y * c3_y
+    u_u = t3 * t3 + t11
+    t12 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
+    del t8
+    slack = np.maximum(t12, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t13 = t7 * h
+    t14 = t10 - t13
+    t15 = t9 * (t1 * t7 + t3 * t5) - c3_y * 0.5
+    t16 = t4 * h
+    A_12 = t15 + t16
+    A_22 = c3_y + A_12
+    A_33 = t2 - t14
+    A_23 = t3 - t14
+    t17 = c3_y - A_12
+    Delta = product_2 * h
+    t18 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t19 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t20 = t18 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t19
+    del t18, t19
+    size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t21 = size * size
+    t22 = 0.234375 * (l * size)
+    del size
+    t23 = (np.abs(0.0) <= t21 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t22) <= t12)
+    del t12
+    t24 = _runtime.poison(np.logical_not(t20) | np.logical_not(t23))
+    del t20, t23
+    t25 = t14 * (A_22 * A_33 + A_23 * t17) / Delta + t24
+    t26 = A_23 * (A_12 * A_33 - t14 * t17) / Delta + t24
+    t27 = -(A_33 * (A_12 * A_23 + t14 * A_22) / Delta) + t24
+    t28 = t1 * 0.5 + t9 * (c3_y * t7 - t3 * t4)
+    del t4, t7, t9
+    t29 = t5 * h
+    del h, t5
+    t30 = t28 + t29
+    A_21 = t1 - t30
+    t31 = -(t14 * (A_33 * A_21 - A_23 * A_21) / Delta) + t24
+    t32 = t14 * A_21
+    t33 = -(t14 * (t17 * A_21 + A_22 * A_21) / Delta) + t24
+    del t14
+    t34 = A_12 * A_21
+    del A_12, A_21
+    t35 = t10 + t13
+    del t10, t13
+    A_12_above = t15 - t16
+    del t15, t16
+    A_22_above = c3_y + A_12_above
+    A_33_above = t2 - t35
+    A_23_above = t3 - t35
+    del t3
+    t36 = c3_y - A_12_above
+    del c3_y
+    t37 = t35 * (A_22_above * A_33_above + A_23_above * t36)
+    t38 = A_23_above * (A_12_above * A_33_above - t35 * t36)
+    t39 = A_33_above * (A_12_above * A_23_above + t35 * A_22_above)
+    t40 = t28 - t29
+    del t28, t29
+    A_21_above = t1 - t40
+    del t1
+    t41 = A_33_above * A_21_above - A_23_above * A_21_above
+    t42 = t35 * A_21_above
+    t43 = A_23_above * (A_33_above * t40 - t42) / Delta
+    t44 = A_33_above * (t42 - A_23_above * t40) / Delta
+    del t42
+    t45 = t35 * (t36 * A_21_above + A_22_above * A_21_above)
+    t46 = A_12_above * A_21_above
+    del A_12_above, A_21_above
+    t47 = -(A_23_above * (t36 * t40 - t46) / Delta) + t24
+    del A_23_above, t36
+    t48 = A_33_above * (t46 + A_22_above * t40) / Delta
+    del A_22_above, A_33_above, t40, t46
+    v_v = t2 * t2 + t11
+    del t11, t2
+    t49 = _runtime.VANISHING * _runtime.VANISHING
+    t50 = t21 * t49
+    t51 = u_u * v_v
+    slim = product_2 - t51 * 0.000244140625 <= _runtime.VANISHING * t51
+    del t51
+    t52 = (u_u + v_v <= t50) | (u_u <= t50) | slim | (product_2 <= t49 * (t21 * u_u))
+    del product_2, slim, t21, t49, t50, u_u, v_v
+    return (
+        t25,
+        t26,
+        t27,
+        t31,
+        A_23 * (A_33 * t30 - t32) / Delta + t24,
+        A_33 * (t32 - A_23 * t30) / Delta + t24,
+        t33,
+        A_23 * (t17 * t30 - t34) / Delta + t24,
+        A_33 * (t34 + A_22 * t30) / Delta + t24,
+        -(t37 / Delta) + t24,
+        -(t38 / Delta) + t24,
+        t39 / Delta + t24,
+        t35 * t41 / Delta + t24,
+        -t43 + t24,
+        -t44 + t24,
+        t45 / Delta + t24,
+        t47,
+        -t48 + t24,
+        t52 | (slack <= _runtime.VANISHING * t22),
     )
 
 
@@ -1279,7 +1696,8 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 3, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 2.938735877055719e-39, 1.8092513943330656e+75),
+    common=_jacobian_common,
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1328,141 +1746,147 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t5 = size * size
-    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
-    all_same = u_u + v_v <= t6
+    t6 = _runtime.VANISHING * _runtime.VANISHING
+    t7 = t5 * t6
+    all_same = u_u + v_v <= t7
     whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t6
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
     a_x = _runtime.select(all_same, whole, -t2)
-    t7 = _runtime.select(same, t1, t4)
-    t8 = _runtime.select(same, t4, t1)
-    m_y = a_x * t7 + t2 * t8
+    same = u_u <= t7
+    del t7
+    t8 = _runtime.select(same, t1, t4)
+    t9 = _runtime.select(same, t4, t1)
+    product_y = a_x * t8 + t2 * t9
     d_y = _runtime.select(same, c3_y, -c3_y)
-    t9 = _runtime.select(same, -c3_y, c3_y)
-    del c3_y, same
-    t10 = t7 * d_y - t8 * t9
-    t11 = over * (a_x * m_y + d_y * t10)
-    m_z = a_x * t9 + t2 * d_y
+    t10 = _runtime.select(same, -c3_y, c3_y)
+    del c3_y
+    t11 = t8 * d_y - t9 * t10
+    t12 = a_x * product_y + d_y * t11
+    product_z = a_x * t10 + t2 * d_y
     del t2
-    t12 = over * (d_y * m_z + t8 * m_y)
-    del m_y
-    n_y = over * (a_x * m_z - t8 * t10)
-    del m_z, over, t10
-    nu = t12 * t12 + n_y * n_y + t11 * t11
-    in_line = nu <= t6
+    product_2 = t11 * t11 + product_y * product_y + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t13 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
+    del t13
+    over = 1.0 / mu
+    t14 = d_y * product_z + t9 * product_y
+    del product_y
+    n_y = a_x * product_z - t9 * t11
+    del t11
+    m_m = _runtime.select(slim, over * (t14 * t14 + n_y * n_y + t12 * t12), product_2)
+    del product_2
+    in_line = m_m <= t6 * (t5 * mu)
     del t6
-    t13 = whole * t8
+    t15 = whole * t9
     g_2 = whole * (d_y + a_x * _runtime.sign(a_x * d_y))
     del whole
-    t14 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / t14)
-    del t13
-    t15 = t9 * (d_y - t9) - t7 * (t7 - t8)
-    del t7, t9
-    t16 = _runtime.select(in_line, 0.0, mu * part * t15 * 0.5)
-    t17 = t11 * t16 - t8 * 0.5
-    del t11, t8
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t12)
-    del a_x, d_y, g_2, n_y, t12
-    t18 = _runtime.select(all_same, 0.0, nu * (t16 * t16) + mu * 0.25)
-    del all_same, mu, nu, t16
-    t19 = l * l - t18
-    del t18
-    slack = np.maximum(t19, 0.0)
-    t20 = 0.234375 * (l * size)
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    del t15
+    part = 1.0 / w_w
+    del w_w
+    t16 = t10 * (d_y - t10) - t8 * (t8 - t9)
+    del t10, t8
+    t17 = _runtime.select(in_line, 0.0, part * t16 * 0.5)
+    t18 = t12 * t17 - t9 * 0.5
+    del t12, t17, t9
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t14
+    t19 = _runtime.select(in_line, 0.0, part * (t16 * t16))
+    t20 = _runtime.select(all_same, 0.0, mu * (1.0 + t19) * 0.25)
+    del all_same, mu, t19
+    t21 = l * l - t20
+    del t20
+    slack = np.maximum(t21, 0.0)
+    t22 = 0.234375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t22, 0.0, np.sqrt(part * slack))
     del part, slack
-    t21 = w_z * h
-    del w_z
-    A_13 = t17 - t21
-    Delta = t14 * h
-    del h, t14
-    t22 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t23 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t24 = t22 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t23
-    del t22, t23
-    t25 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del in_line, t15, t5
-    unreachable = np.logical_not(t25 & (-(_runtime.FEASIBILITY * t20) <= t19))
-    del t19, t20, t25
-    t26 = _runtime.poison(np.logical_not(t24) | unreachable)
-    del t24, unreachable
-    t27 = -(A_13 * (t1 + A_13) * (t4 + A_13) / Delta) + t26
+    t23 = _runtime.select(in_line, -g_2, m_z) * h
+    del g_2, m_z
+    A_13 = t18 - t23
+    Delta = m_m * h
+    del h, m_m
+    t24 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t25 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t26 = t24 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t25
+    del t24, t25
+    t27 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del in_line, t16, t5
+    unreachable = np.logical_not(t27 & (-(_runtime.FEASIBILITY * t22) <= t21))
+    del t21, t22, t27
+    t28 = _runtime.poison(np.logical_not(t26) | unreachable)
+    del t26, unreachable
+    t29 = -(A_13 * (t1 + A_13) * (t4 + A_13) / Delta) + t28
     del A_13
-    A_13_above = t17 + t21
-    del t17, t21
-    t28 = A_13_above * (t1 + A_13_above) * (t4 + A_13_above)
+    A_13_above = t18 + t23
+    del t18, t23
+    t30 = A_13_above * (t1 + A_13_above) * (t4 + A_13_above)
     del A_13_above, t1, t4
     return (
-        t27,
-        t28 / Delta + t26,
+        t29,
+        t30 / Delta + t28,
     )
 
 
 def _determinant_common(rho1, rho2, rho3, f, e, l):
     # Where nothing vanishes; last, whether something does.
-    t1 = rho1 - rho2
-    t2 = f - e - (e * 0.5 - f * 0.5)
-    t3 = rho1 - rho3
-    t4 = t2 * t3 - t2 * t1
+    t1 = f - e - (e * 0.5 - f * 0.5)
+    t2 = rho1 - rho3
+    t3 = rho1 - rho2
+    t4 = t1 * t2 - t1 * t3
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = c3_y * t3 + c3_y * t1
-    t6 = t2 * t2 + c3_y * c3_y
-    u_u = t1 * t1 + t6
-    over = 1.0 / u_u
-    t7 = (t2 * t4 + c3_y * t5) * over
-    t8 = u_u * (c3_y * (c3_y + c3_y) - t3 * (t1 - t3))
-    t9 = c3_y * t2
-    t10 = t9 + t9
-    del t9
-    t11 = (c3_y * t10 - t1 * t4) * over
-    del t4
-    n_y = (t2 * t10 + t1 * t5) * over
-    del over, t10, t5
-    nu = t11 * t11 + n_y * n_y + t7 * t7
-    t12 = u_u * nu
-    part = 1.0 / t12
-    t13 = t8 * part * 0.5
+    t5 = c3_y * t2 + c3_y * t3
+    t6 = c3_y * t1
+    t7 = t6 + t6
+    del t6
+    product_2 = t5 * t5 + t4 * t4 + t7 * t7
+    part = 1.0 / product_2
+    t8 = c3_y * (c3_y + c3_y) - t2 * (t3 - t2)
+    t9 = (t1 * t4 + c3_y * t5) * (part * t8 * 0.5) + t3 * 0.5
+    del t4, t5
+    t10 = t1 * t1 + c3_y * c3_y
+    del c3_y, t1
+    u_u = t3 * t3 + t10
+    t11 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
     del t8
-    t14 = t1 * 0.5 + t7 * t13
-    del t7
-    t15 = l * l - (nu * (t13 * t13) + u_u * 0.25)
-    del t13
-    slack = np.maximum(t15, 0.0)
+    slack = np.maximum(t11, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t16 = (t2 * n_y + c3_y * t11) * h
-    del c3_y, n_y, t11, t2
-    t17 = t14 - t16
-    Delta = t12 * h
-    del h, t12
-    t18 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t19 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t20 = t18 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t19
-    del t18, t19
+    t12 = t7 * h
+    del t7
+    t13 = t9 - t12
+    Delta = product_2 * h
+    del h
+    t14 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t16 = t14 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t15
+    del t14, t15
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t21 = size * size
-    t22 = 0.234375 * (l * size)
+    t17 = size * size
+    t18 = 0.234375 * (l * size)
     del size
-    t23 = (np.abs(0.0) <= t21 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t22) <= t15)
-    del t15
-    t24 = _runtime.poison(np.logical_not(t20) | np.logical_not(t23))
-    del t20, t23
-    t25 = t14 + t16
-    del t14, t16
-    t26 = -(t25 * (t1 - t25) * (t3 - t25) / Delta) + t24
-    del t25
-    t27 = _runtime.VANISHING * _runtime.VANISHING * t21
+    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t11)
+    del t11
+    t20 = _runtime.poison(np.logical_not(t16) | np.logical_not(t19))
+    del t16, t19
+    t21 = t9 + t12
+    del t12, t9
+    t22 = -(t21 * (t3 - t21) * (t2 - t21) / Delta) + t20
     del t21
-    t28 = (u_u <= t27) | (u_u + (t3 * t3 + t6) <= t27) | (nu <= t27)
-    del nu, t27, t6, u_u
+    v_v = t2 * t2 + t10
+    del t10
+    t23 = _runtime.VANISHING * _runtime.VANISHING
+    t24 = t17 * t23
+    t25 = u_u * v_v
+    slim = product_2 - t25 * 0.000244140625 <= _runtime.VANISHING * t25
+    del t25
+    t26 = (u_u + v_v <= t24) | (u_u <= t24) | slim | (product_2 <= t23 * (t17 * u_u))
+    del product_2, slim, t17, t23, t24, u_u, v_v
     return (
-        t17 * (t1 - t17) * (t3 - t17) / Delta + t24,
-        t26,
-        t28 | (slack <= _runtime.VANISHING * t22),
+        t13 * (t3 - t13) * (t2 - t13) / Delta + t20,
+        t22,
+        t26 | (slack <= _runtime.VANISHING * t18),
     )
 
 
@@ -1474,7 +1898,7 @@ _DETERMINANT = _runtime.Kernel(
     Parameters._fields,
     ('f', 'e', 'l'),
     common=_determinant_common,
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1522,147 +1946,153 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t5 = size * size
-    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
-    all_same = u_u + v_v <= t6
+    t6 = _runtime.VANISHING * _runtime.VANISHING
+    t7 = t5 * t6
+    all_same = u_u + v_v <= t7
     whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t6
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
     a_x = _runtime.select(all_same, whole, -t2)
-    t7 = _runtime.select(same, t1, t4)
-    t8 = _runtime.select(same, t4, t1)
-    m_y = a_x * t7 + t2 * t8
+    same = u_u <= t7
+    del t7
+    t8 = _runtime.select(same, t1, t4)
+    t9 = _runtime.select(same, t4, t1)
+    product_y = a_x * t8 + t2 * t9
     d_y = _runtime.select(same, c3_y, -c3_y)
-    t9 = _runtime.select(same, -c3_y, c3_y)
-    del c3_y, same
-    t10 = t7 * d_y - t8 * t9
-    t11 = over * (a_x * m_y + d_y * t10)
-    m_z = a_x * t9 + t2 * d_y
+    t10 = _runtime.select(same, -c3_y, c3_y)
+    del c3_y
+    t11 = t8 * d_y - t9 * t10
+    t12 = a_x * product_y + d_y * t11
+    product_z = a_x * t10 + t2 * d_y
     del t2
-    t12 = over * (d_y * m_z + t8 * m_y)
-    del m_y
-    n_y = over * (a_x * m_z - t8 * t10)
-    del m_z, over, t10
-    nu = t12 * t12 + n_y * n_y + t11 * t11
-    in_line = nu <= t6
+    product_2 = t11 * t11 + product_y * product_y + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t13 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
+    del t13
+    over = 1.0 / mu
+    t14 = d_y * product_z + t9 * product_y
+    del product_y
+    n_y = a_x * product_z - t9 * t11
+    del t11
+    m_m = _runtime.select(slim, over * (t14 * t14 + n_y * n_y + t12 * t12), product_2)
+    del product_2
+    in_line = m_m <= t6 * (t5 * mu)
     del t6
-    t13 = whole * t8
+    t15 = whole * t9
     g_2 = whole * (d_y + a_x * _runtime.sign(a_x * d_y))
     del whole
-    t14 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / t14)
-    del t13
-    t15 = t9 * (d_y - t9) - t7 * (t7 - t8)
-    del t7, t9
-    t16 = _runtime.select(in_line, 0.0, mu * part * t15 * 0.5)
-    t17 = t11 * t16 - t8 * 0.5
-    del t11, t8
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t12)
-    del a_x, d_y, g_2, n_y, t12
-    t18 = _runtime.select(all_same, 0.0, nu * (t16 * t16) + mu * 0.25)
-    del all_same, mu, nu, t16
-    t19 = l * l - t18
-    del t18
-    slack = np.maximum(t19, 0.0)
-    t20 = 0.234375 * (l * size)
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    del t15
+    part = 1.0 / w_w
+    del w_w
+    t16 = t10 * (d_y - t10) - t8 * (t8 - t9)
+    del t10, t8
+    t17 = _runtime.select(in_line, 0.0, part * t16 * 0.5)
+    t18 = t12 * t17 - t9 * 0.5
+    del t12, t17, t9
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t14
+    t19 = _runtime.select(in_line, 0.0, part * (t16 * t16))
+    t20 = _runtime.select(all_same, 0.0, mu * (1.0 + t19) * 0.25)
+    del all_same, mu, t19
+    t21 = l * l - t20
+    del t20
+    slack = np.maximum(t21, 0.0)
+    t22 = 0.234375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t22, 0.0, np.sqrt(part * slack))
     del part, slack
-    t21 = w_z * h
-    del w_z
-    A_13 = t17 - t21
-    t22 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t23 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t24 = t22 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t23
-    del t22, t23
-    t25 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del in_line, t15, t5
-    unreachable = np.logical_not(t25 & (-(_runtime.FEASIBILITY * t20) <= t19))
-    del t19, t20, t25
-    t26 = _runtime.poison(np.logical_not(t24) | unreachable)
-    del t24, unreachable
-    Delta = t14 * h
-    del h, t14
-    A_13_above = t17 + t21
-    del t17, t21
+    t23 = _runtime.select(in_line, -g_2, m_z) * h
+    del g_2, m_z
+    A_13 = t18 - t23
+    t24 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t25 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t26 = t24 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t25
+    del t24, t25
+    t27 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t5 * _runtime.FEASIBILITY
+    del in_line, t16, t5
+    unreachable = np.logical_not(t27 & (-(_runtime.FEASIBILITY * t22) <= t21))
+    del t21, t22, t27
+    t28 = _runtime.poison(np.logical_not(t26) | unreachable)
+    del t26, unreachable
+    Delta = m_m * h
+    del h, m_m
+    A_13_above = t18 + t23
+    del t18, t23
     return (
-        A_13 + t26,
-        t1 + A_13 + t26,
-        t4 + A_13 + t26,
-        -Delta + t26,
-        A_13_above + t26,
-        t1 + A_13_above + t26,
-        t4 + A_13_above + t26,
-        Delta + t26,
+        A_13 + t28,
+        t1 + A_13 + t28,
+        t4 + A_13 + t28,
+        -Delta + t28,
+        A_13_above + t28,
+        t1 + A_13_above + t28,
+        t4 + A_13_above + t28,
+        Delta + t28,
     )
 
 
 def _singularities_common(rho1, rho2, rho3, f, e, l):
     # Where nothing vanishes; last, whether something does.
-    t1 = rho1 - rho2
-    t2 = f - e - (e * 0.5 - f * 0.5)
-    t3 = rho1 - rho3
-    t4 = t2 * t3 - t2 * t1
+    t1 = f - e - (e * 0.5 - f * 0.5)
+    t2 = rho1 - rho3
+    t3 = rho1 - rho2
+    t4 = t1 * t2 - t1 * t3
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t5 = c3_y * t3 + c3_y * t1
-    t6 = t2 * t2 + c3_y * c3_y
-    u_u = t1 * t1 + t6
-    over = 1.0 / u_u
-    t7 = (t2 * t4 + c3_y * t5) * over
-    t8 = u_u * (c3_y * (c3_y + c3_y) - t3 * (t1 - t3))
-    t9 = c3_y * t2
-    t10 = t9 + t9
-    del t9
-    t11 = (c3_y * t10 - t1 * t4) * over
-    del t4
-    n_y = (t2 * t10 + t1 * t5) * over
-    del over, t10, t5
-    nu = t11 * t11 + n_y * n_y + t7 * t7
-    t12 = u_u * nu
-    part = 1.0 / t12
-    t13 = t8 * part * 0.5
+    t5 = c3_y * t2 + c3_y * t3
+    t6 = c3_y * t1
+    t7 = t6 + t6
+    del t6
+    product_2 = t5 * t5 + t4 * t4 + t7 * t7
+    part = 1.0 / product_2
+    t8 = c3_y * (c3_y + c3_y) - t2 * (t3 - t2)
+    t9 = (t1 * t4 + c3_y * t5) * (part * t8 * 0.5) + t3 * 0.5
+    del t4, t5
+    t10 = t1 * t1 + c3_y * c3_y
+    del c3_y, t1
+    u_u = t3 * t3 + t10
+    t11 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
     del t8
-    t14 = t1 * 0.5 + t7 * t13
-    del t7
-    t15 = l * l - (nu * (t13 * t13) + u_u * 0.25)
-    del t13
-    slack = np.maximum(t15, 0.0)
+    slack = np.maximum(t11, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t16 = (t2 * n_y + c3_y * t11) * h
-    del c3_y, n_y, t11, t2
-    t17 = t14 - t16
-    t18 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t19 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t20 = t18 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t19
-    del t18, t19
+    t12 = t7 * h
+    del t7
+    t13 = t9 - t12
+    t14 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t16 = t14 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t15
+    del t14, t15
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t21 = size * size
-    t22 = 0.234375 * (l * size)
+    t17 = size * size
+    t18 = 0.234375 * (l * size)
     del size
-    t23 = (np.abs(0.0) <= t21 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t22) <= t15)
-    del t15
-    t24 = _runtime.poison(np.logical_not(t20) | np.logical_not(t23))
-    del t20, t23
-    Delta = t12 * h
-    del h, t12
-    t25 = t14 + t16
-    del t14, t16
-    t26 = _runtime.VANISHING * _runtime.VANISHING * t21
-    del t21
-    t27 = (u_u <= t26) | (u_u + (t3 * t3 + t6) <= t26) | (nu <= t26)
-    del nu, t26, t6, u_u
+    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t11)
+    del t11
+    t20 = _runtime.poison(np.logical_not(t16) | np.logical_not(t19))
+    del t16, t19
+    Delta = product_2 * h
+    del h
+    t21 = t9 + t12
+    del t12, t9
+    v_v = t2 * t2 + t10
+    del t10
+    t22 = _runtime.VANISHING * _runtime.VANISHING
+    t23 = t17 * t22
+    t24 = u_u * v_v
+    slim = product_2 - t24 * 0.000244140625 <= _runtime.VANISHING * t24
+    del t24
+    t25 = (u_u + v_v <= t23) | (u_u <= t23) | slim | (product_2 <= t22 * (t17 * u_u))
+    del product_2, slim, t17, t22, t23, u_u, v_v
     return (
-        -t17 + t24,
-        t1 - t17 + t24,
-        t3 - t17 + t24,
-        -Delta + t24,
-        -t25 + t24,
-        t1 - t25 + t24,
-        t3 - t25 + t24,
-        Delta + t24,
-        t27 | (slack <= _runtime.VANISHING * t22),
+        -t13 + t20,
+        t3 - t13 + t20,
+        t2 - t13 + t20,
+        -Delta + t20,
+        -t21 + t20,
+        t3 - t21 + t20,
+        t2 - t21 + t20,
+        Delta + t20,
+        t25 | (slack <= _runtime.VANISHING * t18),
     )
 
 
@@ -1674,7 +2104,7 @@ _SINGULARITIES = _runtime.Kernel(
     Parameters._fields,
     ('f', 'e', 'l'),
     common=_singularities_common,
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1717,156 +2147,293 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
     t3 = t1 * t1 + c3_y * c3_y
     u_u = t2 * t2 + t3
-    t4 = rho1 - rho3
-    v_v = t4 * t4 + t3
-    del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t5 = size * size
-    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
-    all_same = u_u + v_v <= t6
-    whole = _runtime.select(size == 0.0, 1.0, size)
+    t4 = size * size
+    t5 = _runtime.VANISHING * _runtime.VANISHING
+    t6 = t4 * t5
     same = u_u <= t6
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
     d_y = _runtime.select(same, c3_y, -c3_y)
-    a_x = _runtime.select(all_same, whole, -t1)
-    t7 = _runtime.select(same, -c3_y, c3_y)
-    m_z = a_x * t7 + t1 * d_y
-    t8 = _runtime.select(same, t4, t2)
-    t9 = _runtime.select(same, t2, t4)
-    del same
-    m_y = a_x * t9 + t1 * t8
-    t10 = over * (d_y * m_z + t8 * m_y)
-    t11 = d_y * t9 - t7 * t8
-    n_y = over * (a_x * m_z - t8 * t11)
-    del m_z
-    t12 = over * (a_x * m_y + d_y * t11)
-    del m_y, over, t11
-    nu = t10 * t10 + n_y * n_y + t12 * t12
-    in_line = nu <= t6
+    t7 = rho1 - rho3
+    v_v = t7 * t7 + t3
+    del t3
+    all_same = u_u + v_v <= t6
     del t6
-    t13 = whole * t8
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    a_x = _runtime.select(all_same, whole, -t1)
+    t8 = _runtime.select(same, -c3_y, c3_y)
+    product_z = a_x * t8 + t1 * d_y
+    t9 = _runtime.select(same, t7, t2)
+    t10 = _runtime.select(same, t2, t7)
+    product_y = a_x * t10 + t1 * t9
+    t11 = d_y * product_z + t9 * product_y
+    t12 = d_y * t10 - t8 * t9
+    product_2 = t12 * t12 + product_y * product_y + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t13 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
+    del t13
+    over = 1.0 / mu
+    n_y = a_x * product_z - t9 * t12
+    t14 = a_x * product_y + d_y * t12
+    m_m = _runtime.select(slim, over * (t11 * t11 + n_y * n_y + t14 * t14), product_2)
+    del product_2
+    in_line = m_m <= t5 * (t4 * mu)
+    del t5
+    t15 = whole * t9
     s_w = _runtime.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     del whole
-    t14 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / t14)
-    t15 = t7 * (d_y - t7) + t9 * (t8 - t9)
-    del t7, t9
-    t16 = _runtime.select(in_line, 0.0, mu * part * t15 * 0.5)
-    t17 = t1 * 0.5 - t10 * t16
-    t18 = _runtime.select(in_line, t13 * s_w, d_y * t12 - t8 * n_y)
-    del s_w
-    t19 = _runtime.select(all_same, 0.0, nu * (t16 * t16) + mu * 0.25)
-    del all_same, mu, nu
-    t20 = l * l - t19
-    del t19
-    slack = np.maximum(t20, 0.0)
-    t21 = 0.234375 * (l * size)
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    part = 1.0 / w_w
+    del w_w
+    t16 = t8 * (d_y - t8) + t10 * (t9 - t10)
+    del t10, t8
+    t17 = _runtime.select(in_line, 0.0, part * t16 * 0.5)
+    t18 = t1 * 0.5 - t11 * t17
+    t19 = _runtime.select(slim, over * (d_y * t14 - t9 * n_y), t12)
+    del t12
+    t20 = _runtime.select(in_line, 0.0, part * (t16 * t16))
+    t21 = _runtime.select(all_same, 0.0, mu * (1.0 + t20) * 0.25)
+    del all_same, mu, t20
+    t22 = l * l - t21
+    del t21
+    slack = np.maximum(t22, 0.0)
+    t23 = 0.234375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t21, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t23, 0.0, np.sqrt(part * slack))
     del part, slack
-    t22 = t18 * h
-    del t18
-    t23 = t17 - t22
-    t24 = n_y * t16 - d_y * 0.5
-    w_y = _runtime.select(in_line, -t13, a_x * t12 + t8 * t10)
-    del t13
-    t25 = h * w_y
-    del w_y
-    t26 = t24 + t25
-    t27 = t12 * t16 - t8 * 0.5
-    del t12, t16, t8
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t10)
-    del a_x, d_y, g_2, n_y, t10
-    t28 = h * w_z
-    del w_z
-    A_13 = t27 - t28
-    A_21 = t1 - t23
-    t29 = A_21 * A_21
-    A_22 = c3_y - t26
+    t24 = _runtime.select(in_line, t15 * s_w, t19) * h
+    del s_w, t19
+    t25 = t18 - t24
+    t26 = n_y * t17 - d_y * 0.5
+    m_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), product_y)
+    del product_y
+    t27 = h * _runtime.select(in_line, -t15, m_y)
+    del m_y, t15
+    t28 = t26 + t27
+    t29 = t14 * t17 - t9 * 0.5
+    del t14, t17, t9
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t11
+    t30 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, m_z
+    A_13 = t29 - t30
+    A_21 = t1 - t25
+    t31 = A_21 * A_21
+    A_22 = c3_y - t28
     A_23 = t2 + A_13
-    t30 = t23 * t23 + t26 * t26 + A_13 * A_13 + (t29 + A_22 * A_22 + A_23 * A_23)
-    t31 = c3_y + t26
-    A_33 = t4 + A_13
-    t32 = t26 * A_21
-    t33 = t23 * A_22 - t32
-    t34 = A_13 * A_21
-    t35 = t23 * A_23 + t34
-    t36 = t32 + t23 * t31
-    del t32
-    t37 = t34 + t23 * A_33
-    del t23, t34
-    t38 = t33 * t33 + t35 * t35 + t36 * t36 + t37 * t37
-    del t33, t35, t36, t37
-    t39 = t26 * A_23 + A_13 * A_22
-    t40 = t26 * A_33 - A_13 * t31
-    del A_13, t26
-    t41 = A_21 * t31 + A_21 * A_22
-    t42 = A_21 * A_33 - A_21 * A_23
+    t32 = t25 * t25 + t28 * t28 + A_13 * A_13 + (t31 + A_22 * A_22 + A_23 * A_23)
+    t33 = c3_y + t28
+    A_33 = t7 + A_13
+    t34 = t28 * A_21
+    t35 = t25 * A_22 - t34
+    t36 = A_13 * A_21
+    t37 = t25 * A_23 + t36
+    t38 = t34 + t25 * t33
+    del t34
+    t39 = t36 + t25 * A_33
+    del t25, t36
+    t40 = t35 * t35 + t37 * t37 + t38 * t38 + t39 * t39
+    del t35, t37, t38, t39
+    t41 = t28 * A_23 + A_13 * A_22
+    t42 = t28 * A_33 - A_13 * t33
+    del A_13, t28
+    t43 = A_21 * t33 + A_21 * A_22
+    t44 = A_21 * A_33 - A_21 * A_23
     del A_21
-    t43 = t38 + t39 * t39 + t40 * t40 + t41 * t41 + t42 * t42
-    del t38, t39, t40, t41, t42
-    t44 = A_22 * A_33 + A_23 * t31
+    t45 = t40 + t41 * t41 + t42 * t42 + t43 * t43 + t44 * t44
+    del t40, t41, t42, t43, t44
+    t46 = A_22 * A_33 + A_23 * t33
     del A_22, A_23
-    t45 = (t30 + (t29 + t31 * t31 + A_33 * A_33)) * (t43 + t44 * t44)
-    del A_33, t29, t30, t31, t43, t44
-    t46 = 3.0 * (t14 * h)
-    del h, t14
-    t47 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t48 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t49 = t47 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t48
-    del t47, t48
-    t50 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del in_line, t15, t5
-    unreachable = np.logical_not(t50 & (-(_runtime.FEASIBILITY * t21) <= t20))
-    del t20, t21, t50
-    t51 = _runtime.poison(np.logical_not(t49) | unreachable)
-    del t49, unreachable
-    t52 = t17 + t22
-    del t17, t22
-    t53 = t24 - t25
-    del t24, t25
-    A_13_above = t27 + t28
-    del t27, t28
-    square1_above = t52 * t52 + t53 * t53 + A_13_above * A_13_above
-    A_21_above = t1 - t52
+    t47 = (t32 + (t31 + t33 * t33 + A_33 * A_33)) * (t45 + t46 * t46)
+    del A_33, t31, t32, t33, t45, t46
+    t48 = 3.0 * (m_m * h)
+    del h, m_m
+    t49 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t50 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t51 = t49 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t50
+    del t49, t50
+    t52 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t4 * _runtime.FEASIBILITY
+    del in_line, t16, t4
+    unreachable = np.logical_not(t52 & (-(_runtime.FEASIBILITY * t23) <= t22))
+    del t22, t23, t52
+    t53 = _runtime.poison(np.logical_not(t51) | unreachable)
+    del t51, unreachable
+    t54 = t18 + t24
+    del t18, t24
+    t55 = t26 - t27
+    del t26, t27
+    A_13_above = t29 + t30
+    del t29, t30
+    square1_above = t54 * t54 + t55 * t55 + A_13_above * A_13_above
+    A_21_above = t1 - t54
     del t1
-    t54 = A_21_above * A_21_above
-    A_22_above = c3_y - t53
+    t56 = A_21_above * A_21_above
+    A_22_above = c3_y - t55
     A_23_above = t2 + A_13_above
     del t2
-    square2_above = t54 + A_22_above * A_22_above + A_23_above * A_23_above
-    t55 = c3_y + t53
+    square2_above = t56 + A_22_above * A_22_above + A_23_above * A_23_above
+    t57 = c3_y + t55
     del c3_y
-    A_33_above = t4 + A_13_above
-    del t4
-    t56 = square1_above + square2_above + (t54 + t55 * t55 + A_33_above * A_33_above)
-    del square1_above, square2_above, t54
-    t57 = t53 * A_21_above
-    t58 = t52 * A_22_above - t57
-    t59 = A_13_above * A_21_above
-    t60 = t52 * A_23_above + t59
-    t61 = t57 + t52 * t55
-    del t57
-    t62 = t59 + t52 * A_33_above
-    del t52, t59
-    t63 = t58 * t58 + t60 * t60 + t61 * t61 + t62 * t62
-    del t58, t60, t61, t62
-    t64 = t53 * A_23_above + A_13_above * A_22_above
-    t65 = t53 * A_33_above - A_13_above * t55
-    del A_13_above, t53
-    t66 = A_21_above * t55 + A_21_above * A_22_above
-    t67 = A_21_above * A_33_above - A_21_above * A_23_above
+    A_33_above = t7 + A_13_above
+    del t7
+    t58 = square1_above + square2_above + (t56 + t57 * t57 + A_33_above * A_33_above)
+    del square1_above, square2_above, t56
+    t59 = t55 * A_21_above
+    t60 = t54 * A_22_above - t59
+    t61 = A_13_above * A_21_above
+    t62 = t54 * A_23_above + t61
+    t63 = t59 + t54 * t57
+    del t59
+    t64 = t61 + t54 * A_33_above
+    del t54, t61
+    t65 = t60 * t60 + t62 * t62 + t63 * t63 + t64 * t64
+    del t60, t62, t63, t64
+    t66 = t55 * A_23_above + A_13_above * A_22_above
+    t67 = t55 * A_33_above - A_13_above * t57
+    del A_13_above, t55
+    t68 = A_21_above * t57 + A_21_above * A_22_above
+    t69 = A_21_above * A_33_above - A_21_above * A_23_above
     del A_21_above
-    t68 = t63 + t64 * t64 + t65 * t65 + t66 * t66 + t67 * t67
-    del t63, t64, t65, t66, t67
-    t69 = A_22_above * A_33_above + A_23_above * t55
-    del A_22_above, A_23_above, A_33_above, t55
+    t70 = t65 + t66 * t66 + t67 * t67 + t68 * t68 + t69 * t69
+    del t65, t66, t67, t68, t69
+    t71 = A_22_above * A_33_above + A_23_above * t57
+    del A_22_above, A_23_above, A_33_above, t57
     return (
-        np.sqrt(t45) / t46 + t51,
-        np.sqrt(t56 * (t68 + t69 * t69)) / t46 + t51,
+        np.sqrt(t47) / t48 + t53,
+        np.sqrt(t58 * (t70 + t71 * t71)) / t48 + t53,
+    )
+
+
+def _condition_number_common(rho1, rho2, rho3, f, e, l):
+    # Where nothing vanishes; last, whether something does.
+    t1 = f - e - (e * 0.5 - f * 0.5)
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t2 = c3_y * t1
+    t3 = t2 + t2
+    del t2
+    t4 = rho1 - rho2
+    t5 = rho1 - rho3
+    t6 = t1 * t5 - t1 * t4
+    t7 = c3_y * t5 + c3_y * t4
+    product_2 = t7 * t7 + t6 * t6 + t3 * t3
+    part = 1.0 / product_2
+    t8 = c3_y * (c3_y + c3_y) - t5 * (t4 - t5)
+    t9 = part * t8 * 0.5
+    t10 = t1 * 0.5 + (c3_y * t3 - t4 * t6) * t9
+    t11 = t1 * t1 + c3_y * c3_y
+    u_u = t4 * t4 + t11
+    t12 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
+    del t8
+    slack = np.maximum(t12, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t13 = t7 * h
+    t14 = t10 + t13
+    t15 = t9 * (t1 * t3 + t4 * t7) - c3_y * 0.5
+    t16 = t6 * h
+    A_12 = t15 + t16
+    t17 = t9 * (t1 * t6 + c3_y * t7) + t4 * 0.5
+    del t6, t7, t9
+    t18 = t3 * h
+    del t3
+    t19 = t17 - t18
+    A_21 = t1 - t14
+    t20 = A_21 * A_21
+    A_22 = c3_y + A_12
+    A_23 = t4 - t19
+    t21 = t14 * t14 + A_12 * A_12 + t19 * t19 + (t20 + A_22 * A_22 + A_23 * A_23)
+    t22 = c3_y - A_12
+    A_33 = t5 - t19
+    t23 = A_12 * A_21
+    t24 = t14 * A_22 + t23
+    t25 = t19 * A_21
+    t26 = t14 * A_23 - t25
+    t27 = t23 - t14 * t22
+    del t23
+    t28 = t25 - t14 * A_33
+    del t14, t25
+    t29 = t24 * t24 + t26 * t26 + t27 * t27 + t28 * t28
+    del t24, t26, t27, t28
+    t30 = A_12 * A_23 + t19 * A_22
+    t31 = A_12 * A_33 - t19 * t22
+    del A_12, t19
+    t32 = A_21 * t22 + A_21 * A_22
+    t33 = A_21 * A_33 - A_21 * A_23
+    del A_21
+    t34 = t29 + t30 * t30 + t31 * t31 + t32 * t32 + t33 * t33
+    del t29, t30, t31, t32, t33
+    t35 = A_22 * A_33 + A_23 * t22
+    del A_22, A_23
+    t36 = (t21 + (t20 + t22 * t22 + A_33 * A_33)) * (t34 + t35 * t35)
+    del A_33, t20, t21, t22, t34, t35
+    t37 = 3.0 * (product_2 * h)
+    del h
+    t38 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t39 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t40 = t38 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t39
+    del t38, t39
+    size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t41 = size * size
+    t42 = 0.234375 * (l * size)
+    del size
+    t43 = (np.abs(0.0) <= t41 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t42) <= t12)
+    del t12
+    t44 = _runtime.poison(np.logical_not(t40) | np.logical_not(t43))
+    del t40, t43
+    t45 = t10 - t13
+    del t10, t13
+    A_12_above = t15 - t16
+    del t15, t16
+    t46 = t17 + t18
+    del t17, t18
+    square1_above = t45 * t45 + A_12_above * A_12_above + t46 * t46
+    A_21_above = t1 - t45
+    del t1
+    t47 = A_21_above * A_21_above
+    A_22_above = c3_y + A_12_above
+    A_23_above = t4 - t46
+    del t4
+    square2_above = t47 + A_22_above * A_22_above + A_23_above * A_23_above
+    t48 = c3_y - A_12_above
+    del c3_y
+    A_33_above = t5 - t46
+    t49 = square1_above + square2_above + (t47 + t48 * t48 + A_33_above * A_33_above)
+    del square1_above, square2_above, t47
+    t50 = A_12_above * A_21_above
+    t51 = t45 * A_22_above + t50
+    t52 = t46 * A_21_above
+    t53 = t45 * A_23_above - t52
+    t54 = t50 - t45 * t48
+    del t50
+    t55 = t52 - t45 * A_33_above
+    del t45, t52
+    t56 = t51 * t51 + t53 * t53 + t54 * t54 + t55 * t55
+    del t51, t53, t54, t55
+    t57 = A_12_above * A_23_above + t46 * A_22_above
+    t58 = A_12_above * A_33_above - t46 * t48
+    del A_12_above, t46
+    t59 = A_21_above * t48 + A_21_above * A_22_above
+    t60 = A_21_above * A_33_above - A_21_above * A_23_above
+    del A_21_above
+    t61 = t56 + t57 * t57 + t58 * t58 + t59 * t59 + t60 * t60
+    del t56, t57, t58, t59, t60
+    t62 = A_22_above * A_33_above + A_23_above * t48
+    del A_22_above, A_23_above, A_33_above, t48
+    t63 = _runtime.VANISHING * _runtime.VANISHING
+    t64 = t41 * t63
+    v_v = t5 * t5 + t11
+    del t11, t5
+    t65 = u_u * v_v
+    slim = product_2 - t65 * 0.000244140625 <= _runtime.VANISHING * t65
+    del t65
+    t66 = (u_u <= t64) | (u_u + v_v <= t64) | slim | (product_2 <= t63 * (t41 * u_u))
+    del product_2, slim, t41, t63, t64, u_u, v_v
+    return (
+        np.sqrt(t36) / t37 + t44,
+        np.sqrt(t49 * (t61 + t62 * t62)) / t37 + t44,
+        t66 | (slack <= _runtime.VANISHING * t42),
     )
 
 
@@ -1877,6 +2444,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Array("kappa", (2,)),),
     Parameters._fields,
     ('f', 'e', 'l'),
+    common=_condition_number_common,
     size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
@@ -1921,112 +2489,208 @@ def _constraint(rho1, rho2, rho3, f, e, l):
     c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
     t3 = t1 * t1 + c3_y * c3_y
     u_u = t2 * t2 + t3
-    t4 = rho1 - rho3
-    v_v = t4 * t4 + t3
-    del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t5 = size * size
-    t6 = _runtime.VANISHING * _runtime.VANISHING * t5
-    all_same = u_u + v_v <= t6
-    whole = _runtime.select(size == 0.0, 1.0, size)
+    t4 = size * size
+    t5 = _runtime.VANISHING * _runtime.VANISHING
+    t6 = t4 * t5
     same = u_u <= t6
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
     d_y = _runtime.select(same, c3_y, -c3_y)
-    a_x = _runtime.select(all_same, whole, -t1)
-    t7 = _runtime.select(same, -c3_y, c3_y)
-    m_z = a_x * t7 + t1 * d_y
-    t8 = _runtime.select(same, t4, t2)
-    t9 = _runtime.select(same, t2, t4)
-    del same
-    m_y = a_x * t9 + t1 * t8
-    t10 = over * (d_y * m_z + t8 * m_y)
-    t11 = d_y * t9 - t7 * t8
-    n_y = over * (a_x * m_z - t8 * t11)
-    del m_z
-    t12 = over * (a_x * m_y + d_y * t11)
-    del m_y, over, t11
-    nu = t10 * t10 + n_y * n_y + t12 * t12
-    in_line = nu <= t6
+    t7 = rho1 - rho3
+    v_v = t7 * t7 + t3
+    del t3
+    all_same = u_u + v_v <= t6
     del t6
-    t13 = whole * t8
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    a_x = _runtime.select(all_same, whole, -t1)
+    t8 = _runtime.select(same, -c3_y, c3_y)
+    product_z = a_x * t8 + t1 * d_y
+    t9 = _runtime.select(same, t7, t2)
+    t10 = _runtime.select(same, t2, t7)
+    product_y = a_x * t10 + t1 * t9
+    t11 = d_y * product_z + t9 * product_y
+    t12 = d_y * t10 - t8 * t9
+    product_2 = t12 * t12 + product_y * product_y + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t13 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t13 * 0.000244140625 <= _runtime.VANISHING * t13
+    del t13
+    over = 1.0 / mu
+    n_y = a_x * product_z - t9 * t12
+    t14 = a_x * product_y + d_y * t12
+    m_m = _runtime.select(slim, over * (t11 * t11 + n_y * n_y + t14 * t14), product_2)
+    del product_2
+    in_line = m_m <= t5 * (t4 * mu)
+    del t5
+    t15 = whole * t9
     s_w = _runtime.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     del whole
-    part = _runtime.select(in_line, 1.0 / (2.0 * (t13 * t13) + g_2 * g_2), 1.0 / (mu * nu))
-    t14 = t7 * (d_y - t7) + t9 * (t8 - t9)
-    del t7, t9
-    t15 = _runtime.select(in_line, 0.0, mu * part * t14 * 0.5)
-    t16 = t1 * 0.5 - t10 * t15
-    t17 = _runtime.select(in_line, t13 * s_w, d_y * t12 - t8 * n_y)
-    del s_w
-    t18 = _runtime.select(all_same, 0.0, nu * (t15 * t15) + mu * 0.25)
-    del all_same, mu, nu
-    t19 = l * l - t18
-    del t18
-    slack = np.maximum(t19, 0.0)
-    t20 = 0.234375 * (l * size)
+    w_w = _runtime.select(in_line, 2.0 * (t15 * t15) + g_2 * g_2, m_m)
+    del m_m
+    part = 1.0 / w_w
+    del w_w
+    t16 = t8 * (d_y - t8) + t10 * (t9 - t10)
+    del t10, t8
+    t17 = _runtime.select(in_line, 0.0, part * t16 * 0.5)
+    t18 = t1 * 0.5 - t11 * t17
+    t19 = _runtime.select(slim, over * (d_y * t14 - t9 * n_y), t12)
+    del t12
+    t20 = _runtime.select(in_line, 0.0, part * (t16 * t16))
+    t21 = _runtime.select(all_same, 0.0, mu * (1.0 + t20) * 0.25)
+    del all_same, mu, t20
+    t22 = l * l - t21
+    del t21
+    slack = np.maximum(t22, 0.0)
+    t23 = 0.234375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t20, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t23, 0.0, np.sqrt(part * slack))
     del part, slack
-    t21 = t17 * h
-    del t17
-    t22 = t16 - t21
-    t23 = t12 * t15 - t8 * 0.5
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t10)
-    del g_2
-    t24 = h * w_z
-    del w_z
-    A_13 = t23 - t24
+    t24 = _runtime.select(in_line, t15 * s_w, t19) * h
+    del s_w, t19
+    t25 = t18 - t24
+    t26 = t14 * t17 - t9 * 0.5
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), product_z)
+    del product_z
+    t27 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, m_z
+    A_13 = t26 - t27
     A_23 = t2 + A_13
-    A_33 = t4 + A_13
-    t25 = (t1 - t22) * (1.7320508075688772 * A_13)
-    t26 = 1.7320508075688772 * t22 * A_23 * A_33 * 0.5 + A_33 * t25 * 0.25
-    del t22
-    t27 = n_y * t15 - d_y * 0.5
-    del d_y, n_y, t15
-    w_y = _runtime.select(in_line, -t13, a_x * t12 + t8 * t10)
-    del a_x, t10, t12, t13, t8
-    t28 = h * w_y
-    del h, w_y
-    t29 = t27 + t28
+    A_33 = t7 + A_13
+    t28 = (t1 - t25) * (1.7320508075688772 * A_13)
+    t29 = 1.7320508075688772 * t25 * A_23 * A_33 * 0.5 + A_33 * t28 * 0.25
+    del t25
     t30 = 0.75 * A_13
     del A_13
-    t31 = t26 - A_33 * (c3_y - t29) * t30 + A_23 * t25 * 0.25
-    del A_33, t25, t26
-    t32 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t33 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t34 = t32 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t33
-    del t32, t33
-    t35 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= t5 * _runtime.FEASIBILITY
-    del in_line, t14, t5
-    unreachable = np.logical_not(t35 & (-(_runtime.FEASIBILITY * t20) <= t19))
-    del t19, t20, t35
-    t36 = _runtime.poison(np.logical_not(t34) | unreachable)
-    del t34, unreachable
-    t37 = t16 + t21
-    del t16, t21
-    A_13_above = t23 + t24
-    del t23, t24
+    t31 = n_y * t17 - d_y * 0.5
+    del d_y, n_y, t17
+    m_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), product_y)
+    del a_x, over, product_y, slim, t11, t14, t9
+    t32 = h * _runtime.select(in_line, -t15, m_y)
+    del h, m_y, t15
+    t33 = t31 + t32
+    t34 = t29 - A_33 * t30 * (c3_y - t33) + A_23 * t28 * 0.25
+    del A_33, t28, t29
+    t35 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t36 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t37 = t35 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t36
+    del t35, t36
+    t38 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t4 * _runtime.FEASIBILITY
+    del in_line, t16, t4
+    unreachable = np.logical_not(t38 & (-(_runtime.FEASIBILITY * t23) <= t22))
+    del t22, t23, t38
+    t39 = _runtime.poison(np.logical_not(t37) | unreachable)
+    del t37, unreachable
+    t40 = t18 + t24
+    del t18, t24
+    A_13_above = t26 + t27
+    del t26, t27
     A_23_above = t2 + A_13_above
     del t2
-    A_33_above = t4 + A_13_above
-    del t4
-    t38 = 1.7320508075688772 * t37 * A_23_above * A_33_above
-    t39 = (t1 - t37) * (1.7320508075688772 * A_13_above)
-    del t1, t37
-    t40 = t27 - t28
-    del t27, t28
-    t41 = 0.75 * A_13_above
+    A_33_above = t7 + A_13_above
+    del t7
+    t41 = 1.7320508075688772 * t40 * A_23_above * A_33_above
+    t42 = (t1 - t40) * (1.7320508075688772 * A_13_above)
+    del t1, t40
+    t43 = 0.75 * A_13_above
     del A_13_above
-    t42 = t38 * 0.5 + A_33_above * t39 * 0.25 - A_33_above * (c3_y - t40) * t41
-    del A_33_above, t38
-    t43 = t42 + A_23_above * t39 * 0.25 - A_23_above * t41 * (c3_y + t40)
-    del A_23_above, t39, t40, t41, t42
+    t44 = t31 - t32
+    del t31, t32
+    t45 = t41 * 0.5 + A_33_above * t42 * 0.25 - A_33_above * t43 * (c3_y - t44)
+    del A_33_above, t41
+    t46 = t45 + A_23_above * t42 * 0.25 - A_23_above * t43 * (c3_y + t44)
+    del A_23_above, t42, t43, t44, t45
     return (
-        t31 - A_23 * t30 * (c3_y + t29) + t36,
-        t43 + t36,
+        t34 - A_23 * t30 * (c3_y + t33) + t39,
+        t46 + t39,
+    )
+
+
+def _constraint_common(rho1, rho2, rho3, f, e, l):
+    # Where nothing vanishes; last, whether something does.
+    t1 = f - e - (e * 0.5 - f * 0.5)
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t2 = c3_y * t1
+    t3 = t2 + t2
+    del t2
+    t4 = rho1 - rho2
+    t5 = rho1 - rho3
+    t6 = t1 * t5 - t1 * t4
+    t7 = c3_y * t5 + c3_y * t4
+    product_2 = t7 * t7 + t6 * t6 + t3 * t3
+    part = 1.0 / product_2
+    t8 = c3_y * (c3_y + c3_y) - t5 * (t4 - t5)
+    t9 = part * t8 * 0.5
+    t10 = t1 * 0.5 + (c3_y * t3 - t4 * t6) * t9
+    t11 = t1 * t1 + c3_y * c3_y
+    u_u = t4 * t4 + t11
+    t12 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
+    del t8
+    slack = np.maximum(t12, 0.0)
+    h = np.sqrt(part * slack)
+    del part
+    t13 = t7 * h
+    t14 = t10 + t13
+    t15 = t9 * (t1 * t6 + c3_y * t7) + t4 * 0.5
+    t16 = t3 * h
+    t17 = t15 - t16
+    A_23 = t4 - t17
+    A_33 = t5 - t17
+    t18 = (t1 - t14) * (1.7320508075688772 * t17)
+    t19 = 1.7320508075688772 * t14 * A_23 * A_33 * 0.5 - A_33 * t18 * 0.25
+    del t14
+    t20 = t9 * (t1 * t3 + t4 * t7) - c3_y * 0.5
+    del t3, t7, t9
+    t21 = t6 * h
+    del h, t6
+    A_12 = t20 + t21
+    t22 = 0.75 * t17
+    del t17
+    t23 = t19 + A_33 * (c3_y + A_12) * t22 - A_23 * t18 * 0.25
+    del A_33, t18, t19
+    t24 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t25 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t26 = t24 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t25
+    del t24, t25
+    size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t27 = size * size
+    t28 = 0.234375 * (l * size)
+    del size
+    t29 = (np.abs(0.0) <= t27 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t28) <= t12)
+    del t12
+    t30 = _runtime.poison(np.logical_not(t26) | np.logical_not(t29))
+    del t26, t29
+    t31 = t10 - t13
+    del t10, t13
+    t32 = t15 + t16
+    del t15, t16
+    A_23_above = t4 - t32
+    del t4
+    A_33_above = t5 - t32
+    t33 = 1.7320508075688772 * t31 * A_23_above * A_33_above
+    t34 = (t1 - t31) * (1.7320508075688772 * t32)
+    del t1, t31
+    A_12_above = t20 - t21
+    del t20, t21
+    t35 = 0.75 * t32
+    del t32
+    t36 = t33 * 0.5 - A_33_above * t34 * 0.25 + A_33_above * (c3_y + A_12_above) * t35
+    del A_33_above, t33
+    t37 = t36 - A_23_above * t34 * 0.25 + A_23_above * t35 * (c3_y - A_12_above)
+    del A_12_above, A_23_above, t34, t35, t36
+    t38 = _runtime.VANISHING * _runtime.VANISHING
+    t39 = t27 * t38
+    v_v = t5 * t5 + t11
+    del t11, t5
+    t40 = u_u * v_v
+    slim = product_2 - t40 * 0.000244140625 <= _runtime.VANISHING * t40
+    del t40
+    t41 = (u_u <= t39) | (u_u + v_v <= t39) | slim | (product_2 <= t38 * (t27 * u_u))
+    del product_2, slim, t27, t38, t39, u_u, v_v
+    return (
+        t23 + A_23 * t22 * (c3_y - A_12) + t30,
+        t37 + t30,
+        t41 | (slack <= _runtime.VANISHING * t28),
     )
 
 
@@ -2037,7 +2701,8 @@ _CONSTRAINT = _runtime.Kernel(
     (_runtime.Array("factors", (2, 1)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 3), (1, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    common=_constraint_common,
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 3), (1, 3)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 

@@ -2,29 +2,29 @@
 # derivations/orthoglide.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 40 compare and select, 40 add, 8 divide, 58 multiply, 1 sqrt
-#   fk where nothing vanishes: 24 compare and select, 27 add, 6 divide, 40 multiply, 1 sqrt
-#   skeleton: 39 compare and select, 71 add, 9 divide, 58 multiply, 1 sqrt
-#   skeleton where nothing vanishes: 23 compare and select, 58 add, 7 divide, 40 multiply, 1 sqrt
-#   jacobian_parallel: 39 compare and select, 51 add, 8 divide, 58 multiply, 1 sqrt
-#   jacobian_parallel where nothing vanishes: 23 compare and select, 38 add, 6 divide, 40
+#   fk: 47 compare and select, 43 add, 8 divide, 65 multiply, 1 sqrt
+#   fk where nothing vanishes: 26 compare and select, 27 add, 6 divide, 36 multiply, 1 sqrt
+#   skeleton: 46 compare and select, 74 add, 9 divide, 65 multiply, 1 sqrt
+#   skeleton where nothing vanishes: 25 compare and select, 58 add, 7 divide, 36 multiply, 1 sqrt
+#   jacobian_parallel: 46 compare and select, 54 add, 8 divide, 65 multiply, 1 sqrt
+#   jacobian_parallel where nothing vanishes: 25 compare and select, 38 add, 6 divide, 36
 #     multiply, 1 sqrt
-#   jacobian_serial: 39 compare and select, 43 add, 8 divide, 58 multiply, 1 sqrt
-#   jacobian_serial where nothing vanishes: 23 compare and select, 30 add, 6 divide, 40 multiply,
+#   jacobian_serial: 46 compare and select, 46 add, 8 divide, 65 multiply, 1 sqrt
+#   jacobian_serial where nothing vanishes: 25 compare and select, 30 add, 6 divide, 36 multiply,
 #     1 sqrt
-#   jacobian: 39 compare and select, 75 add, 26 divide, 101 multiply, 1 sqrt
-#   jacobian where nothing vanishes: 23 compare and select, 62 add, 24 divide, 83 multiply, 1 sqrt
-#   determinant: 39 compare and select, 39 add, 10 divide, 63 multiply, 1 sqrt
-#   determinant where nothing vanishes: 23 compare and select, 26 add, 8 divide, 45 multiply, 1
+#   jacobian: 46 compare and select, 78 add, 26 divide, 108 multiply, 1 sqrt
+#   jacobian where nothing vanishes: 25 compare and select, 62 add, 24 divide, 79 multiply, 1 sqrt
+#   determinant: 46 compare and select, 42 add, 10 divide, 70 multiply, 1 sqrt
+#   determinant where nothing vanishes: 25 compare and select, 26 add, 8 divide, 41 multiply, 1
 #     sqrt
-#   singularities: 39 compare and select, 45 add, 8 divide, 59 multiply, 1 sqrt
-#   singularities where nothing vanishes: 23 compare and select, 32 add, 6 divide, 41 multiply, 1
+#   singularities: 46 compare and select, 48 add, 8 divide, 66 multiply, 1 sqrt
+#   singularities where nothing vanishes: 25 compare and select, 32 add, 6 divide, 37 multiply, 1
 #     sqrt
-#   condition_number: 39 compare and select, 91 add, 10 divide, 116 multiply, 3 sqrt
-#   condition_number where nothing vanishes: 23 compare and select, 78 add, 8 divide, 98 multiply,
+#   condition_number: 46 compare and select, 94 add, 10 divide, 123 multiply, 3 sqrt
+#   condition_number where nothing vanishes: 25 compare and select, 78 add, 8 divide, 94 multiply,
 #     3 sqrt
-#   constraint: 39 compare and select, 43 add, 8 divide, 66 multiply, 1 sqrt
-#   constraint where nothing vanishes: 23 compare and select, 30 add, 6 divide, 48 multiply, 1
+#   constraint: 46 compare and select, 46 add, 8 divide, 73 multiply, 1 sqrt
+#   constraint where nothing vanishes: 25 compare and select, 30 add, 6 divide, 44 multiply, 1
 #     sqrt
 #   ik: 56 compare and select, 45 add, 1 divide, 44 multiply, 6 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
@@ -142,142 +142,154 @@ _DEFAULT = Parameters()
 def _fk(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
-    v_v = t1 + rho3 * rho3
-    del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t2 = size * size
-    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
-    all_same = u_u + v_v <= t3
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t3
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
+    t3 = _runtime.VANISHING * _runtime.VANISHING
+    t4 = t2 * t3
+    same = u_u <= t4
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, whole, -rho1)
-    t4 = _runtime.select(same, rho2, 0.0)
-    m_z = a_x * t4 + rho1 * d_y
-    d_z = _runtime.select(same, rho3, 0.0)
     t5 = _runtime.select(same, 0.0, rho3)
-    del same
-    t6 = a_x * t5 + rho1 * d_z
-    t7 = over * (d_y * m_z + d_z * t6)
-    m_x = d_y * t5 - d_z * t4
-    n_y = over * (a_x * m_z - d_z * m_x)
-    del m_z
-    n_z = over * (a_x * t6 + d_y * m_x)
-    del m_x, over, t6
-    nu = t7 * t7 + n_y * n_y + n_z * n_z
-    in_line = nu <= t3
+    t6 = _runtime.select(same, rho2, 0.0)
+    d_z = _runtime.select(same, rho3, 0.0)
+    product_x = d_y * t5 - t6 * d_z
+    v_v = t1 + rho3 * rho3
+    del t1
+    all_same = u_u + v_v <= t4
+    del t4
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    a_x = _runtime.select(all_same, whole, -rho1)
+    t7 = a_x * t5 + rho1 * d_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t8 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    del t8
+    over = 1.0 / mu
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
+    g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
-    g_1 = d_z * whole
-    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
     g_2 = whole * (d_y + a_x * s_w)
-    del s_w, whole
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / (mu * nu))
-    t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
-    del t4, t5
-    t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
-    t10 = _runtime.select(all_same, 0.0, nu * (t9 * t9) + mu * 0.25)
-    del all_same, mu, nu
-    t11 = L * L - t10
-    del t10
-    slack = np.maximum(t11, 0.0)
-    t12 = L * size * 0.1875
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    del m_m
+    part = 1.0 / w_w
+    del w_w
+    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
+    del t5, t6
+    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
+    del all_same, mu, t11
+    t13 = L * L - t12
+    del t12
+    slack = np.maximum(t13, 0.0)
+    t14 = L * size * 0.1875
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t12, 0.0, np.sqrt(part * slack))
-    del part, slack
-    t13 = w_x * h
-    del w_x
-    t14 = rho1 * 0.5 - (rho1 + t7 * t9)
-    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t15)
-    del t15
-    t16 = np.abs(_runtime.select(in_line, -t8, 0.0)) <= t2 * _runtime.FEASIBILITY
-    del t2, t8
-    unreachable = np.logical_not(t16 & (-(_runtime.FEASIBILITY * t12) <= t11))
-    del t11, t12, t16
-    t17 = _runtime.poison(invalid | unreachable)
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
-    del g_1
-    t18 = w_y * h
-    del w_y
-    t19 = n_y * t9 - d_y * 0.5
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
-    del a_x, d_y, g_2, n_y, t7
-    t20 = w_z * h
-    del h, w_z
-    t21 = n_z * t9 - d_z * 0.5
-    del d_z, n_z, t9
-    t22 = _runtime.status(invalid, unreachable, in_line)
+    h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
+    del slack
+    t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t16 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
+    del part
+    t17 = t9 * t16 + (rho1 - rho1 * 0.5)
+    t18 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t18)
+    del t18
+    t19 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del t10, t2
+    unreachable = np.logical_not(t19 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t19
+    t20 = _runtime.poison(invalid | unreachable)
+    t21 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
+    del t7
+    t22 = h * _runtime.select(in_line, g_1, -t21)
+    del g_1, t21
+    t23 = n_y * t16 - d_y * 0.5
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t9
+    t24 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, h, m_z
+    t25 = n_z * t16 - d_z * 0.5
+    del d_z, n_z, t16
+    t26 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t13 - t14 + t17,
-        t18 - t19 + t17,
-        t20 - t21 + t17,
-        -(t13 + t14) + t17,
-        -(t18 + t19) + t17,
-        -(t20 + t21) + t17,
-        t22,
-        t22,
+        t15 + t17 + t20,
+        t22 - t23 + t20,
+        t24 - t25 + t20,
+        t17 - t15 + t20,
+        -(t22 + t23) + t20,
+        -(t24 + t25) + t20,
+        t26,
+        t26,
     )
 
 
 def _fk_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
-    over = 1.0 / u_u
-    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
-    m_z = rho1 * rho2
-    t2 = over * (rho2 * m_z)
-    t3 = over * (rho1 * m_z)
-    del m_z, over
-    nu = t2 * t2 + t3 * t3 + n_z * n_z
-    part = 1.0 / (u_u * nu)
-    t4 = rho3 * rho3
-    t5 = u_u * t4 * part * 0.5
-    t6 = L * L - (nu * (t5 * t5) + u_u * 0.25)
-    slack = np.maximum(t6, 0.0)
+    t2 = rho3 * rho3
+    t3 = L * L - u_u * (1.0 + part * (t2 * t2)) * 0.25
+    slack = np.maximum(t3, 0.0)
     h = np.sqrt(part * slack)
+    t4 = product_x * h
+    t5 = t2 * part * 0.5
     del part
-    t7 = rho2 * n_z * h
-    t8 = t2 * t5 - (rho1 - rho1 * 0.5)
-    t9 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t9)
-    del t9
+    t6 = rho1 - rho1 * 0.5 - rho2 * product_z * t5
+    t7 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t7)
+    del t7
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t10 = size * size
-    t11 = L * size * 0.1875
+    t8 = size * size
+    t9 = L * size * 0.1875
     del size
-    t12 = (np.abs(0.0) <= t10 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t11) <= t6)
-    del t6
-    unreachable = np.logical_not(t12)
-    del t12
-    t13 = _runtime.poison(invalid | unreachable)
-    t14 = rho1 * n_z * h
-    t15 = t3 * t5 - rho2 * 0.5
-    t16 = n_z * t5
-    del n_z, t5
-    t17 = (rho1 * t3 + rho2 * t2) * h
-    del h, t2, t3
-    t18 = _runtime.status(invalid, unreachable, np.False_)
-    del invalid, unreachable
-    t19 = _runtime.VANISHING * _runtime.VANISHING * t10
+    t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t3)
+    del t3
+    unreachable = np.logical_not(t10)
     del t10
-    t20 = (u_u <= t19) | (u_u + (t1 + t4) <= t19) | (nu <= t19)
-    del nu, t1, t19, t4, u_u
+    t11 = _runtime.poison(invalid | unreachable)
+    t12 = m_y * h
+    t13 = t5 * (rho1 * product_z) - rho2 * 0.5
+    t14 = t5 * (rho1 * m_y + rho2 * product_x)
+    del m_y, product_x, t5
+    t15 = product_z * h
+    del h, product_z
+    t16 = _runtime.status(invalid, unreachable, np.False_)
+    del invalid, unreachable
+    t17 = _runtime.VANISHING * _runtime.VANISHING
+    t18 = t8 * t17
+    v_v = t1 + t2
+    del t1, t2
+    t19 = u_u * v_v
+    slim = product_2 - t19 * 0.000244140625 <= _runtime.VANISHING * t19
+    del t19
+    t20 = (u_u <= t18) | (u_u + v_v <= t18) | slim | (product_2 <= t17 * (u_u * t8))
+    del product_2, slim, t17, t18, t8, u_u, v_v
     return (
-        t7 - t8 + t13,
-        t14 - t15 + t13,
-        t16 + t17 + t13,
-        -(t7 + t8) + t13,
-        -(t14 + t15) + t13,
-        t16 - t17 + t13,
-        t18,
-        t18,
-        t20 | (slack <= _runtime.VANISHING * t11),
+        t4 + t6 + t11,
+        t12 - t13 + t11,
+        t14 + t15 + t11,
+        t6 - t4 + t11,
+        -(t12 + t13) + t11,
+        t14 - t15 + t11,
+        t16,
+        t16,
+        t20 | (slack <= _runtime.VANISHING * t9),
     )
 
 
@@ -289,7 +301,7 @@ _FK = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_fk_common,
-    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -342,212 +354,220 @@ def _skeleton(rho1, rho2, rho3, L):
     del t1
     t2 = rho1 * rho1
     u_u = t2 + rho2 * rho2
-    v_v = t2 + rho3 * rho3
-    del t2
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t3 = size * size
-    t4 = _runtime.VANISHING * _runtime.VANISHING * t3
-    all_same = u_u + v_v <= t4
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t4
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
+    t4 = _runtime.VANISHING * _runtime.VANISHING
+    t5 = t3 * t4
+    same = u_u <= t5
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, whole, -rho1)
-    t5 = _runtime.select(same, rho2, 0.0)
-    m_z = a_x * t5 + rho1 * d_y
-    d_z = _runtime.select(same, rho3, 0.0)
     t6 = _runtime.select(same, 0.0, rho3)
-    del same
-    t7 = a_x * t6 + rho1 * d_z
-    t8 = over * (d_y * m_z + d_z * t7)
-    m_x = d_y * t6 - d_z * t5
-    n_y = over * (a_x * m_z - d_z * m_x)
-    del m_z
-    n_z = over * (a_x * t7 + d_y * m_x)
-    del m_x, over, t7
-    nu = t8 * t8 + n_y * n_y + n_z * n_z
-    in_line = nu <= t4
+    d_z = _runtime.select(same, rho3, 0.0)
+    t7 = _runtime.select(same, rho2, 0.0)
+    product_x = d_y * t6 - d_z * t7
+    v_v = t2 + rho3 * rho3
+    del t2
+    all_same = u_u + v_v <= t5
+    del t5
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    a_x = _runtime.select(all_same, whole, -rho1)
+    t8 = t6 * a_x + rho1 * d_z
+    product_z = t7 * a_x + rho1 * d_y
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t9 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t9 * 0.000244140625 <= _runtime.VANISHING * t9
+    del t9
+    over = 1.0 / mu
+    t10 = d_y * product_z + d_z * t8
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t8 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t10 * t10 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t4 * (t3 * mu)
     del t4
-    t9 = t5 * (d_y - t5) + t6 * (d_z - t6)
-    del t5, t6
-    t10 = np.abs(_runtime.select(in_line, -t9, 0.0)) <= t3 * _runtime.FEASIBILITY
+    t11 = t7 * (d_y - t7) - t6 * (t6 - d_z)
+    del t6, t7
+    t12 = np.abs(_runtime.select(in_line, -t11, 0.0)) <= t3 * _runtime.FEASIBILITY
     del t3
-    t11 = 0.234375 * (L * size)
+    t13 = 0.234375 * (L * size)
     del size
-    g_1 = d_z * whole
+    g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     del whole
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / (mu * nu))
-    t12 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
-    del t9
-    t13 = _runtime.select(all_same, 0.0, nu * (t12 * t12) + mu * 0.25)
-    del all_same, mu, nu
-    t14 = L * L - t13
-    del t13
-    unreachable = np.logical_not(t10 & (-(_runtime.FEASIBILITY * t11) <= t14))
-    del t10
-    t15 = _runtime.poison(invalid | unreachable)
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    del m_m
+    part = 1.0 / w_w
+    del w_w
+    t14 = _runtime.select(in_line, 0.0, part * (t11 * t11))
+    t15 = _runtime.select(all_same, 0.0, mu * (1.0 + t14) * 0.25)
+    del all_same, mu, t14
+    t16 = L * L - t15
+    del t15
+    unreachable = np.logical_not(t12 & (-(_runtime.FEASIBILITY * t13) <= t16))
+    del t12
+    t17 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    t16 = 0.0 + t15
-    t17 = rho1 + t15
-    t18 = L * 0.0625
-    t19 = t18 + t15
-    t20 = -t18 + t15
-    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
-    del s_w
-    slack = np.maximum(t14, 0.0)
-    del t14
-    h = _runtime.select(slack <= _runtime.VANISHING * t11, 0.0, np.sqrt(part * slack))
-    del part, slack, t11
-    t21 = w_x * h
-    del w_x
-    t22 = t8 * t12 - rho1 * 0.5
-    t23 = rho1 + (t21 + t22)
-    t24 = t23 + t15
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t8))
-    del g_1
-    t25 = w_y * h
-    del w_y
-    t26 = n_y * t12 - d_y * 0.5
-    A_12 = t25 - t26
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t8)
-    del a_x, d_y, g_2, in_line, n_y, t8
-    t27 = w_z * h
-    del h, w_z
-    t28 = n_z * t12 - d_z * 0.5
-    del d_z, n_z, t12
-    A_13 = t27 - t28
-    t29 = A_13 + t15
-    t30 = rho2 + t15
-    t31 = A_12 + t15
-    t32 = rho3 + t15
-    t33 = rho1 - (t21 - t22)
-    del t21, t22
-    t34 = t33 + t15
-    t35 = t25 + t26
-    del t25, t26
-    t36 = t27 + t28
-    del t27, t28
-    t37 = -t36 + t15
-    t38 = -t35 + t15
+    t18 = 0.0 + t17
+    t19 = rho1 + t17
+    t20 = L * 0.0625
+    t21 = t20 + t17
+    t22 = -t20 + t17
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
+    slack = np.maximum(t16, 0.0)
+    del t16
+    h = _runtime.select(slack <= _runtime.VANISHING * t13, 0.0, np.sqrt(part * slack))
+    del slack, t13
+    t23 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t24 = _runtime.select(in_line, 0.0, t11 * part * 0.5)
+    del part, t11
+    t25 = rho1 * 0.5 - t10 * t24
+    t26 = rho1 + (t23 - t25)
+    t27 = t26 + t17
+    t28 = _runtime.select(slim, over * (a_x * n_z + d_z * t10), t8)
+    del t8
+    t29 = h * _runtime.select(in_line, g_1, -t28)
+    del g_1, t28
+    t30 = n_y * t24 - d_y * 0.5
+    A_12 = t29 - t30
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t10), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t10
+    t31 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, h, in_line, m_z
+    t32 = n_z * t24 - d_z * 0.5
+    del d_z, n_z, t24
+    A_13 = t31 - t32
+    t33 = A_13 + t17
+    t34 = rho2 + t17
+    t35 = A_12 + t17
+    t36 = rho3 + t17
+    t37 = rho1 - (t23 + t25)
+    del t23, t25
+    t38 = t37 + t17
+    t39 = t29 + t30
+    del t29, t30
+    t40 = t31 + t32
+    del t31, t32
+    t41 = -t40 + t17
+    t42 = -t39 + t17
     return (
-        t16,
-        t16,
-        t16,
-        t17,
-        t16,
-        t16,
-        t17,
+        t18,
+        t18,
+        t18,
         t19,
-        t16,
-        t17,
-        t20,
-        t16,
-        t24,
-        t18 + A_12 + t15,
-        t29,
-        t24,
-        A_12 - t18 + t15,
-        t29,
-        t16,
-        t16,
-        t16,
-        t16,
-        t30,
-        t16,
-        t16,
-        t30,
+        t18,
+        t18,
         t19,
-        t16,
-        t30,
-        t20,
-        t24,
-        t31,
-        t18 + A_13 + t15,
-        t24,
-        t31,
-        A_13 - t18 + t15,
-        t16,
-        t16,
-        t16,
-        t16,
-        t16,
-        t32,
+        t21,
+        t18,
         t19,
-        t16,
-        t32,
-        t20,
-        t16,
-        t32,
-        t18 + t23 + t15,
-        t31,
-        t29,
-        t23 - t18 + t15,
-        t31,
-        t29,
-        t24,
-        t31,
-        t29,
-        t16,
-        t16,
-        t16,
-        t17,
-        t16,
-        t16,
-        t17,
-        t19,
-        t16,
-        t17,
-        t20,
-        t16,
+        t22,
+        t18,
+        t27,
+        t20 + A_12 + t17,
+        t33,
+        t27,
+        A_12 - t20 + t17,
+        t33,
+        t18,
+        t18,
+        t18,
+        t18,
         t34,
-        t18 - t35 + t15,
-        t37,
+        t18,
+        t18,
         t34,
-        -(t18 + t35) + t15,
-        t37,
-        t16,
-        t16,
-        t16,
-        t16,
-        t30,
-        t16,
-        t16,
-        t30,
+        t21,
+        t18,
+        t34,
+        t22,
+        t27,
+        t35,
+        t20 + A_13 + t17,
+        t27,
+        t35,
+        A_13 - t20 + t17,
+        t18,
+        t18,
+        t18,
+        t18,
+        t18,
+        t36,
+        t21,
+        t18,
+        t36,
+        t22,
+        t18,
+        t36,
+        t20 + t26 + t17,
+        t35,
+        t33,
+        t26 - t20 + t17,
+        t35,
+        t33,
+        t27,
+        t35,
+        t33,
+        t18,
+        t18,
+        t18,
         t19,
-        t16,
-        t30,
-        t20,
-        t34,
-        t38,
-        t18 - t36 + t15,
-        t34,
-        t38,
-        -(t18 + t36) + t15,
-        t16,
-        t16,
-        t16,
-        t16,
-        t16,
-        t32,
+        t18,
+        t18,
         t19,
-        t16,
-        t32,
-        t20,
-        t16,
-        t32,
-        t18 + t33 + t15,
+        t21,
+        t18,
+        t19,
+        t22,
+        t18,
         t38,
-        t37,
-        t33 - t18 + t15,
+        t20 - t39 + t17,
+        t41,
         t38,
-        t37,
+        -(t20 + t39) + t17,
+        t41,
+        t18,
+        t18,
+        t18,
+        t18,
         t34,
+        t18,
+        t18,
+        t34,
+        t21,
+        t18,
+        t34,
+        t22,
         t38,
-        t37,
+        t42,
+        t20 - t40 + t17,
+        t38,
+        t42,
+        -(t20 + t40) + t17,
+        t18,
+        t18,
+        t18,
+        t18,
+        t18,
+        t36,
+        t21,
+        t18,
+        t36,
+        t22,
+        t18,
+        t36,
+        t20 + t37 + t17,
+        t42,
+        t41,
+        t37 - t20 + t17,
+        t42,
+        t41,
+        t38,
+        t42,
+        t41,
     )
 
 
@@ -562,174 +582,175 @@ def _skeleton_common(rho1, rho2, rho3, L):
     del size
     t4 = rho1 * rho1
     u_u = t4 + rho2 * rho2
-    over = 1.0 / u_u
-    m_z = rho1 * rho2
-    t5 = over * (rho2 * m_z)
-    t6 = over * (rho1 * m_z)
-    del m_z
-    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
-    del over
-    nu = t5 * t5 + t6 * t6 + n_z * n_z
-    t7 = rho3 * rho3
-    part = 1.0 / (u_u * nu)
-    t8 = u_u * t7 * part * 0.5
-    t9 = L * L - (nu * (t8 * t8) + u_u * 0.25)
-    t10 = (np.abs(0.0) <= t2 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t3) <= t9)
-    t11 = _runtime.poison(invalid | np.logical_not(t10))
-    del invalid, t10
-    t12 = 0.0 + t11
-    t13 = rho1 + t11
-    t14 = L * 0.0625
-    t15 = t14 + t11
-    t16 = -t14 + t11
-    slack = np.maximum(t9, 0.0)
-    del t9
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
+    t5 = rho3 * rho3
+    t6 = L * L - u_u * (1.0 + part * (t5 * t5)) * 0.25
+    t7 = (np.abs(0.0) <= t2 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t3) <= t6)
+    t8 = _runtime.poison(invalid | np.logical_not(t7))
+    del invalid, t7
+    t9 = 0.0 + t8
+    t10 = rho1 + t8
+    t11 = L * 0.0625
+    t12 = t11 + t8
+    t13 = -t11 + t8
+    slack = np.maximum(t6, 0.0)
+    del t6
     h = np.sqrt(part * slack)
+    t14 = product_x * h
+    t15 = t5 * part * 0.5
     del part
-    t17 = rho2 * n_z * h
-    t18 = rho1 * 0.5 + t5 * t8
-    t19 = rho1 + (t17 - t18)
-    t20 = t19 + t11
-    t21 = rho1 * n_z * h
-    t22 = t6 * t8 - rho2 * 0.5
-    A_12 = t21 - t22
-    t23 = n_z * t8
-    del n_z, t8
-    t24 = (rho1 * t6 + rho2 * t5) * h
-    del h, t5, t6
-    A_13 = t23 + t24
-    t25 = A_13 + t11
-    t26 = rho2 + t11
-    t27 = A_12 + t11
-    t28 = rho3 + t11
-    t29 = rho1 - (t17 + t18)
-    del t17, t18
-    t30 = t29 + t11
-    t31 = t21 + t22
+    t16 = rho1 * 0.5 + rho2 * product_z * t15
+    t17 = rho1 + (t14 - t16)
+    t18 = t17 + t8
+    t19 = m_y * h
+    t20 = t15 * (rho1 * product_z) - rho2 * 0.5
+    A_12 = t19 - t20
+    t21 = t15 * (rho1 * m_y + rho2 * product_x)
+    del m_y, product_x, t15
+    t22 = product_z * h
+    del h, product_z
+    A_13 = t21 + t22
+    t23 = A_13 + t8
+    t24 = rho2 + t8
+    t25 = A_12 + t8
+    t26 = rho3 + t8
+    t27 = rho1 - (t14 + t16)
+    del t14, t16
+    t28 = t27 + t8
+    t29 = t19 + t20
+    del t19, t20
+    A_13_inner = t21 - t22
     del t21, t22
-    A_13_inner = t23 - t24
-    del t23, t24
-    t32 = A_13_inner + t11
-    t33 = -t31 + t11
-    t34 = _runtime.VANISHING * _runtime.VANISHING * t2
-    del t2
-    t35 = (u_u <= t34) | (u_u + (t4 + t7) <= t34) | (nu <= t34)
-    del nu, t34, t4, t7, u_u
+    t30 = A_13_inner + t8
+    t31 = -t29 + t8
+    t32 = _runtime.VANISHING * _runtime.VANISHING
+    t33 = t2 * t32
+    v_v = t4 + t5
+    del t4, t5
+    t34 = u_u * v_v
+    slim = product_2 - t34 * 0.000244140625 <= _runtime.VANISHING * t34
+    del t34
+    t35 = (u_u <= t33) | (u_u + v_v <= t33) | slim | (product_2 <= t32 * (u_u * t2))
+    del product_2, slim, t2, t32, t33, u_u, v_v
     return (
+        t9,
+        t9,
+        t9,
+        t10,
+        t9,
+        t9,
+        t10,
         t12,
-        t12,
-        t12,
+        t9,
+        t10,
         t13,
+        t9,
+        t18,
+        t11 + A_12 + t8,
+        t23,
+        t18,
+        A_12 - t11 + t8,
+        t23,
+        t9,
+        t9,
+        t9,
+        t9,
+        t24,
+        t9,
+        t9,
+        t24,
         t12,
-        t12,
+        t9,
+        t24,
         t13,
-        t15,
-        t12,
-        t13,
-        t16,
-        t12,
-        t20,
-        t14 + A_12 + t11,
+        t18,
         t25,
-        t20,
-        A_12 - t14 + t11,
+        t11 + A_13 + t8,
+        t18,
         t25,
-        t12,
-        t12,
-        t12,
-        t12,
+        A_13 - t11 + t8,
+        t9,
+        t9,
+        t9,
+        t9,
+        t9,
         t26,
         t12,
-        t12,
+        t9,
         t26,
-        t15,
-        t12,
-        t26,
-        t16,
-        t20,
-        t27,
-        t14 + A_13 + t11,
-        t20,
-        t27,
-        A_13 - t14 + t11,
-        t12,
-        t12,
-        t12,
-        t12,
-        t12,
-        t28,
-        t15,
-        t12,
-        t28,
-        t16,
-        t12,
-        t28,
-        t14 + t19 + t11,
-        t27,
-        t25,
-        t19 - t14 + t11,
-        t27,
-        t25,
-        t20,
-        t27,
-        t25,
-        t12,
-        t12,
-        t12,
         t13,
+        t9,
+        t26,
+        t11 + t17 + t8,
+        t25,
+        t23,
+        t17 - t11 + t8,
+        t25,
+        t23,
+        t18,
+        t25,
+        t23,
+        t9,
+        t9,
+        t9,
+        t10,
+        t9,
+        t9,
+        t10,
         t12,
-        t12,
+        t9,
+        t10,
         t13,
-        t15,
+        t9,
+        t28,
+        t11 - t29 + t8,
+        t30,
+        t28,
+        -(t11 + t29) + t8,
+        t30,
+        t9,
+        t9,
+        t9,
+        t9,
+        t24,
+        t9,
+        t9,
+        t24,
         t12,
+        t9,
+        t24,
         t13,
-        t16,
-        t12,
-        t30,
-        t14 - t31 + t11,
-        t32,
-        t30,
-        -(t14 + t31) + t11,
-        t32,
-        t12,
-        t12,
-        t12,
-        t12,
+        t28,
+        t31,
+        t11 + A_13_inner + t8,
+        t28,
+        t31,
+        A_13_inner - t11 + t8,
+        t9,
+        t9,
+        t9,
+        t9,
+        t9,
         t26,
         t12,
-        t12,
+        t9,
         t26,
-        t15,
-        t12,
+        t13,
+        t9,
         t26,
-        t16,
+        t11 + t27 + t8,
+        t31,
         t30,
-        t33,
-        t14 + A_13_inner + t11,
+        t27 - t11 + t8,
+        t31,
         t30,
-        t33,
-        A_13_inner - t14 + t11,
-        t12,
-        t12,
-        t12,
-        t12,
-        t12,
         t28,
-        t15,
-        t12,
-        t28,
-        t16,
-        t12,
-        t28,
-        t14 + t29 + t11,
-        t33,
-        t32,
-        t29 - t14 + t11,
-        t33,
-        t32,
+        t31,
         t30,
-        t33,
-        t32,
         t35 | (slack <= _runtime.VANISHING * t3),
     )
 
@@ -742,7 +763,7 @@ _SKELETON = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_skeleton_common,
-    size=_runtime.Size((0, 1, 2, 3), ((3, 1), (6, 1), (7, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (22, 1), (25, 1), (26, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (41, 1), (42, 1), (44, 1), (45, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (60, 1), (63, 1), (64, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (79, 1), (82, 1), (83, 1), (85, 1), (86, 1), (87, 1), (88, 1), (89, 1), (90, 1), (91, 1), (92, 1), (98, 1), (99, 1), (101, 1), (102, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (110, 1), (111, 1), (112, 1), (113, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((0, 1, 2, 3), ((3, 1), (6, 1), (7, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (22, 1), (25, 1), (26, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (41, 1), (42, 1), (44, 1), (45, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (60, 1), (63, 1), (64, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (79, 1), (82, 1), (83, 1), (85, 1), (86, 1), (87, 1), (88, 1), (89, 1), (90, 1), (91, 1), (92, 1), (98, 1), (99, 1), (101, 1), (102, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (110, 1), (111, 1), (112, 1), (113, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -784,188 +805,200 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 def _jacobian_parallel(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
-    v_v = t1 + rho3 * rho3
-    del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t2 = size * size
-    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
-    all_same = u_u + v_v <= t3
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t3
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
+    t3 = _runtime.VANISHING * _runtime.VANISHING
+    t4 = t2 * t3
+    same = u_u <= t4
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, whole, -rho1)
-    t4 = _runtime.select(same, rho2, 0.0)
-    m_z = a_x * t4 + rho1 * d_y
-    d_z = _runtime.select(same, rho3, 0.0)
     t5 = _runtime.select(same, 0.0, rho3)
-    del same
-    t6 = a_x * t5 + rho1 * d_z
-    t7 = over * (d_y * m_z + d_z * t6)
-    m_x = d_y * t5 - d_z * t4
-    n_y = over * (a_x * m_z - d_z * m_x)
-    del m_z
-    n_z = over * (a_x * t6 + d_y * m_x)
-    del m_x, over, t6
-    nu = t7 * t7 + n_y * n_y + n_z * n_z
-    in_line = nu <= t3
+    t6 = _runtime.select(same, rho2, 0.0)
+    d_z = _runtime.select(same, rho3, 0.0)
+    product_x = d_y * t5 - t6 * d_z
+    v_v = t1 + rho3 * rho3
+    del t1
+    all_same = u_u + v_v <= t4
+    del t4
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    a_x = _runtime.select(all_same, whole, -rho1)
+    t7 = a_x * t5 + rho1 * d_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t8 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    del t8
+    over = 1.0 / mu
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
+    g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
-    g_1 = d_z * whole
-    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
     g_2 = whole * (d_y + a_x * s_w)
-    del s_w, whole
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / (mu * nu))
-    t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
-    del t4, t5
-    t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
-    t10 = _runtime.select(all_same, 0.0, nu * (t9 * t9) + mu * 0.25)
-    del all_same, mu, nu
-    t11 = L * L - t10
-    del t10
-    slack = np.maximum(t11, 0.0)
-    t12 = 0.234375 * (L * size)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    del m_m
+    part = 1.0 / w_w
+    del w_w
+    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
+    del t5, t6
+    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
+    del all_same, mu, t11
+    t13 = L * L - t12
+    del t12
+    slack = np.maximum(t13, 0.0)
+    t14 = 0.234375 * (L * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t12, 0.0, np.sqrt(part * slack))
-    del part, slack
-    t13 = w_x * h
-    del w_x
-    t14 = t7 * t9 - rho1 * 0.5
-    A_11 = t13 + t14
-    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t15)
-    del t15
-    t16 = np.abs(_runtime.select(in_line, -t8, 0.0)) <= t2 * _runtime.FEASIBILITY
-    del t2, t8
-    unreachable = np.logical_not(t16 & (-(_runtime.FEASIBILITY * t12) <= t11))
-    del t11, t12, t16
-    t17 = _runtime.poison(invalid | unreachable)
+    h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
+    del slack
+    t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t16 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
+    del part
+    t17 = rho1 * 0.5 - t9 * t16
+    A_11 = t15 - t17
+    t18 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t18)
+    del t18
+    t19 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del t10, t2
+    unreachable = np.logical_not(t19 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t19
+    t20 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
-    del g_1
-    t18 = w_y * h
-    del w_y
-    t19 = n_y * t9 - d_y * 0.5
-    A_12 = t18 - t19
-    t20 = A_12 + t17
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
-    del a_x, d_y, g_2, in_line, n_y, t7
-    t21 = w_z * h
-    del h, w_z
-    t22 = n_z * t9 - d_z * 0.5
-    del d_z, n_z, t9
-    A_13 = t21 - t22
-    t23 = A_13 + t17
-    t24 = rho1 + A_11 + t17
-    t25 = t13 - t14
-    del t13, t14
-    t26 = t18 + t19
-    del t18, t19
-    t27 = -t26 + t17
-    t28 = t21 + t22
-    del t21, t22
-    t29 = -t28 + t17
-    t30 = rho1 - t25 + t17
+    t21 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
+    del t7
+    t22 = h * _runtime.select(in_line, g_1, -t21)
+    del g_1, t21
+    t23 = n_y * t16 - d_y * 0.5
+    A_12 = t22 - t23
+    t24 = A_12 + t20
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t9
+    t25 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, h, in_line, m_z
+    t26 = n_z * t16 - d_z * 0.5
+    del d_z, n_z, t16
+    A_13 = t25 - t26
+    t27 = A_13 + t20
+    t28 = rho1 + A_11 + t20
+    t29 = t15 + t17
+    del t15, t17
+    t30 = t22 + t23
+    del t22, t23
+    t31 = -t30 + t20
+    t32 = t25 + t26
+    del t25, t26
+    t33 = -t32 + t20
+    t34 = rho1 - t29 + t20
     return (
-        A_11 + t17,
-        t20,
-        t23,
+        A_11 + t20,
         t24,
-        A_12 - rho2 + t17,
-        t23,
+        t27,
+        t28,
+        A_12 - rho2 + t20,
+        t27,
+        t28,
         t24,
-        t20,
-        A_13 - rho3 + t17,
-        -t25 + t17,
-        t27,
-        t29,
-        t30,
-        -(rho2 + t26) + t17,
-        t29,
-        t30,
-        t27,
-        -(rho3 + t28) + t17,
+        A_13 - rho3 + t20,
+        -t29 + t20,
+        t31,
+        t33,
+        t34,
+        -(rho2 + t30) + t20,
+        t33,
+        t34,
+        t31,
+        -(rho3 + t32) + t20,
     )
 
 
 def _jacobian_parallel_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
-    over = 1.0 / u_u
-    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
-    m_z = rho1 * rho2
-    t2 = over * (rho2 * m_z)
-    t3 = over * (rho1 * m_z)
-    del m_z, over
-    nu = t2 * t2 + t3 * t3 + n_z * n_z
-    part = 1.0 / (u_u * nu)
-    t4 = rho3 * rho3
-    t5 = u_u * t4 * part * 0.5
-    t6 = L * L - (nu * (t5 * t5) + u_u * 0.25)
-    slack = np.maximum(t6, 0.0)
+    t2 = rho3 * rho3
+    t3 = L * L - u_u * (1.0 + part * (t2 * t2)) * 0.25
+    slack = np.maximum(t3, 0.0)
     h = np.sqrt(part * slack)
+    t4 = product_x * h
+    t5 = t2 * part * 0.5
     del part
-    t7 = rho2 * n_z * h
-    t8 = rho1 * 0.5 + t2 * t5
-    A_11 = t7 - t8
-    t9 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t9)
-    del t9
+    t6 = rho1 * 0.5 + rho2 * product_z * t5
+    A_11 = t4 - t6
+    t7 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t7)
+    del t7
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t10 = size * size
-    t11 = 0.234375 * (L * size)
+    t8 = size * size
+    t9 = 0.234375 * (L * size)
     del size
-    t12 = (np.abs(0.0) <= t10 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t11) <= t6)
-    del t6
-    t13 = _runtime.poison(invalid | np.logical_not(t12))
-    del invalid, t12
-    t14 = rho1 * n_z * h
-    t15 = t3 * t5 - rho2 * 0.5
-    A_12 = t14 - t15
-    t16 = A_12 + t13
-    t17 = n_z * t5
-    del n_z, t5
-    t18 = (rho1 * t3 + rho2 * t2) * h
-    del h, t2, t3
-    A_13 = t17 + t18
-    t19 = A_13 + t13
-    t20 = rho1 + A_11 + t13
-    t21 = t7 + t8
-    del t7, t8
-    t22 = t14 + t15
-    del t14, t15
-    t23 = -t22 + t13
-    A_13_inner = t17 - t18
-    del t17, t18
-    t24 = A_13_inner + t13
-    t25 = rho1 - t21 + t13
-    t26 = _runtime.VANISHING * _runtime.VANISHING * t10
-    del t10
-    t27 = (u_u <= t26) | (u_u + (t1 + t4) <= t26) | (nu <= t26)
-    del nu, t1, t26, t4, u_u
+    t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t3)
+    del t3
+    t11 = _runtime.poison(invalid | np.logical_not(t10))
+    del invalid, t10
+    t12 = m_y * h
+    t13 = t5 * (rho1 * product_z) - rho2 * 0.5
+    A_12 = t12 - t13
+    t14 = A_12 + t11
+    t15 = t5 * (rho1 * m_y + rho2 * product_x)
+    del m_y, product_x, t5
+    t16 = product_z * h
+    del h, product_z
+    A_13 = t15 + t16
+    t17 = A_13 + t11
+    t18 = rho1 + A_11 + t11
+    t19 = t4 + t6
+    del t4, t6
+    t20 = t12 + t13
+    del t12, t13
+    t21 = -t20 + t11
+    A_13_inner = t15 - t16
+    del t15, t16
+    t22 = A_13_inner + t11
+    t23 = rho1 - t19 + t11
+    t24 = _runtime.VANISHING * _runtime.VANISHING
+    t25 = t8 * t24
+    v_v = t1 + t2
+    del t1, t2
+    t26 = u_u * v_v
+    slim = product_2 - t26 * 0.000244140625 <= _runtime.VANISHING * t26
+    del t26
+    t27 = (u_u <= t25) | (u_u + v_v <= t25) | slim | (product_2 <= t24 * (u_u * t8))
+    del product_2, slim, t24, t25, t8, u_u, v_v
     return (
-        A_11 + t13,
-        t16,
-        t19,
-        t20,
-        A_12 - rho2 + t13,
-        t19,
-        t20,
-        t16,
-        A_13 - rho3 + t13,
-        -t21 + t13,
+        A_11 + t11,
+        t14,
+        t17,
+        t18,
+        A_12 - rho2 + t11,
+        t17,
+        t18,
+        t14,
+        A_13 - rho3 + t11,
+        -t19 + t11,
+        t21,
+        t22,
         t23,
-        t24,
-        t25,
-        -(rho2 + t22) + t13,
-        t24,
-        t25,
+        -(rho2 + t20) + t11,
+        t22,
         t23,
-        A_13_inner - rho3 + t13,
-        t27 | (slack <= _runtime.VANISHING * t11),
+        t21,
+        A_13_inner - rho3 + t11,
+        t27 | (slack <= _runtime.VANISHING * t9),
     )
 
 
@@ -977,7 +1010,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_jacobian_parallel_common,
-    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1017,134 +1050,146 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 def _jacobian_serial(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
-    v_v = t1 + rho3 * rho3
-    del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t2 = size * size
-    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
-    all_same = u_u + v_v <= t3
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t3
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
+    t3 = _runtime.VANISHING * _runtime.VANISHING
+    t4 = t2 * t3
+    same = u_u <= t4
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, whole, -rho1)
-    t4 = _runtime.select(same, rho2, 0.0)
-    m_z = a_x * t4 + rho1 * d_y
-    d_z = _runtime.select(same, rho3, 0.0)
     t5 = _runtime.select(same, 0.0, rho3)
-    del same
-    t6 = a_x * t5 + rho1 * d_z
-    t7 = over * (d_y * m_z + d_z * t6)
-    m_x = d_y * t5 - d_z * t4
-    n_y = over * (a_x * m_z - d_z * m_x)
-    del m_z
-    n_z = over * (a_x * t6 + d_y * m_x)
-    del m_x, over, t6
-    nu = t7 * t7 + n_y * n_y + n_z * n_z
-    in_line = nu <= t3
+    t6 = _runtime.select(same, rho2, 0.0)
+    d_z = _runtime.select(same, rho3, 0.0)
+    product_x = d_y * t5 - t6 * d_z
+    v_v = t1 + rho3 * rho3
+    del t1
+    all_same = u_u + v_v <= t4
+    del t4
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    a_x = _runtime.select(all_same, whole, -rho1)
+    t7 = a_x * t5 + rho1 * d_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t8 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    del t8
+    over = 1.0 / mu
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
+    g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
-    g_1 = d_z * whole
-    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
     g_2 = whole * (d_y + a_x * s_w)
-    del s_w, whole
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / (mu * nu))
-    t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
-    del t4, t5
-    t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
-    t10 = _runtime.select(all_same, 0.0, nu * (t9 * t9) + mu * 0.25)
-    del all_same, mu, nu
-    t11 = L * L - t10
-    del t10
-    slack = np.maximum(t11, 0.0)
-    t12 = 0.234375 * (L * size)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    del m_m
+    part = 1.0 / w_w
+    del w_w
+    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
+    del t5, t6
+    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
+    del all_same, mu, t11
+    t13 = L * L - t12
+    del t12
+    slack = np.maximum(t13, 0.0)
+    t14 = 0.234375 * (L * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t12, 0.0, np.sqrt(part * slack))
-    del part, slack
-    t13 = w_x * h
-    del w_x
-    t14 = t7 * t9 - rho1 * 0.5
-    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t15)
-    del t15
-    t16 = np.abs(_runtime.select(in_line, -t8, 0.0)) <= t2 * _runtime.FEASIBILITY
-    del t2, t8
-    unreachable = np.logical_not(t16 & (-(_runtime.FEASIBILITY * t12) <= t11))
-    del t11, t12, t16
-    t17 = _runtime.poison(invalid | unreachable)
+    h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
+    del slack
+    t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t16 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
+    del part
+    t17 = rho1 * 0.5 - t9 * t16
+    t18 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t18)
+    del t18
+    t19 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del t10, t2
+    unreachable = np.logical_not(t19 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t19
+    t20 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
-    del g_1
-    t18 = w_y * h
-    del w_y
-    t19 = n_y * t9 - d_y * 0.5
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
-    del a_x, d_y, g_2, in_line, n_y, t7
-    t20 = w_z * h
-    del h, w_z
-    t21 = n_z * t9 - d_z * 0.5
-    del d_z, n_z, t9
+    t21 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
+    del t7
+    t22 = h * _runtime.select(in_line, g_1, -t21)
+    del g_1, t21
+    t23 = n_y * t16 - d_y * 0.5
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t9
+    t24 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, h, in_line, m_z
+    t25 = n_z * t16 - d_z * 0.5
+    del d_z, n_z, t16
     return (
-        t13 + t14 + t17,
-        t18 - t19 - rho2 + t17,
-        t20 - t21 - rho3 + t17,
-        t14 - t13 + t17,
-        -(rho2 + (t18 + t19)) + t17,
-        -(rho3 + (t20 + t21)) + t17,
+        t15 - t17 + t20,
+        t22 - t23 - rho2 + t20,
+        t24 - t25 - rho3 + t20,
+        -(t15 + t17) + t20,
+        -(rho2 + (t22 + t23)) + t20,
+        -(rho3 + (t24 + t25)) + t20,
     )
 
 
 def _jacobian_serial_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
-    over = 1.0 / u_u
-    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
-    m_z = rho1 * rho2
-    t2 = over * (rho2 * m_z)
-    t3 = over * (rho1 * m_z)
-    del m_z, over
-    nu = t2 * t2 + t3 * t3 + n_z * n_z
-    part = 1.0 / (u_u * nu)
-    t4 = rho3 * rho3
-    t5 = u_u * t4 * part * 0.5
-    t6 = L * L - (nu * (t5 * t5) + u_u * 0.25)
-    slack = np.maximum(t6, 0.0)
+    t2 = rho3 * rho3
+    t3 = L * L - u_u * (1.0 + part * (t2 * t2)) * 0.25
+    slack = np.maximum(t3, 0.0)
     h = np.sqrt(part * slack)
+    t4 = product_x * h
+    t5 = t2 * part * 0.5
     del part
-    t7 = rho2 * n_z * h
-    t8 = rho1 * 0.5 + t2 * t5
-    t9 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t9)
-    del t9
+    t6 = rho1 * 0.5 + rho2 * product_z * t5
+    t7 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t7)
+    del t7
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t10 = size * size
-    t11 = 0.234375 * (L * size)
+    t8 = size * size
+    t9 = 0.234375 * (L * size)
     del size
-    t12 = (np.abs(0.0) <= t10 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t11) <= t6)
-    del t6
-    t13 = _runtime.poison(invalid | np.logical_not(t12))
-    del invalid, t12
-    t14 = rho1 * n_z * h
-    t15 = t3 * t5 - rho2 * 0.5
-    t16 = n_z * t5
-    del n_z, t5
-    t17 = (rho1 * t3 + rho2 * t2) * h
-    del h, t2, t3
-    t18 = _runtime.VANISHING * _runtime.VANISHING * t10
-    del t10
-    t19 = (u_u <= t18) | (u_u + (t1 + t4) <= t18) | (nu <= t18)
-    del nu, t1, t18, t4, u_u
+    t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t3)
+    del t3
+    t11 = _runtime.poison(invalid | np.logical_not(t10))
+    del invalid, t10
+    t12 = m_y * h
+    t13 = t5 * (rho1 * product_z) - rho2 * 0.5
+    t14 = t5 * (rho1 * m_y + rho2 * product_x)
+    del m_y, product_x, t5
+    t15 = product_z * h
+    del h, product_z
+    t16 = _runtime.VANISHING * _runtime.VANISHING
+    t17 = t8 * t16
+    v_v = t1 + t2
+    del t1, t2
+    t18 = u_u * v_v
+    slim = product_2 - t18 * 0.000244140625 <= _runtime.VANISHING * t18
+    del t18
+    t19 = (u_u <= t17) | (u_u + v_v <= t17) | slim | (product_2 <= t16 * (u_u * t8))
+    del product_2, slim, t16, t17, t8, u_u, v_v
     return (
-        t7 - t8 + t13,
-        t14 - t15 - rho2 + t13,
-        t16 + t17 - rho3 + t13,
-        -(t7 + t8) + t13,
-        -(rho2 + (t14 + t15)) + t13,
-        t16 - t17 - rho3 + t13,
-        t19 | (slack <= _runtime.VANISHING * t11),
+        t4 - t6 + t11,
+        t12 - t13 - rho2 + t11,
+        t14 + t15 - rho3 + t11,
+        -(t4 + t6) + t11,
+        -(rho2 + (t12 + t13)) + t11,
+        t14 - t15 - rho3 + t11,
+        t19 | (slack <= _runtime.VANISHING * t9),
     )
 
 
@@ -1156,7 +1201,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_jacobian_serial_common,
-    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1196,211 +1241,220 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
 def _jacobian(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
-    v_v = t1 + rho3 * rho3
-    del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t2 = size * size
-    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
-    all_same = u_u + v_v <= t3
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t3
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
+    t3 = _runtime.VANISHING * _runtime.VANISHING
+    t4 = t2 * t3
+    same = u_u <= t4
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, whole, -rho1)
-    t4 = _runtime.select(same, rho2, 0.0)
-    m_z = a_x * t4 + rho1 * d_y
-    d_z = _runtime.select(same, rho3, 0.0)
     t5 = _runtime.select(same, 0.0, rho3)
-    del same
-    t6 = a_x * t5 + rho1 * d_z
-    t7 = over * (d_y * m_z + d_z * t6)
-    m_x = d_y * t5 - d_z * t4
-    n_y = over * (a_x * m_z - d_z * m_x)
-    del m_z
-    n_z = over * (a_x * t6 + d_y * m_x)
-    del m_x, over, t6
-    nu = t7 * t7 + n_y * n_y + n_z * n_z
-    in_line = nu <= t3
+    t6 = _runtime.select(same, rho2, 0.0)
+    d_z = _runtime.select(same, rho3, 0.0)
+    product_x = d_y * t5 - t6 * d_z
+    v_v = t1 + rho3 * rho3
+    del t1
+    all_same = u_u + v_v <= t4
+    del t4
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    a_x = _runtime.select(all_same, whole, -rho1)
+    t7 = a_x * t5 + rho1 * d_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t8 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    del t8
+    over = 1.0 / mu
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
+    g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
-    g_1 = d_z * whole
-    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
     g_2 = whole * (d_y + a_x * s_w)
-    del s_w, whole
-    t8 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / t8)
-    t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
-    del t4, t5
-    t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
-    t11 = _runtime.select(all_same, 0.0, nu * (t10 * t10) + mu * 0.25)
-    del all_same, mu, nu
-    t12 = L * L - t11
-    del t11
-    slack = np.maximum(t12, 0.0)
-    t13 = 0.234375 * (L * size)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    part = 1.0 / w_w
+    del w_w
+    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
+    del t5, t6
+    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
+    del all_same, mu, t11
+    t13 = L * L - t12
+    del t12
+    slack = np.maximum(t13, 0.0)
+    t14 = 0.234375 * (L * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t13, 0.0, np.sqrt(part * slack))
-    del part, slack
-    t14 = w_x * h
-    del w_x
-    t15 = t7 * t10 - rho1 * 0.5
-    A_11 = t14 + t15
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
-    del g_1
-    t16 = w_y * h
-    del w_y
-    t17 = n_y * t10 - d_y * 0.5
-    t18 = t16 - t17
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
-    del a_x, d_y, g_2, n_y, t7
-    t19 = w_z * h
-    del w_z
-    t20 = n_z * t10 - d_z * 0.5
-    del d_z, n_z, t10
+    h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
+    del slack
+    t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t16 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
+    del part
+    t17 = rho1 * 0.5 - t9 * t16
+    A_11 = t15 - t17
+    t18 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
+    del t7
+    t19 = h * _runtime.select(in_line, g_1, -t18)
+    del g_1, t18
+    t20 = n_y * t16 - d_y * 0.5
     t21 = t19 - t20
-    t22 = t18 * t21
-    t23 = rho2 - t18
-    t24 = rho3 - t21
-    Delta = t8 * h
-    del h, t8
-    t25 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t25)
-    del t25
-    t26 = np.abs(_runtime.select(in_line, -t9, 0.0)) <= t2 * _runtime.FEASIBILITY
-    del in_line, t2, t9
-    unreachable = np.logical_not(t26 & (-(_runtime.FEASIBILITY * t13) <= t12))
-    del t12, t13, t26
-    t27 = _runtime.poison(invalid | unreachable)
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t9
+    t22 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, m_z
+    t23 = n_z * t16 - d_z * 0.5
+    del d_z, n_z, t16
+    t24 = t22 - t23
+    t25 = t21 * t24
+    t26 = rho2 - t21
+    t27 = rho3 - t24
+    Delta = m_m * h
+    del h, m_m
+    t28 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t28)
+    del t28
+    t29 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del in_line, t10, t2
+    unreachable = np.logical_not(t29 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t29
+    t30 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
     A_21 = rho1 + A_11
-    t28 = t21 * A_21
-    t29 = t18 * A_21
-    t30 = t14 - t15
-    del t14, t15
-    t31 = t16 + t17
-    del t16, t17
-    t32 = t19 + t20
+    t31 = t24 * A_21
+    t32 = t21 * A_21
+    t33 = t15 + t17
+    del t15, t17
+    t34 = t19 + t20
     del t19, t20
-    t33 = t31 * t32
-    t34 = rho2 + t31
-    t35 = rho3 + t32
-    A_21_inner = rho1 - t30
-    t36 = t32 * A_21_inner
-    t37 = -(t30 * (t36 - t35 * A_21_inner) / Delta) + t27
-    t38 = t31 * A_21_inner
-    t39 = -(t30 * (t38 - t34 * A_21_inner) / Delta) + t27
+    t35 = t22 + t23
+    del t22, t23
+    t36 = t34 * t35
+    t37 = rho2 + t34
+    t38 = rho3 + t35
+    A_21_inner = rho1 - t33
+    t39 = t35 * A_21_inner
+    t40 = -(t33 * (t39 - t38 * A_21_inner) / Delta) + t30
+    t41 = t34 * A_21_inner
+    t42 = -(t33 * (t41 - t37 * A_21_inner) / Delta) + t30
     del A_21_inner
     return (
-        -(A_11 * (t22 - t23 * t24) / Delta) + t27,
-        -(t23 * (t22 + t18 * t24) / Delta) + t27,
-        -(t24 * (t22 + t21 * t23) / Delta) + t27,
-        A_11 * (t28 + t24 * A_21) / Delta + t27,
-        t23 * (t28 + A_11 * t24) / Delta + t27,
-        -(t24 * (t28 - A_11 * t21) / Delta) + t27,
-        A_11 * (t29 + t23 * A_21) / Delta + t27,
-        -(t23 * (t29 - A_11 * t18) / Delta) + t27,
-        t24 * (t29 + A_11 * t23) / Delta + t27,
-        -(t30 * (t33 - t34 * t35) / Delta) + t27,
-        t34 * (t33 - t31 * t35) / Delta + t27,
-        t35 * (t33 - t32 * t34) / Delta + t27,
-        t37,
-        t34 * (t36 + t30 * t35) / Delta + t27,
-        -(t35 * (t36 + t30 * t32) / Delta) + t27,
-        t39,
-        -(t34 * (t38 + t30 * t31) / Delta) + t27,
-        t35 * (t38 + t30 * t34) / Delta + t27,
+        -(A_11 * (t25 - t26 * t27) / Delta) + t30,
+        -(t26 * (t25 + t21 * t27) / Delta) + t30,
+        -(t27 * (t25 + t24 * t26) / Delta) + t30,
+        A_11 * (t31 + t27 * A_21) / Delta + t30,
+        t26 * (t31 + A_11 * t27) / Delta + t30,
+        -(t27 * (t31 - A_11 * t24) / Delta) + t30,
+        A_11 * (t32 + t26 * A_21) / Delta + t30,
+        -(t26 * (t32 - A_11 * t21) / Delta) + t30,
+        t27 * (t32 + A_11 * t26) / Delta + t30,
+        -(t33 * (t36 - t37 * t38) / Delta) + t30,
+        t37 * (t36 - t34 * t38) / Delta + t30,
+        t38 * (t36 - t35 * t37) / Delta + t30,
+        t40,
+        t37 * (t39 + t33 * t38) / Delta + t30,
+        -(t38 * (t39 + t33 * t35) / Delta) + t30,
+        t42,
+        -(t37 * (t41 + t33 * t34) / Delta) + t30,
+        t38 * (t41 + t33 * t37) / Delta + t30,
     )
 
 
 def _jacobian_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
-    over = 1.0 / u_u
-    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
-    m_z = rho1 * rho2
-    t2 = over * (rho2 * m_z)
-    t3 = over * (rho1 * m_z)
-    del m_z, over
-    nu = t2 * t2 + t3 * t3 + n_z * n_z
-    t4 = u_u * nu
-    part = 1.0 / t4
-    t5 = rho3 * rho3
-    t6 = u_u * t5 * part * 0.5
-    t7 = L * L - (nu * (t6 * t6) + u_u * 0.25)
-    slack = np.maximum(t7, 0.0)
+    t2 = rho3 * rho3
+    t3 = L * L - u_u * (1.0 + part * (t2 * t2)) * 0.25
+    slack = np.maximum(t3, 0.0)
     h = np.sqrt(part * slack)
+    t4 = product_x * h
+    t5 = t2 * part * 0.5
     del part
-    t8 = rho2 * n_z * h
-    t9 = rho1 * 0.5 + t2 * t6
-    A_11 = t8 - t9
-    t10 = n_z * t6
-    t11 = (rho1 * t3 + rho2 * t2) * h
-    del t2
-    t12 = t10 + t11
-    t13 = rho1 * n_z * h
-    del n_z
-    t14 = t3 * t6 - rho2 * 0.5
-    del t3, t6
-    t15 = t13 - t14
-    t16 = t12 * t15
-    t17 = rho3 - t12
-    t18 = rho2 - t15
-    Delta = t4 * h
-    del h, t4
-    t19 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t19)
-    del t19
+    t6 = rho1 * 0.5 + rho2 * product_z * t5
+    A_11 = t4 - t6
+    t7 = t5 * (rho1 * m_y + rho2 * product_x)
+    del product_x
+    t8 = product_z * h
+    t9 = t7 + t8
+    t10 = m_y * h
+    del m_y
+    t11 = t5 * (rho1 * product_z) - rho2 * 0.5
+    del product_z, t5
+    t12 = t10 - t11
+    t13 = t9 * t12
+    t14 = rho3 - t9
+    t15 = rho2 - t12
+    Delta = product_2 * h
+    del h
+    t16 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t16)
+    del t16
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t20 = size * size
-    t21 = 0.234375 * (L * size)
+    t17 = size * size
+    t18 = 0.234375 * (L * size)
     del size
-    t22 = (np.abs(0.0) <= t20 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t21) <= t7)
-    del t7
-    t23 = _runtime.poison(invalid | np.logical_not(t22))
-    del invalid, t22
+    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t3)
+    del t3
+    t20 = _runtime.poison(invalid | np.logical_not(t19))
+    del invalid, t19
     A_21 = rho1 + A_11
-    t24 = t12 * A_21
-    t25 = t15 * A_21
-    t26 = t8 + t9
-    del t8, t9
-    t27 = t10 - t11
+    t21 = t9 * A_21
+    t22 = t12 * A_21
+    t23 = t4 + t6
+    del t4, t6
+    t24 = t7 - t8
+    del t7, t8
+    t25 = t10 + t11
     del t10, t11
-    t28 = t13 + t14
-    del t13, t14
-    t29 = t27 * t28
-    t30 = rho3 - t27
-    t31 = rho2 + t28
-    A_21_inner = rho1 - t26
-    t32 = t27 * A_21_inner
-    t33 = t28 * A_21_inner
-    t34 = -(t26 * (t33 - t31 * A_21_inner) / Delta) + t23
-    t35 = _runtime.VANISHING * _runtime.VANISHING * t20
-    del t20
-    t36 = (u_u <= t35) | (u_u + (t1 + t5) <= t35) | (nu <= t35)
-    del nu, t1, t35, t5, u_u
+    t26 = t24 * t25
+    t27 = rho3 - t24
+    t28 = rho2 + t25
+    A_21_inner = rho1 - t23
+    t29 = t24 * A_21_inner
+    t30 = t25 * A_21_inner
+    t31 = -(t23 * (t30 - t28 * A_21_inner) / Delta) + t20
+    t32 = _runtime.VANISHING * _runtime.VANISHING
+    t33 = t17 * t32
+    v_v = t1 + t2
+    del t1, t2
+    t34 = u_u * v_v
+    slim = product_2 - t34 * 0.000244140625 <= _runtime.VANISHING * t34
+    del t34
+    t35 = (u_u <= t33) | (u_u + v_v <= t33) | slim | (product_2 <= t32 * (u_u * t17))
+    del product_2, slim, t17, t32, t33, u_u, v_v
     return (
-        -(A_11 * (t16 - t17 * t18) / Delta) + t23,
-        -(t18 * (t16 + t17 * t15) / Delta) + t23,
-        -(t17 * (t16 + t12 * t18) / Delta) + t23,
-        A_11 * (t24 + t17 * A_21) / Delta + t23,
-        t18 * (t24 + t17 * A_11) / Delta + t23,
-        -(t17 * (t24 - t12 * A_11) / Delta) + t23,
-        A_11 * (t25 + t18 * A_21) / Delta + t23,
-        -(t18 * (t25 - A_11 * t15) / Delta) + t23,
-        t17 * (t25 + A_11 * t18) / Delta + t23,
-        t26 * (t29 + t30 * t31) / Delta + t23,
-        -(t31 * (t29 + t30 * t28) / Delta) + t23,
-        -(t30 * (t29 - t27 * t31) / Delta) + t23,
-        t26 * (t32 + t30 * A_21_inner) / Delta + t23,
-        -(t31 * (t32 - t30 * t26) / Delta) + t23,
-        t30 * (t32 + t27 * t26) / Delta + t23,
-        t34,
-        -(t31 * (t33 + t26 * t28) / Delta) + t23,
-        t30 * (t33 + t26 * t31) / Delta + t23,
-        t36 | (slack <= _runtime.VANISHING * t21),
+        -(A_11 * (t13 - t14 * t15) / Delta) + t20,
+        -(t15 * (t13 + t14 * t12) / Delta) + t20,
+        -(t14 * (t13 + t9 * t15) / Delta) + t20,
+        A_11 * (t21 + t14 * A_21) / Delta + t20,
+        t15 * (t21 + t14 * A_11) / Delta + t20,
+        -(t14 * (t21 - t9 * A_11) / Delta) + t20,
+        A_11 * (t22 + t15 * A_21) / Delta + t20,
+        -(t15 * (t22 - A_11 * t12) / Delta) + t20,
+        t14 * (t22 + A_11 * t15) / Delta + t20,
+        t23 * (t26 + t27 * t28) / Delta + t20,
+        -(t28 * (t26 + t27 * t25) / Delta) + t20,
+        -(t27 * (t26 - t24 * t28) / Delta) + t20,
+        t23 * (t29 + t27 * A_21_inner) / Delta + t20,
+        -(t28 * (t29 - t27 * t23) / Delta) + t20,
+        t27 * (t29 + t24 * t23) / Delta + t20,
+        t31,
+        -(t28 * (t30 + t23 * t25) / Delta) + t20,
+        t27 * (t30 + t23 * t28) / Delta + t20,
+        t35 | (slack <= _runtime.VANISHING * t18),
     )
 
 
@@ -1412,7 +1466,7 @@ _JACOBIAN = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_jacobian_common,
-    size=_runtime.Size((0, 1, 2, 3), (), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((0, 1, 2, 3), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1453,139 +1507,148 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 def _determinant(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
-    v_v = t1 + rho3 * rho3
-    del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t2 = size * size
-    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
-    all_same = u_u + v_v <= t3
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t3
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
+    t3 = _runtime.VANISHING * _runtime.VANISHING
+    t4 = t2 * t3
+    same = u_u <= t4
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, whole, -rho1)
-    t4 = _runtime.select(same, rho2, 0.0)
-    m_z = a_x * t4 + rho1 * d_y
-    d_z = _runtime.select(same, rho3, 0.0)
     t5 = _runtime.select(same, 0.0, rho3)
-    del same
-    t6 = a_x * t5 + rho1 * d_z
-    t7 = over * (d_y * m_z + d_z * t6)
-    m_x = d_y * t5 - d_z * t4
-    n_y = over * (a_x * m_z - d_z * m_x)
-    del m_z
-    n_z = over * (a_x * t6 + d_y * m_x)
-    del m_x, over, t6
-    nu = t7 * t7 + n_y * n_y + n_z * n_z
-    in_line = nu <= t3
+    t6 = _runtime.select(same, rho2, 0.0)
+    d_z = _runtime.select(same, rho3, 0.0)
+    product_x = d_y * t5 - t6 * d_z
+    v_v = t1 + rho3 * rho3
+    del t1
+    all_same = u_u + v_v <= t4
+    del t4
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    a_x = _runtime.select(all_same, whole, -rho1)
+    t7 = a_x * t5 + rho1 * d_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t8 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    del t8
+    over = 1.0 / mu
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
+    g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
-    g_1 = d_z * whole
-    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
     g_2 = whole * (d_y + a_x * s_w)
-    del s_w, whole
-    t8 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / t8)
-    t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
-    del t4, t5
-    t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
-    t11 = _runtime.select(all_same, 0.0, nu * (t10 * t10) + mu * 0.25)
-    del all_same, mu, nu
-    t12 = L * L - t11
-    del t11
-    slack = np.maximum(t12, 0.0)
-    t13 = 0.234375 * (L * size)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    part = 1.0 / w_w
+    del w_w
+    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
+    del t5, t6
+    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
+    del all_same, mu, t11
+    t13 = L * L - t12
+    del t12
+    slack = np.maximum(t13, 0.0)
+    t14 = 0.234375 * (L * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t13, 0.0, np.sqrt(part * slack))
-    del part, slack
-    t14 = w_x * h
-    del w_x
-    t15 = t7 * t10 - rho1 * 0.5
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
-    del g_1
-    t16 = w_y * h
-    del w_y
-    t17 = n_y * t10 - d_y * 0.5
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
-    del a_x, d_y, g_2, n_y, t7
-    t18 = w_z * h
-    del w_z
-    t19 = n_z * t10 - d_z * 0.5
-    del d_z, n_z, t10
-    t20 = (t14 + t15) * (rho2 - (t16 - t17)) * (rho3 - (t18 - t19))
-    Delta = t8 * h
-    del h, t8
-    t21 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t21)
-    del t21
-    t22 = np.abs(_runtime.select(in_line, -t9, 0.0)) <= t2 * _runtime.FEASIBILITY
-    del in_line, t2, t9
-    unreachable = np.logical_not(t22 & (-(_runtime.FEASIBILITY * t13) <= t12))
-    del t12, t13, t22
-    t23 = _runtime.poison(invalid | unreachable)
+    h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
+    del slack
+    t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t16 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
+    del part
+    t17 = rho1 * 0.5 - t9 * t16
+    t18 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
+    del t7
+    t19 = h * _runtime.select(in_line, g_1, -t18)
+    del g_1, t18
+    t20 = n_y * t16 - d_y * 0.5
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t9
+    t21 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, m_z
+    t22 = n_z * t16 - d_z * 0.5
+    del d_z, n_z, t16
+    t23 = (t15 - t17) * (rho2 - (t19 - t20)) * (rho3 - (t21 - t22))
+    Delta = m_m * h
+    del h, m_m
+    t24 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t24)
+    del t24
+    t25 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del in_line, t10, t2
+    unreachable = np.logical_not(t25 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t25
+    t26 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    t24 = (t14 - t15) * (rho2 + (t16 + t17)) * (rho3 + (t18 + t19))
-    del t14, t15, t16, t17, t18, t19
+    t27 = (t15 + t17) * (rho2 + (t19 + t20)) * (rho3 + (t21 + t22))
+    del t15, t17, t19, t20, t21, t22
     return (
-        t20 / Delta + t23,
-        t24 / Delta + t23,
+        t23 / Delta + t26,
+        t27 / Delta + t26,
     )
 
 
 def _determinant_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
-    t1 = rho1 * rho1
-    u_u = t1 + rho2 * rho2
-    over = 1.0 / u_u
-    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
-    t2 = rho3 * rho3
-    m_z = rho1 * rho2
-    t3 = over * (rho2 * m_z)
-    t4 = over * (rho1 * m_z)
-    del m_z, over
-    nu = t3 * t3 + t4 * t4 + n_z * n_z
-    t5 = u_u * nu
-    part = 1.0 / t5
-    t6 = u_u * t2 * part * 0.5
-    t7 = n_z * t6
-    t8 = L * L - (nu * (t6 * t6) + u_u * 0.25)
-    slack = np.maximum(t8, 0.0)
+    t1 = rho3 * rho3
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
+    t2 = t1 * part * 0.5
+    t3 = t2 * (rho1 * m_y + rho2 * product_x)
+    t4 = rho1 * rho1
+    u_u = t4 + rho2 * rho2
+    t5 = L * L - u_u * (1.0 + part * (t1 * t1)) * 0.25
+    slack = np.maximum(t5, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t9 = (rho1 * t4 + rho2 * t3) * h
-    t10 = rho2 * n_z * h
-    t11 = rho1 * 0.5 + t3 * t6
-    del t3
-    t12 = rho1 * n_z * h
-    del n_z
-    t13 = t4 * t6 - rho2 * 0.5
-    del t4, t6
-    t14 = (rho3 - (t7 + t9)) * (t10 - t11) * (rho2 - (t12 - t13))
-    Delta = t5 * h
-    del h, t5
-    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t15)
-    del t15
+    t6 = product_z * h
+    t7 = product_x * h
+    del product_x
+    t8 = rho1 * 0.5 + rho2 * product_z * t2
+    t9 = m_y * h
+    del m_y
+    t10 = t2 * (rho1 * product_z) - rho2 * 0.5
+    del product_z, t2
+    t11 = (rho3 - (t3 + t6)) * (t7 - t8) * (rho2 - (t9 - t10))
+    Delta = product_2 * h
+    del h
+    t12 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t12)
+    del t12
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t16 = size * size
-    t17 = 0.234375 * (L * size)
+    t13 = size * size
+    t14 = 0.234375 * (L * size)
     del size
-    t18 = (np.abs(0.0) <= t16 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t17) <= t8)
-    del t8
-    t19 = _runtime.poison(invalid | np.logical_not(t18))
-    del invalid, t18
-    t20 = (rho3 - (t7 - t9)) * (t10 + t11) * (rho2 + (t12 + t13))
-    del t10, t11, t12, t13, t7, t9
-    t21 = _runtime.VANISHING * _runtime.VANISHING * t16
-    del t16
-    t22 = (u_u <= t21) | (u_u + (t1 + t2) <= t21) | (nu <= t21)
-    del nu, t1, t2, t21, u_u
+    t15 = (np.abs(0.0) <= t13 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t14) <= t5)
+    del t5
+    t16 = _runtime.poison(invalid | np.logical_not(t15))
+    del invalid, t15
+    t17 = (rho3 - (t3 - t6)) * (t7 + t8) * (rho2 + (t9 + t10))
+    del t10, t3, t6, t7, t8, t9
+    t18 = _runtime.VANISHING * _runtime.VANISHING
+    t19 = t13 * t18
+    v_v = t4 + t1
+    del t1, t4
+    t20 = u_u * v_v
+    slim = product_2 - t20 * 0.000244140625 <= _runtime.VANISHING * t20
+    del t20
+    t21 = (u_u <= t19) | (u_u + v_v <= t19) | slim | (product_2 <= t18 * (u_u * t13))
+    del product_2, slim, t13, t18, t19, u_u, v_v
     return (
-        t14 / Delta + t19,
-        t20 / Delta + t19,
-        t22 | (slack <= _runtime.VANISHING * t17),
+        t11 / Delta + t16,
+        t17 / Delta + t16,
+        t21 | (slack <= _runtime.VANISHING * t14),
     )
 
 
@@ -1597,7 +1660,7 @@ _DETERMINANT = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_determinant_common,
-    size=_runtime.Size((0, 1, 2, 3), (), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((0, 1, 2, 3), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1637,144 +1700,153 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 def _singularities(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
-    v_v = t1 + rho3 * rho3
-    del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t2 = size * size
-    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
-    all_same = u_u + v_v <= t3
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t3
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
+    t3 = _runtime.VANISHING * _runtime.VANISHING
+    t4 = t2 * t3
+    same = u_u <= t4
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, whole, -rho1)
-    t4 = _runtime.select(same, rho2, 0.0)
-    m_z = a_x * t4 + rho1 * d_y
-    d_z = _runtime.select(same, rho3, 0.0)
     t5 = _runtime.select(same, 0.0, rho3)
-    del same
-    t6 = a_x * t5 + rho1 * d_z
-    t7 = over * (d_y * m_z + d_z * t6)
-    m_x = d_y * t5 - d_z * t4
-    n_y = over * (a_x * m_z - d_z * m_x)
-    del m_z
-    n_z = over * (a_x * t6 + d_y * m_x)
-    del m_x, over, t6
-    nu = t7 * t7 + n_y * n_y + n_z * n_z
-    in_line = nu <= t3
+    t6 = _runtime.select(same, rho2, 0.0)
+    d_z = _runtime.select(same, rho3, 0.0)
+    product_x = d_y * t5 - t6 * d_z
+    v_v = t1 + rho3 * rho3
+    del t1
+    all_same = u_u + v_v <= t4
+    del t4
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    a_x = _runtime.select(all_same, whole, -rho1)
+    t7 = a_x * t5 + rho1 * d_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t8 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    del t8
+    over = 1.0 / mu
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
+    g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
-    g_1 = d_z * whole
-    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
     g_2 = whole * (d_y + a_x * s_w)
-    del s_w, whole
-    t8 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / t8)
-    t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
-    del t4, t5
-    t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
-    t11 = _runtime.select(all_same, 0.0, nu * (t10 * t10) + mu * 0.25)
-    del all_same, mu, nu
-    t12 = L * L - t11
-    del t11
-    slack = np.maximum(t12, 0.0)
-    t13 = 0.234375 * (L * size)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    part = 1.0 / w_w
+    del w_w
+    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
+    del t5, t6
+    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
+    del all_same, mu, t11
+    t13 = L * L - t12
+    del t12
+    slack = np.maximum(t13, 0.0)
+    t14 = 0.234375 * (L * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t13, 0.0, np.sqrt(part * slack))
-    del part, slack
-    t14 = w_x * h
-    del w_x
-    t15 = t7 * t10 - rho1 * 0.5
-    t16 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t16)
-    del t16
-    t17 = np.abs(_runtime.select(in_line, -t9, 0.0)) <= t2 * _runtime.FEASIBILITY
-    del t2, t9
-    unreachable = np.logical_not(t17 & (-(_runtime.FEASIBILITY * t13) <= t12))
-    del t12, t13, t17
-    t18 = _runtime.poison(invalid | unreachable)
+    h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
+    del slack
+    t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t16 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
+    del part
+    t17 = rho1 * 0.5 - t9 * t16
+    t18 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t18)
+    del t18
+    t19 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del t10, t2
+    unreachable = np.logical_not(t19 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t19
+    t20 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
-    del g_1
-    t19 = w_y * h
-    del w_y
-    t20 = n_y * t10 - d_y * 0.5
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
-    del a_x, d_y, g_2, in_line, n_y, t7
-    t21 = w_z * h
-    del w_z
-    t22 = n_z * t10 - d_z * 0.5
-    del d_z, n_z, t10
-    Delta = t8 * h
-    del h, t8
+    t21 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
+    del t7
+    t22 = h * _runtime.select(in_line, g_1, -t21)
+    del g_1, t21
+    t23 = n_y * t16 - d_y * 0.5
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t9
+    t24 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, in_line, m_z
+    t25 = n_z * t16 - d_z * 0.5
+    del d_z, n_z, t16
+    Delta = m_m * h
+    del h, m_m
     return (
-        t14 + t15 + t18,
-        t19 - t20 - rho2 + t18,
-        t21 - t22 - rho3 + t18,
-        Delta + t18,
-        t15 - t14 + t18,
-        -(rho2 + (t19 + t20)) + t18,
-        -(rho3 + (t21 + t22)) + t18,
-        -Delta + t18,
+        t15 - t17 + t20,
+        t22 - t23 - rho2 + t20,
+        t24 - t25 - rho3 + t20,
+        Delta + t20,
+        -(t15 + t17) + t20,
+        -(rho2 + (t22 + t23)) + t20,
+        -(rho3 + (t24 + t25)) + t20,
+        -Delta + t20,
     )
 
 
 def _singularities_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
-    over = 1.0 / u_u
-    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
-    m_z = rho1 * rho2
-    t2 = over * (rho2 * m_z)
-    t3 = over * (rho1 * m_z)
-    del m_z, over
-    nu = t2 * t2 + t3 * t3 + n_z * n_z
-    t4 = u_u * nu
-    part = 1.0 / t4
-    t5 = rho3 * rho3
-    t6 = u_u * t5 * part * 0.5
-    t7 = L * L - (nu * (t6 * t6) + u_u * 0.25)
-    slack = np.maximum(t7, 0.0)
+    t2 = rho3 * rho3
+    t3 = L * L - u_u * (1.0 + part * (t2 * t2)) * 0.25
+    slack = np.maximum(t3, 0.0)
     h = np.sqrt(part * slack)
+    t4 = product_x * h
+    t5 = t2 * part * 0.5
     del part
-    t8 = rho2 * n_z * h
-    t9 = rho1 * 0.5 + t2 * t6
-    t10 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t10)
-    del t10
-    size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t11 = size * size
-    t12 = 0.234375 * (L * size)
-    del size
-    t13 = (np.abs(0.0) <= t11 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t12) <= t7)
+    t6 = rho1 * 0.5 + rho2 * product_z * t5
+    t7 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t7)
     del t7
-    t14 = _runtime.poison(invalid | np.logical_not(t13))
-    del invalid, t13
-    t15 = rho1 * n_z * h
-    t16 = t3 * t6 - rho2 * 0.5
-    t17 = n_z * t6
-    del n_z, t6
-    t18 = (rho1 * t3 + rho2 * t2) * h
-    del t2, t3
-    Delta = t4 * h
-    del h, t4
-    t19 = _runtime.VANISHING * _runtime.VANISHING * t11
-    del t11
-    t20 = (u_u <= t19) | (u_u + (t1 + t5) <= t19) | (nu <= t19)
-    del nu, t1, t19, t5, u_u
+    size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t8 = size * size
+    t9 = 0.234375 * (L * size)
+    del size
+    t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t3)
+    del t3
+    t11 = _runtime.poison(invalid | np.logical_not(t10))
+    del invalid, t10
+    t12 = m_y * h
+    t13 = t5 * (rho1 * product_z) - rho2 * 0.5
+    t14 = t5 * (rho1 * m_y + rho2 * product_x)
+    del m_y, product_x, t5
+    t15 = product_z * h
+    del product_z
+    Delta = product_2 * h
+    del h
+    t16 = _runtime.VANISHING * _runtime.VANISHING
+    t17 = t8 * t16
+    v_v = t1 + t2
+    del t1, t2
+    t18 = u_u * v_v
+    slim = product_2 - t18 * 0.000244140625 <= _runtime.VANISHING * t18
+    del t18
+    t19 = (u_u <= t17) | (u_u + v_v <= t17) | slim | (product_2 <= t16 * (u_u * t8))
+    del product_2, slim, t16, t17, t8, u_u, v_v
     return (
-        t8 - t9 + t14,
-        t15 - t16 - rho2 + t14,
-        t17 + t18 - rho3 + t14,
-        Delta + t14,
-        -(t8 + t9) + t14,
-        -(rho2 + (t15 + t16)) + t14,
-        t17 - t18 - rho3 + t14,
-        -Delta + t14,
-        t20 | (slack <= _runtime.VANISHING * t12),
+        t4 - t6 + t11,
+        t12 - t13 - rho2 + t11,
+        t14 + t15 - rho3 + t11,
+        Delta + t11,
+        -(t4 + t6) + t11,
+        -(rho2 + (t12 + t13)) + t11,
+        t14 - t15 - rho3 + t11,
+        -Delta + t11,
+        t19 | (slack <= _runtime.VANISHING * t9),
     )
 
 
@@ -1786,7 +1858,7 @@ _SINGULARITIES = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_singularities_common,
-    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((0, 1, 2, 3), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1826,275 +1898,284 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 def _condition_number(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
-    v_v = t1 + rho3 * rho3
-    del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t2 = size * size
-    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
-    all_same = u_u + v_v <= t3
-    whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t3
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
+    t3 = _runtime.VANISHING * _runtime.VANISHING
+    t4 = t2 * t3
+    same = u_u <= t4
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, whole, -rho1)
-    t4 = _runtime.select(same, rho2, 0.0)
-    m_z = a_x * t4 + rho1 * d_y
-    d_z = _runtime.select(same, rho3, 0.0)
     t5 = _runtime.select(same, 0.0, rho3)
-    del same
-    t6 = a_x * t5 + rho1 * d_z
-    t7 = over * (d_y * m_z + d_z * t6)
-    m_x = d_y * t5 - d_z * t4
-    n_y = over * (a_x * m_z - d_z * m_x)
-    del m_z
-    n_z = over * (a_x * t6 + d_y * m_x)
-    del m_x, over, t6
-    nu = t7 * t7 + n_y * n_y + n_z * n_z
-    in_line = nu <= t3
+    t6 = _runtime.select(same, rho2, 0.0)
+    d_z = _runtime.select(same, rho3, 0.0)
+    product_x = d_y * t5 - t6 * d_z
+    v_v = t1 + rho3 * rho3
+    del t1
+    all_same = u_u + v_v <= t4
+    del t4
+    whole = _runtime.select(size == 0.0, 1.0, size)
+    a_x = _runtime.select(all_same, whole, -rho1)
+    t7 = a_x * t5 + rho1 * d_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t8 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    del t8
+    over = 1.0 / mu
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
+    g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
-    g_1 = d_z * whole
-    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del product_x
     g_2 = whole * (d_y + a_x * s_w)
-    del s_w, whole
-    t8 = mu * nu
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / t8)
-    t9 = t4 * (d_y - t4) + t5 * (d_z - t5)
-    del t4, t5
-    t10 = _runtime.select(in_line, 0.0, mu * part * t9 * 0.5)
-    t11 = _runtime.select(all_same, 0.0, nu * (t10 * t10) + mu * 0.25)
-    del all_same, mu, nu
-    t12 = L * L - t11
-    del t11
-    slack = np.maximum(t12, 0.0)
-    t13 = 0.234375 * (L * size)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    part = 1.0 / w_w
+    del w_w
+    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
+    del t5, t6
+    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
+    del all_same, mu, t11
+    t13 = L * L - t12
+    del t12
+    slack = np.maximum(t13, 0.0)
+    t14 = 0.234375 * (L * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t13, 0.0, np.sqrt(part * slack))
-    del part, slack
-    t14 = w_x * h
-    del w_x
-    t15 = t7 * t10 - rho1 * 0.5
-    A_11 = t14 + t15
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
-    del g_1
-    t16 = w_y * h
-    del w_y
-    t17 = n_y * t10 - d_y * 0.5
-    t18 = t16 - t17
-    t19 = t18 * t18
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
-    del a_x, d_y, g_2, n_y, t7
-    t20 = w_z * h
-    del w_z
-    t21 = n_z * t10 - d_z * 0.5
-    del d_z, n_z, t10
-    t22 = t20 - t21
-    t23 = t22 * t22
+    h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
+    del slack
+    t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del m_x, s_w
+    t16 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
+    del part
+    t17 = rho1 * 0.5 - t9 * t16
+    A_11 = t15 - t17
+    t18 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
+    del t7
+    t19 = h * _runtime.select(in_line, g_1, -t18)
+    del g_1, t18
+    t20 = n_y * t16 - d_y * 0.5
+    t21 = t19 - t20
+    t22 = t21 * t21
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, d_y, n_y, over, product_z, slim, t9
+    t23 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, m_z
+    t24 = n_z * t16 - d_z * 0.5
+    del d_z, n_z, t16
+    t25 = t23 - t24
+    t26 = t25 * t25
     A_21 = rho1 + A_11
-    t24 = A_21 * A_21
-    t25 = rho2 - t18
-    t26 = A_11 * A_11 + t19 + t23 + (t23 + t24 + t25 * t25)
-    del t23
-    t27 = rho3 - t22
-    t28 = t18 * A_21
-    t29 = A_11 * t18 - t28
-    t30 = t22 * A_21
-    t31 = A_11 * t22 - t30
-    t32 = t28 + A_11 * t25
-    t33 = t30 + A_11 * t27
+    t27 = A_21 * A_21
+    t28 = rho2 - t21
+    t29 = A_11 * A_11 + t22 + t26 + (t26 + t27 + t28 * t28)
+    del t26
+    t30 = rho3 - t25
+    t31 = t21 * A_21
+    t32 = A_11 * t21 - t31
+    t33 = t25 * A_21
+    t34 = A_11 * t25 - t33
+    t35 = t31 + A_11 * t28
+    t36 = t33 + A_11 * t30
     del A_11
-    t34 = t29 * t29 + t31 * t31 + t32 * t32 + t33 * t33
-    del t29, t31, t32, t33
-    t35 = t18 * t22
-    t36 = t35 - t25 * t27
-    t37 = t35 + t18 * t27
-    del t18
-    t38 = t35 + t22 * t25
-    del t22, t35
-    t39 = t28 + A_21 * t25
-    del t25, t28
-    t40 = t34 + t36 * t36 + t37 * t37 + t38 * t38 + t39 * t39
-    del t34, t36, t37, t38, t39
-    t41 = t30 + A_21 * t27
-    del A_21, t30
-    t42 = (t26 + (t19 + t24 + t27 * t27)) * (t40 + t41 * t41)
-    del t19, t24, t26, t27, t40, t41
-    t43 = 3.0 * (t8 * h)
-    del h, t8
-    t44 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t44)
-    del t44
-    t45 = np.abs(_runtime.select(in_line, -t9, 0.0)) <= t2 * _runtime.FEASIBILITY
-    del in_line, t2, t9
-    unreachable = np.logical_not(t45 & (-(_runtime.FEASIBILITY * t13) <= t12))
-    del t12, t13, t45
-    t46 = _runtime.poison(invalid | unreachable)
-    del invalid, unreachable
-    t47 = t14 - t15
-    del t14, t15
-    t48 = t16 + t17
-    del t16, t17
-    t49 = t48 * t48
-    t50 = t20 + t21
-    del t20, t21
-    t51 = t50 * t50
-    A_21_inner = rho1 - t47
-    t52 = A_21_inner * A_21_inner
-    t53 = rho2 + t48
-    t54 = t47 * t47 + t49 + t51 + (t51 + t52 + t53 * t53)
-    del t51
-    t55 = rho3 + t50
-    t56 = t48 * A_21_inner
-    t57 = t47 * t48 + t56
-    t58 = t50 * A_21_inner
-    t59 = t47 * t50 + t58
-    t60 = t56 + t47 * t53
-    t61 = t58 + t47 * t55
+    t37 = t32 * t32 + t34 * t34 + t35 * t35 + t36 * t36
+    del t32, t34, t35, t36
+    t38 = t21 * t25
+    t39 = t38 - t28 * t30
+    t40 = t38 + t21 * t30
+    del t21
+    t41 = t38 + t25 * t28
+    del t25, t38
+    t42 = t31 + A_21 * t28
+    del t28, t31
+    t43 = t37 + t39 * t39 + t40 * t40 + t41 * t41 + t42 * t42
+    del t37, t39, t40, t41, t42
+    t44 = t33 + A_21 * t30
+    del A_21, t33
+    t45 = (t29 + (t22 + t27 + t30 * t30)) * (t43 + t44 * t44)
+    del t22, t27, t29, t30, t43, t44
+    t46 = 3.0 * (m_m * h)
+    del h, m_m
+    t47 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t47)
     del t47
-    t62 = t57 * t57 + t59 * t59 + t60 * t60 + t61 * t61
-    del t57, t59, t60, t61
-    t63 = t48 * t50
-    t64 = t63 - t53 * t55
-    t65 = t63 - t48 * t55
-    del t48
-    t66 = t63 - t50 * t53
-    del t50, t63
-    t67 = t56 - A_21_inner * t53
-    del t53, t56
-    t68 = t62 + t64 * t64 + t65 * t65 + t66 * t66 + t67 * t67
-    del t62, t64, t65, t66, t67
-    t69 = t58 - A_21_inner * t55
-    del A_21_inner, t58
-    t70 = (t54 + (t49 + t52 + t55 * t55)) * (t68 + t69 * t69)
-    del t49, t52, t54, t55, t68, t69
+    t48 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del in_line, t10, t2
+    unreachable = np.logical_not(t48 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t48
+    t49 = _runtime.poison(invalid | unreachable)
+    del invalid, unreachable
+    t50 = t15 + t17
+    del t15, t17
+    t51 = t19 + t20
+    del t19, t20
+    t52 = t51 * t51
+    t53 = t23 + t24
+    del t23, t24
+    t54 = t53 * t53
+    A_21_inner = rho1 - t50
+    t55 = A_21_inner * A_21_inner
+    t56 = rho2 + t51
+    t57 = t50 * t50 + t52 + t54 + (t54 + t55 + t56 * t56)
+    del t54
+    t58 = rho3 + t53
+    t59 = t51 * A_21_inner
+    t60 = t50 * t51 + t59
+    t61 = t53 * A_21_inner
+    t62 = t50 * t53 + t61
+    t63 = t59 + t50 * t56
+    t64 = t61 + t50 * t58
+    del t50
+    t65 = t60 * t60 + t62 * t62 + t63 * t63 + t64 * t64
+    del t60, t62, t63, t64
+    t66 = t51 * t53
+    t67 = t66 - t56 * t58
+    t68 = t66 - t51 * t58
+    del t51
+    t69 = t66 - t53 * t56
+    del t53, t66
+    t70 = t59 - A_21_inner * t56
+    del t56, t59
+    t71 = t65 + t67 * t67 + t68 * t68 + t69 * t69 + t70 * t70
+    del t65, t67, t68, t69, t70
+    t72 = t61 - A_21_inner * t58
+    del A_21_inner, t61
+    t73 = (t57 + (t52 + t55 + t58 * t58)) * (t71 + t72 * t72)
+    del t52, t55, t57, t58, t71, t72
     return (
-        np.sqrt(t42) / t43 + t46,
-        np.sqrt(t70) / t43 + t46,
+        np.sqrt(t45) / t46 + t49,
+        np.sqrt(t73) / t46 + t49,
     )
 
 
 def _condition_number_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
-    t1 = rho1 * rho1
-    u_u = t1 + rho2 * rho2
-    over = 1.0 / u_u
-    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
-    t2 = rho3 * rho3
-    m_z = rho1 * rho2
-    t3 = over * (rho2 * m_z)
-    t4 = over * (rho1 * m_z)
-    del m_z, over
-    nu = t3 * t3 + t4 * t4 + n_z * n_z
-    t5 = u_u * nu
-    part = 1.0 / t5
-    t6 = u_u * t2 * part * 0.5
-    t7 = n_z * t6
-    t8 = L * L - (nu * (t6 * t6) + u_u * 0.25)
-    slack = np.maximum(t8, 0.0)
+    t1 = rho3 * rho3
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
+    t2 = t1 * part * 0.5
+    t3 = t2 * (rho1 * m_y + rho2 * product_x)
+    t4 = rho1 * rho1
+    u_u = t4 + rho2 * rho2
+    t5 = L * L - u_u * (1.0 + part * (t1 * t1)) * 0.25
+    slack = np.maximum(t5, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t9 = (rho1 * t4 + rho2 * t3) * h
-    t10 = t7 + t9
-    t11 = t10 * t10
-    t12 = rho2 * n_z * h
-    t13 = rho1 * 0.5 + t3 * t6
-    del t3
-    A_11 = t12 - t13
-    t14 = rho1 * n_z * h
-    del n_z
-    t15 = t4 * t6 - rho2 * 0.5
-    del t4, t6
-    t16 = t14 - t15
-    t17 = t16 * t16
+    t6 = product_z * h
+    t7 = t3 + t6
+    t8 = t7 * t7
+    t9 = product_x * h
+    del product_x
+    t10 = rho1 * 0.5 + rho2 * product_z * t2
+    A_11 = t9 - t10
+    t11 = m_y * h
+    del m_y
+    t12 = t2 * (rho1 * product_z) - rho2 * 0.5
+    del product_z, t2
+    t13 = t11 - t12
+    t14 = t13 * t13
     A_21 = rho1 + A_11
-    t18 = A_21 * A_21
-    t19 = rho2 - t16
-    t20 = t11 + A_11 * A_11 + t17 + (t11 + t18 + t19 * t19)
-    del t11
-    t21 = rho3 - t10
-    t22 = t16 * A_21
-    t23 = A_11 * t16 - t22
-    t24 = t10 * A_21
-    t25 = t10 * A_11 - t24
-    t26 = t22 + A_11 * t19
-    t27 = t24 + t21 * A_11
-    del A_11
-    t28 = t23 * t23 + t25 * t25 + t26 * t26 + t27 * t27
-    del t23, t25, t26, t27
-    t29 = t10 * t16
-    t30 = t29 - t21 * t19
-    t31 = t29 + t21 * t16
-    del t16
-    t32 = t29 + t10 * t19
-    del t10, t29
-    t33 = t22 + A_21 * t19
-    del t19, t22
-    t34 = t28 + t30 * t30 + t31 * t31 + t32 * t32 + t33 * t33
-    del t28, t30, t31, t32, t33
-    t35 = t24 + t21 * A_21
-    del A_21, t24
-    t36 = (t20 + (t21 * t21 + t17 + t18)) * (t34 + t35 * t35)
-    del t17, t18, t20, t21, t34, t35
-    t37 = 3.0 * (t5 * h)
-    del h, t5
-    t38 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t38)
-    del t38
-    size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t39 = size * size
-    t40 = 0.234375 * (L * size)
-    del size
-    t41 = (np.abs(0.0) <= t39 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t40) <= t8)
+    t15 = A_21 * A_21
+    t16 = rho2 - t13
+    t17 = t8 + A_11 * A_11 + t14 + (t8 + t15 + t16 * t16)
     del t8
-    t42 = _runtime.poison(invalid | np.logical_not(t41))
-    del invalid, t41
-    t43 = t7 - t9
-    del t7, t9
+    t18 = rho3 - t7
+    t19 = t13 * A_21
+    t20 = A_11 * t13 - t19
+    t21 = t7 * A_21
+    t22 = t7 * A_11 - t21
+    t23 = t19 + A_11 * t16
+    t24 = t21 + t18 * A_11
+    del A_11
+    t25 = t20 * t20 + t22 * t22 + t23 * t23 + t24 * t24
+    del t20, t22, t23, t24
+    t26 = t7 * t13
+    t27 = t26 - t18 * t16
+    t28 = t26 + t18 * t13
+    del t13
+    t29 = t26 + t7 * t16
+    del t26, t7
+    t30 = t19 + A_21 * t16
+    del t16, t19
+    t31 = t25 + t27 * t27 + t28 * t28 + t29 * t29 + t30 * t30
+    del t25, t27, t28, t29, t30
+    t32 = t21 + t18 * A_21
+    del A_21, t21
+    t33 = (t17 + (t18 * t18 + t14 + t15)) * (t31 + t32 * t32)
+    del t14, t15, t17, t18, t31, t32
+    t34 = 3.0 * (product_2 * h)
+    del h
+    t35 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t35)
+    del t35
+    size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t36 = size * size
+    t37 = 0.234375 * (L * size)
+    del size
+    t38 = (np.abs(0.0) <= t36 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t37) <= t5)
+    del t5
+    t39 = _runtime.poison(invalid | np.logical_not(t38))
+    del invalid, t38
+    t40 = t3 - t6
+    del t3, t6
+    t41 = t40 * t40
+    t42 = t9 + t10
+    del t10, t9
+    t43 = t11 + t12
+    del t11, t12
     t44 = t43 * t43
-    t45 = t12 + t13
-    del t12, t13
-    t46 = t14 + t15
-    del t14, t15
-    t47 = t46 * t46
-    A_21_inner = rho1 - t45
-    t48 = A_21_inner * A_21_inner
-    t49 = rho2 + t46
-    t50 = t44 + t45 * t45 + t47 + (t44 + t48 + t49 * t49)
-    del t44
-    t51 = rho3 - t43
-    t52 = t46 * A_21_inner
-    t53 = t45 * t46 + t52
-    t54 = t43 * A_21_inner
-    t55 = t43 * t45 + t54
-    t56 = t52 + t45 * t49
-    t57 = t54 - t51 * t45
-    del t45
-    t58 = t53 * t53 + t55 * t55 + t56 * t56 + t57 * t57
-    del t53, t55, t56, t57
-    t59 = t43 * t46
-    t60 = t59 + t51 * t49
-    t61 = t59 + t51 * t46
-    del t46
-    t62 = t59 - t43 * t49
-    del t43, t59
-    t63 = t52 - A_21_inner * t49
-    del t49, t52
-    t64 = t58 + t60 * t60 + t61 * t61 + t62 * t62 + t63 * t63
-    del t58, t60, t61, t62, t63
-    t65 = t54 + t51 * A_21_inner
-    del A_21_inner, t54
-    t66 = (t50 + (t51 * t51 + t47 + t48)) * (t64 + t65 * t65)
-    del t47, t48, t50, t51, t64, t65
-    t67 = _runtime.VANISHING * _runtime.VANISHING * t39
-    del t39
-    t68 = (u_u <= t67) | (u_u + (t1 + t2) <= t67) | (nu <= t67)
-    del nu, t1, t2, t67, u_u
+    A_21_inner = rho1 - t42
+    t45 = A_21_inner * A_21_inner
+    t46 = rho2 + t43
+    t47 = t41 + t42 * t42 + t44 + (t41 + t45 + t46 * t46)
+    del t41
+    t48 = rho3 - t40
+    t49 = t43 * A_21_inner
+    t50 = t42 * t43 + t49
+    t51 = t40 * A_21_inner
+    t52 = t40 * t42 + t51
+    t53 = t49 + t42 * t46
+    t54 = t51 - t48 * t42
+    del t42
+    t55 = t50 * t50 + t52 * t52 + t53 * t53 + t54 * t54
+    del t50, t52, t53, t54
+    t56 = t40 * t43
+    t57 = t56 + t48 * t46
+    t58 = t56 + t48 * t43
+    del t43
+    t59 = t56 - t40 * t46
+    del t40, t56
+    t60 = t49 - A_21_inner * t46
+    del t46, t49
+    t61 = t55 + t57 * t57 + t58 * t58 + t59 * t59 + t60 * t60
+    del t55, t57, t58, t59, t60
+    t62 = t51 + t48 * A_21_inner
+    del A_21_inner, t51
+    t63 = (t47 + (t48 * t48 + t44 + t45)) * (t61 + t62 * t62)
+    del t44, t45, t47, t48, t61, t62
+    t64 = _runtime.VANISHING * _runtime.VANISHING
+    t65 = t36 * t64
+    v_v = t4 + t1
+    del t1, t4
+    t66 = u_u * v_v
+    slim = product_2 - t66 * 0.000244140625 <= _runtime.VANISHING * t66
+    del t66
+    t67 = (u_u <= t65) | (u_u + v_v <= t65) | slim | (product_2 <= t64 * (u_u * t36))
+    del product_2, slim, t36, t64, t65, u_u, v_v
     return (
-        np.sqrt(t36) / t37 + t42,
-        np.sqrt(t66) / t37 + t42,
-        t68 | (slack <= _runtime.VANISHING * t40),
+        np.sqrt(t33) / t34 + t39,
+        np.sqrt(t63) / t34 + t39,
+        t67 | (slack <= _runtime.VANISHING * t37),
     )
 
 
@@ -2151,149 +2232,161 @@ def _constraint(rho1, rho2, rho3, L):
     del t1
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t2 = size * size
-    t3 = _runtime.VANISHING * _runtime.VANISHING * t2
-    all_same = u_u + v_v <= t3
+    t3 = _runtime.VANISHING * _runtime.VANISHING
+    t4 = t2 * t3
+    all_same = u_u + v_v <= t4
     whole = _runtime.select(size == 0.0, 1.0, size)
-    same = u_u <= t3
+    same = u_u <= t4
+    del t4
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
     d_y = _runtime.select(same, 0.0, rho2)
-    a_x = _runtime.select(all_same, whole, -rho1)
-    t4 = _runtime.select(same, rho2, 0.0)
-    m_z = a_x * t4 + rho1 * d_y
-    d_z = _runtime.select(same, rho3, 0.0)
     t5 = _runtime.select(same, 0.0, rho3)
-    del same
-    t6 = a_x * t5 + rho1 * d_z
-    t7 = over * (d_y * m_z + d_z * t6)
-    m_x = d_y * t5 - d_z * t4
-    n_y = over * (a_x * m_z - d_z * m_x)
-    del m_z
-    n_z = over * (a_x * t6 + d_y * m_x)
-    del m_x, over, t6
-    nu = t7 * t7 + n_y * n_y + n_z * n_z
-    in_line = nu <= t3
+    t6 = _runtime.select(same, rho2, 0.0)
+    d_z = _runtime.select(same, rho3, 0.0)
+    product_x = d_y * t5 - t6 * d_z
+    a_x = _runtime.select(all_same, whole, -rho1)
+    t7 = a_x * t5 + rho1 * d_z
+    product_z = a_x * t6 + rho1 * d_y
+    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
+    t8 = mu * _runtime.select(same, u_u, v_v)
+    del same, u_u, v_v
+    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
+    del t8
+    over = 1.0 / mu
+    t9 = d_y * product_z + d_z * t7
+    n_y = a_x * product_z - d_z * product_x
+    n_z = a_x * t7 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    del product_2
+    in_line = m_m <= t3 * (t2 * mu)
     del t3
-    g_1 = d_z * whole
-    w_y = _runtime.select(in_line, g_1, -(a_x * n_z + d_z * t7))
+    g_1 = whole * d_z
     s_w = _runtime.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
     del whole
-    part = _runtime.select(in_line, 1.0 / (2.0 * (g_1 * g_1) + g_2 * g_2), 1.0 / (mu * nu))
-    t8 = t4 * (d_y - t4) + t5 * (d_z - t5)
-    del t4, t5
-    t9 = _runtime.select(in_line, 0.0, mu * part * t8 * 0.5)
-    t10 = _runtime.select(all_same, 0.0, nu * (t9 * t9) + mu * 0.25)
-    del all_same, mu, nu
-    t11 = L * L - t10
-    del t10
-    slack = np.maximum(t11, 0.0)
-    t12 = 0.234375 * (L * size)
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
+    del m_m
+    part = 1.0 / w_w
+    del w_w
+    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
+    del t5, t6
+    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
+    del all_same, mu, t11
+    t13 = L * L - t12
+    del t12
+    slack = np.maximum(t13, 0.0)
+    t14 = 0.234375 * (L * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t12, 0.0, np.sqrt(part * slack))
-    del part, slack
-    t13 = w_y * h
-    del w_y
-    t14 = n_y * t9 - d_y * 0.5
-    t15 = t13 - t14
-    w_z = _runtime.select(in_line, -g_2, a_x * n_y + d_y * t7)
-    del a_x, g_2
-    t16 = w_z * h
-    del w_z
-    t17 = n_z * t9 - d_z * 0.5
-    t18 = t16 - t17
-    w_x = _runtime.select(in_line, s_w * g_1, d_y * n_z - d_z * n_y)
-    del d_y, d_z, g_1, n_y, n_z, s_w
-    t19 = w_x * h
-    del h, w_x
-    t20 = t7 * t9 - rho1 * 0.5
-    del t7, t9
-    A_11 = t19 + t20
-    t21 = t15 * t18 * (rho1 + A_11) - A_11 * (rho2 - t15) * (rho3 - t18)
-    del A_11, t15, t18
-    t22 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t22)
-    del t22
-    t23 = np.abs(_runtime.select(in_line, -t8, 0.0)) <= t2 * _runtime.FEASIBILITY
-    del in_line, t2, t8
-    unreachable = np.logical_not(t23 & (-(_runtime.FEASIBILITY * t12) <= t11))
-    del t11, t12, t23
-    t24 = _runtime.poison(invalid | unreachable)
+    h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
+    del slack
+    t15 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
+    del t7
+    t16 = h * _runtime.select(in_line, g_1, -t15)
+    del t15
+    t17 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
+    del part
+    t18 = n_y * t17 - d_y * 0.5
+    t19 = t16 - t18
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    del a_x, product_z
+    t20 = h * _runtime.select(in_line, -g_2, m_z)
+    del g_2, m_z
+    t21 = n_z * t17 - d_z * 0.5
+    t22 = t20 - t21
+    m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
+    del d_y, d_z, n_y, n_z, over, product_x, slim
+    t23 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del g_1, h, m_x, s_w
+    t24 = rho1 * 0.5 - t9 * t17
+    del t17, t9
+    A_11 = t23 - t24
+    t25 = t19 * t22 * (rho1 + A_11) - A_11 * (rho2 - t19) * (rho3 - t22)
+    del A_11, t19, t22
+    t26 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t26)
+    del t26
+    t27 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del in_line, t10, t2
+    unreachable = np.logical_not(t27 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t27
+    t28 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    t25 = t19 - t20
-    del t19, t20
-    t26 = t13 + t14
-    del t13, t14
-    t27 = t16 + t17
-    del t16, t17
-    t28 = t25 * (rho2 + t26) * (rho3 + t27) + t26 * t27 * (rho1 - t25)
-    del t25, t26, t27
+    t29 = t23 + t24
+    del t23, t24
+    t30 = t16 + t18
+    del t16, t18
+    t31 = t20 + t21
+    del t20, t21
+    t32 = t29 * (rho2 + t30) * (rho3 + t31) + t30 * t31 * (rho1 - t29)
+    del t29, t30, t31
     return (
-        t21 + t24,
-        t28 + t24,
+        t25 + t28,
+        t32 + t28,
     )
 
 
 def _constraint_common(rho1, rho2, rho3, L):
     # Where nothing vanishes; last, whether something does.
-    t1 = rho1 * rho1
-    u_u = t1 + rho2 * rho2
-    over = 1.0 / u_u
-    n_z = over * (rho1 * (rho1 * rho3) + rho2 * (rho2 * rho3))
-    t2 = rho3 * rho3
-    m_z = rho1 * rho2
-    t3 = over * (rho2 * m_z)
-    t4 = over * (rho1 * m_z)
-    del m_z, over
-    nu = t3 * t3 + t4 * t4 + n_z * n_z
-    part = 1.0 / (u_u * nu)
-    t5 = u_u * t2 * part * 0.5
-    t6 = n_z * t5
-    t7 = L * L - (nu * (t5 * t5) + u_u * 0.25)
-    slack = np.maximum(t7, 0.0)
+    t1 = rho3 * rho3
+    product_x = rho2 * rho3
+    m_y = rho1 * rho3
+    product_z = rho1 * rho2
+    product_2 = product_x * product_x + m_y * m_y + product_z * product_z
+    part = 1.0 / product_2
+    t2 = t1 * part * 0.5
+    t3 = t2 * (rho1 * m_y + rho2 * product_x)
+    t4 = rho1 * rho1
+    u_u = t4 + rho2 * rho2
+    t5 = L * L - u_u * (1.0 + part * (t1 * t1)) * 0.25
+    slack = np.maximum(t5, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t8 = (rho1 * t4 + rho2 * t3) * h
-    t9 = t6 + t8
-    t10 = rho1 * n_z * h
-    t11 = t4 * t5 - rho2 * 0.5
-    del t4
-    t12 = t10 - t11
-    t13 = rho2 * n_z * h
-    del h, n_z
-    t14 = rho1 * 0.5 + t3 * t5
-    del t3, t5
-    A_11 = t13 - t14
-    t15 = t9 * t12 * (rho1 + A_11) - (rho3 - t9) * A_11 * (rho2 - t12)
-    del A_11, t12, t9
-    t16 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t16)
-    del t16
+    t6 = product_z * h
+    t7 = t3 + t6
+    t8 = m_y * h
+    del m_y
+    t9 = t2 * (rho1 * product_z) - rho2 * 0.5
+    t10 = t8 - t9
+    t11 = product_x * h
+    del h, product_x
+    t12 = rho1 * 0.5 + rho2 * product_z * t2
+    del product_z, t2
+    A_11 = t11 - t12
+    t13 = t7 * t10 * (rho1 + A_11) - (rho3 - t7) * A_11 * (rho2 - t10)
+    del A_11, t10, t7
+    t14 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t14)
+    del t14
     size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t17 = size * size
-    t18 = 0.234375 * (L * size)
+    t15 = size * size
+    t16 = 0.234375 * (L * size)
     del size
-    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t7)
-    del t7
-    t20 = _runtime.poison(invalid | np.logical_not(t19))
-    del invalid, t19
-    t21 = t6 - t8
-    del t6, t8
-    t22 = t13 + t14
-    del t13, t14
-    t23 = t10 + t11
-    del t10, t11
-    t24 = (rho3 - t21) * t22 * (rho2 + t23) - t21 * t23 * (rho1 - t22)
-    del t21, t22, t23
-    t25 = _runtime.VANISHING * _runtime.VANISHING * t17
-    del t17
-    t26 = (u_u <= t25) | (u_u + (t1 + t2) <= t25) | (nu <= t25)
-    del nu, t1, t2, t25, u_u
+    t17 = (np.abs(0.0) <= t15 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t16) <= t5)
+    del t5
+    t18 = _runtime.poison(invalid | np.logical_not(t17))
+    del invalid, t17
+    t19 = t3 - t6
+    del t3, t6
+    t20 = t11 + t12
+    del t11, t12
+    t21 = t8 + t9
+    del t8, t9
+    t22 = (rho3 - t19) * t20 * (rho2 + t21) - t19 * t21 * (rho1 - t20)
+    del t19, t20, t21
+    t23 = _runtime.VANISHING * _runtime.VANISHING
+    t24 = t15 * t23
+    v_v = t4 + t1
+    del t1, t4
+    t25 = u_u * v_v
+    slim = product_2 - t25 * 0.000244140625 <= _runtime.VANISHING * t25
+    del t25
+    t26 = (u_u <= t24) | (u_u + v_v <= t24) | slim | (product_2 <= t23 * (u_u * t15))
+    del product_2, slim, t15, t23, t24, u_u, v_v
     return (
-        t15 + t20,
-        t24 + t20,
-        t26 | (slack <= _runtime.VANISHING * t18),
+        t13 + t18,
+        t22 + t18,
+        t26 | (slack <= _runtime.VANISHING * t16),
     )
 
 
@@ -2305,7 +2398,7 @@ _CONSTRAINT = _runtime.Kernel(
     Parameters._fields,
     ('L',),
     common=_constraint_common,
-    size=_runtime.Size((0, 1, 2, 3), ((0, 3), (1, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((0, 1, 2, 3), ((0, 3), (1, 3)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 

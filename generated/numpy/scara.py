@@ -10,7 +10,7 @@
 #   singularities: 1 sincos
 #   jacobian_space: 4 add, 8 multiply, 2 sincos
 #   jacobian_body: 4 add, 8 multiply, 2 sincos
-#   ik: 32 add, 38 compare and select, 5 atan2, 5 divide, 39 multiply, 1 sincos, 2 sqrt
+#   ik: 32 add, 37 compare and select, 5 atan2, 5 divide, 39 multiply, 1 sincos, 2 sqrt
 """SCARA arm (RRPR).
 
 Two links of lengths l1 and l2 turn in a horizontal plane at the height h.  At their end a
@@ -663,7 +663,7 @@ def _ik(x_x, x_y, x_z, x_yaw, l1, l2, h):
     del folded_elbow, invalid, no_link_elbow, unreachable
     return (
         _runtime.wrap_cut(np.arctan2(s1, c1)) + t23,
-        _runtime.wrap_cut(t25) + t23,
+        t25 + t23,
         t26,
         _runtime.wrap_cut(-t29) + t23,
         t30 + t23,

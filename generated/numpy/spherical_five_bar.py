@@ -2,15 +2,27 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 68 compare and select, 62 add, 11 divide, 96 multiply, 7 sincos, 4 sqrt
-#   fk where nothing vanishes: 45 compare and select, 60 add, 11 divide, 84 multiply, 7 sincos, 4
+#   fk: 75 compare and select, 65 add, 12 divide, 104 multiply, 7 sincos, 4 sqrt
+#   fk where nothing vanishes: 47 compare and select, 58 add, 12 divide, 79 multiply, 7 sincos, 4
 #     sqrt
-#   skeleton: 67 compare and select, 74 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
-#   jacobian_parallel: 67 compare and select, 83 add, 9 divide, 98 multiply, 7 sincos, 4 sqrt
-#   jacobian_serial: 67 compare and select, 69 add, 9 divide, 110 multiply, 7 sincos, 4 sqrt
-#   jacobian: 67 compare and select, 95 add, 21 divide, 148 multiply, 7 sincos, 4 sqrt
-#   singularities: 67 compare and select, 71 add, 9 divide, 112 multiply, 7 sincos, 4 sqrt
-#   condition_number: 67 compare and select, 111 add, 17 divide, 157 multiply, 7 sincos, 8 sqrt
+#   skeleton: 74 compare and select, 77 add, 11 divide, 105 multiply, 7 sincos, 4 sqrt
+#   skeleton where nothing vanishes: 46 compare and select, 70 add, 10 divide, 81 multiply, 7
+#     sincos, 4 sqrt
+#   jacobian_parallel: 74 compare and select, 86 add, 11 divide, 105 multiply, 7 sincos, 4 sqrt
+#   jacobian_parallel where nothing vanishes: 46 compare and select, 79 add, 10 divide, 81
+#     multiply, 7 sincos, 4 sqrt
+#   jacobian_serial: 74 compare and select, 72 add, 11 divide, 117 multiply, 7 sincos, 4 sqrt
+#   jacobian_serial where nothing vanishes: 46 compare and select, 65 add, 10 divide, 93 multiply,
+#     7 sincos, 4 sqrt
+#   jacobian: 74 compare and select, 98 add, 23 divide, 154 multiply, 7 sincos, 4 sqrt
+#   jacobian where nothing vanishes: 46 compare and select, 91 add, 22 divide, 130 multiply, 7
+#     sincos, 4 sqrt
+#   singularities: 74 compare and select, 74 add, 11 divide, 118 multiply, 7 sincos, 4 sqrt
+#   singularities where nothing vanishes: 46 compare and select, 67 add, 10 divide, 94 multiply, 7
+#     sincos, 4 sqrt
+#   condition_number: 74 compare and select, 114 add, 19 divide, 163 multiply, 7 sincos, 8 sqrt
+#   condition_number where nothing vanishes: 46 compare and select, 107 add, 18 divide, 139
+#     multiply, 7 sincos, 8 sqrt
 #   ik: 107 compare and select, 78 add, 4 atan2, 13 divide, 105 multiply, 5 sincos, 7 sqrt
 #   workspace_contains: 53 compare and select, 26 add, 8 divide, 31 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -120,10 +132,10 @@ def _fk(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s2, c2 = _runtime.sincos_as_in_c(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
     s1, c1 = _runtime.sincos_as_in_c(theta1)
-    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
-    del c_beta2_half
     s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
     del c_beta1_half
+    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
+    del c_beta2_half
     c1_x = r * c_alpha1
     del c_alpha1
     t1 = r * np.abs(s_alpha2)
@@ -144,282 +156,288 @@ def _fk(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t7 = c1_z - s2 * t1
     del s2, t1
     u_u = t4 * t4 + t6 * t6 + t7 * t7
-    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     t8 = r * r
-    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
-    all_same = u_u + v_v <= t9
-    whole = _runtime.select(r == 0.0, 1.0, r)
-    same = u_u <= t9
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
-    t10 = _runtime.select(same, c1_y, t6)
-    t11 = _runtime.select(same, c1_x, t4)
-    a_x = _runtime.select(all_same, whole, -t11)
-    t12 = _runtime.select(same, t6, c1_y)
-    del t6
-    t13 = _runtime.select(same, t4, c1_x)
-    del t4
-    t14 = a_x * t12 + t10 * t13
-    t15 = _runtime.select(same, c1_z, t7)
-    t16 = _runtime.select(same, t7, c1_z)
+    t9 = _runtime.VANISHING * _runtime.VANISHING
+    t10 = t8 * t9
+    same = u_u <= t10
+    t11 = _runtime.select(same, c1_y, t6)
+    t12 = _runtime.select(same, t7, c1_z)
+    t13 = _runtime.select(same, c1_z, t7)
     del t7
-    m_y = a_x * t16 + t13 * t15
-    t17 = over * (t10 * t14 + t15 * m_y)
-    m_x = t10 * t16 - t12 * t15
-    t18 = over * (a_x * t14 - t15 * m_x)
-    del t14
-    t19 = over * (a_x * m_y + t10 * m_x)
-    del m_x, m_y
-    nu = t17 * t17 + t18 * t18 + t19 * t19
-    in_line = nu <= t9
+    t14 = _runtime.select(same, t6, c1_y)
+    del t6
+    product_x = t11 * t12 - t13 * t14
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    all_same = u_u + v_v <= t10
+    del t10
+    whole = _runtime.select(r == 0.0, 1.0, r)
+    t15 = _runtime.select(same, c1_x, t4)
+    a_x = _runtime.select(all_same, whole, -t15)
+    t16 = _runtime.select(same, t4, c1_x)
+    del t4
+    product_y = t12 * a_x + t13 * t16
+    t17 = product_x * product_x + product_y * product_y
+    t18 = t14 * a_x + t11 * t16
+    product_2 = t17 + t18 * t18
+    del t17
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t19 = mu * _runtime.select(same, u_u, v_v)
+    del u_u, v_v
+    slim = product_2 - t19 * 0.000244140625 <= _runtime.VANISHING * t19
+    del t19
+    over = 1.0 / mu
+    t20 = t11 * t18 + t13 * product_y
+    t21 = a_x * t18 - t13 * product_x
+    t22 = a_x * product_y + t11 * product_x
+    m_m = _runtime.select(slim, over * (t20 * t20 + t21 * t21 + t22 * t22), product_2)
+    del product_2
+    in_line = m_m <= t9 * (t8 * mu)
     del t9
-    t20 = whole * t15
-    s_w = _runtime.sign(-(t10 * a_x))
-    w_x = _runtime.select(in_line, -(t20 * s_w), t10 * t19 - t15 * t18)
+    t23 = whole * t13
+    s_w = _runtime.sign(-(t11 * a_x))
+    m_x = _runtime.select(slim, over * (t11 * t22 - t13 * t21), product_x)
+    del product_x
     length_a = np.sqrt(mu)
     del mu
-    t21 = whole * (t10 - a_x * s_w)
-    del s_w, whole
-    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
-    del over
-    length_n = np.sqrt(nu_w)
-    del nu_w
-    part = 1.0 / (length_a * length_n)
-    t22 = r * 2.0
-    r_2 = np.abs(s_beta2_half) * t22
-    del s_beta2_half
-    over_a = length_n * part
+    t24 = whole * (t11 - a_x * s_w)
+    del whole
+    w_w = _runtime.select(in_line, 2.0 * (t23 * t23) + t24 * t24, m_m)
+    del m_m
+    nu = over * w_w
+    del w_w
+    beside_a = np.sqrt(nu)
+    part = 1.0 / (length_a * beside_a)
+    t25 = 2.0 * _runtime.select(in_line, 0.0, beside_a)
+    t26 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t26
+    del s_beta1_half
     D = _runtime.select(all_same, 0.0, length_a)
-    r_1 = np.abs(s_beta1_half) * t22
-    del s_beta1_half, t22
-    t23 = D + r_1
-    t24 = _runtime.select(same, r, r_2)
-    t25 = t23 - t24
-    outer = np.maximum(t25, 0.0)
-    t26 = D - r_1
-    t27 = t24 + t26
-    inner = np.maximum(t27, 0.0)
+    del length_a
+    t27 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t26
+    del s_beta2_half, t26
+    t28 = _runtime.select(same, r, r_2)
+    t29 = t27 - t28
+    outer = np.maximum(t29, 0.0)
+    t30 = D - r_1
+    t31 = t28 + t30
+    inner = np.maximum(t31, 0.0)
     share = 1.0 / (outer + inner)
-    t28 = t24 - t26
-    del t26
-    slack = np.maximum(t28, 0.0)
-    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    del D
-    along = _runtime.select(all_same, 0.0, t29)
-    del t29
-    t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
-    del t12, t13, t16
-    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
-    del nu, t30, t8
-    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
-    del inner, outer, share, slack, t23, t24
-    rho = _runtime.select(all_same, r_1, t32)
-    del all_same, r_1, t32
-    left = t31 + rho * rho
-    del t31
-    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
-    del length_n
-    t34 = t33 * rho
-    del t33
-    t35 = left + t34
-    upper = np.maximum(t35, 0.0)
-    t36 = t34 - left
-    del left, t34
-    lower = np.maximum(t36, 0.0)
+    t32 = t28 - t30
+    del t30
+    slack = np.maximum(t32, 0.0)
+    t33 = share * np.sqrt(outer * inner * slack * (t28 + t27))
+    del t27, t28
+    rho = _runtime.select(all_same, r_1, t33)
+    del r_1, t33
+    t34 = t25 * rho
+    del t25
+    t35 = _runtime.select(same, r_2 * r_2, t8) - _runtime.select(in_line, 0.0, nu)
+    del nu, t8
+    over_a = beside_a * part
+    del beside_a
+    t36 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    del D, inner, outer, share, slack
+    along = _runtime.select(all_same, 0.0, t36)
+    del all_same, t36
+    t37 = over_a * (a_x * t16 - t11 * t14 - t12 * t13) + along
+    del t12, t14, t16
+    t38 = t35 - rho * rho - t37 * t37
+    del t35, t37
+    t39 = t34 - t38
+    upper = np.maximum(t39, 0.0)
+    t40 = t38 + t34
+    del t34, t38
+    lower = np.maximum(t40, 0.0)
     both = upper + lower
-    t37 = _runtime.select(same, r_2, r)
+    t41 = _runtime.select(same, r_2, r)
     del r_2, same
-    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
+    t42 = (both <= _runtime.VANISHING * (r * t41)) | in_line
     half = rho / both
     del both
-    t39 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
+    t43 = _runtime.select(t42, rho, 2.0 * half * np.sqrt(upper * lower))
     del rho
-    h = part * t39
-    del t39
-    t40 = w_x * h
-    del w_x
-    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
-    del half, length_a, lower, part, t38, upper
+    h = part * t43
+    del t43
+    t44 = _runtime.select(in_line, -(t23 * s_w), m_x) * h
+    del m_x, s_w
+    Y = _runtime.select(t42, 0.0, part * over_a * half * (upper - lower))
+    del half, lower, part, t42, upper
     X = over_a * along
     del along, over_a
-    t41 = t17 * Y - (c1_x - t11 * X)
-    del c1_x, t11
-    t42 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t43 = t42 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t42
-    t44 = t43 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t43
-    t45 = t44 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t44
-    invalid = np.logical_not(t45)
-    del t45
-    t46 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t47 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t37) * 0.5)
-    del t37
-    t48 = (t46 <= t28) & (t46 <= t25) & (t46 <= t27) & (-t47 <= t35)
-    del t25, t27, t28, t35, t46
-    unreachable = np.logical_not(t48 & (-t47 <= t36))
-    del t36, t47, t48
-    t49 = _runtime.poison(invalid | unreachable)
-    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
-    del t20
-    t50 = w_y * h
-    del w_y
-    t51 = t18 * Y - (c1_y - t10 * X)
+    t45 = t20 * Y - (c1_x - t15 * X)
+    del c1_x, t15
+    t46 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t47 = t46 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t46
+    t48 = t47 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t47
+    t49 = t48 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t48
+    invalid = np.logical_not(t49)
+    del t49
+    t50 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t51 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t41) * 0.5)
+    del t41
+    t52 = (t50 <= t32) & (t50 <= t29) & (t50 <= t31) & (-t51 <= t39)
+    del t29, t31, t32, t39, t50
+    unreachable = np.logical_not(t52 & (-t51 <= t40))
+    del t40, t51, t52
+    t53 = _runtime.poison(invalid | unreachable)
+    m_y = _runtime.select(slim, over * (a_x * t22 + t13 * t20), product_y)
+    del product_y
+    t54 = _runtime.select(in_line, -t23, m_y) * h
+    del m_y, t23
+    t55 = t21 * Y - (c1_y - t11 * X)
     del c1_y
-    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
-    del a_x, t10, t17, t18, t21
-    t52 = w_z * h
-    del h, w_z
-    t53 = t19 * Y - (c1_z - t15 * X)
-    del X, Y, c1_z, t15, t19
-    t54 = _runtime.status(invalid, unreachable, in_line)
+    t56 = _runtime.select(slim, over * (a_x * t21 + t11 * t20), t18)
+    del a_x, over, slim, t11, t18, t20, t21
+    t57 = _runtime.select(in_line, t24, -t56) * h
+    del h, t24, t56
+    t58 = t22 * Y - (c1_z - t13 * X)
+    del X, Y, c1_z, t13, t22
+    t59 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t40 - t41 + t49,
-        t50 - t51 + t49,
-        t52 - t53 + t49,
-        -(t41 + t40) + t49,
-        -(t51 + t50) + t49,
-        -(t53 + t52) + t49,
-        t54,
-        t54,
+        t44 - t45 + t53,
+        t54 - t55 + t53,
+        t57 - t58 + t53,
+        -(t45 + t44) + t53,
+        -(t55 + t54) + t53,
+        -(t58 + t57) + t53,
+        t59,
+        t59,
     )
 
 
 def _fk_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     # Where nothing vanishes; last, whether something does.
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
     s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
     s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
-    s2, c2 = _runtime.sincos_as_in_c(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
     s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
     del c_beta1_half
     s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
     del c_beta2_half
+    t1 = r * np.abs(s_alpha1)
+    del s_alpha1
+    c1_y = c1 * t1
+    del c1
+    t2 = r * c_alpha2
+    del c_alpha2
+    t3 = r * np.abs(s_alpha2)
+    del s_alpha2
+    t4 = c2 * t3
+    del c2
+    t5 = c1_y - (s_gamma * t2 + c_gamma * t4)
     c1_x = r * c_alpha1
     del c_alpha1
-    t1 = r * np.abs(s_alpha2)
-    del s_alpha2
-    t2 = c2 * t1
-    del c2
-    t3 = r * c_alpha2
-    del c_alpha2
-    t4 = c1_x + (s_gamma * t2 - c_gamma * t3)
-    t5 = r * np.abs(s_alpha1)
-    del s_alpha1
-    c1_y = c1 * t5
-    del c1
-    t6 = c1_y - (s_gamma * t3 + c_gamma * t2)
-    del c_gamma, s_gamma, t2, t3
-    c1_z = s1 * t5
-    del s1, t5
-    t7 = c1_z - s2 * t1
-    del s2, t1
-    u_u = t4 * t4 + t6 * t6 + t7 * t7
-    over = 1.0 / u_u
-    t8 = t4 * c1_y - c1_x * t6
-    t9 = t4 * c1_z - c1_x * t7
-    t10 = over * (t6 * t8 + t7 * t9)
+    t6 = c1_x + (s_gamma * t4 - c_gamma * t2)
+    del c_gamma, s_gamma, t2, t4
+    m_z = t6 * c1_y - c1_x * t5
+    c1_z = s1 * t1
+    del s1, t1
+    t7 = c1_z - s2 * t3
+    del s2, t3
+    t8 = t6 * c1_z - c1_x * t7
+    u_u = t6 * t6 + t5 * t5 + t7 * t7
     length_a = np.sqrt(u_u)
-    m_x = t6 * c1_z - c1_y * t7
-    t11 = over * (t4 * t8 - t7 * m_x)
-    del t8
-    t12 = over * (t4 * t9 + t6 * m_x)
-    del m_x, over, t9
-    nu = t10 * t10 + t11 * t11 + t12 * t12
-    length_n = np.sqrt(nu)
-    part = 1.0 / (length_a * length_n)
-    t13 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t13
+    product_x = t5 * c1_z - c1_y * t7
+    product_2 = product_x * product_x + t8 * t8 + m_z * m_z
+    nu = product_2 / u_u
+    beside_a = np.sqrt(nu)
+    part = 1.0 / (length_a * beside_a)
+    over_a = beside_a * part
+    t9 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t9
     del s_beta1_half
-    r_2 = np.abs(s_beta2_half) * t13
-    del s_beta2_half, t13
-    t14 = r_1 - r_2
-    t15 = length_a + t14
-    outer = np.maximum(t15, 0.0)
-    t16 = length_a - t14
-    del t14
-    inner = np.maximum(t16, 0.0)
+    r_2 = np.abs(s_beta2_half) * t9
+    del s_beta2_half, t9
+    t10 = r_1 - r_2
+    t11 = length_a + t10
+    outer = np.maximum(t11, 0.0)
+    t12 = length_a - t10
+    del t10
+    inner = np.maximum(t12, 0.0)
     share = 1.0 / (outer + inner)
-    t17 = r_1 + r_2
+    t13 = r_1 + r_2
     del r_1, r_2
-    t18 = t17 - length_a
-    slack = np.maximum(t18, 0.0)
-    t19 = np.sqrt(outer * inner * slack * (length_a + t17))
-    del t17
-    rho = share * t19
-    del t19
-    t20 = 2.0 * length_n * rho
-    t21 = r * r
-    over_a = length_n * part
-    del length_n
-    t22 = share * (length_a + slack) * (outer - inner) * 0.5
+    t14 = t13 - length_a
+    slack = np.maximum(t14, 0.0)
+    t15 = np.sqrt(outer * inner * slack * (length_a + t13))
+    del t13
+    rho = share * t15
+    del t15
+    t16 = 2.0 * beside_a * rho
+    del beside_a
+    t17 = r * r
+    t18 = share * (length_a + slack) * (outer - inner) * 0.5
     del inner, outer, share, slack
-    along = length_a * 0.5 + t22
-    del t22
-    t23 = over_a * (c1_x * t4 + c1_y * t6 + c1_z * t7) - along
-    t24 = t21 - nu - t23 * t23 - rho * rho
-    del t23
-    t25 = t20 - t24
-    upper = np.maximum(t25, 0.0)
-    t26 = t24 + t20
-    del t20, t24
-    lower = np.maximum(t26, 0.0)
+    along = length_a * 0.5 + t18
+    del length_a, t18
+    t19 = over_a * (c1_x * t6 + c1_y * t5 + c1_z * t7) - along
+    t20 = t17 - nu - t19 * t19 - rho * rho
+    del nu, t19
+    t21 = t16 - t20
+    upper = np.maximum(t21, 0.0)
+    t22 = t20 + t16
+    del t16, t20
+    lower = np.maximum(t22, 0.0)
     both = upper + lower
     half = rho / both
     del rho
-    Y = length_a * part * half * (upper - lower)
-    del length_a
+    Y = part * over_a * half * (upper - lower)
     X = over_a * along
     del along, over_a
-    t27 = t10 * Y + (c1_x - t4 * X)
+    t23 = (t5 * m_z + t7 * t8) * Y + (c1_x - t6 * X)
     h = part * (2.0 * half * np.sqrt(upper * lower))
     del half, lower, part, upper
-    t28 = (t6 * t12 - t7 * t11) * h
-    t29 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t30 = t29 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t29
-    t31 = t30 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t30
-    t32 = t31 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t31
-    invalid = np.logical_not(t32)
-    del t32
-    t33 = -(_runtime.FEASIBILITY * (r * 0.25))
-    t34 = _runtime.FEASIBILITY * (r * (r + r * 2.2737367544323206e-13) * 0.5)
-    t35 = (t33 <= t18) & (t33 <= t15) & (t33 <= t16) & (-t34 <= t25)
-    del t15, t16, t18, t25, t33
-    unreachable = np.logical_not(t35 & (-t34 <= t26))
-    del t26, t34, t35
-    t36 = _runtime.poison(invalid | unreachable)
-    t37 = t11 * Y - (c1_y - t6 * X)
-    t38 = (t4 * t12 + t7 * t10) * h
-    t39 = (t4 * t11 + t6 * t10) * h
-    del h, t10, t11, t4, t6
-    t40 = t12 * Y - (c1_z - t7 * X)
-    del X, Y, t12, t7
-    t41 = _runtime.status(invalid, unreachable, np.False_)
+    t24 = product_x * h
+    t25 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t26 = t25 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t25
+    t27 = t26 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t26
+    t28 = t27 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t27
+    invalid = np.logical_not(t28)
+    del t28
+    t29 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t30 = _runtime.FEASIBILITY * (r * (r + r * 2.2737367544323206e-13) * 0.5)
+    t31 = (t29 <= t14) & (t29 <= t11) & (t29 <= t12) & (-t30 <= t21)
+    del t11, t12, t14, t21, t29
+    unreachable = np.logical_not(t31 & (-t30 <= t22))
+    del t22, t30, t31
+    t32 = _runtime.poison(invalid | unreachable)
+    t33 = (t6 * m_z - t7 * product_x) * Y - (c1_y - t5 * X)
+    t34 = t8 * h
+    t35 = m_z * h
+    del h, m_z
+    t36 = (t6 * t8 + t5 * product_x) * Y - (c1_z - t7 * X)
+    del X, Y, product_x, t5, t6, t7, t8
+    t37 = _runtime.status(invalid, unreachable, np.False_)
     del invalid, unreachable
-    t42 = _runtime.VANISHING * t21
-    del t21
-    t43 = _runtime.VANISHING * t42
-    t44 = u_u + (c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
+    t38 = _runtime.VANISHING * _runtime.VANISHING
+    t39 = t17 * t38
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     del c1_x, c1_y, c1_z
-    t45 = (u_u <= t43) | (t44 <= t43) | (nu <= t43) | (both <= t42)
-    del both, nu, t42, t43, t44, u_u
+    t40 = u_u * v_v
+    slim = product_2 - t40 * 0.000244140625 <= _runtime.VANISHING * t40
+    del t40
+    t41 = (u_u <= t39) | (u_u + v_v <= t39) | slim | (product_2 <= t38 * (t17 * u_u))
+    del product_2, slim, t38, t39, u_u, v_v
     return (
-        t27 + t28 + t36,
-        -(t37 + t38) + t36,
-        t39 - t40 + t36,
-        t27 - t28 + t36,
-        t38 - t37 + t36,
-        -(t40 + t39) + t36,
-        t41,
-        t41,
-        t45,
+        t23 + t24 + t32,
+        -(t33 + t34) + t32,
+        t35 - t36 + t32,
+        t23 - t24 + t32,
+        t34 - t33 + t32,
+        -(t36 + t35) + t32,
+        t37,
+        t37,
+        t41 | (both <= _runtime.VANISHING * t17),
     )
 
 
@@ -431,7 +449,7 @@ _FK = _runtime.Kernel(
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
     common=_fk_common,
-    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -519,180 +537,371 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t15 = c1_z - c2_z
     u_u = t11 * t11 + t14 * t14 + t15 * t15
     t16 = r * r
-    t17 = _runtime.VANISHING * _runtime.VANISHING * t16
-    same = u_u <= t17
-    t18 = r * 2.0
-    r_2 = np.abs(s_beta2_half) * t18
+    t17 = _runtime.VANISHING * _runtime.VANISHING
+    t18 = t16 * t17
+    same = u_u <= t18
+    t19 = r * 2.0
+    r_2 = np.abs(s_beta2_half) * t19
     del s_beta2_half
-    t19 = _runtime.select(same, r, r_2)
-    r_1 = np.abs(s_beta1_half) * t18
-    del s_beta1_half, t18
+    t20 = _runtime.select(same, r, r_2)
+    r_1 = np.abs(s_beta1_half) * t19
+    del s_beta1_half, t19
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t17
+    all_same = u_u + v_v <= t18
+    del t18
     whole = _runtime.select(r == 0.0, 1.0, r)
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
     length_a = np.sqrt(mu)
     D = _runtime.select(all_same, 0.0, length_a)
-    t20 = r_1 - D
-    t21 = t19 + t20
-    t22 = r_1 + D
-    t23 = t22 - t19
-    t24 = t19 - t20
-    del t20
-    t25 = _runtime.select(same, r_2, r)
-    t26 = 0.625 * (r * (r * 2.2737367544323206e-13 + t25))
-    t27 = -(_runtime.FEASIBILITY * t26)
-    del t26
-    over = 1.0 / mu
-    del mu
-    t28 = _runtime.select(same, c1_y, t14)
-    t29 = _runtime.select(same, c1_x, t11)
-    a_x = _runtime.select(all_same, whole, -t29)
-    t30 = _runtime.select(same, t14, c1_y)
-    del t14
-    t31 = _runtime.select(same, t11, c1_x)
-    del t11
-    t32 = a_x * t30 + t28 * t31
-    t33 = _runtime.select(same, c1_z, t15)
-    t34 = _runtime.select(same, t15, c1_z)
+    t21 = r_1 - D
+    t22 = t20 + t21
+    t23 = r_1 + D
+    t24 = t23 - t20
+    t25 = t20 - t21
+    del t21
+    t26 = _runtime.select(same, r_2, r)
+    t27 = 0.625 * (r * (r * 2.2737367544323206e-13 + t26))
+    t28 = -(_runtime.FEASIBILITY * t27)
+    del t27
+    t29 = _runtime.select(same, c1_y, t14)
+    t30 = _runtime.select(same, t15, c1_z)
+    t31 = _runtime.select(same, c1_z, t15)
     del t15
-    m_y = a_x * t34 + t31 * t33
-    t35 = over * (t28 * t32 + t33 * m_y)
-    m_x = t28 * t34 - t30 * t33
-    t36 = over * (a_x * t32 - t33 * m_x)
-    del t32
-    t37 = over * (a_x * m_y + t28 * m_x)
-    del m_x, m_y
-    nu = t35 * t35 + t36 * t36 + t37 * t37
-    in_line = nu <= t17
+    t32 = _runtime.select(same, t14, c1_y)
+    del t14
+    product_x = t29 * t30 - t31 * t32
+    t33 = _runtime.select(same, c1_x, t11)
+    a_x = _runtime.select(all_same, whole, -t33)
+    t34 = _runtime.select(same, t11, c1_x)
+    del t11
+    product_y = t30 * a_x + t31 * t34
+    t35 = product_x * product_x + product_y * product_y
+    t36 = t32 * a_x + t29 * t34
+    product_2 = t35 + t36 * t36
+    del t35
+    t37 = mu * _runtime.select(same, u_u, v_v)
+    del u_u, v_v
+    slim = product_2 - t37 * 0.000244140625 <= _runtime.VANISHING * t37
+    del t37
+    over = 1.0 / mu
+    t38 = t29 * t36 + t31 * product_y
+    t39 = a_x * t36 - t31 * product_x
+    t40 = a_x * product_y + t29 * product_x
+    m_m = _runtime.select(slim, over * (t38 * t38 + t39 * t39 + t40 * t40), product_2)
+    del product_2
+    in_line = m_m <= t17 * (t16 * mu)
     del t17
-    t38 = whole * t33
-    s_w = _runtime.sign(-(t28 * a_x))
-    t39 = whole * (t28 - a_x * s_w)
+    t41 = whole * t31
+    s_w = _runtime.sign(-(t29 * a_x))
+    t42 = whole * (t29 - a_x * s_w)
     del whole
-    nu_w = _runtime.select(in_line, over * (2.0 * (t38 * t38) + t39 * t39), nu)
-    del over
-    length_n = np.sqrt(nu_w)
-    del nu_w
-    part = 1.0 / (length_a * length_n)
-    over_a = length_n * part
-    outer = np.maximum(t23, 0.0)
-    inner = np.maximum(t24, 0.0)
+    w_w = _runtime.select(in_line, 2.0 * (t41 * t41) + t42 * t42, m_m)
+    del m_m
+    nu = w_w / mu
+    del mu, w_w
+    t43 = _runtime.select(in_line, 0.0, nu) - _runtime.select(same, r_2 * r_2, t16)
+    del r_2, same, t16
+    beside_a = np.sqrt(nu)
+    del nu
+    part = 1.0 / (length_a * beside_a)
+    del length_a
+    over_a = beside_a * part
+    outer = np.maximum(t24, 0.0)
+    inner = np.maximum(t25, 0.0)
     share = 1.0 / (outer + inner)
-    slack = np.maximum(t21, 0.0)
-    t40 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    slack = np.maximum(t22, 0.0)
+    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
     del D
-    along = _runtime.select(all_same, 0.0, t40)
-    del t40
-    t41 = over_a * (a_x * t31 - t28 * t30 - t33 * t34) + along
-    del t30, t31, t34
-    t42 = nu - _runtime.select(same, r_2 * r_2, t16) + t41 * t41
-    del nu, r_2, same, t16, t41
-    t43 = share * np.sqrt(outer * inner * slack * (t19 + t22))
-    del inner, outer, share, slack, t19, t22
-    rho = _runtime.select(all_same, r_1, t43)
-    del all_same, r_1, t43
-    left = t42 + rho * rho
-    del t42
-    t44 = 2.0 * _runtime.select(in_line, 0.0, length_n)
-    del length_n
-    t45 = t44 * rho
+    along = _runtime.select(all_same, 0.0, t44)
     del t44
-    t46 = left + t45
-    t47 = (t5 <= t21) & (t5 <= t23) & (t5 <= t24) & (t27 <= t46)
-    del t21, t23, t24, t5
-    t48 = t45 - left
-    del left, t45
-    failed = np.logical_not(t4) | np.logical_not(t47 & (t27 <= t48))
-    del t27, t4, t47
-    t49 = _runtime.poison(failed)
+    t45 = over_a * (a_x * t34 - t29 * t32 - t30 * t31) + along
+    del t30, t32, t34
+    t46 = share * np.sqrt(outer * inner * slack * (t20 + t23))
+    del inner, outer, share, slack, t20, t23
+    rho = _runtime.select(all_same, r_1, t46)
+    del all_same, r_1, t46
+    left = t43 + t45 * t45 + rho * rho
+    del t43, t45
+    t47 = 2.0 * _runtime.select(in_line, 0.0, beside_a)
+    del beside_a
+    t48 = t47 * rho
+    del t47
+    t49 = left + t48
+    t50 = (t5 <= t22) & (t5 <= t24) & (t5 <= t25) & (t28 <= t49)
+    del t22, t24, t25, t5
+    t51 = t48 - left
+    del left, t48
+    failed = np.logical_not(t4) | np.logical_not(t50 & (t28 <= t51))
+    del t28, t4, t50
+    t52 = _runtime.poison(failed)
     del failed
-    t50 = 0.0 + t49
-    t51 = c1_x + t49
-    t52 = c1_y + t49
-    t53 = c1_z + t49
-    t54 = t9 + t49
+    t53 = 0.0 + t52
+    t54 = c1_x + t52
+    t55 = c1_y + t52
+    t56 = c1_z + t52
+    t57 = t9 + t52
     del t9
-    t55 = t13 + t49
+    t58 = t13 + t52
     del t13
-    t56 = -t10 + t49
+    t59 = -t10 + t52
     del t10
-    t57 = c2_y + t49
+    t60 = c2_y + t52
     del c2_y
-    t58 = c2_z + t49
+    t61 = c2_z + t52
     del c2_z
     X = over_a * along
-    del along, over_a
-    upper = np.maximum(t46, 0.0)
-    del t46
-    lower = np.maximum(t48, 0.0)
-    del t48
+    del along
+    upper = np.maximum(t49, 0.0)
+    del t49
+    lower = np.maximum(t51, 0.0)
+    del t51
     both = upper + lower
-    t59 = (both <= _runtime.VANISHING * (r * t25)) | in_line
-    del t25
+    t62 = (both <= _runtime.VANISHING * (r * t26)) | in_line
+    del t26
     half = rho / both
     del both
-    Y = _runtime.select(t59, 0.0, length_a * part * half * (upper - lower))
-    del length_a
-    t60 = t29 * X + t35 * Y
-    del t29
-    w_x = _runtime.select(in_line, -(t38 * s_w), t28 * t37 - t33 * t36)
-    del s_w
-    t61 = _runtime.select(t59, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t59, upper
-    h = part * t61
-    del part, t61
-    t62 = w_x * h
-    del w_x
-    t63 = t28 * X + t36 * Y
-    w_y = _runtime.select(in_line, -t38, a_x * t37 + t33 * t35)
-    del t38
-    t64 = w_y * h
-    del w_y
-    t65 = t33 * X + t37 * Y
-    del X, Y, t33, t37
-    w_z = _runtime.select(in_line, t39, -(a_x * t36 + t28 * t35))
-    del a_x, in_line, t28, t35, t36, t39
-    t66 = w_z * h
-    del h, w_z
+    Y = _runtime.select(t62, 0.0, part * over_a * half * (upper - lower))
+    del over_a
+    t63 = t33 * X + t38 * Y
+    del t33
+    m_x = _runtime.select(slim, over * (t29 * t40 - t31 * t39), product_x)
+    del product_x
+    t64 = _runtime.select(t62, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t62, upper
+    h = part * t64
+    del part, t64
+    t65 = _runtime.select(in_line, -(t41 * s_w), m_x) * h
+    del m_x, s_w
+    t66 = t29 * X + t39 * Y
+    m_y = _runtime.select(slim, over * (a_x * t40 + t31 * t38), product_y)
+    del product_y
+    t67 = _runtime.select(in_line, -t41, m_y) * h
+    del m_y, t41
+    t68 = t31 * X + t40 * Y
+    del X, Y, t31, t40
+    t69 = _runtime.select(slim, over * (a_x * t39 + t29 * t38), t36)
+    del a_x, over, slim, t29, t36, t38, t39
+    t70 = _runtime.select(in_line, t42, -t69) * h
+    del h, in_line, t42, t69
     return (
-        t50,
-        t50,
-        t50,
-        t51,
-        t50,
-        t50,
-        t51,
-        t52,
+        t53,
+        t53,
+        t53,
+        t54,
+        t53,
         t53,
         t54,
         t55,
-        t50,
         t56,
         t57,
         t58,
-        c1_x - (t60 - t62) + t49,
-        c1_y - (t63 - t64) + t49,
-        c1_z - (t65 - t66) + t49,
-        t50,
-        t50,
-        t50,
-        t51,
-        t50,
-        t50,
-        t51,
-        t52,
+        t53,
+        t59,
+        t60,
+        t61,
+        c1_x - (t63 - t65) + t52,
+        c1_y - (t66 - t67) + t52,
+        c1_z - (t68 - t70) + t52,
+        t53,
+        t53,
+        t53,
+        t54,
+        t53,
         t53,
         t54,
         t55,
-        t50,
         t56,
         t57,
         t58,
-        c1_x - (t60 + t62) + t49,
-        c1_y - (t63 + t64) + t49,
-        c1_z - (t65 + t66) + t49,
+        t53,
+        t59,
+        t60,
+        t61,
+        c1_x - (t63 + t65) + t52,
+        c1_y - (t66 + t67) + t52,
+        c1_z - (t68 + t70) + t52,
+    )
+
+
+def _skeleton_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
+    # Where nothing vanishes; last, whether something does.
+    s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
+    del c_beta1_half
+    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
+    del c_beta2_half
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    t1 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t2 = t1 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t1
+    t3 = t2 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t2
+    t4 = t3 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t3
+    t5 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t6 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t6
+    del s_beta1_half
+    r_2 = np.abs(s_beta2_half) * t6
+    del s_beta2_half, t6
+    t7 = r_1 + r_2
+    c1_x = r * c_alpha1
+    del c_alpha1
+    t8 = r * np.abs(s_alpha2)
+    del s_alpha2
+    t9 = c2 * t8
+    del c2
+    t10 = r * c_alpha2
+    del c_alpha2
+    t11 = c_gamma * t10
+    t12 = s_gamma * t9 - t11
+    t13 = c1_x + t12
+    t14 = r * np.abs(s_alpha1)
+    del s_alpha1
+    c1_y = c1 * t14
+    del c1
+    t15 = s_gamma * t10
+    del s_gamma, t10
+    c2_y = t15 + c_gamma * t9
+    del c_gamma, t9
+    t16 = c1_y - c2_y
+    c1_z = s1 * t14
+    del s1, t14
+    c2_z = s2 * t8
+    del s2, t8
+    t17 = c1_z - c2_z
+    u_u = t13 * t13 + t16 * t16 + t17 * t17
+    length_a = np.sqrt(u_u)
+    t18 = t7 - length_a
+    t19 = r_1 - r_2
+    del r_1, r_2
+    t20 = length_a + t19
+    t21 = length_a - t19
+    del t19
+    t22 = 0.625 * (r * (r + r * 2.2737367544323206e-13))
+    t23 = -(_runtime.FEASIBILITY * t22)
+    del t22
+    product_x = t16 * c1_z - c1_y * t17
+    t24 = t13 * c1_z - c1_x * t17
+    m_z = t13 * c1_y - c1_x * t16
+    product_2 = product_x * product_x + t24 * t24 + m_z * m_z
+    nu = product_2 / u_u
+    beside_a = np.sqrt(nu)
+    outer = np.maximum(t20, 0.0)
+    inner = np.maximum(t21, 0.0)
+    share = 1.0 / (outer + inner)
+    slack = np.maximum(t18, 0.0)
+    t25 = np.sqrt(outer * inner * slack * (length_a + t7))
+    del t7
+    rho = share * t25
+    del t25
+    t26 = 2.0 * beside_a * rho
+    t27 = r * r
+    part = 1.0 / (length_a * beside_a)
+    over_a = beside_a * part
+    del beside_a
+    t28 = over_a * (c1_x * t13 + c1_y * t16 + c1_z * t17)
+    t29 = share * (length_a + slack) * (outer - inner) * 0.5
+    del inner, outer, share, slack
+    along = length_a * 0.5 + t29
+    del length_a, t29
+    t30 = t28 - along
+    del t28
+    t31 = t27 - nu - t30 * t30 - rho * rho
+    del nu, t30
+    t32 = t26 - t31
+    t33 = (t5 <= t18) & (t5 <= t20) & (t5 <= t21) & (t23 <= t32)
+    del t18, t20, t21, t5
+    t34 = t31 + t26
+    del t26, t31
+    failed = np.logical_not(t4) | np.logical_not(t33 & (t23 <= t34))
+    del t23, t33, t4
+    t35 = _runtime.poison(failed)
+    del failed
+    t36 = 0.0 + t35
+    t37 = c1_x + t35
+    t38 = c1_y + t35
+    t39 = c1_z + t35
+    t40 = t11 + t35
+    del t11
+    t41 = t15 + t35
+    del t15
+    t42 = -t12 + t35
+    del t12
+    t43 = c2_y + t35
+    del c2_y
+    t44 = c2_z + t35
+    del c2_z
+    X = over_a * along
+    del along
+    upper = np.maximum(t32, 0.0)
+    del t32
+    lower = np.maximum(t34, 0.0)
+    del t34
+    both = upper + lower
+    half = rho / both
+    del rho
+    Y = part * over_a * half * (upper - lower)
+    del over_a
+    t45 = t13 * X - (t16 * m_z + t17 * t24) * Y
+    h = part * (2.0 * half * np.sqrt(upper * lower))
+    del half, lower, part, upper
+    t46 = product_x * h
+    t47 = t16 * X + (t13 * m_z - t17 * product_x) * Y
+    t48 = t24 * h
+    t49 = t17 * X + (t13 * t24 + t16 * product_x) * Y
+    del X, Y, product_x, t13, t16, t17, t24
+    t50 = m_z * h
+    del h, m_z
+    t51 = _runtime.VANISHING * _runtime.VANISHING
+    t52 = t27 * t51
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    t53 = u_u * v_v
+    slim = product_2 - t53 * 0.000244140625 <= _runtime.VANISHING * t53
+    del t53
+    t54 = (u_u <= t52) | (u_u + v_v <= t52) | slim | (product_2 <= t51 * (t27 * u_u))
+    del product_2, slim, t51, t52, u_u, v_v
+    return (
+        t36,
+        t36,
+        t36,
+        t37,
+        t36,
+        t36,
+        t37,
+        t38,
+        t39,
+        t40,
+        t41,
+        t36,
+        t42,
+        t43,
+        t44,
+        c1_x - (t45 - t46) + t35,
+        c1_y - (t47 + t48) + t35,
+        c1_z - (t49 - t50) + t35,
+        t36,
+        t36,
+        t36,
+        t37,
+        t36,
+        t36,
+        t37,
+        t38,
+        t39,
+        t40,
+        t41,
+        t36,
+        t42,
+        t43,
+        t44,
+        c1_x - (t45 + t46) + t35,
+        c1_y - (t47 - t48) + t35,
+        c1_z - (t49 + t50) + t35,
+        t54 | (both <= _runtime.VANISHING * t27),
     )
 
 
@@ -703,7 +912,8 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Array("points", (2, 6, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    common=_skeleton_common,
+    size=_runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -770,160 +980,317 @@ def _jacobian_parallel(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del s2, t1
     u_u = t4 * t4 + t6 * t6 + t7 * t7
     t8 = r * r
-    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
-    same = u_u <= t9
-    t10 = _runtime.select(same, c1_x, t4)
+    t9 = _runtime.VANISHING * _runtime.VANISHING
+    t10 = t8 * t9
+    same = u_u <= t10
+    t11 = _runtime.select(same, c1_x, t4)
+    t12 = _runtime.select(same, c1_y, t6)
+    t13 = _runtime.select(same, t7, c1_z)
+    t14 = _runtime.select(same, c1_z, t7)
+    t15 = _runtime.select(same, t6, c1_y)
+    product_x = t12 * t13 - t14 * t15
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t9
+    all_same = u_u + v_v <= t10
+    del t10
     whole = _runtime.select(r == 0.0, 1.0, r)
+    a_x = _runtime.select(all_same, whole, -t11)
+    t16 = _runtime.select(same, t4, c1_x)
+    product_y = t13 * a_x + t14 * t16
+    t17 = product_x * product_x + product_y * product_y
+    t18 = t15 * a_x + t12 * t16
+    product_2 = t17 + t18 * t18
+    del t17
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t19 = mu * _runtime.select(same, u_u, v_v)
     del u_u, v_v
+    slim = product_2 - t19 * 0.000244140625 <= _runtime.VANISHING * t19
+    del t19
     over = 1.0 / mu
-    t11 = _runtime.select(same, c1_y, t6)
-    a_x = _runtime.select(all_same, whole, -t10)
-    t12 = _runtime.select(same, t6, c1_y)
-    t13 = _runtime.select(same, t4, c1_x)
-    t14 = a_x * t12 + t11 * t13
-    t15 = _runtime.select(same, c1_z, t7)
-    t16 = _runtime.select(same, t7, c1_z)
-    m_y = a_x * t16 + t13 * t15
-    t17 = over * (t11 * t14 + t15 * m_y)
-    m_x = t11 * t16 - t12 * t15
-    t18 = over * (a_x * t14 - t15 * m_x)
-    del t14
-    t19 = over * (a_x * m_y + t11 * m_x)
-    del m_x, m_y
-    nu = t17 * t17 + t18 * t18 + t19 * t19
-    in_line = nu <= t9
+    t20 = t12 * t18 + t14 * product_y
+    t21 = a_x * t18 - t14 * product_x
+    t22 = a_x * product_y + t12 * product_x
+    m_m = _runtime.select(slim, over * (t20 * t20 + t21 * t21 + t22 * t22), product_2)
+    del product_2
+    in_line = m_m <= t9 * (t8 * mu)
     del t9
-    t20 = whole * t15
-    s_w = _runtime.sign(-(t11 * a_x))
-    t21 = whole * (t11 - a_x * s_w)
+    t23 = whole * t14
+    s_w = _runtime.sign(-(t12 * a_x))
+    t24 = whole * (t12 - a_x * s_w)
     del whole
-    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
-    del over
-    length_n = np.sqrt(nu_w)
-    del nu_w
+    w_w = _runtime.select(in_line, 2.0 * (t23 * t23) + t24 * t24, m_m)
+    del m_m
+    nu = w_w / mu
+    del w_w
+    beside_a = np.sqrt(nu)
     length_a = np.sqrt(mu)
     del mu
-    part = 1.0 / (length_a * length_n)
-    over_a = length_n * part
+    part = 1.0 / (length_a * beside_a)
+    over_a = beside_a * part
     D = _runtime.select(all_same, 0.0, length_a)
-    t22 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t22
+    del length_a
+    t25 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t25
     del s_beta1_half
-    t23 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t22
-    del s_beta2_half, t22
-    t24 = _runtime.select(same, r, r_2)
-    t25 = t23 - t24
-    outer = np.maximum(t25, 0.0)
-    t26 = D - r_1
-    t27 = t24 + t26
-    inner = np.maximum(t27, 0.0)
+    t26 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t25
+    del s_beta2_half, t25
+    t27 = _runtime.select(same, r, r_2)
+    t28 = t26 - t27
+    outer = np.maximum(t28, 0.0)
+    t29 = D - r_1
+    t30 = t27 + t29
+    inner = np.maximum(t30, 0.0)
     share = 1.0 / (outer + inner)
-    t28 = t24 - t26
-    del t26
-    slack = np.maximum(t28, 0.0)
-    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    del D
-    along = _runtime.select(all_same, 0.0, t29)
+    t31 = t27 - t29
     del t29
+    slack = np.maximum(t31, 0.0)
+    t32 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    del D
+    along = _runtime.select(all_same, 0.0, t32)
+    del t32
     X = over_a * along
-    t30 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along
-    del along, over_a, t12, t13, t16
-    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
-    del nu, t30, t8
-    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
-    del inner, outer, share, slack, t23, t24
-    rho = _runtime.select(all_same, r_1, t32)
-    del all_same, r_1, t32
-    left = t31 + rho * rho
-    del t31
-    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
-    del length_n
-    t34 = t33 * rho
-    del t33
-    t35 = left + t34
-    upper = np.maximum(t35, 0.0)
-    t36 = t34 - left
-    del left, t34
-    lower = np.maximum(t36, 0.0)
+    t33 = _runtime.select(in_line, 0.0, nu) - _runtime.select(same, r_2 * r_2, t8)
+    del nu, t8
+    t34 = over_a * (a_x * t16 - t12 * t15 - t13 * t14) + along
+    del along, t13, t15, t16
+    t35 = share * np.sqrt(outer * inner * slack * (t27 + t26))
+    del inner, outer, share, slack, t26, t27
+    rho = _runtime.select(all_same, r_1, t35)
+    del all_same, r_1, t35
+    left = t33 + t34 * t34 + rho * rho
+    del t33, t34
+    t36 = 2.0 * _runtime.select(in_line, 0.0, beside_a)
+    del beside_a
+    t37 = t36 * rho
+    del t36
+    t38 = left + t37
+    upper = np.maximum(t38, 0.0)
+    t39 = t37 - left
+    del left, t37
+    lower = np.maximum(t39, 0.0)
     both = upper + lower
-    t37 = _runtime.select(same, r_2, r)
+    t40 = _runtime.select(same, r_2, r)
     del r_2, same
-    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
+    t41 = (both <= _runtime.VANISHING * (r * t40)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
-    del length_a
-    t39 = t10 * X + t17 * Y
-    del t10
-    w_x = _runtime.select(in_line, -(t20 * s_w), t11 * t19 - t15 * t18)
-    del s_w
-    t40 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t38, upper
-    h = part * t40
-    del part, t40
-    t41 = w_x * h
-    del w_x
-    t42 = t39 - t41
-    t43 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t44 = t43 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t43
-    t45 = t44 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t44
-    t46 = t45 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t45
-    t47 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t48 = 0.625 * (r * (r * 2.2737367544323206e-13 + t37))
-    del t37
-    t49 = -(_runtime.FEASIBILITY * t48)
+    Y = _runtime.select(t41, 0.0, part * over_a * half * (upper - lower))
+    del over_a
+    t42 = t11 * X + t20 * Y
+    del t11
+    m_x = _runtime.select(slim, over * (t12 * t22 - t14 * t21), product_x)
+    del product_x
+    t43 = _runtime.select(t41, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t41, upper
+    h = part * t43
+    del part, t43
+    t44 = _runtime.select(in_line, -(t23 * s_w), m_x) * h
+    del m_x, s_w
+    t45 = t42 - t44
+    t46 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t47 = t46 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t46
+    t48 = t47 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t47
+    t49 = t48 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t48
-    t50 = (t47 <= t28) & (t47 <= t25) & (t47 <= t27) & (t49 <= t35)
-    del t25, t27, t28, t35, t47
-    failed = np.logical_not(t46) | np.logical_not(t50 & (t49 <= t36))
-    del t36, t46, t49, t50
-    t51 = _runtime.poison(failed)
+    t50 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t51 = 0.625 * (r * (r * 2.2737367544323206e-13 + t40))
+    del t40
+    t52 = -(_runtime.FEASIBILITY * t51)
+    del t51
+    t53 = (t50 <= t31) & (t50 <= t28) & (t50 <= t30) & (t52 <= t38)
+    del t28, t30, t31, t38, t50
+    failed = np.logical_not(t49) | np.logical_not(t53 & (t52 <= t39))
+    del t39, t49, t52, t53
+    t54 = _runtime.poison(failed)
     del failed
-    t52 = t11 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
-    del t20
-    t53 = w_y * h
-    del w_y
-    t54 = t52 - t53
-    t55 = t15 * X + t19 * Y
-    del X, Y, t15, t19
-    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t11 * t17))
-    del a_x, in_line, t11, t17, t18, t21
-    t56 = w_z * h
-    del h, w_z
+    t55 = t12 * X + t21 * Y
+    m_y = _runtime.select(slim, over * (a_x * t22 + t14 * t20), product_y)
+    del product_y
+    t56 = _runtime.select(in_line, -t23, m_y) * h
+    del m_y, t23
     t57 = t55 - t56
-    t58 = t39 + t41
-    del t39, t41
-    t59 = t52 + t53
-    del t52, t53
-    t60 = t55 + t56
+    t58 = t14 * X + t22 * Y
+    del X, Y, t14, t22
+    t59 = _runtime.select(slim, over * (a_x * t21 + t12 * t20), t18)
+    del a_x, over, slim, t12, t18, t20, t21
+    t60 = _runtime.select(in_line, t24, -t59) * h
+    del h, in_line, t24, t59
+    t61 = t58 - t60
+    t62 = t42 + t44
+    del t42, t44
+    t63 = t55 + t56
     del t55, t56
+    t64 = t58 + t60
+    del t58, t60
     return (
-        c1_x - t42 + t51,
-        c1_y - t54 + t51,
-        c1_z - t57 + t51,
-        -t42 + t51,
-        -t54 + t51,
-        -t57 + t51,
-        t4 - t42 + t51,
-        t6 - t54 + t51,
-        t7 - t57 + t51,
-        c1_x - t58 + t51,
-        c1_y - t59 + t51,
-        c1_z - t60 + t51,
-        -t58 + t51,
-        -t59 + t51,
-        -t60 + t51,
-        t4 - t58 + t51,
-        t6 - t59 + t51,
-        t7 - t60 + t51,
+        c1_x - t45 + t54,
+        c1_y - t57 + t54,
+        c1_z - t61 + t54,
+        -t45 + t54,
+        -t57 + t54,
+        -t61 + t54,
+        t4 - t45 + t54,
+        t6 - t57 + t54,
+        t7 - t61 + t54,
+        c1_x - t62 + t54,
+        c1_y - t63 + t54,
+        c1_z - t64 + t54,
+        -t62 + t54,
+        -t63 + t54,
+        -t64 + t54,
+        t4 - t62 + t54,
+        t6 - t63 + t54,
+        t7 - t64 + t54,
+    )
+
+
+def _jacobian_parallel_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
+    # Where nothing vanishes; last, whether something does.
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
+    del c_beta1_half
+    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
+    del c_beta2_half
+    c1_x = r * c_alpha1
+    del c_alpha1
+    t1 = r * np.abs(s_alpha2)
+    del s_alpha2
+    t2 = c2 * t1
+    del c2
+    t3 = r * c_alpha2
+    del c_alpha2
+    t4 = c1_x + (s_gamma * t2 - c_gamma * t3)
+    t5 = r * np.abs(s_alpha1)
+    del s_alpha1
+    c1_y = c1 * t5
+    del c1
+    t6 = c1_y - (s_gamma * t3 + c_gamma * t2)
+    del c_gamma, s_gamma, t2, t3
+    c1_z = s1 * t5
+    del s1, t5
+    t7 = c1_z - s2 * t1
+    del s2, t1
+    product_x = t6 * c1_z - c1_y * t7
+    t8 = t4 * c1_z - c1_x * t7
+    m_z = t4 * c1_y - c1_x * t6
+    product_2 = product_x * product_x + t8 * t8 + m_z * m_z
+    u_u = t4 * t4 + t6 * t6 + t7 * t7
+    nu = product_2 / u_u
+    beside_a = np.sqrt(nu)
+    length_a = np.sqrt(u_u)
+    part = 1.0 / (length_a * beside_a)
+    over_a = beside_a * part
+    t9 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t9
+    del s_beta1_half
+    r_2 = np.abs(s_beta2_half) * t9
+    del s_beta2_half, t9
+    t10 = r_1 - r_2
+    t11 = length_a + t10
+    outer = np.maximum(t11, 0.0)
+    t12 = length_a - t10
+    del t10
+    inner = np.maximum(t12, 0.0)
+    share = 1.0 / (outer + inner)
+    t13 = r_1 + r_2
+    del r_1, r_2
+    t14 = t13 - length_a
+    slack = np.maximum(t14, 0.0)
+    t15 = share * (length_a + slack) * (outer - inner) * 0.5
+    along = length_a * 0.5 + t15
+    del t15
+    X = over_a * along
+    t16 = np.sqrt(outer * inner * slack * (length_a + t13))
+    del inner, length_a, outer, slack, t13
+    rho = share * t16
+    del share, t16
+    t17 = 2.0 * beside_a * rho
+    del beside_a
+    t18 = r * r
+    t19 = over_a * (c1_x * t4 + c1_y * t6 + c1_z * t7) - along
+    del along
+    t20 = t18 - nu - t19 * t19 - rho * rho
+    del nu, t19
+    t21 = t17 - t20
+    upper = np.maximum(t21, 0.0)
+    t22 = t20 + t17
+    del t17, t20
+    lower = np.maximum(t22, 0.0)
+    both = upper + lower
+    half = rho / both
+    del rho
+    Y = part * over_a * half * (upper - lower)
+    del over_a
+    t23 = t4 * X - (t6 * m_z + t7 * t8) * Y
+    h = part * (2.0 * half * np.sqrt(upper * lower))
+    del half, lower, part, upper
+    t24 = product_x * h
+    t25 = t23 - t24
+    t26 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t27 = t26 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t26
+    t28 = t27 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t27
+    t29 = t28 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t28
+    t30 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t31 = 0.625 * (r * (r + r * 2.2737367544323206e-13))
+    t32 = -(_runtime.FEASIBILITY * t31)
+    del t31
+    t33 = (t30 <= t14) & (t30 <= t11) & (t30 <= t12) & (t32 <= t21)
+    del t11, t12, t14, t21, t30
+    failed = np.logical_not(t29) | np.logical_not(t33 & (t32 <= t22))
+    del t22, t29, t32, t33
+    t34 = _runtime.poison(failed)
+    del failed
+    t35 = t6 * X + (t4 * m_z - t7 * product_x) * Y
+    t36 = t8 * h
+    t37 = t35 + t36
+    t38 = t7 * X + (t4 * t8 + t6 * product_x) * Y
+    del X, Y, product_x, t8
+    t39 = m_z * h
+    del h, m_z
+    t40 = t38 - t39
+    t41 = t23 + t24
+    del t23, t24
+    t42 = t35 - t36
+    del t35, t36
+    t43 = t38 + t39
+    del t38, t39
+    t44 = _runtime.VANISHING * _runtime.VANISHING
+    t45 = t18 * t44
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    t46 = u_u * v_v
+    slim = product_2 - t46 * 0.000244140625 <= _runtime.VANISHING * t46
+    del t46
+    t47 = (u_u <= t45) | (u_u + v_v <= t45) | slim | (product_2 <= t44 * (t18 * u_u))
+    del product_2, slim, t44, t45, u_u, v_v
+    return (
+        c1_x - t25 + t34,
+        c1_y - t37 + t34,
+        c1_z - t40 + t34,
+        -t25 + t34,
+        -t37 + t34,
+        -t40 + t34,
+        t4 - t25 + t34,
+        t6 - t37 + t34,
+        t7 - t40 + t34,
+        c1_x - t41 + t34,
+        c1_y - t42 + t34,
+        c1_z - t43 + t34,
+        -t41 + t34,
+        -t42 + t34,
+        -t43 + t34,
+        t4 - t41 + t34,
+        t6 - t42 + t34,
+        t7 - t43 + t34,
+        t47 | (both <= _runtime.VANISHING * t18),
     )
 
 
@@ -934,7 +1301,8 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Array("A", (2, 3, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    common=_jacobian_parallel_common,
+    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1001,149 +1369,299 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t7 = c2_z - c1_z
     u_u = t5 * t5 + t6 * t6 + t7 * t7
     t8 = r * r
-    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
-    same = u_u <= t9
-    t10 = _runtime.select(same, c1_y, t6)
+    t9 = _runtime.VANISHING * _runtime.VANISHING
+    t10 = t8 * t9
+    same = u_u <= t10
+    t11 = _runtime.select(same, c1_y, t6)
+    t12 = _runtime.select(same, -t7, c1_z)
+    t13 = _runtime.select(same, c1_z, -t7)
+    t14 = _runtime.select(same, t6, c1_y)
+    product_x = t11 * t12 - t13 * t14
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t9
+    all_same = u_u + v_v <= t10
+    del t10
     whole = _runtime.select(r == 0.0, 1.0, r)
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
-    t11 = _runtime.select(same, c1_x, t5)
-    a_x = _runtime.select(all_same, whole, -t11)
-    t12 = _runtime.select(same, t6, c1_y)
-    t13 = _runtime.select(same, t5, c1_x)
+    t15 = _runtime.select(same, c1_x, t5)
+    a_x = _runtime.select(all_same, whole, -t15)
+    t16 = _runtime.select(same, t5, c1_x)
     del c1_x
-    t14 = a_x * t12 + t10 * t13
-    t15 = _runtime.select(same, c1_z, -t7)
-    t16 = _runtime.select(same, -t7, c1_z)
-    m_y = a_x * t16 + t13 * t15
-    t17 = over * (t10 * t14 + t15 * m_y)
-    m_x = t10 * t16 - t12 * t15
-    t18 = over * (a_x * t14 - t15 * m_x)
-    del t14
-    t19 = over * (a_x * m_y + t10 * m_x)
-    del m_x, m_y
-    nu = t17 * t17 + t18 * t18 + t19 * t19
-    in_line = nu <= t9
+    product_y = t12 * a_x + t13 * t16
+    t17 = product_x * product_x + product_y * product_y
+    t18 = t14 * a_x + t11 * t16
+    product_2 = t17 + t18 * t18
+    del t17
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t19 = mu * _runtime.select(same, u_u, v_v)
+    del u_u, v_v
+    slim = product_2 - t19 * 0.000244140625 <= _runtime.VANISHING * t19
+    del t19
+    over = 1.0 / mu
+    t20 = t11 * t18 + t13 * product_y
+    t21 = a_x * t18 - t13 * product_x
+    t22 = a_x * product_y + t11 * product_x
+    m_m = _runtime.select(slim, over * (t20 * t20 + t21 * t21 + t22 * t22), product_2)
+    del product_2
+    in_line = m_m <= t9 * (t8 * mu)
     del t9
-    t20 = whole * t15
-    s_w = _runtime.sign(-(t10 * a_x))
-    t21 = whole * (t10 - a_x * s_w)
+    t23 = whole * t13
+    s_w = _runtime.sign(-(t11 * a_x))
+    t24 = whole * (t11 - a_x * s_w)
     del whole
-    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
-    del over
-    length_n = np.sqrt(nu_w)
-    del nu_w
+    w_w = _runtime.select(in_line, 2.0 * (t23 * t23) + t24 * t24, m_m)
+    del m_m
+    nu = w_w / mu
+    del w_w
+    beside_a = np.sqrt(nu)
     length_a = np.sqrt(mu)
     del mu
-    part = 1.0 / (length_a * length_n)
-    over_a = length_n * part
+    part = 1.0 / (length_a * beside_a)
+    over_a = beside_a * part
     D = _runtime.select(all_same, 0.0, length_a)
-    t22 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t22
+    del length_a
+    t25 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t25
     del s_beta1_half
-    t23 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t22
-    del s_beta2_half, t22
-    t24 = _runtime.select(same, r, r_2)
-    t25 = t23 - t24
-    outer = np.maximum(t25, 0.0)
-    t26 = D - r_1
-    t27 = t24 + t26
-    inner = np.maximum(t27, 0.0)
+    t26 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t25
+    del s_beta2_half, t25
+    t27 = _runtime.select(same, r, r_2)
+    t28 = t26 - t27
+    outer = np.maximum(t28, 0.0)
+    t29 = D - r_1
+    t30 = t27 + t29
+    inner = np.maximum(t30, 0.0)
     share = 1.0 / (outer + inner)
-    t28 = t24 - t26
-    del t26
-    slack = np.maximum(t28, 0.0)
-    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    del D
-    along = _runtime.select(all_same, 0.0, t29)
+    t31 = t27 - t29
     del t29
+    slack = np.maximum(t31, 0.0)
+    t32 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    del D
+    along = _runtime.select(all_same, 0.0, t32)
+    del t32
     X = over_a * along
-    t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
-    del along, over_a, t12, t13, t16
-    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
-    del nu, t30, t8
-    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
-    del inner, outer, share, slack, t23, t24
-    rho = _runtime.select(all_same, r_1, t32)
-    del all_same, r_1, t32
-    left = t31 + rho * rho
-    del t31
-    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
-    del length_n
-    t34 = t33 * rho
-    del t33
-    t35 = left + t34
-    upper = np.maximum(t35, 0.0)
-    t36 = t34 - left
-    del left, t34
-    lower = np.maximum(t36, 0.0)
+    t33 = _runtime.select(in_line, 0.0, nu) - _runtime.select(same, r_2 * r_2, t8)
+    del nu, t8
+    t34 = over_a * (a_x * t16 - t11 * t14 - t12 * t13) + along
+    del along, t12, t14, t16
+    t35 = share * np.sqrt(outer * inner * slack * (t27 + t26))
+    del inner, outer, share, slack, t26, t27
+    rho = _runtime.select(all_same, r_1, t35)
+    del all_same, r_1, t35
+    left = t33 + t34 * t34 + rho * rho
+    del t33, t34
+    t36 = 2.0 * _runtime.select(in_line, 0.0, beside_a)
+    del beside_a
+    t37 = t36 * rho
+    del t36
+    t38 = left + t37
+    upper = np.maximum(t38, 0.0)
+    t39 = t37 - left
+    del left, t37
+    lower = np.maximum(t39, 0.0)
     both = upper + lower
-    t37 = _runtime.select(same, r_2, r)
+    t40 = _runtime.select(same, r_2, r)
     del r_2, same
-    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
+    t41 = (both <= _runtime.VANISHING * (r * t40)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
-    del length_a
-    t39 = t10 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
-    t40 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t38, upper
-    h = part * t40
-    del part, t40
-    t41 = w_y * h
-    del w_y
-    t42 = t39 - t41
-    t43 = t15 * X + t19 * Y
-    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
-    del a_x, t21
-    t44 = w_z * h
-    del w_z
-    t45 = t43 - t44
-    t46 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t47 = t46 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t46
-    t48 = t47 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t47
-    t49 = t48 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t48
-    t50 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t51 = 0.625 * (r * (r * 2.2737367544323206e-13 + t37))
-    del t37
-    t52 = -(_runtime.FEASIBILITY * t51)
+    Y = _runtime.select(t41, 0.0, part * over_a * half * (upper - lower))
+    del over_a
+    t42 = t11 * X + t21 * Y
+    m_y = _runtime.select(slim, over * (a_x * t22 + t13 * t20), product_y)
+    del product_y
+    t43 = _runtime.select(t41, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t41, upper
+    h = part * t43
+    del part, t43
+    t44 = _runtime.select(in_line, -t23, m_y) * h
+    del m_y
+    t45 = t42 - t44
+    t46 = t13 * X + t22 * Y
+    t47 = _runtime.select(slim, over * (a_x * t21 + t11 * t20), t18)
+    del a_x, t18
+    t48 = _runtime.select(in_line, t24, -t47) * h
+    del t24, t47
+    t49 = t46 - t48
+    t50 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t51 = t50 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t50
+    t52 = t51 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     del t51
-    t53 = (t50 <= t28) & (t50 <= t25) & (t50 <= t27) & (t52 <= t35)
-    del t25, t27, t28, t35, t50
-    failed = np.logical_not(t49) | np.logical_not(t53 & (t52 <= t36))
-    del t36, t49, t52, t53
-    t54 = _runtime.poison(failed)
+    t53 = t52 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t52
+    t54 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t55 = 0.625 * (r * (r * 2.2737367544323206e-13 + t40))
+    del t40
+    t56 = -(_runtime.FEASIBILITY * t55)
+    del t55
+    t57 = (t54 <= t31) & (t54 <= t28) & (t54 <= t30) & (t56 <= t38)
+    del t28, t30, t31, t38, t54
+    failed = np.logical_not(t53) | np.logical_not(t57 & (t56 <= t39))
+    del t39, t53, t56, t57
+    t58 = _runtime.poison(failed)
     del failed
-    t55 = s_gamma * c2_z
+    t59 = s_gamma * c2_z
     del s_gamma
-    t56 = t11 * X + t17 * Y
-    del X, Y, t11, t17
-    w_x = _runtime.select(in_line, -(t20 * s_w), t10 * t19 - t15 * t18)
-    del in_line, s_w, t10, t15, t18, t19, t20
-    t57 = w_x * h
-    del h, w_x
-    t58 = c_gamma * c2_z
+    t60 = t15 * X + t20 * Y
+    del X, Y, t15, t20
+    m_x = _runtime.select(slim, over * (t11 * t22 - t13 * t21), product_x)
+    del over, product_x, slim, t11, t13, t21, t22
+    t61 = _runtime.select(in_line, -(t23 * s_w), m_x) * h
+    del h, in_line, m_x, s_w, t23
+    t62 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t55 * (t5 - (t56 - t57)) - t58 * (t6 - t42) - t3 * (t7 + t45)
-    t59 = t39 + t41
-    del t39, t41
-    t60 = t43 + t44
-    del t43, t44
-    B_22_below = t55 * (t5 - (t56 + t57)) - t58 * (t6 - t59) - t3 * (t7 + t60)
-    del t3, t5, t55, t56, t57, t58, t6, t7
+    B_22 = t59 * (t5 - (t60 - t61)) - t62 * (t6 - t45) - t3 * (t7 + t49)
+    t63 = t42 + t44
+    del t42, t44
+    t64 = t46 + t48
+    del t46, t48
+    B_22_below = t59 * (t5 - (t60 + t61)) - t62 * (t6 - t63) - t3 * (t7 + t64)
+    del t3, t5, t59, t6, t60, t61, t62, t7
     return (
-        c1_z * t42 - c1_y * t45 + t54,
-        B_22 + t54,
-        c1_z * t59 - c1_y * t60 + t54,
-        B_22_below + t54,
+        c1_z * t45 - c1_y * t49 + t58,
+        B_22 + t58,
+        c1_z * t63 - c1_y * t64 + t58,
+        B_22_below + t58,
+    )
+
+
+def _jacobian_serial_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
+    # Where nothing vanishes; last, whether something does.
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
+    del c_beta1_half
+    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
+    del c_beta2_half
+    t1 = r * np.abs(s_alpha1)
+    del s_alpha1
+    c1_z = s1 * t1
+    del s1
+    c1_y = c1 * t1
+    del c1, t1
+    t2 = r * c_alpha2
+    del c_alpha2
+    t3 = r * np.abs(s_alpha2)
+    del s_alpha2
+    t4 = c2 * t3
+    del c2
+    t5 = c1_y - (s_gamma * t2 + c_gamma * t4)
+    c2_z = s2 * t3
+    del s2, t3
+    t6 = c2_z - c1_z
+    product_x = c1_z * t5 + c1_y * t6
+    c1_x = r * c_alpha1
+    del c_alpha1
+    t7 = c1_x + (s_gamma * t4 - c_gamma * t2)
+    del t2
+    t8 = c1_z * t7 + c1_x * t6
+    m_z = c1_y * t7 - c1_x * t5
+    product_2 = product_x * product_x + t8 * t8 + m_z * m_z
+    u_u = t7 * t7 + t5 * t5 + t6 * t6
+    nu = product_2 / u_u
+    beside_a = np.sqrt(nu)
+    length_a = np.sqrt(u_u)
+    part = 1.0 / (length_a * beside_a)
+    over_a = beside_a * part
+    t9 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t9
+    del s_beta1_half
+    r_2 = np.abs(s_beta2_half) * t9
+    del s_beta2_half, t9
+    t10 = r_1 - r_2
+    t11 = length_a + t10
+    outer = np.maximum(t11, 0.0)
+    t12 = length_a - t10
+    del t10
+    inner = np.maximum(t12, 0.0)
+    share = 1.0 / (outer + inner)
+    t13 = r_1 + r_2
+    del r_1, r_2
+    t14 = t13 - length_a
+    slack = np.maximum(t14, 0.0)
+    t15 = share * (length_a + slack) * (outer - inner) * 0.5
+    along = length_a * 0.5 + t15
+    del t15
+    X = over_a * along
+    t16 = np.sqrt(outer * inner * slack * (length_a + t13))
+    del inner, length_a, outer, slack, t13
+    rho = share * t16
+    del share, t16
+    t17 = 2.0 * beside_a * rho
+    del beside_a
+    t18 = r * r
+    t19 = over_a * (c1_x * t7 + c1_y * t5 - c1_z * t6) - along
+    del along
+    t20 = t18 - nu - t19 * t19 - rho * rho
+    del nu, t19
+    t21 = t17 - t20
+    upper = np.maximum(t21, 0.0)
+    t22 = t20 + t17
+    del t17, t20
+    lower = np.maximum(t22, 0.0)
+    both = upper + lower
+    half = rho / both
+    del rho
+    Y = part * over_a * half * (upper - lower)
+    del over_a
+    t23 = t5 * X + (t7 * m_z + t6 * product_x) * Y
+    h = part * (2.0 * half * np.sqrt(upper * lower))
+    del half, lower, part, upper
+    t24 = t8 * h
+    t25 = t23 + t24
+    t26 = t6 * X - (t7 * t8 + t5 * product_x) * Y
+    t27 = m_z * h
+    A_13 = t26 + t27
+    t28 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t29 = t28 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t28
+    t30 = t29 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t29
+    t31 = t30 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t30
+    t32 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t33 = 0.625 * (r * (r + r * 2.2737367544323206e-13))
+    t34 = -(_runtime.FEASIBILITY * t33)
+    del t33
+    t35 = (t32 <= t14) & (t32 <= t11) & (t32 <= t12) & (t34 <= t21)
+    del t11, t12, t14, t21, t32
+    failed = np.logical_not(t31) | np.logical_not(t35 & (t34 <= t22))
+    del t22, t31, t34, t35
+    t36 = _runtime.poison(failed)
+    del failed
+    t37 = s_gamma * c2_z
+    del s_gamma
+    t38 = t7 * X - (t5 * m_z - t6 * t8) * Y
+    del X, Y, m_z, t8
+    t39 = product_x * h
+    del h, product_x
+    t40 = c_gamma * c2_z
+    del c2_z, c_gamma
+    B_22 = t37 * (t7 - (t38 - t39)) - t40 * (t5 - t25) - t4 * (t6 - A_13)
+    t41 = t23 - t24
+    del t23, t24
+    A_13_below = t26 - t27
+    del t26, t27
+    B_22_below = t37 * (t7 - (t38 + t39)) - t40 * (t5 - t41) - t4 * (t6 - A_13_below)
+    del t37, t38, t39, t4, t40, t5, t6, t7
+    t42 = _runtime.VANISHING * _runtime.VANISHING
+    t43 = t18 * t42
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    del c1_x
+    t44 = u_u * v_v
+    slim = product_2 - t44 * 0.000244140625 <= _runtime.VANISHING * t44
+    del t44
+    t45 = (u_u <= t43) | (u_u + v_v <= t43) | slim | (product_2 <= t42 * (t18 * u_u))
+    del product_2, slim, t42, t43, u_u, v_v
+    return (
+        c1_z * t25 + c1_y * A_13 + t36,
+        B_22 + t36,
+        c1_z * t41 + c1_y * A_13_below + t36,
+        B_22_below + t36,
+        t45 | (both <= _runtime.VANISHING * t18),
     )
 
 
@@ -1154,7 +1672,8 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Array("B", (2, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    common=_jacobian_serial_common,
+    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1221,200 +1740,399 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t7 = c2_z - c1_z
     u_u = t5 * t5 + t6 * t6 + t7 * t7
     t8 = r * r
-    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
-    same = u_u <= t9
-    t10 = _runtime.select(same, c1_y, t6)
+    t9 = _runtime.VANISHING * _runtime.VANISHING
+    t10 = t8 * t9
+    same = u_u <= t10
+    t11 = _runtime.select(same, c1_y, t6)
+    t12 = _runtime.select(same, -t7, c1_z)
+    t13 = _runtime.select(same, c1_z, -t7)
+    t14 = _runtime.select(same, t6, c1_y)
+    product_x = t11 * t12 - t13 * t14
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t9
+    all_same = u_u + v_v <= t10
+    del t10
     whole = _runtime.select(r == 0.0, 1.0, r)
+    t15 = _runtime.select(same, c1_x, t5)
+    a_x = _runtime.select(all_same, whole, -t15)
+    t16 = _runtime.select(same, t5, c1_x)
+    product_y = t12 * a_x + t13 * t16
+    t17 = product_x * product_x + product_y * product_y
+    t18 = t14 * a_x + t11 * t16
+    product_2 = t17 + t18 * t18
+    del t17
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t19 = mu * _runtime.select(same, u_u, v_v)
     del u_u, v_v
+    slim = product_2 - t19 * 0.000244140625 <= _runtime.VANISHING * t19
+    del t19
     over = 1.0 / mu
-    t11 = _runtime.select(same, c1_x, t5)
-    a_x = _runtime.select(all_same, whole, -t11)
-    t12 = _runtime.select(same, t6, c1_y)
-    t13 = _runtime.select(same, t5, c1_x)
-    t14 = a_x * t12 + t10 * t13
-    t15 = _runtime.select(same, c1_z, -t7)
-    t16 = _runtime.select(same, -t7, c1_z)
-    m_y = a_x * t16 + t13 * t15
-    t17 = over * (t10 * t14 + t15 * m_y)
-    m_x = t10 * t16 - t12 * t15
-    t18 = over * (a_x * t14 - t15 * m_x)
-    del t14
-    t19 = over * (a_x * m_y + t10 * m_x)
-    del m_x, m_y
-    nu = t17 * t17 + t18 * t18 + t19 * t19
-    in_line = nu <= t9
+    t20 = t11 * t18 + t13 * product_y
+    t21 = a_x * t18 - t13 * product_x
+    t22 = a_x * product_y + t11 * product_x
+    m_m = _runtime.select(slim, over * (t20 * t20 + t21 * t21 + t22 * t22), product_2)
+    del product_2
+    in_line = m_m <= t9 * (t8 * mu)
     del t9
-    t20 = whole * t15
-    s_w = _runtime.sign(-(t10 * a_x))
-    t21 = whole * (t10 - a_x * s_w)
+    t23 = whole * t13
+    s_w = _runtime.sign(-(t11 * a_x))
+    t24 = whole * (t11 - a_x * s_w)
     del whole
-    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
-    del over
-    length_n = np.sqrt(nu_w)
-    del nu_w
+    w_w = _runtime.select(in_line, 2.0 * (t23 * t23) + t24 * t24, m_m)
+    nu = w_w / mu
+    del w_w
+    beside_a = np.sqrt(nu)
     length_a = np.sqrt(mu)
-    part = 1.0 / (length_a * length_n)
-    over_a = length_n * part
+    del mu
+    part = 1.0 / (length_a * beside_a)
+    over_a = beside_a * part
     D = _runtime.select(all_same, 0.0, length_a)
-    t22 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t22
+    del length_a
+    t25 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t25
     del s_beta1_half
-    t23 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t22
-    del s_beta2_half, t22
-    t24 = _runtime.select(same, r, r_2)
-    t25 = t23 - t24
-    outer = np.maximum(t25, 0.0)
-    t26 = D - r_1
-    t27 = t24 + t26
-    inner = np.maximum(t27, 0.0)
+    t26 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t25
+    del s_beta2_half, t25
+    t27 = _runtime.select(same, r, r_2)
+    t28 = t26 - t27
+    outer = np.maximum(t28, 0.0)
+    t29 = D - r_1
+    t30 = t27 + t29
+    inner = np.maximum(t30, 0.0)
     share = 1.0 / (outer + inner)
-    t28 = t24 - t26
-    del t26
-    slack = np.maximum(t28, 0.0)
-    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    del D
-    along = _runtime.select(all_same, 0.0, t29)
+    t31 = t27 - t29
     del t29
+    slack = np.maximum(t31, 0.0)
+    t32 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    del D
+    along = _runtime.select(all_same, 0.0, t32)
+    del t32
     X = over_a * along
-    t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
-    del along, over_a, t12, t13, t16
-    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
-    del t30, t8
-    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
-    del inner, outer, share, slack, t23, t24
-    rho = _runtime.select(all_same, r_1, t32)
-    del all_same, r_1, t32
-    left = t31 + rho * rho
-    del t31
-    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
-    del length_n
-    t34 = t33 * rho
-    del t33
-    t35 = left + t34
-    upper = np.maximum(t35, 0.0)
-    t36 = t34 - left
-    del left, t34
-    lower = np.maximum(t36, 0.0)
+    t33 = _runtime.select(in_line, 0.0, nu) - _runtime.select(same, r_2 * r_2, t8)
+    del nu, t8
+    t34 = over_a * (a_x * t16 - t11 * t14 - t12 * t13) + along
+    del along, t12, t14, t16
+    t35 = share * np.sqrt(outer * inner * slack * (t27 + t26))
+    del inner, outer, share, slack, t26, t27
+    rho = _runtime.select(all_same, r_1, t35)
+    del all_same, r_1, t35
+    left = t33 + t34 * t34 + rho * rho
+    del t33, t34
+    t36 = 2.0 * _runtime.select(in_line, 0.0, beside_a)
+    del beside_a
+    t37 = t36 * rho
+    del t36
+    t38 = left + t37
+    upper = np.maximum(t38, 0.0)
+    t39 = t37 - left
+    del left, t37
+    lower = np.maximum(t39, 0.0)
     both = upper + lower
-    t37 = _runtime.select(same, r_2, r)
+    t40 = _runtime.select(same, r_2, r)
     del r_2, same
-    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
+    t41 = (both <= _runtime.VANISHING * (r * t40)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
-    del length_a
-    t39 = t10 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
-    t40 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t38, upper
-    h = part * t40
-    del part, t40
-    t41 = w_y * h
-    del w_y
-    t42 = t39 - t41
-    t43 = t15 * X + t19 * Y
-    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
-    del a_x, t21
-    t44 = w_z * h
-    del w_z
-    t45 = t43 - t44
-    B_11 = c1_z * t42 - c1_y * t45
-    A_02 = c1_y - t42
-    t46 = t7 + t45
-    A_03 = c1_z - t45
-    A_22 = t6 - t42
-    Delta = mu * nu * h
-    del mu, nu
-    t47 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t48 = t47 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t47
-    t49 = t48 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t48
-    t50 = t49 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t49
-    t51 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t52 = 0.625 * (r * (r * 2.2737367544323206e-13 + t37))
-    del t37
-    t53 = -(_runtime.FEASIBILITY * t52)
+    Y = _runtime.select(t41, 0.0, part * over_a * half * (upper - lower))
+    del over_a
+    t42 = t11 * X + t21 * Y
+    m_y = _runtime.select(slim, over * (a_x * t22 + t13 * t20), product_y)
+    del product_y
+    t43 = _runtime.select(t41, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t41, upper
+    h = part * t43
+    del part, t43
+    t44 = _runtime.select(in_line, -t23, m_y) * h
+    del m_y
+    t45 = t42 - t44
+    t46 = t13 * X + t22 * Y
+    t47 = _runtime.select(slim, over * (a_x * t21 + t11 * t20), t18)
+    del a_x, t18
+    t48 = _runtime.select(in_line, t24, -t47) * h
+    del t24, t47
+    t49 = t46 - t48
+    B_11 = c1_z * t45 - c1_y * t49
+    A_02 = c1_y - t45
+    t50 = t7 + t49
+    A_03 = c1_z - t49
+    A_22 = t6 - t45
+    Delta = m_m * h
+    del m_m
+    t51 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t52 = t51 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t51
+    t53 = t52 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     del t52
-    t54 = (t51 <= t28) & (t51 <= t25) & (t51 <= t27) & (t53 <= t35)
-    del t25, t27, t28, t35, t51
-    failed = np.logical_not(t50) | np.logical_not(t54 & (t53 <= t36))
-    del t36, t50, t53, t54
-    t55 = _runtime.poison(failed)
+    t54 = t53 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t53
+    t55 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t56 = 0.625 * (r * (r * 2.2737367544323206e-13 + t40))
+    del t40
+    t57 = -(_runtime.FEASIBILITY * t56)
+    del t56
+    t58 = (t55 <= t31) & (t55 <= t28) & (t55 <= t30) & (t57 <= t38)
+    del t28, t30, t31, t38, t55
+    failed = np.logical_not(t54) | np.logical_not(t58 & (t57 <= t39))
+    del t39, t54, t57, t58
+    t59 = _runtime.poison(failed)
     del failed
-    t56 = B_11 * (A_02 * t46 + A_03 * A_22) / Delta + t55
-    t57 = s_gamma * c2_z
+    t60 = B_11 * (A_02 * t50 + A_03 * A_22) / Delta + t59
+    t61 = s_gamma * c2_z
     del s_gamma
-    t58 = t11 * X + t17 * Y
-    del X, Y, t11, t17
-    w_x = _runtime.select(in_line, -(t20 * s_w), t10 * t19 - t15 * t18)
-    del in_line, s_w, t10, t15, t18, t19, t20
-    t59 = w_x * h
-    del h, w_x
-    t60 = t58 - t59
-    A_21 = t5 - t60
-    t61 = c_gamma * c2_z
+    t62 = t15 * X + t20 * Y
+    del X, Y, t15, t20
+    m_x = _runtime.select(slim, over * (t11 * t22 - t13 * t21), product_x)
+    del over, product_x, slim, t11, t13, t21, t22
+    t63 = _runtime.select(in_line, -(t23 * s_w), m_x) * h
+    del h, in_line, m_x, s_w, t23
+    t64 = t62 - t63
+    A_21 = t5 - t64
+    t65 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t57 * A_21 - t61 * A_22 - t3 * t46
-    t62 = -(B_22 * (t45 * A_02 - t42 * A_03) / Delta) + t55
-    A_01 = c1_x - t60
-    t63 = -(B_11 * (t46 * A_01 + A_03 * A_21) / Delta) + t55
-    del t46
-    t64 = B_22 * (t45 * A_01 - A_03 * t60) / Delta + t55
-    del A_03, t45
-    t65 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
+    B_22 = t61 * A_21 - t65 * A_22 - t3 * t50
+    t66 = -(B_22 * (t49 * A_02 - t45 * A_03) / Delta) + t59
+    A_01 = c1_x - t64
+    t67 = -(B_11 * (t50 * A_01 + A_03 * A_21) / Delta) + t59
+    del t50
+    t68 = B_22 * (t49 * A_01 - A_03 * t64) / Delta + t59
+    del A_03, t49
+    t69 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
     del A_21, A_22, B_11
-    t66 = -(B_22 * (t42 * A_01 - A_02 * t60) / Delta) + t55
-    del A_01, A_02, B_22, t42, t60
-    t67 = t39 + t41
-    del t39, t41
-    t68 = t43 + t44
-    del t43, t44
-    B_11_below = c1_z * t67 - c1_y * t68
-    A_02_below = c1_y - t67
+    t70 = -(B_22 * (t45 * A_01 - A_02 * t64) / Delta) + t59
+    del A_01, A_02, B_22, t45, t64
+    t71 = t42 + t44
+    del t42, t44
+    t72 = t46 + t48
+    del t46, t48
+    B_11_below = c1_z * t71 - c1_y * t72
+    A_02_below = c1_y - t71
     del c1_y
-    t69 = t7 + t68
+    t73 = t7 + t72
     del t7
-    A_03_below = c1_z - t68
+    A_03_below = c1_z - t72
     del c1_z
-    A_22_below = t6 - t67
+    A_22_below = t6 - t71
     del t6
-    t70 = B_11_below * (A_02_below * t69 + A_03_below * A_22_below)
-    t71 = t58 + t59
-    del t58, t59
-    A_21_below = t5 - t71
+    t74 = B_11_below * (A_02_below * t73 + A_03_below * A_22_below)
+    t75 = t62 + t63
+    del t62, t63
+    A_21_below = t5 - t75
     del t5
-    B_22_below = t57 * A_21_below - t61 * A_22_below - t3 * t69
-    del t3, t57, t61
-    t72 = B_22_below * (t68 * A_02_below - t67 * A_03_below)
-    A_01_below = c1_x - t71
+    B_22_below = t61 * A_21_below - t65 * A_22_below - t3 * t73
+    del t3, t61, t65
+    t76 = B_22_below * (t72 * A_02_below - t71 * A_03_below)
+    A_01_below = c1_x - t75
     del c1_x
-    t73 = B_11_below * (t69 * A_01_below + A_03_below * A_21_below)
-    del t69
-    t74 = B_22_below * (t68 * A_01_below - A_03_below * t71)
-    del A_03_below, t68
-    t75 = A_22_below * A_01_below - A_02_below * A_21_below
+    t77 = B_11_below * (t73 * A_01_below + A_03_below * A_21_below)
+    del t73
+    t78 = B_22_below * (t72 * A_01_below - A_03_below * t75)
+    del A_03_below, t72
+    t79 = A_22_below * A_01_below - A_02_below * A_21_below
     del A_21_below, A_22_below
-    t76 = B_22_below * (t67 * A_01_below - A_02_below * t71)
-    del A_01_below, A_02_below, B_22_below, t67, t71
+    t80 = B_22_below * (t71 * A_01_below - A_02_below * t75)
+    del A_01_below, A_02_below, B_22_below, t71, t75
     return (
-        t56,
-        t62,
-        t63,
-        t64,
-        t65 + t55,
+        t60,
         t66,
-        -(t70 / Delta) + t55,
-        t72 / Delta + t55,
-        t73 / Delta + t55,
-        -(t74 / Delta) + t55,
-        B_11_below * t75 / Delta + t55,
-        t76 / Delta + t55,
+        t67,
+        t68,
+        t69 + t59,
+        t70,
+        -(t74 / Delta) + t59,
+        t76 / Delta + t59,
+        t77 / Delta + t59,
+        -(t78 / Delta) + t59,
+        B_11_below * t79 / Delta + t59,
+        t80 / Delta + t59,
+    )
+
+
+def _jacobian_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
+    # Where nothing vanishes; last, whether something does.
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
+    del c_beta1_half
+    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
+    del c_beta2_half
+    t1 = r * np.abs(s_alpha1)
+    del s_alpha1
+    c1_z = s1 * t1
+    del s1
+    c1_y = c1 * t1
+    del c1, t1
+    t2 = r * c_alpha2
+    del c_alpha2
+    t3 = r * np.abs(s_alpha2)
+    del s_alpha2
+    t4 = c2 * t3
+    del c2
+    t5 = c1_y - (s_gamma * t2 + c_gamma * t4)
+    c2_z = s2 * t3
+    del s2, t3
+    t6 = c2_z - c1_z
+    product_x = c1_z * t5 + c1_y * t6
+    c1_x = r * c_alpha1
+    del c_alpha1
+    t7 = c1_x + (s_gamma * t4 - c_gamma * t2)
+    del t2
+    t8 = c1_z * t7 + c1_x * t6
+    m_z = c1_y * t7 - c1_x * t5
+    product_2 = product_x * product_x + t8 * t8 + m_z * m_z
+    u_u = t7 * t7 + t5 * t5 + t6 * t6
+    nu = product_2 / u_u
+    beside_a = np.sqrt(nu)
+    length_a = np.sqrt(u_u)
+    part = 1.0 / (length_a * beside_a)
+    over_a = beside_a * part
+    t9 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t9
+    del s_beta1_half
+    r_2 = np.abs(s_beta2_half) * t9
+    del s_beta2_half, t9
+    t10 = r_1 - r_2
+    t11 = length_a + t10
+    outer = np.maximum(t11, 0.0)
+    t12 = length_a - t10
+    del t10
+    inner = np.maximum(t12, 0.0)
+    share = 1.0 / (outer + inner)
+    t13 = r_1 + r_2
+    del r_1, r_2
+    t14 = t13 - length_a
+    slack = np.maximum(t14, 0.0)
+    t15 = share * (length_a + slack) * (outer - inner) * 0.5
+    along = length_a * 0.5 + t15
+    del t15
+    X = over_a * along
+    t16 = np.sqrt(outer * inner * slack * (length_a + t13))
+    del inner, length_a, outer, slack, t13
+    rho = share * t16
+    del share, t16
+    t17 = 2.0 * beside_a * rho
+    del beside_a
+    t18 = r * r
+    t19 = over_a * (c1_x * t7 + c1_y * t5 - c1_z * t6) - along
+    del along
+    t20 = t18 - nu - t19 * t19 - rho * rho
+    del nu, t19
+    t21 = t17 - t20
+    upper = np.maximum(t21, 0.0)
+    t22 = t20 + t17
+    del t17, t20
+    lower = np.maximum(t22, 0.0)
+    both = upper + lower
+    half = rho / both
+    del rho
+    Y = part * over_a * half * (upper - lower)
+    del over_a
+    t23 = t5 * X + (t7 * m_z + t6 * product_x) * Y
+    h = part * (2.0 * half * np.sqrt(upper * lower))
+    del half, lower, part, upper
+    t24 = t8 * h
+    t25 = t23 + t24
+    t26 = t6 * X - (t7 * t8 + t5 * product_x) * Y
+    t27 = m_z * h
+    A_13 = t26 + t27
+    B_11 = c1_z * t25 + c1_y * A_13
+    A_02 = c1_y - t25
+    t28 = t6 - A_13
+    A_03 = c1_z + A_13
+    A_22 = t5 - t25
+    Delta = product_2 * h
+    t29 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t30 = t29 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t29
+    t31 = t30 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t30
+    t32 = t31 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t31
+    t33 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t34 = 0.625 * (r * (r + r * 2.2737367544323206e-13))
+    t35 = -(_runtime.FEASIBILITY * t34)
+    del t34
+    t36 = (t33 <= t14) & (t33 <= t11) & (t33 <= t12) & (t35 <= t21)
+    del t11, t12, t14, t21, t33
+    failed = np.logical_not(t32) | np.logical_not(t36 & (t35 <= t22))
+    del t22, t32, t35, t36
+    t37 = _runtime.poison(failed)
+    del failed
+    t38 = B_11 * (A_02 * t28 + A_03 * A_22) / Delta + t37
+    t39 = s_gamma * c2_z
+    del s_gamma
+    t40 = t7 * X - (t5 * m_z - t6 * t8) * Y
+    del X, Y, m_z, t8
+    t41 = product_x * h
+    del h, product_x
+    t42 = t40 - t41
+    A_21 = t7 - t42
+    t43 = c_gamma * c2_z
+    del c2_z, c_gamma
+    B_22 = t39 * A_21 - t43 * A_22 - t4 * t28
+    t44 = B_22 * (A_13 * A_02 + t25 * A_03) / Delta + t37
+    A_01 = c1_x - t42
+    t45 = -(B_11 * (t28 * A_01 + A_03 * A_21) / Delta) + t37
+    del t28
+    t46 = -(B_22 * (A_13 * A_01 + A_03 * t42) / Delta) + t37
+    del A_03, A_13
+    t47 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
+    del A_21, A_22, B_11
+    t48 = -(B_22 * (t25 * A_01 - A_02 * t42) / Delta) + t37
+    del A_01, A_02, B_22, t25, t42
+    t49 = t23 - t24
+    del t23, t24
+    A_13_below = t26 - t27
+    del t26, t27
+    B_11_below = c1_z * t49 + c1_y * A_13_below
+    A_02_below = c1_y - t49
+    t50 = t6 - A_13_below
+    del t6
+    A_03_below = c1_z + A_13_below
+    A_22_below = t5 - t49
+    del t5
+    t51 = B_11_below * (A_02_below * t50 + A_03_below * A_22_below)
+    t52 = t40 + t41
+    del t40, t41
+    A_21_below = t7 - t52
+    del t7
+    B_22_below = t39 * A_21_below - t43 * A_22_below - t4 * t50
+    del t39, t4, t43
+    t53 = B_22_below * (A_13_below * A_02_below + t49 * A_03_below)
+    A_01_below = c1_x - t52
+    t54 = B_11_below * (t50 * A_01_below + A_03_below * A_21_below)
+    del t50
+    t55 = B_22_below * (A_13_below * A_01_below + A_03_below * t52)
+    del A_03_below, A_13_below
+    t56 = A_22_below * A_01_below - A_02_below * A_21_below
+    del A_21_below, A_22_below
+    t57 = B_22_below * (t49 * A_01_below - A_02_below * t52)
+    del A_01_below, A_02_below, B_22_below, t49, t52
+    t58 = _runtime.VANISHING * _runtime.VANISHING
+    t59 = t18 * t58
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    del c1_x, c1_y, c1_z
+    t60 = u_u * v_v
+    slim = product_2 - t60 * 0.000244140625 <= _runtime.VANISHING * t60
+    del t60
+    t61 = (u_u <= t59) | (u_u + v_v <= t59) | slim | (product_2 <= t58 * (t18 * u_u))
+    del product_2, slim, t58, t59, u_u, v_v
+    return (
+        t38,
+        t44,
+        t45,
+        t46,
+        t47 + t37,
+        t48,
+        -(t51 / Delta) + t37,
+        -(t53 / Delta) + t37,
+        t54 / Delta + t37,
+        t55 / Delta + t37,
+        B_11_below * t56 / Delta + t37,
+        t57 / Delta + t37,
+        t61 | (both <= _runtime.VANISHING * t18),
     )
 
 
@@ -1425,7 +2143,8 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("J", (2, 3, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    common=_jacobian_common,
+    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1493,152 +2212,306 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t7 = c2_z - c1_z
     u_u = t5 * t5 + t6 * t6 + t7 * t7
     t8 = r * r
-    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
-    same = u_u <= t9
-    t10 = _runtime.select(same, c1_y, t6)
+    t9 = _runtime.VANISHING * _runtime.VANISHING
+    t10 = t8 * t9
+    same = u_u <= t10
+    t11 = _runtime.select(same, c1_y, t6)
+    t12 = _runtime.select(same, -t7, c1_z)
+    t13 = _runtime.select(same, c1_z, -t7)
+    t14 = _runtime.select(same, t6, c1_y)
+    product_x = t11 * t12 - t13 * t14
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t9
+    all_same = u_u + v_v <= t10
+    del t10
     whole = _runtime.select(r == 0.0, 1.0, r)
-    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    del u_u, v_v
-    over = 1.0 / mu
-    t11 = _runtime.select(same, c1_x, t5)
-    a_x = _runtime.select(all_same, whole, -t11)
-    t12 = _runtime.select(same, t6, c1_y)
-    t13 = _runtime.select(same, t5, c1_x)
+    t15 = _runtime.select(same, c1_x, t5)
+    a_x = _runtime.select(all_same, whole, -t15)
+    t16 = _runtime.select(same, t5, c1_x)
     del c1_x
-    t14 = a_x * t12 + t10 * t13
-    t15 = _runtime.select(same, c1_z, -t7)
-    t16 = _runtime.select(same, -t7, c1_z)
-    m_y = a_x * t16 + t13 * t15
-    t17 = over * (t10 * t14 + t15 * m_y)
-    m_x = t10 * t16 - t12 * t15
-    t18 = over * (a_x * t14 - t15 * m_x)
-    del t14
-    t19 = over * (a_x * m_y + t10 * m_x)
-    del m_x, m_y
-    nu = t17 * t17 + t18 * t18 + t19 * t19
-    in_line = nu <= t9
+    product_y = t12 * a_x + t13 * t16
+    t17 = product_x * product_x + product_y * product_y
+    t18 = t14 * a_x + t11 * t16
+    product_2 = t17 + t18 * t18
+    del t17
+    mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t19 = mu * _runtime.select(same, u_u, v_v)
+    del u_u, v_v
+    slim = product_2 - t19 * 0.000244140625 <= _runtime.VANISHING * t19
+    del t19
+    over = 1.0 / mu
+    t20 = t11 * t18 + t13 * product_y
+    t21 = a_x * t18 - t13 * product_x
+    t22 = a_x * product_y + t11 * product_x
+    m_m = _runtime.select(slim, over * (t20 * t20 + t21 * t21 + t22 * t22), product_2)
+    del product_2
+    in_line = m_m <= t9 * (t8 * mu)
     del t9
-    t20 = whole * t15
-    s_w = _runtime.sign(-(t10 * a_x))
-    t21 = whole * (t10 - a_x * s_w)
+    t23 = whole * t13
+    s_w = _runtime.sign(-(t11 * a_x))
+    t24 = whole * (t11 - a_x * s_w)
     del whole
-    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
-    del over
-    length_n = np.sqrt(nu_w)
-    del nu_w
+    w_w = _runtime.select(in_line, 2.0 * (t23 * t23) + t24 * t24, m_m)
+    nu = w_w / mu
+    del w_w
+    beside_a = np.sqrt(nu)
     length_a = np.sqrt(mu)
-    part = 1.0 / (length_a * length_n)
-    over_a = length_n * part
+    del mu
+    part = 1.0 / (length_a * beside_a)
+    over_a = beside_a * part
     D = _runtime.select(all_same, 0.0, length_a)
-    t22 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t22
+    del length_a
+    t25 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t25
     del s_beta1_half
-    t23 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t22
-    del s_beta2_half, t22
-    t24 = _runtime.select(same, r, r_2)
-    t25 = t23 - t24
-    outer = np.maximum(t25, 0.0)
-    t26 = D - r_1
-    t27 = t24 + t26
-    inner = np.maximum(t27, 0.0)
+    t26 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t25
+    del s_beta2_half, t25
+    t27 = _runtime.select(same, r, r_2)
+    t28 = t26 - t27
+    outer = np.maximum(t28, 0.0)
+    t29 = D - r_1
+    t30 = t27 + t29
+    inner = np.maximum(t30, 0.0)
     share = 1.0 / (outer + inner)
-    t28 = t24 - t26
-    del t26
-    slack = np.maximum(t28, 0.0)
-    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    del D
-    along = _runtime.select(all_same, 0.0, t29)
+    t31 = t27 - t29
     del t29
+    slack = np.maximum(t31, 0.0)
+    t32 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    del D
+    along = _runtime.select(all_same, 0.0, t32)
+    del t32
     X = over_a * along
-    t30 = over_a * (a_x * t13 - t10 * t12 - t15 * t16) + along
-    del along, over_a, t12, t13, t16
-    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
-    del t30, t8
-    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
-    del inner, outer, share, slack, t23, t24
-    rho = _runtime.select(all_same, r_1, t32)
-    del all_same, r_1, t32
-    left = t31 + rho * rho
-    del t31
-    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
-    del length_n
-    t34 = t33 * rho
-    del t33
-    t35 = left + t34
-    upper = np.maximum(t35, 0.0)
-    t36 = t34 - left
-    del left, t34
-    lower = np.maximum(t36, 0.0)
+    t33 = _runtime.select(in_line, 0.0, nu) - _runtime.select(same, r_2 * r_2, t8)
+    del nu, t8
+    t34 = over_a * (a_x * t16 - t11 * t14 - t12 * t13) + along
+    del along, t12, t14, t16
+    t35 = share * np.sqrt(outer * inner * slack * (t27 + t26))
+    del inner, outer, share, slack, t26, t27
+    rho = _runtime.select(all_same, r_1, t35)
+    del all_same, r_1, t35
+    left = t33 + t34 * t34 + rho * rho
+    del t33, t34
+    t36 = 2.0 * _runtime.select(in_line, 0.0, beside_a)
+    del beside_a
+    t37 = t36 * rho
+    del t36
+    t38 = left + t37
+    upper = np.maximum(t38, 0.0)
+    t39 = t37 - left
+    del left, t37
+    lower = np.maximum(t39, 0.0)
     both = upper + lower
-    t37 = _runtime.select(same, r_2, r)
+    t40 = _runtime.select(same, r_2, r)
     del r_2, same
-    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
+    t41 = (both <= _runtime.VANISHING * (r * t40)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
-    del length_a
-    t39 = t10 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
-    t40 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t38, upper
-    h = part * t40
-    del part, t40
-    t41 = w_y * h
-    del w_y
-    t42 = t39 - t41
-    t43 = t15 * X + t19 * Y
-    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t10 * t17))
-    del a_x, t21
-    t44 = w_z * h
-    del w_z
-    t45 = t43 - t44
-    t46 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t47 = t46 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t46
-    t48 = t47 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t47
-    t49 = t48 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t48
-    t50 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t51 = 0.625 * (r * (r * 2.2737367544323206e-13 + t37))
-    del t37
-    t52 = -(_runtime.FEASIBILITY * t51)
+    Y = _runtime.select(t41, 0.0, part * over_a * half * (upper - lower))
+    del over_a
+    t42 = t11 * X + t21 * Y
+    m_y = _runtime.select(slim, over * (a_x * t22 + t13 * t20), product_y)
+    del product_y
+    t43 = _runtime.select(t41, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t41, upper
+    h = part * t43
+    del part, t43
+    t44 = _runtime.select(in_line, -t23, m_y) * h
+    del m_y
+    t45 = t42 - t44
+    t46 = t13 * X + t22 * Y
+    t47 = _runtime.select(slim, over * (a_x * t21 + t11 * t20), t18)
+    del a_x, t18
+    t48 = _runtime.select(in_line, t24, -t47) * h
+    del t24, t47
+    t49 = t46 - t48
+    t50 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t51 = t50 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t50
+    t52 = t51 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     del t51
-    t53 = (t50 <= t28) & (t50 <= t25) & (t50 <= t27) & (t52 <= t35)
-    del t25, t27, t28, t35, t50
-    failed = np.logical_not(t49) | np.logical_not(t53 & (t52 <= t36))
-    del t36, t49, t52, t53
-    t54 = _runtime.poison(failed)
+    t53 = t52 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t52
+    t54 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t55 = 0.625 * (r * (r * 2.2737367544323206e-13 + t40))
+    del t40
+    t56 = -(_runtime.FEASIBILITY * t55)
+    del t55
+    t57 = (t54 <= t31) & (t54 <= t28) & (t54 <= t30) & (t56 <= t38)
+    del t28, t30, t31, t38, t54
+    failed = np.logical_not(t53) | np.logical_not(t57 & (t56 <= t39))
+    del t39, t53, t56, t57
+    t58 = _runtime.poison(failed)
     del failed
-    t55 = s_gamma * c2_z
+    t59 = s_gamma * c2_z
     del s_gamma
-    t56 = t11 * X + t17 * Y
-    del X, Y, t11, t17
-    w_x = _runtime.select(in_line, -(t20 * s_w), t10 * t19 - t15 * t18)
-    del in_line, s_w, t10, t15, t18, t19, t20
-    t57 = w_x * h
-    del w_x
-    t58 = c_gamma * c2_z
+    t60 = t15 * X + t20 * Y
+    del X, Y, t15, t20
+    m_x = _runtime.select(slim, over * (t11 * t22 - t13 * t21), product_x)
+    del over, product_x, slim, t11, t13, t21, t22
+    t61 = _runtime.select(in_line, -(t23 * s_w), m_x) * h
+    del in_line, m_x, s_w, t23
+    t62 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t55 * (t5 - (t56 - t57)) - t58 * (t6 - t42) - t3 * (t7 + t45)
-    Delta = mu * nu * h
-    del h, mu, nu
-    t59 = t39 + t41
-    del t39, t41
-    t60 = t43 + t44
-    del t43, t44
-    B_22_below = t55 * (t5 - (t56 + t57)) - t58 * (t6 - t59) - t3 * (t7 + t60)
-    del t3, t5, t55, t56, t57, t58, t6, t7
+    B_22 = t59 * (t5 - (t60 - t61)) - t62 * (t6 - t45) - t3 * (t7 + t49)
+    Delta = m_m * h
+    del h, m_m
+    t63 = t42 + t44
+    del t42, t44
+    t64 = t46 + t48
+    del t46, t48
+    B_22_below = t59 * (t5 - (t60 + t61)) - t62 * (t6 - t63) - t3 * (t7 + t64)
+    del t3, t5, t59, t6, t60, t61, t62, t7
     return (
-        c1_z * t42 - c1_y * t45 + t54,
-        B_22 + t54,
-        Delta + t54,
-        c1_z * t59 - c1_y * t60 + t54,
-        B_22_below + t54,
-        -Delta + t54,
+        c1_z * t45 - c1_y * t49 + t58,
+        B_22 + t58,
+        Delta + t58,
+        c1_z * t63 - c1_y * t64 + t58,
+        B_22_below + t58,
+        -Delta + t58,
+    )
+
+
+def _singularities_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
+    # Where nothing vanishes; last, whether something does.
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
+    del c_beta1_half
+    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
+    del c_beta2_half
+    t1 = r * np.abs(s_alpha1)
+    del s_alpha1
+    c1_z = s1 * t1
+    del s1
+    c1_y = c1 * t1
+    del c1, t1
+    t2 = r * c_alpha2
+    del c_alpha2
+    t3 = r * np.abs(s_alpha2)
+    del s_alpha2
+    t4 = c2 * t3
+    del c2
+    t5 = c1_y - (s_gamma * t2 + c_gamma * t4)
+    c2_z = s2 * t3
+    del s2, t3
+    t6 = c2_z - c1_z
+    product_x = c1_z * t5 + c1_y * t6
+    c1_x = r * c_alpha1
+    del c_alpha1
+    t7 = c1_x + (s_gamma * t4 - c_gamma * t2)
+    del t2
+    t8 = c1_z * t7 + c1_x * t6
+    m_z = c1_y * t7 - c1_x * t5
+    product_2 = product_x * product_x + t8 * t8 + m_z * m_z
+    u_u = t7 * t7 + t5 * t5 + t6 * t6
+    nu = product_2 / u_u
+    beside_a = np.sqrt(nu)
+    length_a = np.sqrt(u_u)
+    part = 1.0 / (length_a * beside_a)
+    over_a = beside_a * part
+    t9 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t9
+    del s_beta1_half
+    r_2 = np.abs(s_beta2_half) * t9
+    del s_beta2_half, t9
+    t10 = r_1 - r_2
+    t11 = length_a + t10
+    outer = np.maximum(t11, 0.0)
+    t12 = length_a - t10
+    del t10
+    inner = np.maximum(t12, 0.0)
+    share = 1.0 / (outer + inner)
+    t13 = r_1 + r_2
+    del r_1, r_2
+    t14 = t13 - length_a
+    slack = np.maximum(t14, 0.0)
+    t15 = share * (length_a + slack) * (outer - inner) * 0.5
+    along = length_a * 0.5 + t15
+    del t15
+    X = over_a * along
+    t16 = np.sqrt(outer * inner * slack * (length_a + t13))
+    del inner, length_a, outer, slack, t13
+    rho = share * t16
+    del share, t16
+    t17 = 2.0 * beside_a * rho
+    del beside_a
+    t18 = r * r
+    t19 = over_a * (c1_x * t7 + c1_y * t5 - c1_z * t6) - along
+    del along
+    t20 = t18 - nu - t19 * t19 - rho * rho
+    del nu, t19
+    t21 = t17 - t20
+    upper = np.maximum(t21, 0.0)
+    t22 = t20 + t17
+    del t17, t20
+    lower = np.maximum(t22, 0.0)
+    both = upper + lower
+    half = rho / both
+    del rho
+    Y = part * over_a * half * (upper - lower)
+    del over_a
+    t23 = t5 * X + (t7 * m_z + t6 * product_x) * Y
+    h = part * (2.0 * half * np.sqrt(upper * lower))
+    del half, lower, part, upper
+    t24 = t8 * h
+    t25 = t23 + t24
+    t26 = t6 * X - (t7 * t8 + t5 * product_x) * Y
+    t27 = m_z * h
+    A_13 = t26 + t27
+    t28 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t29 = t28 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t28
+    t30 = t29 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t29
+    t31 = t30 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t30
+    t32 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t33 = 0.625 * (r * (r + r * 2.2737367544323206e-13))
+    t34 = -(_runtime.FEASIBILITY * t33)
+    del t33
+    t35 = (t32 <= t14) & (t32 <= t11) & (t32 <= t12) & (t34 <= t21)
+    del t11, t12, t14, t21, t32
+    failed = np.logical_not(t31) | np.logical_not(t35 & (t34 <= t22))
+    del t22, t31, t34, t35
+    t36 = _runtime.poison(failed)
+    del failed
+    t37 = s_gamma * c2_z
+    del s_gamma
+    t38 = t7 * X - (t5 * m_z - t6 * t8) * Y
+    del X, Y, m_z, t8
+    t39 = product_x * h
+    del product_x
+    t40 = c_gamma * c2_z
+    del c2_z, c_gamma
+    B_22 = t37 * (t7 - (t38 - t39)) - t40 * (t5 - t25) - t4 * (t6 - A_13)
+    Delta = product_2 * h
+    del h
+    t41 = t23 - t24
+    del t23, t24
+    A_13_below = t26 - t27
+    del t26, t27
+    B_22_below = t37 * (t7 - (t38 + t39)) - t40 * (t5 - t41) - t4 * (t6 - A_13_below)
+    del t37, t38, t39, t4, t40, t5, t6, t7
+    t42 = _runtime.VANISHING * _runtime.VANISHING
+    t43 = t18 * t42
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    del c1_x
+    t44 = u_u * v_v
+    slim = product_2 - t44 * 0.000244140625 <= _runtime.VANISHING * t44
+    del t44
+    t45 = (u_u <= t43) | (u_u + v_v <= t43) | slim | (product_2 <= t42 * (t18 * u_u))
+    del product_2, slim, t42, t43, u_u, v_v
+    return (
+        c1_z * t25 + c1_y * A_13 + t36,
+        B_22 + t36,
+        Delta + t36,
+        c1_z * t41 + c1_y * A_13_below + t36,
+        B_22_below + t36,
+        -Delta + t36,
+        t45 | (both <= _runtime.VANISHING * t18),
     )
 
 
@@ -1649,7 +2522,8 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    common=_singularities_common,
+    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 
@@ -1715,119 +2589,128 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del s2, t1
     u_u = t4 * t4 + t6 * t6 + t7 * t7
     t8 = r * r
-    t9 = _runtime.VANISHING * _runtime.VANISHING * t8
-    same = u_u <= t9
-    t10 = _runtime.select(same, c1_x, t4)
+    t9 = _runtime.VANISHING * _runtime.VANISHING
+    t10 = t8 * t9
+    same = u_u <= t10
+    t11 = _runtime.select(same, c1_x, t4)
+    t12 = _runtime.select(same, c1_y, t6)
+    t13 = _runtime.select(same, t7, c1_z)
+    t14 = _runtime.select(same, c1_z, t7)
+    t15 = _runtime.select(same, t6, c1_y)
+    product_x = t12 * t13 - t14 * t15
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    all_same = u_u + v_v <= t9
+    all_same = u_u + v_v <= t10
+    del t10
     whole = _runtime.select(r == 0.0, 1.0, r)
+    a_x = _runtime.select(all_same, whole, -t11)
+    t16 = _runtime.select(same, t4, c1_x)
+    product_y = t13 * a_x + t14 * t16
+    t17 = product_x * product_x + product_y * product_y
+    t18 = t15 * a_x + t12 * t16
+    product_2 = t17 + t18 * t18
+    del t17
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t19 = mu * _runtime.select(same, u_u, v_v)
     del u_u, v_v
+    slim = product_2 - t19 * 0.000244140625 <= _runtime.VANISHING * t19
+    del t19
     over = 1.0 / mu
-    t11 = _runtime.select(same, c1_y, t6)
-    a_x = _runtime.select(all_same, whole, -t10)
-    t12 = _runtime.select(same, t6, c1_y)
-    t13 = _runtime.select(same, t4, c1_x)
-    t14 = a_x * t12 + t11 * t13
-    t15 = _runtime.select(same, c1_z, t7)
-    t16 = _runtime.select(same, t7, c1_z)
-    m_y = a_x * t16 + t13 * t15
-    t17 = over * (t11 * t14 + t15 * m_y)
-    m_x = t11 * t16 - t12 * t15
-    t18 = over * (a_x * t14 - t15 * m_x)
-    del t14
-    t19 = over * (a_x * m_y + t11 * m_x)
-    del m_x, m_y
-    nu = t17 * t17 + t18 * t18 + t19 * t19
-    in_line = nu <= t9
+    t20 = t12 * t18 + t14 * product_y
+    t21 = a_x * t18 - t14 * product_x
+    t22 = a_x * product_y + t12 * product_x
+    m_m = _runtime.select(slim, over * (t20 * t20 + t21 * t21 + t22 * t22), product_2)
+    del product_2
+    in_line = m_m <= t9 * (t8 * mu)
     del t9
-    t20 = whole * t15
-    s_w = _runtime.sign(-(t11 * a_x))
-    t21 = whole * (t11 - a_x * s_w)
+    t23 = whole * t14
+    s_w = _runtime.sign(-(t12 * a_x))
+    t24 = whole * (t12 - a_x * s_w)
     del whole
-    nu_w = _runtime.select(in_line, over * (2.0 * (t20 * t20) + t21 * t21), nu)
-    del over
-    length_n = np.sqrt(nu_w)
-    del nu_w
+    w_w = _runtime.select(in_line, 2.0 * (t23 * t23) + t24 * t24, m_m)
+    nu = w_w / mu
+    del w_w
+    beside_a = np.sqrt(nu)
     length_a = np.sqrt(mu)
-    part = 1.0 / (length_a * length_n)
-    over_a = length_n * part
+    del mu
+    part = 1.0 / (length_a * beside_a)
+    over_a = beside_a * part
     D = _runtime.select(all_same, 0.0, length_a)
-    t22 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t22
+    del length_a
+    t25 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t25
     del s_beta1_half
-    t23 = D + r_1
-    r_2 = np.abs(s_beta2_half) * t22
-    del s_beta2_half, t22
-    t24 = _runtime.select(same, r, r_2)
-    t25 = t23 - t24
-    outer = np.maximum(t25, 0.0)
-    t26 = D - r_1
-    t27 = t24 + t26
-    inner = np.maximum(t27, 0.0)
+    t26 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t25
+    del s_beta2_half, t25
+    t27 = _runtime.select(same, r, r_2)
+    t28 = t26 - t27
+    outer = np.maximum(t28, 0.0)
+    t29 = D - r_1
+    t30 = t27 + t29
+    inner = np.maximum(t30, 0.0)
     share = 1.0 / (outer + inner)
-    t28 = t24 - t26
-    del t26
-    slack = np.maximum(t28, 0.0)
-    t29 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
-    del D
-    along = _runtime.select(all_same, 0.0, t29)
+    t31 = t27 - t29
     del t29
+    slack = np.maximum(t31, 0.0)
+    t32 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    del D
+    along = _runtime.select(all_same, 0.0, t32)
+    del t32
     X = over_a * along
-    t30 = over_a * (a_x * t13 - t11 * t12 - t15 * t16) + along
-    del along, over_a, t12, t13, t16
-    t31 = nu - _runtime.select(same, r_2 * r_2, t8) + t30 * t30
-    del t30, t8
-    t32 = share * np.sqrt(outer * inner * slack * (t24 + t23))
-    del inner, outer, share, slack, t23, t24
-    rho = _runtime.select(all_same, r_1, t32)
-    del all_same, r_1, t32
-    left = t31 + rho * rho
-    del t31
-    t33 = 2.0 * _runtime.select(in_line, 0.0, length_n)
-    del length_n
-    t34 = t33 * rho
-    del t33
-    t35 = left + t34
-    upper = np.maximum(t35, 0.0)
-    t36 = t34 - left
-    del left, t34
-    lower = np.maximum(t36, 0.0)
+    t33 = _runtime.select(in_line, 0.0, nu) - _runtime.select(same, r_2 * r_2, t8)
+    del nu, t8
+    t34 = over_a * (a_x * t16 - t12 * t15 - t13 * t14) + along
+    del along, t13, t15, t16
+    t35 = share * np.sqrt(outer * inner * slack * (t27 + t26))
+    del inner, outer, share, slack, t26, t27
+    rho = _runtime.select(all_same, r_1, t35)
+    del all_same, r_1, t35
+    left = t33 + t34 * t34 + rho * rho
+    del t33, t34
+    t36 = 2.0 * _runtime.select(in_line, 0.0, beside_a)
+    del beside_a
+    t37 = t36 * rho
+    del t36
+    t38 = left + t37
+    upper = np.maximum(t38, 0.0)
+    t39 = t37 - left
+    del left, t37
+    lower = np.maximum(t39, 0.0)
     both = upper + lower
-    t37 = _runtime.select(same, r_2, r)
+    t40 = _runtime.select(same, r_2, r)
     del r_2, same
-    t38 = (both <= _runtime.VANISHING * (r * t37)) | in_line
+    t41 = (both <= _runtime.VANISHING * (r * t40)) | in_line
     half = rho / both
     del both
-    Y = _runtime.select(t38, 0.0, length_a * part * half * (upper - lower))
-    del length_a
-    t39 = t10 * X + t17 * Y
-    del t10
-    w_x = _runtime.select(in_line, -(t20 * s_w), t11 * t19 - t15 * t18)
-    del s_w
-    t40 = _runtime.select(t38, rho, 2.0 * half * np.sqrt(upper * lower))
-    del half, lower, rho, t38, upper
-    h = part * t40
-    del part, t40
-    t41 = w_x * h
-    del w_x
-    t42 = t39 - t41
-    A_01 = c1_x - t42
-    t43 = t11 * X + t18 * Y
-    w_y = _runtime.select(in_line, -t20, a_x * t19 + t15 * t17)
-    del t20
-    t44 = w_y * h
-    del w_y
-    t45 = t43 - t44
-    A_02 = c1_y - t45
-    t46 = t15 * X + t19 * Y
-    del X, Y, t15, t19
-    w_z = _runtime.select(in_line, t21, -(a_x * t18 + t11 * t17))
-    del a_x, in_line, t11, t17, t18, t21
-    t47 = w_z * h
-    del w_z
+    Y = _runtime.select(t41, 0.0, part * over_a * half * (upper - lower))
+    del over_a
+    t42 = t11 * X + t20 * Y
+    del t11
+    m_x = _runtime.select(slim, over * (t12 * t22 - t14 * t21), product_x)
+    del product_x
+    t43 = _runtime.select(t41, rho, 2.0 * half * np.sqrt(upper * lower))
+    del half, lower, rho, t41, upper
+    h = part * t43
+    del part, t43
+    t44 = _runtime.select(in_line, -(t23 * s_w), m_x) * h
+    del m_x, s_w
+    t45 = t42 - t44
+    A_01 = c1_x - t45
+    t46 = t12 * X + t21 * Y
+    m_y = _runtime.select(slim, over * (a_x * t22 + t14 * t20), product_y)
+    del product_y
+    t47 = _runtime.select(in_line, -t23, m_y) * h
+    del m_y, t23
     t48 = t46 - t47
-    A_03 = c1_z - t48
+    A_02 = c1_y - t48
+    t49 = t14 * X + t22 * Y
+    del X, Y, t14, t22
+    t50 = _runtime.select(slim, over * (a_x * t21 + t12 * t20), t18)
+    del a_x, over, slim, t12, t18, t20, t21
+    t51 = _runtime.select(in_line, t24, -t50) * h
+    del in_line, t24, t50
+    t52 = t49 - t51
+    A_03 = c1_z - t52
     strut = np.sqrt(A_01 * A_01 + A_02 * A_02 + A_03 * A_03)
     radial_x = A_01 / strut
     del A_01
@@ -1835,18 +2718,18 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del A_02
     radial_z = A_03 / strut
     del A_03
-    t49 = t42 * radial_x + t45 * radial_y + t48 * radial_z
-    t50 = t42 - radial_x * t49
-    t51 = t45 - radial_y * t49
-    t52 = t48 - radial_z * t49
-    del t49
-    square1 = t50 * t50 + t51 * t51 + t52 * t52
-    A_21 = t4 - t42
-    del t42
-    A_22 = t6 - t45
+    t53 = t45 * radial_x + t48 * radial_y + t52 * radial_z
+    t54 = t45 - radial_x * t53
+    t55 = t48 - radial_y * t53
+    t56 = t52 - radial_z * t53
+    del t53
+    square1 = t54 * t54 + t55 * t55 + t56 * t56
+    A_21 = t4 - t45
     del t45
-    A_23 = t7 - t48
+    A_22 = t6 - t48
     del t48
+    A_23 = t7 - t52
+    del t52
     off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23
     t2_x = A_21 - radial_x * off2
     del A_21, radial_x
@@ -1855,84 +2738,295 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t2_z = A_23 - radial_z * off2
     del A_23, off2, radial_z
     square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z
-    t53 = square1 - square2
-    t54 = t50 * t2_x + t51 * t2_y + t52 * t2_z
-    del t2_x, t2_y, t2_z, t50, t51, t52
-    t55 = square1 + square2 + np.sqrt(t53 * t53 + 4.0 * (t54 * t54))
-    del square1, square2, t53, t54
-    t56 = 2.0 * (mu * nu * h)
-    del h, mu, nu
-    t57 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t58 = t57 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t57
-    t59 = t58 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t58
-    t60 = t59 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t59
-    t61 = -(_runtime.FEASIBILITY * (r * 0.3125))
-    t62 = 0.625 * (r * (r * 2.2737367544323206e-13 + t37))
-    del t37
-    t63 = -(_runtime.FEASIBILITY * t62)
+    t57 = square1 - square2
+    t58 = t54 * t2_x + t55 * t2_y + t56 * t2_z
+    del t2_x, t2_y, t2_z, t54, t55, t56
+    t59 = square1 + square2 + np.sqrt(t57 * t57 + 4.0 * (t58 * t58))
+    del square1, square2, t57, t58
+    t60 = 2.0 * (m_m * h)
+    del h, m_m
+    t61 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t62 = t61 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t61
+    t63 = t62 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     del t62
-    t64 = (t61 <= t28) & (t61 <= t25) & (t61 <= t27) & (t63 <= t35)
-    del t25, t27, t28, t35, t61
-    failed = np.logical_not(t60) | np.logical_not(t64 & (t63 <= t36))
-    del t36, t60, t63, t64
-    t65 = _runtime.poison(failed)
+    t64 = t63 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t63
+    t65 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t66 = 0.625 * (r * (r * 2.2737367544323206e-13 + t40))
+    del t40
+    t67 = -(_runtime.FEASIBILITY * t66)
+    del t66
+    t68 = (t65 <= t31) & (t65 <= t28) & (t65 <= t30) & (t67 <= t38)
+    del t28, t30, t31, t38, t65
+    failed = np.logical_not(t64) | np.logical_not(t68 & (t67 <= t39))
+    del t39, t64, t67, t68
+    t69 = _runtime.poison(failed)
     del failed
-    t66 = t39 + t41
-    del t39, t41
-    A_01_below = c1_x - t66
+    t70 = t42 + t44
+    del t42, t44
+    A_01_below = c1_x - t70
     del c1_x
-    t67 = t43 + t44
-    del t43, t44
-    A_02_below = c1_y - t67
-    del c1_y
-    t68 = A_01_below * A_01_below + A_02_below * A_02_below
-    t69 = t46 + t47
+    t71 = t46 + t47
     del t46, t47
-    A_03_below = c1_z - t69
+    A_02_below = c1_y - t71
+    del c1_y
+    t72 = A_01_below * A_01_below + A_02_below * A_02_below
+    t73 = t49 + t51
+    del t49, t51
+    A_03_below = c1_z - t73
     del c1_z
-    strut_below = np.sqrt(t68 + A_03_below * A_03_below)
-    del t68
+    strut_below = np.sqrt(t72 + A_03_below * A_03_below)
+    del t72
     radial_x_below = A_01_below / strut_below
     del A_01_below
     radial_y_below = A_02_below / strut_below
     del A_02_below
     radial_z_below = A_03_below / strut_below
     del A_03_below
-    t70 = t66 * radial_x_below + t67 * radial_y_below + t69 * radial_z_below
-    t71 = t66 - radial_x_below * t70
-    t72 = t67 - radial_y_below * t70
-    t73 = t69 - radial_z_below * t70
-    del t70
-    square1_below = t71 * t71 + t72 * t72 + t73 * t73
-    A_21_below = t4 - t66
-    del t4, t66
-    A_22_below = t6 - t67
-    del t6, t67
-    t74 = radial_x_below * A_21_below + radial_y_below * A_22_below
-    A_23_below = t7 - t69
-    del t69, t7
-    off2_below = t74 + radial_z_below * A_23_below
+    t74 = t70 * radial_x_below + t71 * radial_y_below + t73 * radial_z_below
+    t75 = t70 - radial_x_below * t74
+    t76 = t71 - radial_y_below * t74
+    t77 = t73 - radial_z_below * t74
     del t74
+    square1_below = t75 * t75 + t76 * t76 + t77 * t77
+    A_21_below = t4 - t70
+    del t4, t70
+    A_22_below = t6 - t71
+    del t6, t71
+    t78 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    A_23_below = t7 - t73
+    del t7, t73
+    off2_below = t78 + radial_z_below * A_23_below
+    del t78
     t2_x_below = A_21_below - radial_x_below * off2_below
     del A_21_below, radial_x_below
     t2_y_below = A_22_below - radial_y_below * off2_below
     del A_22_below, radial_y_below
-    t75 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t79 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
     t2_z_below = A_23_below - radial_z_below * off2_below
     del A_23_below, off2_below, radial_z_below
-    square2_below = t75 + t2_z_below * t2_z_below
-    del t75
-    t76 = square1_below - square2_below
-    t77 = t71 * t2_x_below + t72 * t2_y_below + t73 * t2_z_below
-    del t2_x_below, t2_y_below, t2_z_below, t71, t72, t73
-    t78 = square1_below + square2_below + np.sqrt(t76 * t76 + 4.0 * (t77 * t77))
-    del square1_below, square2_below, t76, t77
+    square2_below = t79 + t2_z_below * t2_z_below
+    del t79
+    t80 = square1_below - square2_below
+    t81 = t75 * t2_x_below + t76 * t2_y_below + t77 * t2_z_below
+    del t2_x_below, t2_y_below, t2_z_below, t75, t76, t77
+    t82 = square1_below + square2_below + np.sqrt(t80 * t80 + 4.0 * (t81 * t81))
+    del square1_below, square2_below, t80, t81
     return (
-        strut * t55 / t56 + t65,
-        strut_below * t78 / t56 + t65,
+        strut * t59 / t60 + t69,
+        strut_below * t82 / t60 + t69,
+    )
+
+
+def _condition_number_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
+    # Where nothing vanishes; last, whether something does.
+    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
+    s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
+    s2, c2 = _runtime.sincos_as_in_c(theta2)
+    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
+    s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
+    del c_beta1_half
+    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
+    del c_beta2_half
+    c1_x = r * c_alpha1
+    del c_alpha1
+    t1 = r * np.abs(s_alpha2)
+    del s_alpha2
+    t2 = c2 * t1
+    del c2
+    t3 = r * c_alpha2
+    del c_alpha2
+    t4 = c1_x + (s_gamma * t2 - c_gamma * t3)
+    t5 = r * np.abs(s_alpha1)
+    del s_alpha1
+    c1_y = c1 * t5
+    del c1
+    t6 = c1_y - (s_gamma * t3 + c_gamma * t2)
+    del c_gamma, s_gamma, t2, t3
+    c1_z = s1 * t5
+    del s1, t5
+    t7 = c1_z - s2 * t1
+    del s2, t1
+    product_x = t6 * c1_z - c1_y * t7
+    t8 = t4 * c1_z - c1_x * t7
+    m_z = t4 * c1_y - c1_x * t6
+    product_2 = product_x * product_x + t8 * t8 + m_z * m_z
+    u_u = t4 * t4 + t6 * t6 + t7 * t7
+    nu = product_2 / u_u
+    beside_a = np.sqrt(nu)
+    length_a = np.sqrt(u_u)
+    part = 1.0 / (length_a * beside_a)
+    over_a = beside_a * part
+    t9 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t9
+    del s_beta1_half
+    r_2 = np.abs(s_beta2_half) * t9
+    del s_beta2_half, t9
+    t10 = r_1 - r_2
+    t11 = length_a + t10
+    outer = np.maximum(t11, 0.0)
+    t12 = length_a - t10
+    del t10
+    inner = np.maximum(t12, 0.0)
+    share = 1.0 / (outer + inner)
+    t13 = r_1 + r_2
+    del r_1, r_2
+    t14 = t13 - length_a
+    slack = np.maximum(t14, 0.0)
+    t15 = share * (length_a + slack) * (outer - inner) * 0.5
+    along = length_a * 0.5 + t15
+    del t15
+    X = over_a * along
+    t16 = np.sqrt(outer * inner * slack * (length_a + t13))
+    del inner, length_a, outer, slack, t13
+    rho = share * t16
+    del share, t16
+    t17 = 2.0 * beside_a * rho
+    del beside_a
+    t18 = r * r
+    t19 = over_a * (c1_x * t4 + c1_y * t6 + c1_z * t7) - along
+    del along
+    t20 = t18 - nu - t19 * t19 - rho * rho
+    del nu, t19
+    t21 = t17 - t20
+    upper = np.maximum(t21, 0.0)
+    t22 = t20 + t17
+    del t17, t20
+    lower = np.maximum(t22, 0.0)
+    both = upper + lower
+    half = rho / both
+    del rho
+    Y = part * over_a * half * (upper - lower)
+    del over_a
+    t23 = t4 * X - (t6 * m_z + t7 * t8) * Y
+    h = part * (2.0 * half * np.sqrt(upper * lower))
+    del half, lower, part, upper
+    t24 = product_x * h
+    t25 = t23 - t24
+    A_01 = c1_x - t25
+    t26 = t6 * X + (t4 * m_z - t7 * product_x) * Y
+    t27 = t8 * h
+    t28 = t26 + t27
+    A_02 = c1_y - t28
+    t29 = t7 * X + (t4 * t8 + t6 * product_x) * Y
+    del X, Y, product_x, t8
+    t30 = m_z * h
+    del m_z
+    t31 = t29 - t30
+    A_03 = c1_z - t31
+    strut = np.sqrt(A_01 * A_01 + A_02 * A_02 + A_03 * A_03)
+    radial_x = A_01 / strut
+    del A_01
+    radial_y = A_02 / strut
+    del A_02
+    radial_z = A_03 / strut
+    del A_03
+    t32 = t25 * radial_x + t28 * radial_y + t31 * radial_z
+    t33 = t25 - radial_x * t32
+    t34 = t28 - radial_y * t32
+    t35 = t31 - radial_z * t32
+    del t32
+    square1 = t33 * t33 + t34 * t34 + t35 * t35
+    A_21 = t4 - t25
+    del t25
+    A_22 = t6 - t28
+    del t28
+    A_23 = t7 - t31
+    del t31
+    off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23
+    t2_x = A_21 - radial_x * off2
+    del A_21, radial_x
+    t2_y = A_22 - radial_y * off2
+    del A_22, radial_y
+    t2_z = A_23 - radial_z * off2
+    del A_23, off2, radial_z
+    square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z
+    t36 = square1 - square2
+    t37 = t33 * t2_x + t34 * t2_y + t35 * t2_z
+    del t2_x, t2_y, t2_z, t33, t34, t35
+    t38 = square1 + square2 + np.sqrt(t36 * t36 + 4.0 * (t37 * t37))
+    del square1, square2, t36, t37
+    t39 = 2.0 * (product_2 * h)
+    del h
+    t40 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t41 = t40 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t40
+    t42 = t41 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t41
+    t43 = t42 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t42
+    t44 = -(_runtime.FEASIBILITY * (r * 0.3125))
+    t45 = 0.625 * (r * (r + r * 2.2737367544323206e-13))
+    t46 = -(_runtime.FEASIBILITY * t45)
+    del t45
+    t47 = (t44 <= t14) & (t44 <= t11) & (t44 <= t12) & (t46 <= t21)
+    del t11, t12, t14, t21, t44
+    failed = np.logical_not(t43) | np.logical_not(t47 & (t46 <= t22))
+    del t22, t43, t46, t47
+    t48 = _runtime.poison(failed)
+    del failed
+    t49 = t23 + t24
+    del t23, t24
+    A_01_below = c1_x - t49
+    t50 = t26 - t27
+    del t26, t27
+    A_02_below = c1_y - t50
+    t51 = A_01_below * A_01_below + A_02_below * A_02_below
+    t52 = t29 + t30
+    del t29, t30
+    A_03_below = c1_z - t52
+    strut_below = np.sqrt(t51 + A_03_below * A_03_below)
+    del t51
+    radial_x_below = A_01_below / strut_below
+    del A_01_below
+    radial_y_below = A_02_below / strut_below
+    del A_02_below
+    radial_z_below = A_03_below / strut_below
+    del A_03_below
+    t53 = t49 * radial_x_below + t50 * radial_y_below + t52 * radial_z_below
+    t54 = t49 - radial_x_below * t53
+    t55 = t50 - radial_y_below * t53
+    t56 = t52 - radial_z_below * t53
+    del t53
+    square1_below = t54 * t54 + t55 * t55 + t56 * t56
+    A_21_below = t4 - t49
+    del t4, t49
+    A_22_below = t6 - t50
+    del t50, t6
+    t57 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    A_23_below = t7 - t52
+    del t52, t7
+    off2_below = t57 + radial_z_below * A_23_below
+    del t57
+    t2_x_below = A_21_below - radial_x_below * off2_below
+    del A_21_below, radial_x_below
+    t2_y_below = A_22_below - radial_y_below * off2_below
+    del A_22_below, radial_y_below
+    t58 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t2_z_below = A_23_below - radial_z_below * off2_below
+    del A_23_below, off2_below, radial_z_below
+    square2_below = t58 + t2_z_below * t2_z_below
+    del t58
+    t59 = square1_below - square2_below
+    t60 = t54 * t2_x_below + t55 * t2_y_below + t56 * t2_z_below
+    del t2_x_below, t2_y_below, t2_z_below, t54, t55, t56
+    t61 = square1_below + square2_below + np.sqrt(t59 * t59 + 4.0 * (t60 * t60))
+    del square1_below, square2_below, t59, t60
+    t62 = _runtime.VANISHING * _runtime.VANISHING
+    t63 = t18 * t62
+    v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    del c1_x, c1_y, c1_z
+    t64 = u_u * v_v
+    slim = product_2 - t64 * 0.000244140625 <= _runtime.VANISHING * t64
+    del t64
+    t65 = (u_u <= t63) | (u_u + v_v <= t63) | slim | (product_2 <= t62 * (t18 * u_u))
+    del product_2, slim, t62, t63, u_u, v_v
+    return (
+        strut * t38 / t39 + t48,
+        strut_below * t61 / t39 + t48,
+        t65 | (both <= _runtime.VANISHING * t18),
     )
 
 
@@ -1943,7 +3037,8 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Array("kappa", (2,)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), (), 2.938735877055719e-39, 1.8092513943330656e+75),
+    common=_condition_number_common,
+    size=_runtime.Size((2,), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
 

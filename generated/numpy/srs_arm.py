@@ -13,7 +13,7 @@
 #   determinant: 2 add, 10 multiply, 3 sincos, 1 sqrt
 #   singularities: 3 add, 11 multiply, 4 sincos, 1 sqrt
 #   arm_angle: 6 compare and select, 7 add, 1 atan2, 2 divide, 14 multiply, 3 sincos, 2 sqrt
-#   ik: 114 compare and select, 138 add, 13 atan2, 9 divide, 173 multiply, 1 sincos, 9 sqrt
+#   ik: 113 compare and select, 138 add, 13 atan2, 9 divide, 173 multiply, 1 sincos, 9 sqrt
 """Seven-joint arm with a spherical shoulder and wrist (SRS).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder, and those of theta5, theta6 and
@@ -1329,7 +1329,7 @@ def _ik(
     t95 = np.arctan2(t92 + s_shoulder_down_front_noflip * t93, t94)
     del s_shoulder_down_front_noflip, t92, t94
     t96 = _runtime.wrap_cut(t95) + t45
-    t97 = _runtime.wrap_cut(t54) + t45
+    t97 = t54 + t45
     del t54
     t98 = T13 * t93 - T23 * shoulder_21_down_front_noflip
     t99 = t56 - c_polar * c_bearing_down_front_noflip

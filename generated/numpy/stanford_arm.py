@@ -11,8 +11,8 @@
 #   singularities: 2 sincos
 #   jacobian_space: 14 add, 43 multiply, 4 sincos
 #   jacobian_body: 14 add, 41 multiply, 4 sincos
-#   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 115 multiply, 8 sqrt
-#   ik where nothing vanishes: 81 compare and select, 95 add, 16 atan2, 4 divide, 90 multiply, 6
+#   ik: 105 compare and select, 111 add, 16 atan2, 6 divide, 115 multiply, 8 sqrt
+#   ik where nothing vanishes: 79 compare and select, 95 add, 16 atan2, 4 divide, 90 multiply, 6
 #     sqrt
 """Stanford arm.
 
@@ -771,7 +771,7 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     del t27
     c2 = _runtime.select(on_axis_boom, 1.0, t28)
     t29 = np.arctan2(s2, c2)
-    t30 = _runtime.wrap_cut(t29) + t25
+    t30 = t29 + t25
     t31 = r_boom + t25
     t32 = T13 * s1 - T23 * c1
     t33 = t32 * t32
@@ -877,7 +877,7 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t80 = _runtime.wrap(flip_wrist_left_out_flip - t71)
     t81 = _runtime.wrap(flip_wrist_left_out_flip - t79)
     del flip_wrist_left_out_flip
-    t82 = _runtime.wrap_cut(t48) + t25
+    t82 = t48 + t25
     del t48
     t83 = t34 - c2_right_back_noflip * R1_13_left_out_noflip
     del R1_13_left_out_noflip, t34
@@ -1024,7 +1024,7 @@ def _ik_common(
     t25 = _runtime.poison(invalid | unreachable)
     t26 = _runtime.wrap_cut(np.arctan2(s1, -t11)) + t25
     t27 = np.arctan2(root1, T34)
-    t28 = _runtime.wrap_cut(t27) + t25
+    t28 = t27 + t25
     r_boom = np.sqrt(t23 + root1 * root1)
     del t23
     t29 = r_boom + t25
@@ -1106,7 +1106,7 @@ def _ik_common(
     t70 = t69 - t63 * R2_12_left_out_noflip
     del R2_12_left_out_noflip, t63, t69
     t71 = np.arctan2(t68, -t70)
-    t72 = _runtime.wrap_cut(t48) + t25
+    t72 = t48 + t25
     del t48
     t73 = np.arctan2(t58, -R2_13_left_out_noflip)
     del R2_13_left_out_noflip, t58

@@ -10,8 +10,8 @@
 #   singularities: 6 add, 11 multiply, 4 sincos
 #   jacobian_space: 29 add, 57 multiply, 5 sincos
 #   jacobian_body: 27 add, 58 multiply, 5 sincos
-#   ik: 2243 compare and select, 1783 add, 32 atan2, 322 divide, 3035 multiply, 210 sqrt
-#   ik where nothing vanishes: 158 compare and select, 183 add, 30 atan2, 18 divide, 217 multiply,
+#   ik: 2239 compare and select, 1783 add, 32 atan2, 322 divide, 3035 multiply, 210 sqrt
+#   ik where nothing vanishes: 154 compare and select, 183 add, 30 atan2, 18 divide, 217 multiply,
 #     12 sqrt
 """UR-type arm (three parallel axes).
 
@@ -6800,7 +6800,7 @@ def _ik(
     return (
         t398,
         _runtime.wrap_cut(np.arctan2(s2, c2)) + t397,
-        _runtime.wrap_cut(t413) + t397,
+        t413 + t397,
         _runtime.wrap_cut(t416) + t397,
         t418,
         t420,
@@ -6812,7 +6812,7 @@ def _ik(
         t420,
         t947,
         t959 + t946,
-        _runtime.wrap_cut(t963) + t946,
+        t963 + t946,
         t968,
         t971,
         t974,
@@ -6824,7 +6824,7 @@ def _ik(
         t974,
         t1602,
         _runtime.wrap_cut(t1614) + t1601,
-        _runtime.wrap_cut(t1618) + t1601,
+        t1618 + t1601,
         t1623,
         t1626,
         t1629,
@@ -6836,7 +6836,7 @@ def _ik(
         t1629,
         t2190,
         _runtime.wrap_cut(t2202) + t2189,
-        _runtime.wrap_cut(t2206) + t2189,
+        t2206 + t2189,
         t2211,
         t2214,
         t2217,
@@ -7283,7 +7283,7 @@ def _ik_common(
     return (
         t43,
         t56,
-        _runtime.wrap_cut(t60) + t42,
+        t60 + t42,
         _runtime.wrap_cut(t65) + t42,
         t67,
         t70,
@@ -7295,7 +7295,7 @@ def _ik_common(
         t70,
         t83,
         t96 + t82,
-        _runtime.wrap_cut(t100) + t82,
+        t100 + t82,
         _runtime.wrap_cut(t105) + t82,
         t106,
         t107,
@@ -7307,7 +7307,7 @@ def _ik_common(
         t107,
         t126,
         t139 + t125,
-        _runtime.wrap_cut(t143) + t125,
+        t143 + t125,
         _runtime.wrap_cut(t148) + t125,
         t151,
         t156,
@@ -7319,7 +7319,7 @@ def _ik_common(
         t156,
         t169,
         t182 + t168,
-        _runtime.wrap_cut(t186) + t168,
+        t186 + t168,
         _runtime.wrap_cut(t191) + t168,
         t193,
         t194,

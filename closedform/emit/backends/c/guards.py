@@ -128,12 +128,23 @@ def deciding_products(lowered: Lowered) -> Iterator[int]:
     """The products in sums on which a status or a condition depends.
 
     They are rounded before the addition, as in NumPy; a fused multiply-add could decide differently
-    at a threshold.
+    at a threshold.  A choice between a product and the sum does not hinder a compiler: it may add
+    before it chooses.
     """
     for node in lowered.deciding():
         if node.op in ("add", "sub"):
-            products = [n for n in map(strip_sign, node.args) if n.op == "mul"]
+            products = [n for a in node.args for n in _chosen(a) if n.op == "mul"]
             yield from (n.id for n in products if not any(map(_is_exact_factor, n.args)))
+
+
+def _chosen(node: Node) -> Iterator[Node]:
+    """What a value may be, up to its sign."""
+    node = strip_sign(node)
+    if node.op not in ("select", "max", "min"):
+        yield node
+        return
+    for arg in node.args[node.op == "select" :]:
+        yield from _chosen(arg)
 
 
 def _is_exact_factor(node: Node) -> bool:

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
+from closedform.emit.backends.c.guards import given_up_where
 from closedform.lower import Lowered
 from closedform.lower.graph import Graph, Node, reachable
 from closedform.lower.operators import LEAVES
@@ -60,6 +61,8 @@ class Packing:
             below = (self.heights[a.id] for a in node.args)
             self.heights[node.id] = 1 + max(below, default=0)
         self.pack: dict[int, Pack] = {}
+        # a quotient comes after the conditions under which nothing uses it
+        self.before = dict(given_up_where(self.program))
         self._pack_all()
         self.blocks = self._scheduled()
 
@@ -202,7 +205,8 @@ class Packing:
             )
 
         for pack in left:  # operands come before operators
-            if pack.width == width and all(known(pack, c) for c in pack.columns):
+            columns = [*pack.columns, self.before.get(pack.nodes[0].id, ()) if width == 1 else ()]
+            if pack.width == width and all(known(pack, c) for c in columns):
                 found.append(pack)
                 here |= {n.id for n in pack.nodes}
         return found

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from closedform.generated.c import delta as compiled
 
-from closedform.emit.backends.c.kernel import Emission
-from closedform.emit.backends.c.lanes import packed
+from closedform.emit.backends.c.guards import given_up_where
+from closedform.emit.backends.c.lanes import LanesPrinter, packed
 from closedform.emit.backends.c.packs import Packing
 from closedform.lower import Lowered, lower
 from closedform.lower.operators import LEAVES
@@ -34,6 +34,18 @@ def test_every_operation_is_evaluated_once_after_its_operands(delta: Packing) ->
                 assert all(a.id in done for a in node.args)
             done |= {n.id for n in pack.nodes}
     assert done == {n.id for n in delta.nodes}
+
+
+def test_a_quotient_comes_after_the_conditions_under_which_nothing_uses_it() -> None:
+    """Its divisor may be zero there, so one call divides by 1 instead."""
+    common = program("delta", "fk").common
+    assert common is not None
+    packing = Packing(common)
+    order = [n.id for b in packing.blocks for p in b.packs for n in p.nodes]
+    guarded = dict(given_up_where(packing.program))
+    assert guarded
+    for quotient, conditions in guarded.items():
+        assert all(order.index(c.id) < order.index(quotient) for c in conditions)
 
 
 def test_what_a_pack_takes_from_its_own_loop_is_in_its_own_lanes(delta: Packing) -> None:
@@ -84,8 +96,8 @@ def test_one_posture_has_the_statuses_of_a_batch() -> None:
 @pytest.mark.parametrize("function", ["ik", "skeleton"])
 def test_an_answer_that_does_not_exist_is_selected_without_a_jump(function: str) -> None:
     """A jump between two loops over lanes would keep their vectors apart."""
-    d = importlib.import_module("closedform.derivations.delta").d
-    printed = Emission(d, d[function], lower(d[function], d), "delta").emit()
-    poisons = [line for line in printed.lanes_lines if "cf_poison" in line]
+    printer = LanesPrinter(Packing(program("delta", function)))
+    printer.run()
+    poisons = [line for line in printer.code if "cf_poison" in line]
     assert poisons
     assert all("cf_poison(0, " in line for line in poisons)

@@ -15,7 +15,7 @@ from fractions import Fraction
 import sympy as sp
 
 from closedform.lower import Lowered
-from closedform.lower.graph import Node, constant_of
+from closedform.lower.graph import Node, inverse_power_of_two
 from closedform.lower.operators import BOOLEAN, LEAVES, OPERATORS, PRINTED
 
 LONGEST = 44
@@ -84,14 +84,6 @@ def literal(value: sp.Expr) -> str:
     if value.is_Rational:
         return repr(float(Fraction(int(value.p), int(value.q))))
     return repr(float(value.evalf(40)))
-
-
-def _inverse_power_of_two(node: Node) -> sp.Expr | None:
-    """The factor that replaces division by a constant, or None if that is not exact."""
-    value = constant_of(node)
-    if value is None or not value.is_Integer or value & (value - 1):
-        return None
-    return 1 / value
 
 
 class Printer:
@@ -182,7 +174,7 @@ class Printer:
         return Text(f"{a.at(PRODUCT)} * {b.at(UNARY)}", PRODUCT)
 
     def div(self, node: Node, a: Text, b: Text) -> Text:
-        inverse = _inverse_power_of_two(node.args[1])
+        inverse = inverse_power_of_two(node.args[1])
         if inverse is not None:
             return Text(f"{a.at(PRODUCT)} * {self.number(literal(inverse)).code}", PRODUCT)
         return Text(f"{a.at(PRODUCT)} / {b.at(UNARY)}", PRODUCT)

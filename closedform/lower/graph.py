@@ -198,6 +198,14 @@ def constant_of(node: Node) -> sp.Expr | None:
     return -value if node.op == "neg" else value
 
 
+def inverse_power_of_two(node: Node) -> sp.Expr | None:
+    """The factor that replaces division by a constant, or None if that is not exact."""
+    value = constant_of(node)
+    if value is None or not value.is_Integer or value & (value - 1):
+        return None
+    return 1 / value
+
+
 def strip_sign(node: Node) -> Node:
     return node.args[0] if node.op == "neg" else node
 

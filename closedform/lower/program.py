@@ -15,7 +15,7 @@ from closedform.lower.build import Builder, angle_divisors
 from closedform.lower.common import common_case
 from closedform.lower.degrees import NUMBERS, Degrees, degrees
 from closedform.lower.edge import within_edge
-from closedform.lower.graph import Graph, Node, reachable
+from closedform.lower.graph import Graph, Node, inverse_power_of_two, reachable
 from closedform.lower.operators import COUNTED, LEAVES
 from closedform.lower.ranges import Ranges
 from closedform.lower.roots import fewer_roots
@@ -99,11 +99,15 @@ class Lowered:
         return frozenset(n.args[0].id for n in self.deciding() if n.op in ("sin", "cos"))
 
     def operations(self) -> dict[str, int]:
-        """The number of operators of each kind but of constants; a sincos counts once."""
+        """The number of operators of each kind but of constants; a sincos counts once.
+
+        A quotient by a power of two is printed as a product, and counts as one.
+        """
         counts: Counter[str] = Counter()
         for node in self.schedule():
             if node.op in COUNTED and {a.op for a in node.args} - {"const", "tolerance"}:
-                counts[node.op] += 1
+                halved = node.op == "div" and inverse_power_of_two(node.args[1]) is not None
+                counts["mul" if halved else node.op] += 1
         counts["sincos"], counts["principal"] = len(self.angles), len(self.turned)
         return {k: counts[k] for k in sorted(counts) if counts[k]}
 

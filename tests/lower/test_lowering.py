@@ -291,3 +291,8 @@ def test_an_arctangent_of_constants_is_a_constant() -> None:
     graph = Graph()
     turn = graph.atan2(graph.input("x"), graph.const(1))
     assert same(graph, turn, (graph.const(0), graph.const(1))) is graph.const(0)
+
+
+def test_a_quotient_by_a_power_of_two_counts_as_the_product_that_is_printed() -> None:
+    assert lowered(x * y / 2).operations() == {"mul": 2}
+    assert lowered(x * y / 3).operations() == {"div": 1, "mul": 1}

@@ -29,6 +29,8 @@ class Backend:
     function: Callable[[str], Callable[..., Any]]
     dtype: type
     tolerances: Tolerances
+    broadcasts: bool = False
+    """Whether each parameter may be an array, with a value for each row."""
 
     @property
     def eps(self) -> float:
@@ -41,7 +43,7 @@ class Backend:
 
 def module_backend(name: str, module: ModuleType) -> Backend:
     """A generated Python module, NumPy or compiled C."""
-    return Backend(name, lambda function: getattr(module, function), np.float64, DOUBLE)
+    return Backend(name, lambda function: getattr(module, function), np.float64, DOUBLE, True)
 
 
 def float_backend(call: Callable[[str], Callable[..., Any]]) -> Backend:
@@ -102,17 +104,48 @@ def thinned(sample: Sample, entries: int) -> Sample:
 
 
 def called(backend: Backend, function: Function, sample: Sample) -> tuple[NDArray[Any], ...]:
+    """The results at each row of a sample: the answers and the status, or each output."""
+    return _called(backend, function, sample.values, sample.parameters)
+
+
+def _called(
+    backend: Backend, function: Function, values: NDArray[Any], parameters: Sequence[Any]
+) -> tuple[NDArray[Any], ...]:
     inputs, column = [], 0
     for argument in function.inputs:
-        part = sample.values[:, column : column + argument.size]
+        part = values[:, column : column + argument.size]
         inputs.append(part.reshape((len(part), *argument.shape)))
         column += argument.size
-    result = backend.function(function.name)(*inputs, sample.parameters)
+    result = backend.function(function.name)(*inputs, tuple(parameters))
     parts = [np.asarray(p) for p in (result if isinstance(result, tuple) else (result,))]
     if function.has_status:  # the entries of a matrix are the unknowns of a solution
         answers, status = parts
         return answers.reshape(*status.shape, -1), status
     return tuple(parts)
+
+
+def called_at_all(
+    backend: Backend, function: Function, samples: Sequence[Sample], *, mixed: bool = False
+) -> list[tuple[NDArray[Any], ...]]:
+    """The results at each sample; those with the same parameters are one batch of the code.
+
+    With ``mixed``, all samples are one batch if parameters may be arrays.
+    """
+    if not function.inputs:
+        return [called(backend, function, sample) for sample in samples]
+    found: dict[int, tuple[NDArray[Any], ...]] = {}
+    groups: dict[tuple[float, ...], list[int]] = {}
+    mixed = mixed and backend.broadcasts
+    for k, sample in enumerate(samples):
+        groups.setdefault(() if mixed else sample.parameters, []).append(k)
+    for same, members in groups.items():
+        rows = np.concatenate([samples[k].rows for k in members])
+        values, sizes = np.split(rows, [sum(a.size for a in function.inputs)], axis=1)
+        results = _called(backend, function, values, [*sizes.T] if mixed else same)
+        ends = np.cumsum([len(samples[k].values) for k in members])[:-1]
+        for k, *parts in zip(members, *(np.split(r, ends) for r in results), strict=True):
+            found[k] = tuple(parts)
+    return [found[k] for k in range(len(samples))]
 
 
 def table(findings: Sequence[Finding]) -> Iterator[str]:

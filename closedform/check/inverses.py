@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from closedform.check.finding import MISSED, Backend, Finding, called, rounded, thinned
+from closedform.check.finding import MISSED, Backend, Finding, called_at_all, rounded, thinned
 from closedform.check.samples import Sample, inverse_postures, joint_samples, perturbed
 from closedform.check.singular import singular_samples
 from closedform.check.truth import Solutions, solutions_of
@@ -65,8 +65,12 @@ def check_inverse(
             posed = rounded(Sample(sample.name, values, sample.parameters), backend)
             batches.append((posed, known is not None, known))
     _check_batches(finding, truth, backend, batches)
-    for sample in _singular_samples(derivation, inverse.unknowns):
-        _check_round_trips(finding, truth, backend, rounded(sample, backend))
+    drawn = _singular_samples(derivation, inverse.unknowns)
+    targets = [_targets(truth, backend, rounded(sample, backend)) for sample in drawn]
+    targets = [posed for posed in targets if len(posed.values)]
+    results = called_at_all(backend, function, targets)
+    for posed, found in zip(targets, results, strict=True):
+        _check_round_trips(finding, truth, backend, posed, found)
     return finding
 
 
@@ -78,9 +82,11 @@ def _check_batches(
     finding: Finding, truth: Solutions, backend: Backend, batches: Sequence[_Targets]
 ) -> None:
     """Check each batch; what they need in balls is evaluated for all of them together."""
-    truth.prepare([sample for sample, _, _ in batches])
-    for sample, exact, known in batches:
-        _Batch(finding, truth, backend, sample, exact=exact).check(known)
+    samples = [sample for sample, _, _ in batches]
+    truth.prepare(samples)
+    results = called_at_all(backend, truth.function, samples)
+    for (sample, exact, known), found in zip(batches, results, strict=True):
+        _Batch(finding, truth, backend, sample, exact=exact).check(found, known)
 
 
 @dataclass(frozen=True)
@@ -96,23 +102,25 @@ class _Batch:
     sample: Sample
     exact: bool
 
-    def check(self, known: NDArray[Any] | None) -> None:
-        """Compare all answers with the exact ones; the ``known`` postures must be among them.
+    def check(self, found: tuple[NDArray[Any], ...], known: NDArray[Any] | None) -> None:
+        """Compare the answers that were ``found``; the ``known`` postures must be among them.
 
         What single precision cannot do is an error if it is more than a few ordinary answers.
         """
         before = len(self.finding.limits)
-        self._compare(known)
+        solutions, status = found
+        self._compare(solutions, status, known)
         limits = self.finding.limits[before:]
         ordinary = self.sample.name == "random" and _spread(self.sample.parameters) < UNEQUAL
         if ordinary and len(limits) > max(FEW, len(self.sample.values) / 10):
             for message in limits:
                 self.finding.fail(message)
 
-    def _compare(self, known: NDArray[Any] | None) -> None:
+    def _compare(
+        self, solutions: NDArray[Any], status: NDArray[Any], known: NDArray[Any] | None
+    ) -> None:
         """Only what may be wrong, or worse than the worst so far, is evaluated in Arb."""
         truth, sample, eps = self.truth, self.sample, self.backend.eps
-        solutions, status = called(self.backend, truth.function, sample)
         feasibility = self.backend.tolerances.feasibility
         slack, matched = 2 * feasibility, min(16 * eps, feasibility / 8)
         limits = (slack, -slack, -16 * eps)
@@ -272,30 +280,35 @@ def _in_range(
             yield replace(sample, values=sample.values[rows]), rows is not beyond
 
 
+def _targets(truth: Solutions, backend: Backend, postures: Sample) -> Sample:
+    """The images of postures, as targets in the float type of the code."""
+    images = truth.wide_images(postures.values, postures.parameters)
+    targets = np.concatenate(list(images)).astype(float)
+    finite = targets[np.isfinite(targets).all(axis=-1)]
+    return rounded(Sample(postures.name, finite, postures.parameters), backend)
+
+
 def _check_round_trips(
-    finding: Finding, truth: Solutions, backend: Backend, postures: Sample
+    finding: Finding,
+    truth: Solutions,
+    backend: Backend,
+    posed: Sample,
+    found: tuple[NDArray[Any], ...],
 ) -> None:
     """The exact forward map takes every answer that is OK to the target.
 
     Answers that seem to miss by more than half of the tolerance are evaluated in Arb, worst first.
     """
-    parameters = postures.parameters
+    parameters = posed.parameters
     allowed = backend.tolerances.promised(float(truth.amplified(*parameters)))
-    images = truth.wide_images(postures.values, parameters)
-    targets = np.concatenate(list(images)).astype(float)
-    posed = rounded(
-        Sample(postures.name, targets[np.isfinite(targets).all(axis=-1)], parameters), backend
-    )
-    if not len(posed.values):
-        return
-    solutions, status = called(backend, truth.function, posed)
+    solutions, status = found
     row, branch = np.nonzero(status == OK)
     answers, given = solutions[row, branch].astype(float), posed.values[row]
     missed = truth.missed(truth.wide_images(answers, parameters), answers, given, parameters)
     if not truth.stated:
         finding.compared += len(answers)
         worst = missed.max(initial=0.0) / backend.eps
-        finding.see(float(worst), lambda: postures.name)
+        finding.see(float(worst), lambda: posed.name)
     for k in np.argsort(-missed)[:SUSPECTS]:
         if missed[k] > allowed / 2:
             exact = truth.exact_miss(answers[k], given[k], parameters)
@@ -322,8 +335,9 @@ def _moves(
     first rounding may hide a single ulp, so four ulps are tried as well.
     """
     for ulps in (1, 4):
-        for nearby in (_nearby(backend, sample, ulps), *_resized(backend, sample, ulps)):
-            moved = truth.gap(called(backend, truth.function, nearby)[0], solutions) / ulps
+        nearby = [_nearby(backend, sample, ulps), *_resized(backend, sample, ulps)]
+        for answers, _ in called_at_all(backend, truth.function, nearby, mixed=True):
+            moved = truth.gap(answers, solutions) / ulps
             if np.max(moved, initial=0.0, where=np.isfinite(moved)) >= far:
                 return True
     return False

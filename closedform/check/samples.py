@@ -8,7 +8,7 @@ same on every run.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -60,13 +60,18 @@ def parameter_sets(derivation: Derivation, rng: np.random.Generator) -> Iterator
     yield tuple(10.0 ** rng.uniform(-3, 3, n))
 
 
+def _different(sets: Iterable[tuple[float, ...]]) -> Iterator[tuple[float, ...]]:
+    """The sets without repetitions: the example of an arm from a table has equal dimensions."""
+    return iter(dict.fromkeys(sets))
+
+
 def joint_samples(derivation: Derivation, function: Function, seed: int = 1) -> list[Sample]:
     """Inputs of a function of joint values (or of any free real numbers, or of a pose)."""
     rng = np.random.default_rng(seed)
     n = len(function.symbols)
     if n == 0:
         none = np.empty((1, 0))
-        return [Sample("constant", none, p) for p in parameter_sets(derivation, rng)]
+        return [Sample("constant", none, p) for p in _different(parameter_sets(derivation, rng))]
     rows = {
         "home": np.zeros((1, n)),
         "random": rng.uniform(-np.pi, np.pi, (60, n)),
@@ -94,7 +99,7 @@ def joint_samples(derivation: Derivation, function: Function, seed: int = 1) -> 
             values if name == "huge" else drawn_beside(derivation, function.symbols, values),
             parameters,
         )
-        for parameters in parameter_sets(derivation, rng)
+        for parameters in _different(parameter_sets(derivation, rng))
         for name, values in rows.items()
     ]
 
@@ -131,7 +136,7 @@ def inverse_postures(
     }
     return [
         Sample(name, drawn_beside(derivation, unknowns, values), parameters)
-        for parameters in parameter_sets(derivation, rng)
+        for parameters in _different(parameter_sets(derivation, rng))
         for name, values in rows.items()
     ]
 

@@ -37,6 +37,7 @@ The step is in a direction in which the hand is slow, and no correction is made 
 still, as shares of the fastest direction.  Where two solutions meet, each correction halves the
 step, so twelve lead back.
 """
+TURN = 2 * math.pi
 
 _numbers_of_tool = cached(numbers_of_tool)
 
@@ -416,8 +417,8 @@ class Solutions:
     def gap(self, solutions: NDArray[Any], posture: NDArray[Any]) -> NDArray[np.float64]:
         """The distance of each solution from a posture, angles modulo a turn."""
         difference = solutions.astype(float) - posture
-        turned = np.abs(np.angle(np.exp(1j * difference)))
-        return np.asarray(np.where(self.angular, turned, np.abs(difference)).max(axis=-1))
+        turns = TURN * np.rint(difference / TURN)
+        return np.asarray(abs(difference - self.angular * turns).max(axis=-1))
 
 
 def _numbers_of_size(function: Function) -> float:

@@ -12,7 +12,15 @@ from flint import arb, ctx
 from numpy.typing import NDArray
 
 from closedform.algebra.balls import Undetermined, to_float
-from closedform.check.finding import MISSED, Backend, Finding, called, rounded, thinned
+from closedform.check.finding import (
+    MISSED,
+    Backend,
+    Finding,
+    called,
+    called_at_all,
+    rounded,
+    thinned,
+)
 from closedform.check.samples import Sample, joint_samples
 from closedform.check.truth import Values, condition_of, values_of
 from closedform.model.derivation import Derivation
@@ -41,11 +49,11 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     values = values_of(derivation, function)
     drawn = joint_samples(derivation, function)
     samples = [rounded(thinned(sample, len(values.exprs)), backend) for sample in drawn]
+    samples = [sample for sample in samples if len(sample.values)]
     values.prepare(samples)
-    for sample in samples:
-        if len(sample.values):
-            outputs = called(backend, function, sample)
-            _compare(finding, values, backend, sample, outputs[: len(function.outputs)])
+    results = called_at_all(backend, function, samples)
+    for sample, outputs in zip(samples, results, strict=True):
+        _compare(finding, values, backend, sample, outputs[: len(function.outputs)])
     allowed = backend.tolerances.ulps + values.operations * backend.tolerances.ulps_per_operation
     if not finding.worst <= allowed:
         near = finding.worst <= MISSED * allowed

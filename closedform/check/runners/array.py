@@ -40,6 +40,8 @@ class Library:
         postures = len(inputs[0]) if inputs else 1
         more = -postures % self.multiple if inputs and postures else 0
         filled = [np.concatenate([x, np.repeat(x[-1:], more, axis=0)]) for x in inputs]
+        if params.ndim > 1:
+            params = np.concatenate([params, np.repeat(params[:, -1:], more, axis=1)], axis=1)
         found = function(*map(self.array, filled), self.array(params))
         results = found if isinstance(found, tuple) else (found,)
         return tuple(np.asarray(r)[:postures] if inputs else np.asarray(r) for r in results)
@@ -71,4 +73,4 @@ def _backend(name: str, printed: ModuleType, library: Library, *, single: bool =
 
         return called
 
-    return Backend(name, function, dtype, tolerances)
+    return Backend(name, function, dtype, tolerances, broadcasts=True)

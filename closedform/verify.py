@@ -216,7 +216,7 @@ class Fraction:
         self.num, self.den = (num, den) if common.is_one() else (num / common, den / common)
 
     def __add__(self, other: Fraction) -> Fraction:
-        common = self.den.gcd(other.den)
+        common = self.den if self.den == other.den else self.den.gcd(other.den)
         left, right = self.den / common, other.den / common
         return Fraction(self.field, self.num * right + other.num * left, self.den * right)
 
@@ -224,7 +224,7 @@ class Fraction:
         return Fraction(self.field, self.num * other.num, self.den * other.den)
 
     def __pow__(self, n: int) -> Fraction:
-        power = reduce(Fraction.__mul__, [self] * abs(n), self.field.number(1))
+        power = reduce(Fraction.__mul__, [self] * abs(n)) if n else self.field.number(1)
         if n >= 0:
             return power
         self.field.inverted.append(power.num)
@@ -239,8 +239,8 @@ def turned(a: Rotation, b: Rotation) -> Rotation:
 
 
 def times(turn: Rotation, n: int) -> Rotation:
-    one = turn[0].field.number(1)
-    return reduce(turned, [turn if n > 0 else (turn[0], -turn[1])] * abs(n), (one, one + -one))
+    turns = [turn if n > 0 else (turn[0], -turn[1])] * abs(n)
+    return reduce(turned, turns or [(turn[0].field.number(1), turn[0].field.number(0))])
 
 
 class Field:
@@ -250,8 +250,8 @@ class Field:
         steps = certificate["field"]
         self.nodes, self.assumed = nodes, certificate.get("assumed", [])
         self.stated = {*certificate.get("zero", []), *self.assumed}  # with all their parts
-        for k in reversed(range(len(nodes))):
-            self.stated |= set(operands(nodes[k])) if k in self.stated else set()
+        for k in filter(self.stated.__contains__, reversed(range(len(nodes)))):
+            self.stated.update(operands(nodes[k]))
         self.kinds = [kind for kind, *_ in steps for _ in range(SIZES[kind])]
         names = [f"g{i}" for i in reversed(range(len(self.kinds)))]
         self.context = fmpq_mpoly_ctx.get(names, Ordering.lex)  # a later generator is larger

@@ -162,6 +162,8 @@ class Tower:
     def _add(self, a: Fraction, b: Fraction) -> Fraction:
         if a.den.is_one() and b.den.is_one():
             return Fraction(a.num + b.num, a.den)
+        if a.den == b.den:
+            return self._cancelled(a.num + b.num, a.den)
         common = a.den.gcd(b.den)
         left, right = a.den / common, b.den / common
         return self._cancelled(a.num * right + b.num * left, a.den * right)
@@ -234,8 +236,8 @@ class Tower:
     def _rotation(self, angle: Expr) -> Rotation:
         known = self._rotations.get(angle)
         if known is None:
-            terms = (self._multiple(atom, q) for atom, q in angle_terms(angle).items())
-            known = reduce(self._compose, terms, Rotation(self.one, self.zero))
+            terms = [self._multiple(atom, q) for atom, q in angle_terms(angle).items()]
+            known = reduce(self._compose, terms) if terms else Rotation(self.one, self.zero)
             self._rotations[angle] = known
         return known
 
@@ -250,7 +252,7 @@ class Tower:
     def _turned(self, a: Rotation, n: int) -> Rotation:
         if n < 0:
             return self._turned(Rotation(a.cos, _negative(a.sin)), -n)
-        return reduce(self._compose, [a] * n, Rotation(self.one, self.zero))
+        return reduce(self._compose, [a] * n) if n else Rotation(self.one, self.zero)
 
     def _multiple(self, atom: Expr, q: Rational) -> Rotation:
         if atom == sp.pi:

@@ -25,6 +25,15 @@ a, b, c, t = sp.symbols("a b c t", real=True)
         -a,
         sp.sqrt(2) * a**2 / 3 - sp.sqrt(3) * a * b + sp.sqrt(6) * b**2,
         sp.expand((sp.sqrt(2) * a - b) * (sp.sqrt(6) * sp.sin(t) / 4 + sp.Rational(1, 2))),
+        # quotients
+        (a**2 - b**2) / (a + b) - c / (a + b) ** 2,
+        1 / (a * b) - 1 / (c * b),
+        (a - b) / (b - a) ** 2,
+        sp.sqrt(2) * a / b + sp.sqrt(2) * a / c,
+        (6 * a + 6) / (4 * b - 4),
+        (2 * a**2 * b**2 * sp.sin(t) ** 2 - 2 * a**2 * sp.sin(t) ** 2)
+        / (2 * b**2 * sp.sin(t) ** 2),
+        2 / (sp.sqrt(3) * a + a),
         # what is not a polynomial of symbols, sines, cosines and roots of numbers
         a / c - b / c,
         sp.sqrt(2) * a - sp.sqrt(2) * b,

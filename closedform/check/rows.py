@@ -35,6 +35,8 @@ LIBRARY = 16 * ROUNDING
 LEAST = np.sqrt(WIDE(np.finfo(WIDE).tiny))
 """Below this size, rounding errors are no longer relative."""
 OPEN = WIDE("inf")
+EXACT = WIDE(0)
+"""The radius of what is exact, recognised by identity: it needs no terms in other radii."""
 KEPT_BATCHES, TOGETHER = 4096, 1024
 """How many results are kept, and how many points are evaluated together at most."""
 
@@ -43,6 +45,7 @@ class RowEvaluator:
     """Expressions at many points: fast, with bounds on the errors, and in Arb on request.
 
     They are evaluated in each of the ``cases``, one after the other, as those of an ``Evaluator``.
+    The ``steady`` symbols, such as lengths, have one value at most points of a batch.
     """
 
     def __init__(
@@ -51,18 +54,22 @@ class RowEvaluator:
         exprs: Iterable[Any],
         named: Mapping[sp.Symbol, Any] | None = None,
         cases: Sequence[Case] = ({},),
+        *,
+        steady: Iterable[sp.Symbol] = (),
     ) -> None:
         self.symbols = tuple(symbols)
         self.exprs = tuple(sp.sympify(e, strict=True) for e in exprs)
         self._named, self._cases = dict(named or {}), tuple(cases)
-        self._program = _Program(self.symbols, self.exprs, self._named, self._cases)
+        self._steady = frozenset(steady)
+        self._program = _Program(self.symbols, self.exprs, self._named, self._cases, self._steady)
         self._exact: dict[tuple[Any, ...], list[Any] | str] = {}
         """The Arb balls at each point so far, or the reason why there are none."""
 
     @cached_property
     def separately(self) -> list[RowEvaluator]:
         """An evaluator for each expression alone."""
-        return [RowEvaluator(self.symbols, [e], self._named, self._cases) for e in self.exprs]
+        given = self.symbols, self._named, self._cases
+        return [RowEvaluator(given[0], [e], *given[1:], steady=self._steady) for e in self.exprs]
 
     @cached_property
     def _evaluator(self) -> Evaluator:
@@ -227,11 +234,13 @@ class _Program:
         exprs: Sequence[Any],
         named: Mapping[sp.Symbol, Any],
         cases: Sequence[Case],
+        steady: frozenset[sp.Symbol],
     ) -> None:
         self._scope = Scope(named, cases)
+        self._varies = [s not in steady for s in symbols]
+        """Whether each value depends on more than steady symbols."""
         self._steps: list[tuple[_Step, tuple[int, ...]]] = []
         self._places: dict[Any, int] = {s: k for k, s in enumerate(symbols)}
-        self._width = len(symbols)
         self.results: list[int] = []
         for case in cases:
             self._scope.enter(case)
@@ -242,16 +251,17 @@ class _Program:
 
     def run(self, rows: Array, share: float = 0.0) -> list[Any]:
         """The balls at rows of inputs, each of which may be off by a ``share`` of itself."""
-        columns = np.asarray(rows, WIDE).T
-        # without a negative zero
-        known: list[Any] = [(x + WIDE(0), abs(x) * WIDE(share)) for x in columns]
+        known: list[Any] = []
+        for x in _columns(rows):
+            exact = share == 0 and bool(np.isfinite(x).all())
+            known.append((x, EXACT if exact else abs(x) * WIDE(share)))
         for step, operands in self._steps:
             known.append(step.ball(*[known[k] for k in operands]))
         return [known[k] for k in self.results]
 
     def middles(self, rows: Array) -> list[Any]:
         """The midpoints that :meth:`run` finds, without their radii."""
-        known: list[Any] = [x + WIDE(0) for x in np.asarray(rows, WIDE).T]
+        known: list[Any] = _columns(rows)
         for step, operands in self._steps:
             known.append(step.middle(*[known[k] for k in operands]))
         return [known[k] for k in self.results]
@@ -259,10 +269,30 @@ class _Program:
     def _place(self, e: Any) -> int:
         key = self._scope.key(e)
         if key not in self._places:
-            step, operands = self._step(e)
-            places = tuple(map(self._place, operands))
-            self._steps.append((step, places))
-            self._places[key] = self._width + len(self._steps) - 1
+            if isinstance(e, sp.Mul):
+                self._places[key] = self._product([self._place(a) for a in e.args])
+            else:
+                step, operands = self._step(e)
+                self._places[key] = self._add(step, tuple(map(self._place, operands)))
+        return self._places[key]
+
+    def _add(self, step: _Step, operands: tuple[int, ...]) -> int:
+        self._steps.append((step, operands))
+        self._varies.append(any(self._varies[k] for k in operands))
+        return len(self._varies) - 1
+
+    def _product(self, factors: Sequence[int]) -> int:
+        """Of two products, that of steady factors and the other; many terms have one in common."""
+        steady, varying = (
+            [k for k in sorted(factors) if self._varies[k] == varies] for varies in (False, True)
+        )
+        halves = [reduce(self._times, half) for half in (steady, varying) if half]
+        return reduce(self._times, halves)
+
+    def _times(self, a: int, b: int) -> int:
+        key = "product", a, b
+        if key not in self._places:
+            self._places[key] = self._add(_FUNCTIONS[sp.Mul], (a, b))
         return self._places[key]
 
     def _step(self, e: Any) -> tuple[_Step, Sequence[Any]]:
@@ -271,7 +301,7 @@ class _Program:
         if e.is_Rational:
             number = WIDE(int(e.p)) / WIDE(int(e.q))
             exact = e.q == 1 and abs(int(e.p)) < 2**53
-            return _constant(number, WIDE(0) if exact else 2 * abs(number) * ROUNDING), ()
+            return _constant(number, EXACT if exact else 2 * abs(number) * ROUNDING), ()
         if e is sp.pi:
             return _constant(4 * np.arctan(WIDE(1)), 4 * LIBRARY), ()
         if e is sp.nan or e is sp.zoo:  # a case that a flag always excludes, such as 1/0
@@ -290,6 +320,15 @@ class _Program:
         return step, e.args
 
 
+def _columns(rows: Array) -> list[Any]:
+    """The columns without negative zeros; of one that is constant, such as a length, its value.
+
+    What depends on lengths alone is then computed once, not at each point.
+    """
+    columns = np.asarray(rows, WIDE).T + WIDE(0)
+    return [x[0] if len(x) > 1 and (x == x[0]).all() else x for x in columns]
+
+
 def _constant(value: Any, certainty: Any) -> _Step:
     return _Step(lambda: value, lambda: (value, certainty))
 
@@ -305,7 +344,8 @@ def _rounded(value: Any, radius: Any, error: Any = ROUNDING) -> Ball:
 
 def _sum(*terms: Ball) -> Ball:
     def add(a: Ball, b: Ball) -> Ball:
-        return _rounded(a[0] + b[0], a[1] + b[1])
+        (x, r), (y, s) = a, b
+        return _rounded(x + y, s if r is EXACT else r if s is EXACT else r + s)
 
     return reduce(add, terms)
 
@@ -317,10 +357,16 @@ def _product(*factors: Ball) -> Ball:
 def _times(a: Ball, b: Ball) -> Ball:
     (x, r), (y, s) = a, b
     value = x * y
+    if r is EXACT and isinstance(x, np.floating) and abs(x) == 1:
+        return value, s
     size = abs(value)
-    radius = abs(x) * s + (abs(y) + s) * r + size * ROUNDING
+    radius = size * ROUNDING
+    if s is not EXACT:
+        radius = radius + abs(x) * s
+    if r is not EXACT:
+        radius = radius + (abs(y) + s) * r
     small = size < LEAST
-    if small.any():
+    if np.count_nonzero(small):
         radius = np.where(small & (x != 0) & (y != 0), OPEN, radius)
     return value, radius
 

@@ -52,7 +52,8 @@ class Values:
         """Of one case."""
         self.angles = np.array([isinstance(e, sp.atan2) for e in self.exprs])
         symbols = symbols_of(derivation, function)
-        self.exact = RowEvaluator(symbols, self.exprs)
+        parameters = [p.symbol for p in derivation.parameters]
+        self.exact = RowEvaluator(symbols, self.exprs, steady=parameters)
         self._symbols, self._function = symbols, function
         self.given = len(function.symbols)
         """The number of inputs; what follows in a row is the parameters."""
@@ -178,7 +179,8 @@ class Solutions:
         place = (*inverse.unknowns, *function.symbols, *parameters)
         self.stated = not inverse.passive
         """Whether the equations contain only what the function takes and returns."""
-        self._equations = RowEvaluator(place, inverse.equations if self.stated else ())
+        stated = inverse.equations if self.stated else ()
+        self._equations = RowEvaluator(place, stated, steady=parameters)
         pairs = list(zip(inverse.forward, inverse.targets, strict=True))
         self._is_turn = [
             t for _, x in pairs for t in [x in inverse.angles] * (1 + (x in inverse.angles))
@@ -196,7 +198,7 @@ class Solutions:
             maps = [forward.values(mode) for mode in modes]
             bounds = margins_of(forward, Bound)
             self._reaches = [in_cases(forward, posture, bounds, [mode]) for mode in modes]
-        self._maps = [RowEvaluator(posture, m) for m in maps]
+        self._maps = [RowEvaluator(posture, m, steady=parameters) for m in maps]
         slides = {j.symbol for j in derivation.joints if j.kind == "prismatic"}
         self._sliding = np.array([u in slides for u in inverse.unknowns])
         self._turns = np.array([x in inverse.angles for x in function.symbols])

@@ -76,6 +76,20 @@ def test_values_are_the_midpoints_of_the_balls(name: str) -> None:
     np.testing.assert_array_equal(evaluator.values(rows), evaluator.balls(rows)[0])
 
 
+@pytest.mark.parametrize("name", EXPRESSIONS)
+def test_a_symbol_with_one_value_is_computed_once(name: str) -> None:
+    """The balls with two constant columns enclose the same values; nothing more is open."""
+    rows = points()
+    rows[:, 1:] = rows[7, 1:]
+    steady = RowEvaluator((x, y, z), [EXPRESSIONS[name]], steady=[y, z])
+    middle, radius = steady.balls(rows)
+    for k, row in enumerate(rows):
+        alone = RowEvaluator((x, y, z), [EXPRESSIONS[name]]).balls(row[None])
+        assert np.isfinite(radius[k]) == np.isfinite(alone[1][0])
+        if np.isfinite(radius[k]):
+            assert abs(middle[k] - alone[0][0]) <= radius[k] + alone[1][0]
+
+
 def test_what_is_open_is_settled_in_arb() -> None:
     """Values beside a limit by less than the rounding of the widest type, on either side of it."""
     evaluator = RowEvaluator((x, y), [x + y - x])

@@ -14,6 +14,7 @@ import sympy as sp
 from closedform.algebra.factoring import factored
 from closedform.algebra.normal_form import normal
 from closedform.algebra.operations import operations
+from closedform.mechanics.merging import with_merged_angles
 from closedform.model.functions import Program, real
 
 
@@ -225,6 +226,8 @@ def merge_angles(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:
 @cache
 def _merged(value: sp.Expr) -> sp.Expr:
     best = sp.expand(value)
+    if (found := with_merged_angles(best)) is not None:
+        return found
     improved = True
     while improved:
         improved = False

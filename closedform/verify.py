@@ -353,10 +353,9 @@ class Field:
         return self.fraction(self.context.constant(fmpq(value)))
 
     def reduced(self, p: Polynomial) -> Polynomial:
-        for i in () if p.is_constant() or max(p.degrees()) < 2 else reversed(self.relations):
-            if p.degrees()[-1 - i] > 1:
-                p = divmod(p, self.relations[i])[1]
-        return p
+        degrees = p.degrees()
+        high = next((i for i in reversed(self.relations) if degrees[-1 - i] > 1), None)
+        return p if high is None else self.reduced(divmod(p, self.relations[high])[1])
 
     def leading(self, p: Polynomial) -> tuple[Monomial, Polynomial]:
         """The largest monomial of the unknowns (graded reverse lexicographic), its coefficient."""
@@ -376,7 +375,7 @@ class Field:
                 self.values[k] = self.number(args[0])
             elif op in ("+", "*"):
                 join = Fraction.__add__ if op == "+" else Fraction.__mul__
-                self.values[k] = reduce(join, map(self.value, args))
+                self.values[k] = reduce(join, sorted(map(self.value, args), key=lambda x: len(x.num)))
             elif op == "^":
                 self.values[k] = self.value(args[0]) ** args[1]
             else:

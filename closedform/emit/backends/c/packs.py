@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from types import MappingProxyType
 
 from closedform.emit.backends.c.guards import given_up_where
@@ -32,10 +33,15 @@ class Pack:
     nodes: Lanes
     columns: tuple[Lanes, ...]
 
-    @property
+    @cached_property
     def width(self) -> int:
         """The number of lanes with the padding: 2, 4 or 8."""
         return 1 << (len(self.nodes) - 1).bit_length()
+
+    @cached_property
+    def operands(self) -> tuple[tuple[int, ...], ...]:
+        """The columns as the numbers of their nodes."""
+        return tuple(tuple(n.id for n in column) for column in self.columns)
 
 
 @dataclass(frozen=True)
@@ -62,7 +68,8 @@ class Packing:
             self.heights[node.id] = 1 + max(below, default=0)
         self.pack: dict[int, Pack] = {}
         # a quotient comes after the conditions under which nothing uses it
-        self.before = dict(given_up_where(self.program))
+        given_up = given_up_where(self.program)
+        self.before = {k: tuple(c.id for c in conditions) for k, conditions in given_up}
         self._pack_all()
         self.blocks = self._scheduled()
 
@@ -173,42 +180,40 @@ class Packing:
     def _attempt(self) -> tuple[list[Block], list[Pack]]:
         blocks: list[Block] = []
         done = {n.id for n in self.nodes if n.op in LEAVES}
-        left = list(
-            dict.fromkeys(
-                self.pack.get(n.id) or Pack((n,), tuple((a,) for a in n.args))
-                for n in self.nodes
-                if n.op not in LEAVES
-            )
+        packs = dict.fromkeys(
+            self.pack.get(n.id) or Pack((n,), tuple((a,) for a in n.args))
+            for n in self.nodes
+            if n.op not in LEAVES
         )
-        while left:
-            ways = [self._ready(left, done, width) for width in (1, 2, MOST, ANGLES)]
-            packs = ways[0] or max(ways[1:], key=len)
-            if not packs:
-                return [], [p for p in left if p.width > 1]
-            blocks.append(Block(packs[0].width, tuple(packs)))
-            done |= {n.id for p in packs for n in p.nodes}
-            kept = set(packs)
-            left = [p for p in left if p not in kept]
+        left = {width: [p for p in packs if p.width == width] for width in (1, 2, MOST, ANGLES)}
+        while any(left.values()):
+            ways = (self._ready(wide, done) for width, wide in left.items() if width > 1)
+            ready = self._ready(left[1], done) or max(ways, key=len)
+            if not ready:
+                return [], [p for width, wide in left.items() if width > 1 for p in wide]
+            width, kept = ready[0].width, set(ready)
+            blocks.append(Block(width, tuple(ready)))
+            done |= {n.id for p in ready for n in p.nodes}
+            left[width] = [p for p in left[width] if p not in kept]
         return blocks, []
 
-    def _ready(self, left: Sequence[Pack], done: set[int], width: int) -> list[Pack]:
-        """The packs of one width that can be evaluated together after what is done."""
+    def _ready(self, left: Sequence[Pack], done: set[int]) -> list[Pack]:
+        """The packs, all of one width, that can be evaluated together after what is done."""
         found: list[Pack] = []
         here: set[int] = set()
 
-        def known(pack: Pack, column: Lanes) -> bool:
-            if all(n.id in done for n in column):
+        def known(column: tuple[int, ...]) -> bool:
+            if done.issuperset(column):
                 return True
-            return all(n.id in here for n in column) and (
-                width == 1
-                or self._lanes_of(column) == self._lanes_of(self.pack[column[0].id].nodes)
+            return here.issuperset(column) and (
+                len(column) == 1 or column == self._lanes_of(self.pack[column[0]].nodes)
             )
 
         for pack in left:  # operands come before operators
-            columns = [*pack.columns, self.before.get(pack.nodes[0].id, ()) if width == 1 else ()]
-            if pack.width == width and all(known(pack, c) for c in columns):
+            earlier = self.before.get(pack.nodes[0].id, ()) if pack.width == 1 else ()
+            if all(map(known, pack.operands)) and all(c in done or c in here for c in earlier):
                 found.append(pack)
-                here |= {n.id for n in pack.nodes}
+                here.update(n.id for n in pack.nodes)
         return found
 
     @staticmethod

@@ -168,8 +168,8 @@ def to_float(ball: arb) -> float:
     bits = mantissa.bit_length()
     if bits < 1000 and -1000 < bits + exponent < 1000:  # a normal number: rounded once
         return math.ldexp(float(mantissa), exponent)
-    try:
-        return float(Fraction(mantissa) * Fraction(2) ** exponent)
+    try:  # a quotient of integers is rounded once, also to a number that is not normal
+        return mantissa / (1 << -exponent) if exponent < 0 else float(mantissa << exponent)
     except OverflowError:
         return math.inf if mantissa > 0 else -math.inf
 

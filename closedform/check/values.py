@@ -39,6 +39,9 @@ NESTED = 64.0
 steps the natural scale grows with every step, and would soon allow any error.
 """
 
+ACCURATE = 2.0**-40
+"""Balls with a radius of at most this share of the largest value give that value."""
+
 NEAR_POLE = 2.0**-4
 """What vanishes or ends where assembly modes meet is small below this share of its scale."""
 
@@ -171,7 +174,11 @@ class _Errors:
     def _scale(self, row: int, k: int, exacts: Sequence[arb]) -> float:
         """The natural scale of an entry, at most :data:`NESTED` times the largest value there."""
         if row not in self._largest:
-            sizes = [abs(to_float(e)) for e in exacts if e.is_finite()]
+            middle, radius = abs(self.middle[row]), self.radius[row]
+            if radius.max(initial=0.0) <= middle.max(initial=0.0) * ACCURATE:
+                sizes = [float(middle.max(initial=0.0))]
+            else:
+                sizes = [abs(to_float(e)) for e in exacts if e.is_finite()]
             self._largest[row] = max([*sizes, *self.lengths], default=1.0)
         most = NESTED * max(self._largest[row], self.powers[row, k])
         scale = max(min(self.scales[row, k], most), self.least[row, k])

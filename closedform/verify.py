@@ -375,7 +375,8 @@ class Field:
                 self.values[k] = self.number(args[0])
             elif op in ("+", "*"):
                 join = Fraction.__add__ if op == "+" else Fraction.__mul__
-                self.values[k] = reduce(join, sorted(map(self.value, args), key=lambda x: len(x.num)))
+                shortest_first = sorted(map(self.value, args), key=lambda x: len(x.num))
+                self.values[k] = reduce(join, shortest_first)
             elif op == "^":
                 self.values[k] = self.value(args[0]) ** args[1]
             else:

@@ -9,6 +9,7 @@ are the same on every machine.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations, count, groupby, permutations
 from typing import Any
@@ -239,7 +240,11 @@ class Lines:
         if not value.is_Add or len(value.args) < TERMS:
             return None
         found = []
-        for symbol in sorted(value.free_symbols, key=str):
+        turning = {s for f in value.atoms(sp.sin, sp.cos) for s in f.free_symbols}
+        degrees = _degrees(value)
+        for symbol in sorted(value.free_symbols - turning, key=str):
+            if degrees[symbol] < 2:
+                continue  # to find that in the polynomial takes SymPy long
             poly = value.as_poly(symbol)
             if poly is None or not 2 <= poly.degree() <= TERMS:
                 continue
@@ -377,6 +382,21 @@ def unit_circles(value: sp.Expr) -> Iterator[sp.Expr]:
 
 
 __all__ = ["Equation", "Lines", "unit_circles", "with_sums_of_angles"]
+
+
+def _degrees(value: sp.Expr) -> dict[sp.Symbol, float]:
+    """Upper bounds for the degrees of a value in its symbols; infinite if it has other powers."""
+    if value.is_Symbol:
+        return {value: 1}
+    found = dict[sp.Symbol, float]()
+    if value.is_Add or value.is_Mul:
+        for part in map(_degrees, value.args):
+            for s, n in part.items():
+                found[s] = max(found.get(s, 0), n) if value.is_Add else found.get(s, 0) + n
+        return found
+    if value.is_Pow and value.exp.is_Integer and value.exp.is_positive:
+        return {s: n * int(value.exp) for s, n in _degrees(value.base).items()}
+    return dict.fromkeys(value.free_symbols, math.inf)
 
 
 def _of_squares(value: sp.Expr) -> bool:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from closedform.algebra.balls import Undetermined, to_float
 from closedform.algebra.scope import Case
 from closedform.check.rows import RowEvaluator, crosses
-from closedform.model.cached import KEPT
+from closedform.model.cached import KEPT, cached
 from closedform.model.expressions import free_symbols, substitute
 from closedform.model.functions import Bound, Function, Let, Match, Vanishes
 
@@ -53,19 +53,28 @@ def in_cases(
 
     All flags are taken as false, and values that are chosen only where one holds are left out.
     """
-    flags = dict.fromkeys(flags_of(function), sp.false)
-    made = [s for s in function.body if isinstance(s, Let | Bound)]
-    named = {s.symbol: substitute(s.value, flags) for s in made}
+    flags, named, inside = _names_of(function)
     chosen = tuple(substitute(e, flags) for e in exprs)
     used: set[Any] = set()
     pending = free_symbols(chosen)
     while pending:
         used |= pending
-        pending = free_symbols([named[n] for n in pending & named.keys()]) - used
+        pending = set().union(*(inside[n] for n in pending & named.keys())) - used
     kept = tuple((n, value) for n, value in named.items() if n in used)
     signs = _signs(function) if cases is None else cases
     ruling = tuple(tuple((s, v) for s, v in case.items() if s in used) for case in signs)
     return _shared(tuple(symbols), chosen, kept, ruling)
+
+
+@cached
+def _names_of(
+    function: Function,
+) -> tuple[dict[sp.Basic, Any], dict[sp.Symbol, Any], dict[sp.Symbol, set[Any]]]:
+    """The flags of a function, all false; its names with their values; the symbols in these."""
+    flags = dict.fromkeys(flags_of(function), sp.false)
+    made = [s for s in function.body if isinstance(s, Let | Bound)]
+    named = {s.symbol: substitute(s.value, flags) for s in made}
+    return flags, named, {name: free_symbols([value]) for name, value in named.items()}
 
 
 @lru_cache(KEPT)
@@ -84,12 +93,18 @@ def _signs(function: Function) -> list[Case]:
 
 
 class Margins:
-    """The bounds and the matches of each branch over their scales, at many targets."""
+    """The bounds and the matches of each branch over their scales, at many targets.
 
-    def __init__(self, function: Function, symbols: Sequence[sp.Symbol]) -> None:
+    The matches count only if they are ``matched``.
+    """
+
+    def __init__(
+        self, function: Function, symbols: Sequence[sp.Symbol], *, matched: bool = True
+    ) -> None:
         self._function, self._symbols = function, symbols
         self._cases = _signs(function)
-        bounds, matches = margins_of(function, Bound), margins_of(function, Match)
+        bounds = margins_of(function, Bound)
+        matches = margins_of(function, Match) if matched else []
         self._exprs, self._bounds = [*bounds, *matches], len(bounds)
         self._joint = in_cases(function, symbols, self._exprs)
         self._alone: dict[tuple[int, bool], RowEvaluator] = {}
@@ -151,4 +166,44 @@ class Margins:
         return self._alone[key]
 
 
-__all__ = ["Margins", "flags_of", "in_cases", "margins_of"]
+class Flags:
+    """The flags of a function in all of its cases, at many points.
+
+    A flag may be the same in several cases, because it belongs to an unknown that is solved before
+    they part.  Each is evaluated once.
+    """
+
+    def __init__(self, function: Function, symbols: Sequence[sp.Symbol]) -> None:
+        flags, cases = margins_of(function, Vanishes), _signs(function)
+        self._joint = in_cases(function, symbols, flags)
+        every = ((case, flag) for case in cases for flag in flags)
+        self._alone: dict[RowEvaluator, int] = {}
+        for column, (case, flag) in enumerate(every):
+            self._alone.setdefault(in_cases(function, symbols, [flag], [case]), column)
+
+    def prepare(self, batches: Iterable[Array]) -> None:
+        """Evaluate many batches of points together."""
+        if self._alone:
+            self._joint.prepare(batches)
+
+    def raised(self, rows: Array, limit: float, wanted: Array | None = None) -> Array:
+        """Where a flag is raised; only rows that are ``wanted`` are decided exactly.
+
+        A flag may be defined only where an earlier one is not raised; then each is evaluated alone.
+        """
+        if not self._alone:
+            return np.zeros(len(rows), bool)
+        columns = [*self._alone.values()]
+        middle, radius = (x[:, columns] for x in self._joint.balls(rows))
+        with np.errstate(invalid="ignore"):
+            found = np.asarray((middle + radius < limit).any(axis=1))
+        undecided = crosses(limit)(middle, radius)
+        if wanted is not None:
+            undecided &= wanted[:, None]
+        for flag, opened in zip(self._alone, undecided.T, strict=True):
+            for row in np.flatnonzero(opened & ~found):
+                found[row] = flag.alone(rows[row]) < limit
+        return found
+
+
+__all__ = ["Flags", "Margins", "flags_of", "in_cases", "margins_of"]

@@ -61,15 +61,12 @@ class RowEvaluator:
         self.exprs = tuple(sp.sympify(e, strict=True) for e in exprs)
         self._named, self._cases = dict(named or {}), tuple(cases)
         self._steady = frozenset(steady)
-        self._program = _Program(self.symbols, self.exprs, self._named, self._cases, self._steady)
         self._exact: dict[tuple[Any, ...], list[Any] | str] = {}
         """The Arb balls at each point so far, or the reason why there are none."""
 
     @cached_property
-    def separately(self) -> list[RowEvaluator]:
-        """An evaluator for each expression alone."""
-        given = self.symbols, self._named, self._cases
-        return [RowEvaluator(given[0], [e], *given[1:], steady=self._steady) for e in self.exprs]
+    def _program(self) -> _Program:
+        return _Program(self.symbols, self.exprs, self._named, self._cases, self._steady)
 
     @cached_property
     def _evaluator(self) -> Evaluator:

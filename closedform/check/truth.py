@@ -6,6 +6,7 @@ in Arb.
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
@@ -17,7 +18,7 @@ from flint import arb
 from numpy.typing import NDArray
 
 from closedform.algebra.balls import Undetermined, to_float
-from closedform.check.cases import Margins, flags_of, in_cases, margins_of
+from closedform.check.cases import Flags, Margins, flags_of, in_cases, margins_of
 from closedform.check.rows import WIDE, RowEvaluator, crosses
 from closedform.check.samples import Degrees, Magnitudes, Sample, with_parameters
 from closedform.lower import lowered
@@ -25,7 +26,7 @@ from closedform.mechanics.lengths import numbers_of_tool
 from closedform.model.cached import cached
 from closedform.model.derivation import Derivation
 from closedform.model.expressions import free_symbols, substitute
-from closedform.model.functions import Bound, Determined, Function, Let, Match, Require, Vanishes
+from closedform.model.functions import Bound, Determined, Function, Let, Match, Require
 from closedform.model.inverse import Combination, Inverse
 
 Array = NDArray[Any]
@@ -73,16 +74,14 @@ class Values:
         self.operations = sum(program.operations().values())
         self.scaled = function.has_status and program.degrees is not None
         """Whether lengths are divided by the largest one, so that their powers do not overflow."""
-        bounds, flags = margins_of(function, Bound), margins_of(function, Vanishes)
-        self._bounds = [in_cases(function, symbols, bounds, [s]) for s in signs]
-        self._flags = [in_cases(function, symbols, flags, [s]) for s in signs]
+        self._bounds = Margins(function, symbols, matched=False)
+        self._flags = Flags(function, symbols)
 
     def prepare(self, samples: Sequence[Sample]) -> None:
         """Evaluate the values, bounds and flags at all of these points together."""
         rows = [sample.rows for sample in samples]
-        for evaluator in (self.exact, *self._bounds, *self._flags):
-            if evaluator.exprs:
-                evaluator.prepare(rows)
+        for evaluator in (self.exact, self._bounds, self._flags):
+            evaluator.prepare(rows)
 
     def amplified(self, rows: Array) -> Array:
         """How far roundings may move each value, in the relative error of one rounding.
@@ -127,12 +126,12 @@ class Values:
 
     def existence(self, rows: Array, slack: float) -> Array:
         """For each entry: 1 where it exists, -1 where not, 0 within ``slack`` of the boundary."""
-        least = np.stack([_least(b, rows, slack, -slack) for b in self._bounds], axis=1)
+        least, _ = self._bounds.least(rows, slack, -slack)
         return np.repeat((least > slack) * 1 - (least < -slack), self.entries, axis=1)
 
-    def flagged(self, rows: Array, limit: float) -> Array:
-        """Where a flag is raised, so that the value is a convention."""
-        return _flagged(self._flags, rows, limit)
+    def flagged(self, rows: Array, limit: float, wanted: Array | None = None) -> Array:
+        """Where a flag is raised, so that the value is a convention; see :class:`Flags`."""
+        return self._flags.raised(rows, limit, wanted)
 
 
 def _names(
@@ -153,9 +152,9 @@ class Condition:
     def __init__(self, derivation: Derivation, function: Function):
         symbols = symbols_of(derivation, function)
         (entry,) = (e for a in function.outputs for e in a.entries)
-        bounds, flags = margins_of(function, (Bound, Match)), margins_of(function, Vanishes)
+        bounds = margins_of(function, (Bound, Match))
         self._bounds = in_cases(function, symbols, bounds, [{}])
-        self._flags = [in_cases(function, symbols, flags, [{}])]
+        self._flags = Flags(function, symbols)
         self._holds = RowEvaluator(symbols, [sp.Piecewise((1, entry), (0, True))])
 
     def __call__(self, rows: Array, slack: float) -> tuple[Array, Array]:
@@ -163,7 +162,7 @@ class Condition:
         margins = self._bounds.settled(rows, crosses(slack, -slack))
         holds = self._holds.settled(rows, crosses(0.5))[:, 0] == 1
         expected = np.asarray(holds & (margins > 0).all(axis=1))
-        open_ = (abs(margins) <= slack).any(axis=1) | _flagged(self._flags, rows, slack)
+        open_ = (abs(margins) <= slack).any(axis=1) | self._flags.raised(rows, slack)
         return expected, np.asarray(~open_)
 
 
@@ -191,14 +190,14 @@ class Solutions:
         self.has_images = explicit or bool(inverse.images)
         maps = [inverse.forward] if explicit else []
         posture = (*inverse.unknowns, *parameters)
-        self._reaches: list[RowEvaluator] = []
+        self._reach: RowEvaluator | None = None
         if inverse.images:
             forward = derivation[inverse.images]
             modes = [mode for _, mode in forward.cases()]
             maps = [forward.values(mode) for mode in modes]
-            bounds = margins_of(forward, Bound)
-            self._reaches = [in_cases(forward, posture, bounds, [mode]) for mode in modes]
+            self._reach = in_cases(forward, posture, margins_of(forward, Bound), modes)
         self._maps = [RowEvaluator(posture, m, steady=parameters) for m in maps]
+        self._all_maps = RowEvaluator(posture, [e for m in maps for e in m], steady=parameters)
         slides = {j.symbol for j in derivation.joints if j.kind == "prismatic"}
         self._sliding = np.array([u in slides for u in inverse.unknowns])
         self._turns = np.array([x in inverse.angles for x in function.symbols])
@@ -235,34 +234,48 @@ class Solutions:
         """
         rows, postures = [], []
         reached = self._reached(with_parameters(sample.values, sample.parameters))
-        for forward, exists in zip(self._maps, reached, strict=True):
-            for row, posture, there in zip(sample.rows, sample.values, exists, strict=True):
-                if not there:
-                    continue
-                try:
-                    image = forward.exactly(row)
-                except Undetermined:
-                    continue
-                if all(b.is_finite() for b in image):
+        images = [self._exact_images(*at) for at in zip(sample.rows, reached.T, strict=True)]
+        for of_mode in zip(*images, strict=True):
+            for image, posture in zip(of_mode, sample.values, strict=True):
+                if image and all(b.is_finite() for b in image):
                     rows.append([to_float(b) for b in image])
                     postures.append(posture)
         shape = (-1, len(self.function.symbols))
         return np.array(rows).reshape(shape), np.array(postures).reshape(-1, len(self.angular))
 
+    def _exact_images(self, row: Array, exists: Array) -> list[list[arb]]:
+        """The image in each assembly mode, in Arb; it is empty if there is none."""
+        width, modes = len(self.function.symbols), np.flatnonzero(exists)
+        images: list[list[arb]] = [[] for _ in exists]
+        if not len(modes):
+            return images
+        try:
+            wanted = (modes[:, None] * width + np.arange(width)).ravel()
+            found = self._all_maps.exactly(row, wanted)
+            for k, mode in enumerate(modes):
+                images[mode] = found[k * width : (k + 1) * width]
+        except Undetermined:  # in one of the modes, so each is tried alone
+            for mode in modes:
+                with contextlib.suppress(Undetermined):
+                    images[mode] = self._maps[mode].exactly(row)
+        return images
+
     def wide_images(self, postures: NDArray[Any], parameters: Sequence[float]) -> NDArray[Any]:
         """The images of postures in each assembly mode; NaN where the mode does not exist."""
         rows = with_parameters(postures, parameters)
-        images = np.stack([forward.values(rows) for forward in self._maps])
+        shape = (len(rows), len(self._maps), len(self.function.symbols))
+        images = self._all_maps.values(rows).reshape(shape)
+        images = images.swapaxes(0, 1).copy()
         images[~self._reached(rows)] = np.nan
         return images
 
     def _reached(self, rows: Array) -> Array:
         """For each map, the rows at which none of its bounds is certainly negative."""
-        found = np.ones((len(self._maps), len(rows)), bool)
-        for k, reach in enumerate(self._reaches):
-            middle, radius = reach.balls(rows)
-            found[k] = ~(middle + radius < 0).any(axis=1)
-        return found
+        if self._reach is None or not self._reach.exprs:
+            return np.ones((len(self._maps), len(rows)), bool)
+        shape = (len(rows), len(self._maps), len(self._reach.exprs))
+        middle, radius = (x.reshape(shape) for x in self._reach.balls(rows))
+        return np.asarray(~(middle + radius < 0).any(axis=2).T)
 
     def missed(
         self,
@@ -294,11 +307,13 @@ class Solutions:
             return math.inf
         point = [*map(float, solution), *map(float, parameters)]
         try:
-            balls = [forward.exactly(point) for forward in self._maps]
+            balls = self._all_maps.exactly(point)
         except Undetermined:  # what leaves the target free does not determine it
             return math.inf
+        width = len(given)
         offsets = [
-            [to_float(b - arb(float(g))) for b, g in zip(m, given, strict=True)] for m in balls
+            [to_float(b - arb(float(g))) for b, g in zip(balls[k : k + width], given, strict=True)]
+            for k in range(0, len(balls), width)
         ]
         images = np.array(offsets)[:, None]
         return float(self.missed(images, solution[None], 0 * given[None], parameters)[0])
@@ -431,40 +446,6 @@ def _numbers_of_size(function: Function) -> float:
     return max(
         (float(e.xreplace(dict.fromkeys(e.free_symbols, sp.S.Zero))) for e in sums), default=0.0
     )
-
-
-def _least(bounds: RowEvaluator, rows: Array, *limits: float) -> Array:
-    """The smallest of some bounds at each point; 1 if there are none.
-
-    It is NaN where the bounds are defined only for a case that a flag excludes.  If one is provably
-    below all limits, the others are not evaluated: they may depend on its root.
-    """
-
-    def undecided(middle: Array, radius: Array) -> Array:
-        with np.errstate(invalid="ignore"):
-            below = (middle + radius < min(limits)).any(axis=1, keepdims=True)
-        return crosses(*limits)(middle, radius) & ~below
-
-    if not bounds.exprs:
-        return np.ones(len(rows))
-    return np.asarray(np.fmin.reduce(bounds.settled(rows, undecided, defined=False), axis=1))
-
-
-def _flagged(flags_of_cases: Sequence[RowEvaluator], rows: Array, limit: float) -> Array:
-    """Where a flag is raised.
-
-    A flag may be defined only where an earlier one is not raised; then each is evaluated alone.
-    """
-    found = np.zeros(len(rows), bool)
-    for flags in flags_of_cases:
-        middle, radius = flags.balls(rows)
-        with np.errstate(invalid="ignore"):
-            found |= (middle + radius < limit).any(axis=1)
-        undecided = crosses(limit)(middle, radius)
-        for k in np.flatnonzero(undecided.any(axis=0)):
-            for row in np.flatnonzero(undecided[:, k] & ~found):
-                found[row] = flags.separately[k].alone(rows[row]) < limit
-    return found
 
 
 def symbols_of(derivation: Derivation, function: Function) -> tuple[sp.Symbol, ...]:

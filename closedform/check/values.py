@@ -75,7 +75,8 @@ def _compare(
     rows = sample.rows
     computed = np.concatenate([o.reshape(len(rows), -1) for o in outputs], axis=1).astype(float)
     exists = values.existence(rows, 2 * backend.tolerances.feasibility)
-    exists[values.flagged(rows, 2 * backend.tolerances.vanishing)] = 0
+    wanted = ((exists > 0) | ((exists < 0) & ~np.isnan(computed))).any(axis=1)
+    exists[values.flagged(rows, 2 * backend.tolerances.vanishing, wanted)] = 0
     for row, k in np.argwhere((exists < 0) & ~np.isnan(computed)):
         finding.fail(f"a value out of bounds, entry {k} at {rows[row].tolist()}")
     defined = (exists > 0).any(axis=1)

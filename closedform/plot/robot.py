@@ -131,7 +131,8 @@ class Robot:
     def draw(self, n: int, seed: int = 0) -> Array:
         """Random joints; slides have lengths like those of the mechanism, twin arms agree.
 
-        If assembly modes give a pose, the joints are those of random poses.
+        If assembly modes give a pose, the joints are those of random poses; without an inverse,
+        slides, such as a rack, are near zero.
         """
         q = np.random.default_rng(seed).uniform(-np.pi, np.pi, (n, len(self.module.JOINTS)))
         for k in self.slides:
@@ -141,7 +142,10 @@ class Robot:
             twin = name[:-1] + "R"
             if name.endswith("L") and twin in names:
                 q[:, k] = q[:, names.index(twin)] + 0.02 * q[:, k]
-        if self.modes and "T14" in self.module.TASK:  # random legs of a platform hardly ever close
+        posed = self.modes and "T14" in self.module.TASK
+        if posed and not self.has("ik"):
+            q[:, self.slides] -= self.size / 2
+        elif posed:  # random legs of a platform hardly ever close
             answers = self.call("ik", self.poses(n, seed)).q[:, 0]
             q = np.where(np.isfinite(answers).all(-1, keepdims=True), answers, q)
         return q

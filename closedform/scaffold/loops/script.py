@@ -26,6 +26,7 @@ from closedform.scaffold.loops.rods import read_pairs, read_rods
 from closedform.scaffold.loops.sliding import sliding
 from closedform.scaffold.loops.slotted import slotted
 from closedform.scaffold.loops.spherical import with_arcs
+from closedform.scaffold.loops.two_arms import two_arms
 from closedform.scaffold.loops.uprights import HINGED, uprights
 from closedform.scaffold.source import file_name, literal
 
@@ -56,6 +57,7 @@ KINDS = {
     "on_pins": "a hand on three pins",
     "coupled": "a single loop",
     "slotted": "a pin on a line",
+    "two_arms": "a hand on two arms",
     "linkage": "a linkage of many bars",
     "sliding_linkage": "a linkage with slides",
 }
@@ -100,6 +102,8 @@ def _first_way(loop: Loop) -> _Way:
     follower = loop.joints.get(loop.hand)
     if lines := sliding(loop) or linkage(loop):
         return _bodies(loop, lines)
+    if arms := two_arms(loop):
+        return _Way(arms, [], function="two_arms")
     read_rods(loop)
     read_pairs(loop)
     found = Legs(loop)
@@ -327,10 +331,14 @@ class _Way:
     linkage: LinkageLines | None = None
     guide: GuideLine | None = None
     bars: int = 0
+    function: str = ""
+    """The function that is called, if the rest does not say it."""
 
     @property
     def name(self) -> str:
         """The function that is called; a hand that turns sets its task itself."""
+        if self.function:
+            return self.function
         if self.linkage:
             return "sliding_linkage" if self.linkage.slides else "linkage"
         if self.guide:
@@ -362,7 +370,7 @@ class _Way:
             slides = ["    [", *lines, "    ],"] if lines else []
             return ["    {", *bodies, "    },", *slides, *[f"    {self.at},"] * bool(self.at)]
         legs = [leg.call for leg in self.legs]
-        if self.name in ("coupled", "slotted", "on_rod"):
+        if self.name in ("coupled", "slotted", "on_rod", "two_arms"):
             return [f"    {argument}," for argument in [*legs, *[self.at] * bool(self.at)]]
         first = [f"    {self.guide.call},"] if self.guide else []
         one = ["    bars=1,"] * (self.bars == 1)
@@ -458,6 +466,9 @@ def _body(table: Table, way: _Way) -> list[str]:
     passive += way.linkage.passive if way.linkage else ()
     passive += [way.guide.slide] if way.guide and way.guide.slide else []
     lines += [f'{slide} = d.joint("{slide}", "prismatic", passive=True)' for slide in passive]
+    if way.name == "two_arms":
+        turning = way.legs[1].joint.name
+        lines.append(f'{turning} = d.joint("{turning}", passive=True)')
     if way.name in ("coupled", "slotted") or (way.linkage and len(way.task) == 1):
         (x,) = way.task
         hand = [f"    ({x},),"] * bool(way.linkage)

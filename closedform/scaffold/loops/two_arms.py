@@ -1,0 +1,132 @@
+"""Recognises a hand in space that two arms and a rod hold, as the upright of a suspension."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
+from closedform.scaffold.loops.legs import Legs, LoopLeg
+from closedform.scaffold.source import source
+
+BALLS = ("spherical", "universal")
+HELD = 3
+"""How many balls hold the hand."""
+
+
+def two_arms(loop: Loop) -> list[LoopLeg] | None:
+    """The driven arm, the other one and the rod; None if the hand is of another kind."""
+    hands = [body for body, at in loop.bodies.items() if loop.hand in at and _held(loop, body)]
+    if loop.dimensions != len("xyz") or len(hands) != 1 or loop.hand in loop.joints:
+        return None
+    (hand,) = hands
+    balls = loop.of(hand)
+    driven, passive, rods = [], [], []
+    for ball in balls:
+        hinge = _other_end(loop, ball.other(hand), ball)
+        if hinge is None:
+            return None
+        if GROUND in hinge.between and hinge.driven:
+            driven.append((hinge, ball))
+        elif GROUND in hinge.between and hinge.kind == "revolute":
+            passive.append((hinge, ball))
+        else:
+            rods.append((hinge, ball))
+    if not (len(driven) == len(passive) == len(rods) == 1):
+        return None
+    found = Legs(loop)
+    place = {ball: _place(found, hand, ball) for ball in balls}
+    legs = [
+        _arm(found, *driven[0], place[driven[0][1]]),
+        _arm(found, *passive[0], place[passive[0][1]]),
+        _rod(found, hand, *rods[0], place[rods[0][1]]),
+    ]
+    found.end = hand
+    found.check_all_used()
+    return legs
+
+
+def _held(loop: Loop, body: str) -> bool:
+    """Whether three balls hold a body, and nothing else."""
+    balls = [j for j in loop.of(body) if j.kind in BALLS and j.axis is None]
+    return body != GROUND and len(balls) == len(loop.of(body)) == HELD
+
+
+def _other_end(loop: Loop, body: str, ball: Joint) -> Joint | None:
+    """The joint at the other end of a body that has two."""
+    others = [j for j in loop.of(body) if j is not ball]
+    return others[0] if len(others) == 1 else None
+
+
+def _place(found: Legs, hand: str, ball: Joint) -> sp.Matrix:
+    return found.point(hand, ball) - found.loop.bodies[hand][found.loop.hand]
+
+
+def _arm(found: Legs, hinge: Joint, ball: Joint, place: sp.Matrix) -> LoopLeg:
+    """An arm that a hinge joins to the ground, or a driven slider, and that ends in a ball."""
+    found.used |= {hinge.name, ball.name}
+    body = hinge.other(GROUND)
+    call = _moved(found, hinge, found.point(body, ball), "0", place)
+    if hinge.kind == "prismatic":
+        words = f"{hinge.name} moves a slider, which a ball joins to the hand"
+    elif hinge.driven:
+        words = f"{hinge.name} turns the arm {body}, which ends in a ball on the hand"
+    else:
+        words = f"the arm {body} turns freely about the ground and ends in a ball on the hand"
+    return LoopLeg(hinge, call, words, place)
+
+
+def _moved(found: Legs, joint: Joint, end: sp.Matrix, rod: str, place: sp.Matrix) -> str:
+    """A crank or a slider with its ``end``, as it is written."""
+    loop, name, on_hand = found.loop, joint.name, found.at(place)
+    if joint.axis is None:
+        slides = joint.kind == "prismatic"
+        sliding, turning = "slides; say in which direction with", "turns in space; say about which"
+        raise loop.error(f"{name} {sliding if slides else turning} axis")
+    if joint.kind == "prismatic":
+        return f"Slide({name}, {rod}, {found.at(end)}, {found.at(joint.axis)}, on_hand={on_hand})"
+    base, body = found.point(GROUND, joint), joint.other(GROUND)
+    arm = end - (found.pivot(joint) if joint.driven else found.point(body, joint))
+    along_axis = joint.axis * sp.simplify(arm.dot(joint.axis))
+    base, arm = base + along_axis, (arm - along_axis).applyfunc(sp.simplify)
+    length = loop.length(arm)
+    if length == 0:
+        raise loop.error(f"the end of {body} is on the axis of {name}, so it does not move")
+    along = found.direction(arm, length)
+    return (
+        f"Crank({name}, {source(length)}, {rod}, {found.at(base)}, {found.at(along)}, "
+        f"{found.at(joint.axis.cross(along))}, on_hand={on_hand})"
+    )
+
+
+def _rod(found: Legs, hand: str, near: Joint, ball: Joint, place: sp.Matrix) -> LoopLeg:
+    """The rod, which is fixed to the ground or to a driven body."""
+    loop, rod = found.loop, ball.other(hand)
+    found.used |= {near.name, ball.name}
+    points = list(loop.bodies[rod].values())
+    if rod in loop.rods:
+        length = loop.rods[rod]
+    elif len(points) == len((near, ball)):
+        length = loop.length(points[1] - points[0])
+    else:
+        raise loop.error(f"{rod} must be a rod, a body with a length or two points")
+    if near.kind not in BALLS or near.axis is not None:
+        raise loop.error(f'{near.name} is at the end of the rod {rod}; write kind = "spherical"')
+    carrier = near.other(rod)
+    if carrier == GROUND:
+        at = found.at(found.point(GROUND, near))
+        call = f"Strut({source(length)}, {at}, on_hand={found.at(place)})"
+        words = f"a rod of length {length} joins the hand to the ground"
+        return LoopLeg(near, call, words, place)
+    moving = _other_end(loop, carrier, near)
+    if moving is None or GROUND not in moving.between or not moving.driven:
+        raise loop.error(
+            f"the rod {rod} leads from {hand} to {carrier}; it has to lead to the ground, or to a "
+            f"body on the ground that is driven and carries nothing else"
+        )
+    found.used.add(moving.name)
+    call = _moved(found, moving, found.point(carrier, near), source(length), place)
+    words = f"{moving.name} moves {carrier}, which a rod of length {length} joins to the hand"
+    return LoopLeg(moving, call, words, place)
+
+
+__all__ = ["two_arms"]

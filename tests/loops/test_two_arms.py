@@ -1,0 +1,152 @@
+"""A hand that two arms and a rod hold: the upright of a suspension, and its steering."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from loop_files import derived, newton, script_of
+from places import TESTS
+
+from closedform.algebra.shapes import ShapeError
+from closedform.plot.robot import Robot
+from closedform.scaffold.inputs.tables import TableError
+
+SUSPENSION = (TESTS / "held_out_loops" / "double_wishbone.toml").read_text("utf-8")
+OK, UNREACHABLE, SINGULAR, INVALID = range(4)
+WITH_SLIDER = """
+hand = "B"
+[parameters]
+r = {value = "0.4", meaning = "arm"}
+h = {value = "0.3", meaning = "from ball to ball"}
+[bodies]
+ground = {O = [0, 0, 0], U = [0.1, 0.5, 0], R = [0.4, 0, 0.2]}
+slider = {B = [0, 0.1, 0]}
+arm = {U = [0.1, 0.5, 0], C = [0.1, "0.5 + r", 0.1]}
+hand = {B = [0, 0, 0], C = ["h", 0, 0], T = [0, "h/2", 0.1]}
+rod = {length = 0.5}
+[joints]
+q = {between = ["ground", "slider"], at = "O", kind = "prismatic", axis = [0, 0, 1], driven = true}
+a = {between = ["ground", "arm"], at = "U", axis = [0, 0, 1]}
+b = {between = ["slider", "hand"], at = "B", kind = "spherical"}
+c = {between = ["arm", "hand"], at = "C", kind = "spherical"}
+t = {between = ["rod", "hand"], at = "T", kind = "spherical"}
+n = {between = ["ground", "rod"], at = "R", kind = "spherical"}
+"""
+"""A slider instead of the driven arm, and the hand is its ball."""
+
+
+def suspension(q: np.ndarray, T: np.ndarray, turn: float) -> np.ndarray:
+    """By how much the hand misses the balls, and the rod its length, at an angle of the arm."""
+    b = [0, 0.25 + 0.35 * np.cos(q[0]), 0.35 * np.sin(q[0])]
+    c = [0.01, 0.3 + 0.25 * np.cos(turn), 0.2 + 0.25 * np.sin(turn)]
+    ends = np.array([[0, -0.02, -0.12], [-0.01, -0.06, 0.12], [0.13, -0.03, 0.02]])
+    return missed(T, ends, np.array([b, c]), np.array([0.12, 0.28 + q[1], 0.04]), 0.31)
+
+
+def with_slider(q: np.ndarray, T: np.ndarray, turn: float) -> np.ndarray:
+    c = [0.1 - 0.4 * np.sin(turn), 0.5 + 0.4 * np.cos(turn), 0.1]
+    ends = np.array([[0, 0, 0], [0.3, 0, 0], [0, 0.15, 0.1]])
+    return missed(T, ends, np.array([[0, 0.1, q[0]], c]), np.array([0.4, 0, 0.2]), 0.5)
+
+
+def missed(
+    T: np.ndarray, ends: np.ndarray, balls: np.ndarray, near: np.ndarray, rod: float
+) -> np.ndarray:
+    places = ends @ T[:3, :3].T + T[:3, 3]
+    return np.array([*(places[:2] - balls).flat, np.linalg.norm(places[2] - near) - rod])
+
+
+CASES = {
+    "suspension": (SUSPENSION, suspension, (0.6, 0.05)),
+    "slider": (WITH_SLIDER, with_slider, (0.3,)),
+}
+
+
+@pytest.fixture(scope="module", params=CASES)
+def case(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple:
+    name, folder = f"two_arms_{request.param}", tmp_path_factory.mktemp("two_arms")
+    toml, loop, most = CASES[request.param]
+    return derived(name, script_of(name, toml, folder), folder), loop, np.array(most)
+
+
+def drawn(most: np.ndarray, rows: int, seed: int) -> np.ndarray:
+    return np.random.default_rng(seed).uniform(-1, 1, (rows, len(most))) * most
+
+
+def placed(x: np.ndarray) -> np.ndarray:
+    """A pose from a position and, by Cayley's formula, a rotation."""
+    a, b, c = x[3:6]
+    W = np.array([[0, -c, b], [c, 0, -a], [-b, a, 0]])
+    R = (np.eye(3) + W) @ np.linalg.inv(np.eye(3) - W)
+    return np.block([[R, x[:3, None]], [np.zeros(3), 1]])
+
+
+def test_the_modes_are_all_postures(case: tuple) -> None:
+    """Newton's method on the balls and the rod finds most of them, and no other."""
+    robot, loop, most = case
+    assert len(robot.ASSEMBLY_MODES) == 4
+    rng, hits, several = np.random.default_rng(2), 0, 0
+    for q in drawn(most, 6, 1):
+        fk = robot.fk(q)
+        there, found = fk.p[fk.status == OK], set()
+        several += len(there)
+        for start in rng.uniform(-2, 2, (25, 7)):
+            x = newton(lambda x: loop(q, placed(x), x[6]), start)  # noqa: B023
+            if x is not None:
+                away = np.abs(there - placed(x)).max((1, 2))
+                assert away.min() < 1e-6, (q, x)
+                found.add(int(away.argmin()))
+        hits += len(found)
+    assert several >= 16
+    assert hits > 0.6 * several
+
+
+def test_the_jacobian_is_the_derivative(case: tuple) -> None:
+    robot, _, most = case
+    q = drawn(most, 200, 3)
+    J, fk = robot.jacobian(q), robot.fk(q)
+    good = (fk.status == OK) & (np.abs(J).max((-1, -2)) < 20)
+    assert good.sum() > 100
+    for k, step in enumerate(1e-6 * np.eye(len(most))):
+        rate = (robot.fk(q + step).p - robot.fk(q - step).p) / 2e-6
+        W = rate[..., :3, :3] @ fk.p[..., :3, :3].swapaxes(-1, -2)
+        turns = [W[..., 2, 1], W[..., 0, 2], W[..., 1, 0]]
+        twist = np.stack([*np.moveaxis(rate[..., :3, 3], -1, 0), *turns], -1)
+        assert np.allclose(twist[good], J[good][:, :, k], atol=1e-5, rtol=1e-5)
+
+
+def test_the_signs_of_the_factors_name_the_modes(case: tuple) -> None:
+    robot, _, most = case
+    q = drawn(most, 200, 4)
+    whole = (robot.fk(q).status == OK).all(axis=1)
+    assert whole.sum() > 20
+    (modes,) = np.unique(np.sign(robot.singularities(q)[whole]), axis=0)
+    assert len(np.unique(modes, axis=0)) == 4
+
+
+@pytest.mark.filterwarnings("error")
+def test_it_is_drawn_in_a_posture_that_closes(case: tuple) -> None:
+    robot, _, _ = case
+    assert OK in robot.fk(Robot.of(robot).posture()).status
+
+
+def test_what_cannot_be_says_why(case: tuple) -> None:
+    robot, _, most = case
+    assert np.all(robot.fk(most * np.nan).status == INVALID)
+    far = robot.Parameters(**{robot.Parameters._fields[0]: 50})
+    assert np.all(robot.fk(0 * most, far).status == UNREACHABLE)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("T = [0.13, -0.03, 0.02]", "T = [-0.02, -0.1, 0.36]", "end in line"),
+        ('kind = "universal"}', "axis = [1, 0, 0]}", 'kind = "spherical"'),
+        ('tie = {length = "t"}', "tie = {}", "a body with a length or two points"),
+        ('at = "U", axis = [1, 0, 0]}', 'at = "U"}', "say about which axis"),
+    ],
+)
+def test_a_file_that_does_not_fit_says_why(old: str, new: str, told: str, tmp_path: Path) -> None:
+    assert old in SUSPENSION
+    with pytest.raises((TableError, ShapeError), match=told):
+        exec(script_of("wrong", SUSPENSION.replace(old, new), tmp_path), {})

@@ -267,7 +267,14 @@ def _forward(m: TwoArms, loop: Step) -> _Posture:
     )
     for link in links[:told]:
         record_lemma(d, "fk", link)
-    return _Posture(Program(list(f.body), f.taken), modes, position, (b, c, end), turned, n)
+    return _Posture(
+        program=Program(list(f.body), f.taken),
+        modes=modes,
+        position=position,
+        ends=(b, c, end),
+        spans=turned,
+        near=n,
+    )
 
 
 def _rod(f: Program, tie: Strut | Slide | Crank) -> sp.Expr:

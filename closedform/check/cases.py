@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from closedform.algebra.balls import Undetermined, to_float
 from closedform.algebra.scope import Case
-from closedform.check.rows import RowEvaluator, crosses
+from closedform.check.rows import WIDE, RowEvaluator, crosses
 from closedform.model.cached import KEPT, cached
 from closedform.model.expressions import free_symbols, substitute
 from closedform.model.functions import Bound, Function, Let, Match, Vanishes
@@ -137,6 +137,17 @@ class Margins:
             for least, g in zip(found, self._groups(), strict=True)
         )
         return bounds, matches
+
+    def explained(self, rows: Array, slack: float, rounding: float) -> Array:
+        """For each branch, whether relative errors of a ``rounding`` explain that it is taken.
+
+        Each bound that is less than ``-slack`` may then be as large as that.
+        """
+        shape = (len(rows), len(self._cases), len(self._exprs))
+        middle, radius = (x.reshape(shape) for x in self._joint.balls(rows))
+        off = radius * (rounding / np.finfo(WIDE).eps)
+        with np.errstate(invalid="ignore"):
+            return np.asarray(~((middle < -slack) & ~(middle + off >= -slack)).any(axis=-1))
 
     def _groups(self) -> tuple[slice, slice]:
         return slice(0, self._bounds), slice(self._bounds, len(self._exprs))

@@ -129,6 +129,14 @@ class Values:
         least, _ = self._bounds.least(rows, slack, -slack)
         return np.repeat((least > slack) * 1 - (least < -slack), self.entries, axis=1)
 
+    def explained(self, rows: Array, slack: float, rounding: float) -> Array:
+        """For each entry, whether roundings explain that it has a value though it does not exist.
+
+        Bars of very unequal lengths enlarge the roundings of the points that they hold.
+        """
+        found = self._bounds.explained(rows, slack, rounding)
+        return np.repeat(found, self.entries, axis=1)
+
     def flagged(self, rows: Array, limit: float, wanted: Array | None = None) -> Array:
         """Where a flag is raised, so that the value is a convention; see :class:`Flags`."""
         return self._flags.raised(rows, limit, wanted)

@@ -74,11 +74,15 @@ def _compare(
     """Record the worst error of a sample; only what may exceed the worst so far needs Arb."""
     rows = sample.rows
     computed = np.concatenate([o.reshape(len(rows), -1) for o in outputs], axis=1).astype(float)
-    exists = values.existence(rows, 2 * backend.tolerances.feasibility)
+    slack = 2 * backend.tolerances.feasibility
+    exists = values.existence(rows, slack)
     wanted = ((exists > 0) | ((exists < 0) & ~np.isnan(computed))).any(axis=1)
     exists[values.flagged(rows, 2 * backend.tolerances.vanishing, wanted)] = 0
-    for row, k in np.argwhere((exists < 0) & ~np.isnan(computed)):
-        finding.fail(f"a value out of bounds, entry {k} at {rows[row].tolist()}")
+    taken = np.argwhere((exists < 0) & ~np.isnan(computed))
+    explained = values.explained(rows, slack, backend.eps) if len(taken) else exists
+    for row, k in taken:
+        problem = f"a value out of bounds, entry {k} at {rows[row].tolist()}"
+        finding.fail(problem, limited=bool(explained[row, k]))
     defined = (exists > 0).any(axis=1)
     balls = [x[defined] for x in values.exact.balls(rows)]
     rows, computed, exists = rows[defined], computed[defined], exists[defined]

@@ -128,6 +128,7 @@ def _forward(m: Linkage, choice: Choice, loop: Step) -> Posture:
         outputs, last = [solved.value], solved.link
         links.append(last)
         found.points[step.pin] = found.points[step.near[1]] - solved.rod
+    apart = m.require_apart(f)
     d.step(
         "Forward: dyad by dyad",
         "Two circles meet in the pin of each dyad, about the points that are known before.  They "
@@ -148,6 +149,7 @@ def _forward(m: Linkage, choice: Choice, loop: Step) -> Posture:
         notes=(
             "UNREACHABLE: the bodies of a dyad do not meet.",
             *_free(m, links),
+            *apart,
             NEAR,
         ),
     )

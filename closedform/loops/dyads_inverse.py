@@ -271,6 +271,7 @@ class _Reverse:
             uses=[self.loop],
             solves={"ik": ()},
         )
+        apart = m.require_apart(g)
         passive = [s for s in self.order.dyads if not {*s.bodies} & {*m.driven}]
         export_inverse(
             d,
@@ -290,6 +291,7 @@ class _Reverse:
                 ]
                 * bool(passive),
                 "SINGULAR also near a parallel singularity, where both bars of a dyad are in line.",
+                *apart,
             ),
             links=self.links,
             equations=self.equations,

@@ -25,7 +25,7 @@ from closedform.loops.hand import square
 from closedform.mechanics.assur import Dyad, Order, freedoms, needed_for, order
 from closedform.mechanics.lengths import lengths_in_numbers
 from closedform.model.derivation import Derivation
-from closedform.model.functions import real
+from closedform.model.functions import Program, choose, real
 
 GROUND = "ground"
 
@@ -72,6 +72,8 @@ class Linkage:
     bodies: Mapping[str, Body]
     at: str = ""
     names: dict[str, sp.Matrix] = field(default_factory=dict)
+    divisors: dict[sp.Expr, tuple[str, str, str]] = field(default_factory=dict)
+    """The squared distances by which a vector is divided: of a body, and of two of its points."""
 
     def __post_init__(self) -> None:
         name = self.d.name
@@ -195,8 +197,31 @@ class Linkage:
         size = self.squared(body, start, seen)
         if size == 0:
             raise ShapeError(f"{self.d.name}: {start} and {seen} are at the same place of {body}")
+        self.divisors.setdefault(size, (body, start, seen))
         u, v = (sp.factor(sp.expand(e)) for e in (a.dot(b), a[0] * b[1] - a[1] * b[0]))
         return sp.Matrix([[u, -v], [v, u]]) / size
+
+    def require_apart(self, p: Program) -> list[str]:
+        """Refuse dimensions with which points of a body coincide that have to give its direction.
+
+        Only differences of lengths are checked, since a length of its own is not zero.
+        """
+        positive = {e.symbol: sp.Dummy(positive=True) for e in self.d.parameters}
+        notes = []
+        for square_, (body, start, seen) in self.divisors.items():
+            if square_.xreplace(positive).is_positive:
+                continue
+            apart = f"{start} and {seen} are at different places of {body}"
+            same = p.vanishes(
+                f"same_{start}_{seen}",
+                square_,
+                self.size**2,
+                f"{start} and {seen} coincide",
+                squares=True,
+            )
+            p.require([choose(same, 1, 0)], 1, apart)
+            notes.append(f"INVALID: also unless {apart}.")
+        return notes
 
     def pivot(self, body: str) -> str:
         """The point about which a body with a joint turns."""

@@ -11,18 +11,20 @@ from types import ModuleType
 import numpy as np
 import pytest
 import sympy as sp
-from loop_files import derived, script_of
+from loop_files import derived, read_script, script_of
 from places import TESTS
 
 from closedform import plot
+from closedform.check.truth import values_of
 from closedform.scaffold.inputs.tables import TableError
 
 FOLDER = TESTS / "held_out_loops"
 MODES = {"watt": 4, "watt_two": 4, "klann": 4, "jansen": 8, "peaucellier": 8, "two_cranks": 4}
-MODES |= {"hoecken": 2, "dwell": 4}
+MODES |= {"hoecken": 2, "dwell": 4, "rcm": 4, "finger": 4}
 NAMES = tuple(MODES)
-ANGLE, NO_INVERSE, TWO = ("watt_two", "dwell"), ("watt", "dwell"), ("two_cranks",)
-OK, UNREACHABLE, SINGULAR = 0, 1, 2
+ANGLE, NO_INVERSE = ("watt_two", "dwell"), ("watt", "dwell", "rcm", "finger")
+TWO = ("two_cranks",)
+OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 LINES = 40
 
 
@@ -348,3 +350,25 @@ b = {between = ["plate", "rocker"], at = "B"}
     p, status = loop.fk([0.7])
     assert not status.any()
     assert (np.nanmin(np.abs(loop.ik(p).q - 0.7), axis=(1, 2)) < 1e-9).all()
+
+
+def test_pins_that_coincide_are_invalid(tmp_path: Path) -> None:
+    """Lengths that differ by nothing divided by zero: ``fk`` was UNREACHABLE, and not checked."""
+    script = script_of("rcm_checked", text("rcm"), tmp_path)
+    loop = derived("rcm_checked", script, tmp_path, crosscheck=True)
+    assert np.all(loop.fk([0.3], loop.Parameters(l=0.15)).status == INVALID)
+    assert np.all(loop.fk([0.3], loop.Parameters(l=0.16)).status == OK)
+    assert "G and H are at different places of tool" in (loop.fk.__doc__ or "")
+
+
+def test_roundings_explain_what_single_precision_takes(tmp_path: Path) -> None:
+    """The last phalanx is 10^5 times as long as its lug, which enlarges the roundings of its pin.
+
+    In single precision its dyad closes by them, which was an error.
+    """
+    d = read_script(script_of("finger", text("finger"), tmp_path))
+    values = values_of(d, d["fk"])
+    row = np.array([[-2.1321864128112793, 442.1861267089844, 0.01611458882689476, 849.793518]])
+    assert (values.existence(row, 2e-6) < 0).any()
+    assert values.explained(row, 2e-6, np.finfo(np.float32).eps).all()
+    assert not values.explained(row, 2e-12, np.finfo(float).eps).all()

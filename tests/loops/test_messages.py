@@ -163,3 +163,89 @@ c = {between = ["link1", "link2"], at = "O", axis = [0, 0, 1]}
         TableError, match=r"All axes meet in O, .* and hold the hand by a rod from O"
     ):
         script_of("t", text, tmp_path)
+
+
+TWO_MOTORS = """
+hand = "P"
+copies = 3
+[parameters]
+b = {value = "0.3", meaning = "base"}
+c = {value = "0.15", meaning = "hand"}
+[bodies]
+ground = {A1 = ["b", 0, 0]}
+cart1 = {A1 = ["b", 0, 0]}
+tube1 = {}
+rod1 = {}
+hand = {P = [0, 0, 0], C1 = ["c", 0, 0]}
+[joints]
+p1 = {between = ["ground", "cart1"], at = "A1", kind = "prismatic", axis = [0, 1, 0], driven = true}
+r1 = {between = ["cart1", "tube1"], at = "A1", axis = [0, 1, 0]}
+q1 = {between = ["tube1", "rod1"], at = "A1", kind = "prismatic", driven = true}
+c1 = {between = ["rod1", "hand"], at = "C1", kind = "spherical"}
+"""
+TSAI = """
+hand = "P"
+copies = 3
+[parameters]
+a = {value = "0.06", meaning = "crank"}
+b = {value = "0.1025", meaning = "long sides of the parallelogram"}
+r = {value = "0.0366", meaning = "from the centre to the axis of a crank"}
+c = {value = "0.0144", meaning = "from the hand to a leg"}
+e = {value = "0.01125", meaning = "from the axes to the parallelogram"}
+[bodies]
+ground = {A1 = ["r", 0, 0]}
+crank1 = {A1 = ["r", 0, 0], B1 = ["r + a", 0, 0]}
+upper1 = {B1 = [0, 0, 0], D1 = ["e", 0, 0]}
+rod1 = {length = "b", parallelogram = [0, "e", 0]}
+lower1 = {E1 = [0, 0, 0], C1 = ["e", 0, 0]}
+hand = {P = [0, 0, 0], C1 = ["c", 0, 0]}
+[joints]
+q1 = {between = ["ground", "crank1"], at = "A1", axis = [0, 1, 0], driven = true}
+b1 = {between = ["crank1", "upper1"], at = "B1", axis = [0, 1, 0]}
+d1 = {between = ["upper1", "rod1"], at = "D1"}
+e1 = {between = ["rod1", "lower1"], at = "E1"}
+c1 = {between = ["lower1", "hand"], at = "C1", axis = [0, 1, 0]}
+"""
+WITH_TOOL = """
+hand = "P"
+[parameters]
+b = {value = "0.2", meaning = "base"}
+l = {value = "0.3", meaning = "crank"}
+r = {value = "0.6", meaning = "rod"}
+[bodies]
+ground = {A1 = ["b", 0, 0], A2 = [0, "b", 0], A3 = ["-b", 0, 0], Z = [0, 0, 0]}
+crank1 = {B1 = ["b + l", 0, 0]}
+crank2 = {B2 = [0, "b + l", 0]}
+crank3 = {B3 = ["-b - l", 0, 0]}
+rod1 = {length = "r", parallelogram = [0, 0.1, 0]}
+rod2 = {length = "r", parallelogram = [0.1, 0, 0]}
+rod3 = {length = "r", parallelogram = [0, 0.1, 0]}
+plate = {N = [0, 0, 0], C1 = [0.05, 0, 0], C2 = [0, 0.05, 0], C3 = [-0.05, 0, 0]}
+tool = {N = [0, 0, 0], P = [0, 0, -0.1]}
+[joints]
+q1 = {between = ["ground", "crank1"], at = "A1", axis = [0, 1, 0], driven = true}
+q2 = {between = ["ground", "crank2"], at = "A2", axis = [1, 0, 0], driven = true}
+q3 = {between = ["ground", "crank3"], at = "A3", axis = [0, 1, 0], driven = true}
+b1 = {between = ["crank1", "rod1"], at = "B1"}
+b2 = {between = ["crank2", "rod2"], at = "B2"}
+b3 = {between = ["crank3", "rod3"], at = "B3"}
+c1 = {between = ["rod1", "plate"], at = "C1"}
+c2 = {between = ["rod2", "plate"], at = "C2"}
+c3 = {between = ["rod3", "plate"], at = "C3"}
+w = {between = ["plate", "tool"], at = "N", axis = [0, 0, 1], driven = true}
+"""
+
+
+@pytest.mark.parametrize(
+    ("file", "told"),
+    [
+        (TWO_MOTORS, "two motors, as in a 3-PRPS mechanism.*3-RPS mechanism for the pose, of deg"),
+        (TWO_MOTORS.replace("axis = [0, 1, 0]}", "axis = [0, 0, 1]}"), "hold one of both motors"),
+        (TSAI, "upper1 is between a driven body and the parallelogram rod1.*a Delta robot"),
+        (WITH_TOOL, "Nothing else holds tool, so w is in no loop.*take a point of plate"),
+    ],
+)
+def test_what_is_recognised_and_not_derived(file: str, told: str, tmp_path: Path) -> None:
+    """These were told that a slider must be joined to one rod, or that a leg has one rod."""
+    with pytest.raises(TableError, match=told):
+        script_of("refused", file, tmp_path)

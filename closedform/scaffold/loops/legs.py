@@ -15,6 +15,7 @@ import sympy as sp
 from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 from closedform.scaffold.loops.halves import halves
+from closedform.scaffold.loops.refused import carried, short_links, two_motors
 from closedform.scaffold.loops.rods import several_told
 from closedform.scaffold.source import source
 
@@ -150,7 +151,8 @@ class Legs:
         if GROUND not in joint.between and joint.kind != "prismatic":
             raise self.loop.error(
                 f"{joint.name} is driven, so it must be between the ground and a body, or slide "
-                f"the two halves of a leg; it is between {listed(joint.between)}{ON_ARM * in_plane}"
+                f"the two halves of a leg; it is between {listed(joint.between)}"
+                + (carried(self.loop, joint) or ON_ARM * in_plane)
             )
 
     def on_half(self, joint: Joint) -> LoopLeg:
@@ -234,6 +236,7 @@ class Legs:
                 f"length or two points, or to one body by a passive slide; it is joined to "
                 f"{carried}"
                 + self.ball_on_hand(onward)
+                + two_motors(loop, joint, onward)
                 + self.arcs_told()
                 + several_told(loop, body)
             )
@@ -482,7 +485,7 @@ class Legs:
             raise loop.error(
                 f"{far.name} leads to {other}, not to a body with the point {loop.hand}, which is "
                 f"{self.end}; a leg has one rod, and the hand is one body"
-                f"{self.lever(far)}"
+                f"{self.lever(far) or short_links(loop, rod, far)}"
             )
         if far.at not in loop.bodies[body]:
             raise loop.error(f"{body} has no point {far.at}, where {far.name} is")

@@ -303,7 +303,9 @@ def _check_axes(loop: Loop, driver: Joint, follower: Joint) -> None:
         raise loop.error(
             f"{listed(held)} would hold the rod by an axis.  In space four axes leave a loop a "
             f"motion only if they are parallel, meet in one point, or as in a Bennett linkage, "
-            f"which is not supported.  If they meet in one point, leave the axis of {listed(held)} "
+            f"which is not supported; there the tangents of half the angles of two neighbouring "
+            f"joints have a constant product, which is a formula to write in Python.  "
+            f"If they meet in one point, leave the axis of {listed(held)} "
             f'out; if the rod has ball joints, write kind = "spherical"'
         )
 

@@ -295,16 +295,8 @@ class _Program:
     def _step(self, e: Any) -> tuple[_Step, Sequence[Any]]:
         if isinstance(e, Constant):
             e = e.value
-        if e.is_Rational:
-            number = WIDE(int(e.p)) / WIDE(int(e.q))
-            exact = e.q == 1 and abs(int(e.p)) < 2**53
-            return _constant(number, EXACT if exact else 2 * abs(number) * ROUNDING), ()
-        if e is sp.pi:
-            return _constant(4 * np.arctan(WIDE(1)), 4 * LIBRARY), ()
-        if e is sp.nan or e is sp.zoo:  # a case that a flag always excludes, such as 1/0
-            return _constant(WIDE("nan"), WIDE("nan")), ()
-        if e in (sp.true, sp.false):
-            return _constant(bool(e), True), ()
+        if constant := _constant_of(e):
+            return constant, ()
         if e.is_Pow:
             return _power(e), [e.base]
         if isinstance(e, sp.Piecewise):
@@ -330,13 +322,28 @@ def _constant(value: Any, certainty: Any) -> _Step:
     return _Step(lambda: value, lambda: (value, certainty))
 
 
+def _constant_of(e: Any) -> _Step | None:
+    """The step of a number or of a truth value; None for anything else."""
+    if e.is_Rational:
+        number = WIDE(int(e.p)) / WIDE(int(e.q))
+        exact = e.q == 1 and abs(int(e.p)) < 2**53
+        return _constant(number, EXACT if exact else 2 * abs(number) * ROUNDING)
+    if e is sp.pi:
+        return _constant(4 * np.arctan(WIDE(1)), 4 * LIBRARY)
+    if e is sp.nan or e is sp.zoo:  # a case that a flag always excludes, such as 1/0
+        return _constant(WIDE("nan"), WIDE("nan"))
+    if e in (sp.true, sp.false):
+        return _constant(bool(e), True)
+    return None
+
+
 def _folded(function: Callable[[Any, Any], Any]) -> Callable[..., Any]:
     """A function of any number of values, applied to two at a time."""
     return lambda *values: reduce(function, values)
 
 
 def _rounded(value: Any, radius: Any, error: Any = ROUNDING) -> Ball:
-    return value, radius + abs(value) * error
+    return value, radius + np.fabs(value) * error
 
 
 def _sum(*terms: Ball) -> Ball:
@@ -354,14 +361,14 @@ def _product(*factors: Ball) -> Ball:
 def _times(a: Ball, b: Ball) -> Ball:
     (x, r), (y, s) = a, b
     value = x * y
-    if r is EXACT and isinstance(x, np.floating) and abs(x) == 1:
-        return value, s
-    size = abs(value)
+    if r is EXACT and isinstance(x, np.floating) and abs(x) in (1, 2, 4):
+        return value, abs(x) * s
+    size = np.fabs(value)
     radius = size * ROUNDING
     if s is not EXACT:
-        radius = radius + abs(x) * s
+        radius = radius + np.fabs(x) * s
     if r is not EXACT:
-        radius = radius + (abs(y) + s) * r
+        radius = radius + (np.fabs(y) + s) * r
     small = size < LEAST
     if np.count_nonzero(small):
         radius = np.where(small & (x != 0) & (y != 0), OPEN, radius)

@@ -17,6 +17,7 @@ EXPRESSIONS = {
     "cancels": (x + y) ** 2 - x**2 - 2 * x * y - y**2,
     "quotient": (x - y) / (x + z),
     "product": (x - y / 3 - 2 * z / 3) * (x / 3 + y / 3 - 2 * z / 3) * (x + y + z),
+    "exact factors": -x * y + 2 * x * z - 4 * y * z - z,
     "inverse square": 1 / (x * y) ** 2,
     "root": sp.sqrt(x**2 + y**2 - z),
     "inverse root": (x - y) ** sp.Rational(-3, 2),

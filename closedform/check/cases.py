@@ -138,6 +138,14 @@ class Margins:
         )
         return bounds, matches
 
+    def inside(self, rows: Array) -> Array:
+        """Roughly the smallest bound of the branch for which this is the largest."""
+        shape = (len(rows), len(self._cases), len(self._exprs))
+        middle = self._joint.values(rows).reshape(shape)
+        with np.errstate(invalid="ignore"):
+            least = np.where(np.isfinite(middle), middle, -np.inf).min(axis=2, initial=np.inf)
+        return np.asarray(least.max(axis=1))
+
     def explained(self, rows: Array, slack: float, rounding: float) -> Array:
         """For each branch, whether relative errors of a ``rounding`` explain that it is taken.
 

@@ -362,7 +362,7 @@ def _times(a: Ball, b: Ball) -> Ball:
     (x, r), (y, s) = a, b
     value = x * y
     if r is EXACT and isinstance(x, np.floating) and abs(x) in (1, 2, 4):
-        return value, abs(x) * s
+        return value, s if s is EXACT else abs(x) * s
     size = np.fabs(value)
     radius = size * ROUNDING
     if s is not EXACT:

@@ -25,7 +25,7 @@ from closedform.lower import lowered
 from closedform.mechanics.lengths import numbers_of_tool
 from closedform.model.cached import cached
 from closedform.model.derivation import Derivation
-from closedform.model.expressions import free_symbols, substitute
+from closedform.model.expressions import free_symbols, parts, replaced, substitute
 from closedform.model.functions import Bound, Determined, Function, Let, Match, Require
 from closedform.model.inverse import Combination, Inverse
 
@@ -66,6 +66,8 @@ class Values:
         self.in_modes = function.branches is not None
         """Whether it has a value in each assembly mode; divisors nearly cancel where modes meet."""
         self.lengths = _numbers_of_tool(derivation)
+        self.in_numbers = max(map(_numbers_of_size, derivation.functions), default=0.0)
+        """The sum of the lengths that are numbers, if an inverse has it."""
         degrees = Degrees(self.exprs)
         self.degrees = np.array(degrees.degrees)
         """Upper bounds for the degrees of the entries in lengths."""
@@ -110,6 +112,32 @@ class Values:
         ]
         return lambda rows, dtype: np.concatenate([case(rows, dtype) for case in cases], axis=1)
 
+    def moved_by_numbers(self, row: Array, k: int, share: float) -> float:
+        """How far an entry moves if each number that no float holds is off by a ``share``.
+
+        Printed code has these numbers rounded, as the lengths of a mechanism that are not symbols.
+        """
+        evaluator, numbers = self._with_numbers
+        if not len(numbers):
+            return 0.0
+        nearby = numbers + np.diag(numbers * share)
+        try:
+            exact, *moved = (evaluator.exactly([*row, *at])[k] for at in (numbers, *nearby))
+        except Undetermined:  # at a pole, where nothing is allowed for
+            return 0.0
+        return sum(m for x in moved if math.isfinite(m := abs(to_float(x - exact))))
+
+    @cached_property
+    def _with_numbers(self) -> tuple[RowEvaluator, Array]:
+        """The values as functions of these numbers too, and the numbers."""
+        whole: sp.Basic = sp.Tuple(*self.exprs)
+        numbers = [n for n in parts([whole]) if n.is_Rational and n.q & (n.q - 1)]
+        symbols = [sp.Dummy(real=True) for _ in numbers]
+        for number, symbol in zip(numbers, symbols, strict=True):
+            whole = replaced(whole, number, symbol)
+        given = (*self._symbols, *symbols)
+        return RowEvaluator(given, whole.args), np.array(numbers, float)
+
     def powers(self, rows: Array) -> Array:
         """For each entry, the largest length to the power of its degree; 1 for negative degrees."""
         with np.errstate(over="ignore"):
@@ -128,6 +156,10 @@ class Values:
         """For each entry: 1 where it exists, -1 where not, 0 within ``slack`` of the boundary."""
         least, _ = self._bounds.least(rows, slack, -slack)
         return np.repeat((least > slack) * 1 - (least < -slack), self.entries, axis=1)
+
+    def inside(self, rows: Array) -> Array:
+        """How far inside of its bounds the case is that is the farthest; roughly."""
+        return self._bounds.inside(rows)
 
     def explained(self, rows: Array, slack: float, rounding: float) -> Array:
         """For each entry, whether roundings explain that it has a value though it does not exist.

@@ -12,15 +12,8 @@ from flint import arb, ctx
 from numpy.typing import NDArray
 
 from closedform.algebra.balls import Undetermined, to_float
-from closedform.check.finding import (
-    MISSED,
-    Backend,
-    Finding,
-    called,
-    called_at_all,
-    rounded,
-    thinned,
-)
+from closedform.check.assembled import assembled
+from closedform.check.finding import MISSED, Backend, Finding, called_at_all, rounded, thinned
 from closedform.check.samples import Sample, joint_samples
 from closedform.check.truth import Values, condition_of, values_of
 from closedform.model.derivation import Derivation
@@ -51,6 +44,7 @@ def check_forward(derivation: Derivation, function: Function, backend: Backend) 
     finding = backend.finding(derivation.name, function.name)
     values = values_of(derivation, function)
     drawn = joint_samples(derivation, function)
+    drawn += assembled(derivation, function, values, drawn)
     samples = [rounded(thinned(sample, len(values.exprs)), backend) for sample in drawn]
     samples = [sample for sample in samples if len(sample.values)]
     values.prepare(samples)
@@ -154,6 +148,10 @@ class _Errors:
         error = _ulps(self.computed[row, k], exact, scale, self.backend)
         if error > WELL_CONDITIONED:
             moved = float(_variation(self.values, k, self.rows[row], exacts[k], self.backend))
+            scale += moved / self.backend.eps
+            error = _ulps(self.computed[row, k], exact, scale, self.backend)
+        if error > WELL_CONDITIONED:
+            moved = self.values.moved_by_numbers(self.rows[row], k, self.backend.eps)
             scale += moved / self.backend.eps
             error = _ulps(self.computed[row, k], exact, scale, self.backend)
         if error > WELL_CONDITIONED:

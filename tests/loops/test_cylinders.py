@@ -139,3 +139,23 @@ def test_the_landing_gear_has_every_posture_of_its_drawing(tmp_path: Path) -> No
     at = gear.skeleton(q[:, None])[..., gear.SKELETON.points.index("W"), :2]
     wheel = -1.2j * turn(gear.fk(q[:, None]).p[..., 0])
     assert np.nanmax(abs(at[..., 0] + 1j * at[..., 1] - wheel)) < 1e-12
+
+
+def test_jacks_are_checked_where_the_leg_closes(tmp_path: Path) -> None:
+    """Of random lengths none closed, so no value of ``fk`` was compared with its source."""
+    text = (FOLDER / "jacks.toml").read_text("utf-8")
+    leg = derived("jacks", script_of("jacks", text, tmp_path), tmp_path, crosscheck=True)
+    page = (tmp_path / "jacks_out" / "jacks-crosscheck.md").read_text("utf-8")
+    rows = [line.split("|") for line in page.splitlines() if line.startswith("| ")][1:]
+    assert len(rows) == 10 and all(int(row[-2]) > 100 for row in rows)
+
+    hip, knee = np.random.default_rng(3).uniform(-1, 1, (2, 200))
+    v, thigh, shank = leg.Parameters(), turn(hip), turn(hip + knee)
+    K = -1j * v.t * thigh
+    C, G, D = (0.05 - 0.2j) * thigh, (-0.04 - 0.1j) * thigh, K + (-0.05 + 0.02j) * shank
+    q = np.stack([abs(C - 0.1 + 0.05j), abs(D - G)], axis=1)
+    P = K - 1j * v.s * shank
+    forward = leg.fk(q).p
+    assert np.nanmin(abs(forward[..., 0] + 1j * forward[..., 1] - P[:, None]), axis=1).max() < 1e-12
+    back = leg.ik(np.stack([P.real, P.imag], axis=1)).q
+    assert np.nanmin(abs(back - q[:, None]).max(axis=2), axis=1).max() < 1e-9

@@ -11,6 +11,8 @@ import pytest
 from loop_files import derived, read_script, script_of
 from places import TESTS
 
+from closedform.check.truth import values_of
+
 FOLDER = TESTS / "held_out_loops"
 
 
@@ -159,3 +161,15 @@ def test_jacks_are_checked_where_the_leg_closes(tmp_path: Path) -> None:
     assert np.nanmin(abs(forward[..., 0] + 1j * forward[..., 1] - P[:, None]), axis=1).max() < 1e-12
     back = leg.ik(np.stack([P.real, P.imag], axis=1)).q
     assert np.nanmin(abs(back - q[:, None]).max(axis=2), axis=1).max() < 1e-9
+
+
+def test_a_short_boom_is_no_error(tmp_path: Path) -> None:
+    """The condition number is 5000 there, and moves by 1600 roundings: lengths are rounded too."""
+    text = (FOLDER / "backhoe.toml").read_text("utf-8")
+    d = read_script(script_of("backhoe", text, tmp_path))
+    values = values_of(d, d["condition_number"])
+    row = np.array([0.5916976372747829, 0.6820982436563482, 0.0030175538817743845])
+    size, eps = abs(float(values.exact.exactly(row)[0].mid())), np.finfo(float).eps
+    assert size > 5000
+    assert values.moved_by_numbers(row, 0, eps) > 100 * eps * size
+    assert values.moved_by_numbers(np.array([0.5, 0.7, 1.0]), 0, eps) < 100 * eps * size

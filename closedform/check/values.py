@@ -13,7 +13,15 @@ from numpy.typing import NDArray
 
 from closedform.algebra.balls import Undetermined, to_float
 from closedform.check.assembled import assembled
-from closedform.check.finding import MISSED, Backend, Finding, called_at_all, rounded, thinned
+from closedform.check.finding import (
+    MISSED,
+    Backend,
+    Finding,
+    called,
+    called_at_all,
+    rounded,
+    thinned,
+)
 from closedform.check.samples import Sample, joint_samples
 from closedform.check.truth import Values, condition_of, values_of
 from closedform.model.derivation import Derivation

@@ -2,17 +2,17 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 79 compare and select, 63 add, 11 divide, 96 multiply, 6 sincos, 1 sqrt
-#   skeleton: 142 compare and select, 114 add, 17 divide, 96 multiply, 6 sincos, 1 sqrt
-#   jacobian_parallel: 90 compare and select, 72 add, 11 divide, 96 multiply, 6 sincos, 1 sqrt
-#   jacobian_serial: 78 compare and select, 84 add, 11 divide, 120 multiply, 6 sincos, 1 sqrt
-#   jacobian: 92 compare and select, 102 add, 29 divide, 175 multiply, 6 sincos, 1 sqrt
-#   determinant: 76 compare and select, 84 add, 13 divide, 125 multiply, 6 sincos, 1 sqrt
-#   singularities: 81 compare and select, 84 add, 11 divide, 121 multiply, 6 sincos, 1 sqrt
-#   condition_number: 78 compare and select, 122 add, 13 divide, 172 multiply, 6 sincos, 3 sqrt
-#   constraint: 74 compare and select, 94 add, 11 divide, 158 multiply, 6 sincos, 1 sqrt
-#   ik: 187 compare and select, 157 add, 6 atan2, 13 divide, 175 multiply, 3 sincos, 18 sqrt
-#   workspace_contains: 48 add, 53 compare and select, 7 divide, 39 multiply, 3 sincos, 6 sqrt
+#   fk: 79 compare and select, 63 add, 4 divide, 103 multiply, 6 sincos, 1 sqrt
+#   skeleton: 142 compare and select, 114 add, 4 divide, 109 multiply, 6 sincos, 1 sqrt
+#   jacobian_parallel: 90 compare and select, 72 add, 4 divide, 103 multiply, 6 sincos, 1 sqrt
+#   jacobian_serial: 78 compare and select, 84 add, 4 divide, 127 multiply, 6 sincos, 1 sqrt
+#   jacobian: 92 compare and select, 102 add, 22 divide, 182 multiply, 6 sincos, 1 sqrt
+#   determinant: 76 compare and select, 84 add, 6 divide, 132 multiply, 6 sincos, 1 sqrt
+#   singularities: 81 compare and select, 84 add, 4 divide, 128 multiply, 6 sincos, 1 sqrt
+#   condition_number: 78 compare and select, 122 add, 6 divide, 179 multiply, 6 sincos, 3 sqrt
+#   constraint: 74 compare and select, 94 add, 4 divide, 165 multiply, 6 sincos, 1 sqrt
+#   ik: 187 compare and select, 157 add, 6 atan2, 9 divide, 179 multiply, 3 sincos, 18 sqrt
+#   workspace_contains: 48 add, 53 compare and select, 3 divide, 43 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
 
 Three cranks of length L turn about axes in the base plane z = 0, at the distance f from the

@@ -2,18 +2,18 @@
 # derivations/five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 26 add, 48 compare and select, 4 divide, 21 multiply, 2 sincos, 3 sqrt
-#   passive_angles: 28 add, 55 compare and select, 4 atan2, 5 divide, 19 multiply, 2 sincos, 3
+#   fk: 26 add, 48 compare and select, 2 divide, 23 multiply, 2 sincos, 3 sqrt
+#   passive_angles: 28 add, 55 compare and select, 4 atan2, 3 divide, 21 multiply, 2 sincos, 3
 #     sqrt
-#   skeleton: 28 add, 53 compare and select, 5 divide, 19 multiply, 2 sincos, 3 sqrt
-#   jacobian_parallel: 28 add, 51 compare and select, 5 divide, 19 multiply, 2 sincos, 3 sqrt
-#   jacobian_serial: 32 add, 47 compare and select, 5 divide, 27 multiply, 2 sincos, 3 sqrt
-#   jacobian: 32 add, 53 compare and select, 13 divide, 36 multiply, 2 sincos, 3 sqrt
-#   determinant: 32 add, 47 compare and select, 7 divide, 30 multiply, 2 sincos, 3 sqrt
-#   singularities: 32 add, 50 compare and select, 5 divide, 28 multiply, 2 sincos, 3 sqrt
-#   condition_number: 42 add, 49 compare and select, 7 divide, 39 multiply, 2 sincos, 5 sqrt
-#   ik: 108 compare and select, 61 add, 4 atan2, 3 divide, 62 multiply, 8 sqrt
-#   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
+#   skeleton: 28 add, 53 compare and select, 3 divide, 21 multiply, 2 sincos, 3 sqrt
+#   jacobian_parallel: 28 add, 51 compare and select, 3 divide, 21 multiply, 2 sincos, 3 sqrt
+#   jacobian_serial: 32 add, 47 compare and select, 3 divide, 29 multiply, 2 sincos, 3 sqrt
+#   jacobian: 32 add, 53 compare and select, 11 divide, 38 multiply, 2 sincos, 3 sqrt
+#   determinant: 32 add, 47 compare and select, 5 divide, 32 multiply, 2 sincos, 3 sqrt
+#   singularities: 32 add, 50 compare and select, 3 divide, 30 multiply, 2 sincos, 3 sqrt
+#   condition_number: 42 add, 49 compare and select, 5 divide, 41 multiply, 2 sincos, 5 sqrt
+#   ik: 108 compare and select, 61 add, 4 atan2, 2 divide, 63 multiply, 8 sqrt
+#   workspace_contains: 15 add, 28 compare and select, 5 multiply, 2 sqrt
 """Planar five-bar linkage.
 
 The cranks of lengths L1 and L2 turn about A1, the origin, and A2, at L0 on the x axis.  The

@@ -9,8 +9,8 @@
 #   jacobian: 31 add, 40 compare and select, 3 divide, 28 multiply, 1 sincos, 3 sqrt
 #   determinant: 31 add, 40 compare and select, 3 divide, 28 multiply, 1 sincos, 3 sqrt
 #   singularities: 31 add, 40 compare and select, 1 divide, 28 multiply, 1 sincos, 3 sqrt
-#   ik: 59 compare and select, 32 add, 2 atan2, 2 divide, 36 multiply, 1 sincos, 4 sqrt
-#   workspace_contains: 9 add, 20 compare and select, 1 divide, 5 multiply, 1 sincos, 1 sqrt
+#   ik: 59 compare and select, 32 add, 2 atan2, 1 divide, 37 multiply, 1 sincos, 4 sqrt
+#   workspace_contains: 9 add, 20 compare and select, 6 multiply, 1 sincos, 1 sqrt
 """Planar four-bar linkage.
 
 The crank of length L2 turns about A1, the origin, and the rocker of length L4 about A2, at L1

@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 541 compare and select, 361 add, 23 atan2, 40 divide, 583 multiply, 1 sincos, 54 sqrt
+#   ik: 541 compare and select, 361 add, 23 atan2, 36 divide, 587 multiply, 1 sincos, 54 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder.  The axis of theta4, the elbow, is

@@ -3,18 +3,18 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 41 add, 47 compare and select, 2 atan2, 8 divide, 60 multiply, 1 reduce to a turn, 6
+#   fk: 41 add, 47 compare and select, 2 atan2, 4 divide, 64 multiply, 1 reduce to a turn, 6
 #     sincos, 4 sqrt
-#   pose: 60 add, 51 compare and select, 8 divide, 102 multiply, 6 sincos, 4 sqrt
+#   pose: 60 add, 51 compare and select, 4 divide, 106 multiply, 6 sincos, 4 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
-#   skeleton: 105 add, 91 compare and select, 8 divide, 151 multiply, 6 sincos, 4 sqrt
-#   invariant_point: 19 add, 4 divide, 34 multiply, 2 compare and select, 5 sincos
-#   jacobian: 108 add, 67 compare and select, 40 divide, 168 multiply, 6 sincos, 4 sqrt
-#   determinant: 39 compare and select, 39 add, 9 divide, 71 multiply, 5 sincos, 4 sqrt
-#   singularities: 43 compare and select, 39 add, 8 divide, 60 multiply, 5 sincos, 4 sqrt
-#   ik: 1996 compare and select, 862 add, 29 atan2, 297 divide, 1265 multiply, 1 reduce to a turn,
+#   skeleton: 105 add, 91 compare and select, 4 divide, 155 multiply, 6 sincos, 4 sqrt
+#   invariant_point: 19 add, 38 multiply, 2 compare and select, 5 sincos
+#   jacobian: 108 add, 67 compare and select, 18 divide, 190 multiply, 6 sincos, 4 sqrt
+#   determinant: 39 compare and select, 39 add, 5 divide, 75 multiply, 5 sincos, 4 sqrt
+#   singularities: 43 compare and select, 39 add, 4 divide, 64 multiply, 5 sincos, 4 sqrt
+#   ik: 1996 compare and select, 862 add, 29 atan2, 195 divide, 1367 multiply, 1 reduce to a turn,
 #     3 sincos, 92 sqrt
-#   wrist_length: 24 compare and select, 5 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
+#   wrist_length: 24 compare and select, 5 add, 1 divide, 7 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 4 add, 20 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
 #   largest_angle: 4 add, 20 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt

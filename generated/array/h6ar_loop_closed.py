@@ -3,18 +3,18 @@
 # Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 #     manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 94 compare and select, 84 add, 2 atan2, 27 divide, 125 multiply, 1 reduce to a turn, 6
+#   fk: 94 compare and select, 84 add, 2 atan2, 15 divide, 137 multiply, 1 reduce to a turn, 6
 #     sincos, 8 sqrt
-#   pose: 99 compare and select, 103 add, 27 divide, 166 multiply, 6 sincos, 8 sqrt
-#   skeleton: 133 compare and select, 136 add, 27 divide, 205 multiply, 6 sincos, 8 sqrt
+#   pose: 99 compare and select, 103 add, 15 divide, 178 multiply, 6 sincos, 8 sqrt
+#   skeleton: 133 compare and select, 136 add, 15 divide, 217 multiply, 6 sincos, 8 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
-#   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
-#   jacobian: 131 compare and select, 190 add, 59 divide, 325 multiply, 6 sincos, 8 sqrt
-#   determinant: 85 compare and select, 94 add, 28 divide, 159 multiply, 5 sincos, 8 sqrt
-#   singularities: 89 compare and select, 94 add, 27 divide, 149 multiply, 5 sincos, 8 sqrt
-#   ik: 2540 compare and select, 1006 add, 28 atan2, 278 divide, 1477 multiply, 1 reduce to a
+#   invariant_point: 19 add, 37 multiply, 5 sincos
+#   jacobian: 131 compare and select, 190 add, 35 divide, 349 multiply, 6 sincos, 8 sqrt
+#   determinant: 85 compare and select, 94 add, 16 divide, 171 multiply, 5 sincos, 8 sqrt
+#   singularities: 89 compare and select, 94 add, 15 divide, 161 multiply, 5 sincos, 8 sqrt
+#   ik: 2540 compare and select, 1006 add, 28 atan2, 183 divide, 1572 multiply, 1 reduce to a
 #     turn, 3 sincos, 72 sqrt
-#   wrist_length: 25 compare and select, 6 add, 3 divide, 9 multiply, 2 sincos, 1 sqrt
+#   wrist_length: 25 compare and select, 6 add, 1 divide, 11 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 4 add, 20 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
 #   largest_angle: 4 add, 21 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt

@@ -3,18 +3,18 @@
 # Source: Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid
 #     Manipulator.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 17 add, 37 compare and select, 5 divide, 20 multiply, 3 sincos, 3 sqrt
-#   passive_angles: 13 add, 42 compare and select, 4 atan2, 5 divide, 15 multiply, 2 sincos, 3
+#   fk: 17 add, 37 compare and select, 1 divide, 24 multiply, 3 sincos, 3 sqrt
+#   passive_angles: 13 add, 42 compare and select, 4 atan2, 2 divide, 18 multiply, 2 sincos, 3
 #     sqrt
-#   skeleton: 17 add, 44 compare and select, 5 divide, 23 multiply, 3 sincos, 3 sqrt
-#   jacobian_parallel: 13 add, 45 compare and select, 5 divide, 21 multiply, 3 sincos, 3 sqrt
-#   jacobian_serial: 19 add, 36 compare and select, 5 divide, 25 multiply, 2 sincos, 3 sqrt
-#   jacobian: 19 add, 48 compare and select, 17 divide, 44 multiply, 3 sincos, 3 sqrt
-#   determinant: 19 add, 33 compare and select, 7 divide, 28 multiply, 2 sincos, 3 sqrt
-#   singularities: 19 add, 38 compare and select, 5 divide, 24 multiply, 2 sincos, 3 sqrt
-#   condition_number: 9 add, 32 compare and select, 3 divide, 11 multiply, 2 sincos, 3 sqrt
-#   ik: 104 compare and select, 43 add, 6 atan2, 2 divide, 54 multiply, 8 sqrt
-#   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
+#   skeleton: 17 add, 44 compare and select, 2 divide, 26 multiply, 3 sincos, 3 sqrt
+#   jacobian_parallel: 13 add, 45 compare and select, 2 divide, 24 multiply, 3 sincos, 3 sqrt
+#   jacobian_serial: 19 add, 36 compare and select, 2 divide, 28 multiply, 2 sincos, 3 sqrt
+#   jacobian: 19 add, 48 compare and select, 14 divide, 47 multiply, 3 sincos, 3 sqrt
+#   determinant: 19 add, 33 compare and select, 4 divide, 31 multiply, 2 sincos, 3 sqrt
+#   singularities: 19 add, 38 compare and select, 2 divide, 27 multiply, 2 sincos, 3 sqrt
+#   condition_number: 9 add, 32 compare and select, 1 divide, 13 multiply, 2 sincos, 3 sqrt
+#   ik: 104 compare and select, 43 add, 6 atan2, 56 multiply, 8 sqrt
+#   workspace_contains: 21 compare and select, 13 add, 15 multiply
 #   workspace_volume: 14 add, 41 compare and select, 4 divide, 29 multiply
 """Five-bar linkage on a revolute.
 

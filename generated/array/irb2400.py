@@ -12,7 +12,7 @@
 #   jacobian_body: 29 add, 64 multiply, 5 sincos
 #   joints_from_motors: 1 add
 #   motors_from_joints: 1 add
-#   ik: 301 compare and select, 184 add, 22 atan2, 21 divide, 270 multiply, 22 sqrt
+#   ik: 301 compare and select, 184 add, 22 atan2, 20 divide, 271 multiply, 22 sqrt
 """Six-axis arm on a parallelogram (IRB 2400).
 
 theta1 turns about the vertical.  The axes of theta2 and theta3 are horizontal and parallel, and

@@ -2,17 +2,17 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 78 compare and select, 49 add, 15 divide, 71 multiply, 1 sqrt
-#   skeleton: 117 compare and select, 83 add, 17 divide, 71 multiply, 1 sqrt
-#   jacobian_parallel: 87 compare and select, 57 add, 15 divide, 71 multiply, 1 sqrt
-#   jacobian_serial: 73 compare and select, 43 add, 13 divide, 60 multiply, 1 sqrt
-#   jacobian: 91 compare and select, 75 add, 33 divide, 122 multiply, 1 sqrt
-#   determinant: 71 compare and select, 43 add, 15 divide, 65 multiply, 1 sqrt
-#   singularities: 76 compare and select, 43 add, 13 divide, 61 multiply, 1 sqrt
-#   condition_number: 77 compare and select, 107 add, 17 divide, 141 multiply, 3 sqrt
-#   constraint: 73 compare and select, 65 add, 21 divide, 95 multiply, 1 sqrt
-#   ik: 78 compare and select, 69 add, 5 divide, 47 multiply, 12 sqrt
-#   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
+#   fk: 78 compare and select, 49 add, 4 divide, 82 multiply, 1 sqrt
+#   skeleton: 117 compare and select, 83 add, 4 divide, 84 multiply, 1 sqrt
+#   jacobian_parallel: 87 compare and select, 57 add, 4 divide, 82 multiply, 1 sqrt
+#   jacobian_serial: 73 compare and select, 43 add, 4 divide, 69 multiply, 1 sqrt
+#   jacobian: 91 compare and select, 75 add, 22 divide, 133 multiply, 1 sqrt
+#   determinant: 71 compare and select, 43 add, 6 divide, 74 multiply, 1 sqrt
+#   singularities: 76 compare and select, 43 add, 4 divide, 70 multiply, 1 sqrt
+#   condition_number: 77 compare and select, 107 add, 6 divide, 152 multiply, 3 sqrt
+#   constraint: 73 compare and select, 65 add, 4 divide, 112 multiply, 1 sqrt
+#   ik: 78 compare and select, 69 add, 52 multiply, 12 sqrt
+#   workspace_contains: 27 compare and select, 21 add, 13 multiply, 3 sqrt
 """Delta robot with linear drives.
 
 Three sliders move up columns at the distance f from the z axis, a third of a turn apart; the

@@ -12,7 +12,7 @@
 #   singularities: 6 add, 9 multiply, 3 sincos
 #   jacobian_space: 49 add, 90 multiply, 5 sincos
 #   jacobian_body: 33 add, 70 multiply, 5 sincos
-#   ik: 409 compare and select, 258 add, 22 atan2, 32 divide, 385 multiply, 26 sqrt
+#   ik: 409 compare and select, 258 add, 22 atan2, 30 divide, 387 multiply, 26 sqrt
 """Industrial six-axis arm (OPW).
 
 theta1 turns about the vertical.  The axes of theta2 and theta3 are horizontal and parallel, and

@@ -2,17 +2,17 @@
 # derivations/orthoglide.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 74 compare and select, 39 add, 11 divide, 68 multiply, 1 sqrt
-#   skeleton: 91 compare and select, 52 add, 12 divide, 68 multiply, 1 sqrt
-#   jacobian_parallel: 79 compare and select, 44 add, 11 divide, 68 multiply, 1 sqrt
-#   jacobian_serial: 73 compare and select, 42 add, 11 divide, 68 multiply, 1 sqrt
-#   jacobian: 87 compare and select, 62 add, 29 divide, 111 multiply, 1 sqrt
-#   determinant: 71 compare and select, 42 add, 13 divide, 73 multiply, 1 sqrt
-#   singularities: 76 compare and select, 42 add, 11 divide, 69 multiply, 1 sqrt
-#   condition_number: 73 compare and select, 94 add, 13 divide, 126 multiply, 3 sqrt
-#   constraint: 69 compare and select, 46 add, 11 divide, 76 multiply, 1 sqrt
-#   ik: 74 compare and select, 51 add, 1 divide, 47 multiply, 12 sqrt
-#   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
+#   fk: 74 compare and select, 39 add, 4 divide, 75 multiply, 1 sqrt
+#   skeleton: 91 compare and select, 52 add, 4 divide, 76 multiply, 1 sqrt
+#   jacobian_parallel: 79 compare and select, 44 add, 4 divide, 75 multiply, 1 sqrt
+#   jacobian_serial: 73 compare and select, 42 add, 4 divide, 75 multiply, 1 sqrt
+#   jacobian: 87 compare and select, 62 add, 22 divide, 118 multiply, 1 sqrt
+#   determinant: 71 compare and select, 42 add, 6 divide, 80 multiply, 1 sqrt
+#   singularities: 76 compare and select, 42 add, 4 divide, 76 multiply, 1 sqrt
+#   condition_number: 73 compare and select, 94 add, 6 divide, 133 multiply, 3 sqrt
+#   constraint: 69 compare and select, 46 add, 4 divide, 83 multiply, 1 sqrt
+#   ik: 74 compare and select, 51 add, 48 multiply, 12 sqrt
+#   workspace_contains: 23 compare and select, 12 add, 5 multiply, 3 sqrt
 """Orthoglide.
 
 Three sliders move along the axes x, y and z.  Parallelograms of length L connect them to the

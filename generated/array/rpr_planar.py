@@ -2,15 +2,15 @@
 # derivations/rpr_planar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 10 add, 37 compare and select, 4 divide, 11 multiply, 2 sqrt
-#   passive_angles: 11 add, 43 compare and select, 2 atan2, 4 divide, 11 multiply, 2 sqrt
-#   skeleton: 10 add, 38 compare and select, 4 divide, 11 multiply, 2 sqrt
-#   jacobian_parallel: 11 add, 37 compare and select, 4 divide, 11 multiply, 2 sqrt
+#   fk: 10 add, 37 compare and select, 2 divide, 13 multiply, 2 sqrt
+#   passive_angles: 11 add, 43 compare and select, 2 atan2, 2 divide, 13 multiply, 2 sqrt
+#   skeleton: 10 add, 38 compare and select, 2 divide, 13 multiply, 2 sqrt
+#   jacobian_parallel: 11 add, 37 compare and select, 2 divide, 13 multiply, 2 sqrt
 #   jacobian_serial: 6 add, 15 compare and select, 2 multiply
-#   jacobian: 11 add, 40 compare and select, 8 divide, 16 multiply, 2 sqrt
+#   jacobian: 11 add, 40 compare and select, 6 divide, 18 multiply, 2 sqrt
 #   determinant: 7 add, 31 compare and select, 2 divide, 9 multiply, 2 sqrt
 #   singularities: 7 add, 32 compare and select, 1 divide, 8 multiply, 2 sqrt
-#   condition_number: 18 add, 36 compare and select, 5 divide, 20 multiply, 3 sqrt
+#   condition_number: 18 add, 36 compare and select, 3 divide, 22 multiply, 3 sqrt
 #   ik: 13 compare and select, 3 add, 6 multiply, 4 sqrt
 """Planar parallel mechanism (two RPR legs).
 

@@ -9,8 +9,8 @@
 #   jacobian: 22 compare and select, 11 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
 #   determinant: 22 compare and select, 11 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
 #   singularities: 22 compare and select, 11 add, 8 multiply, 1 sincos, 1 sqrt
-#   ik: 55 compare and select, 25 add, 2 atan2, 2 divide, 25 multiply, 4 sqrt
-#   workspace_contains: 18 compare and select, 8 add, 1 divide, 3 multiply, 1 sqrt
+#   ik: 55 compare and select, 25 add, 2 atan2, 1 divide, 26 multiply, 4 sqrt
+#   workspace_contains: 18 compare and select, 8 add, 4 multiply, 1 sqrt
 """Slider-crank.
 
 The crank of length r turns about the origin.  The slider moves along a line parallel to the x

@@ -2,15 +2,15 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 117 compare and select, 76 add, 17 divide, 119 multiply, 7 sincos, 7 sqrt
-#   skeleton: 124 compare and select, 79 add, 17 divide, 119 multiply, 7 sincos, 7 sqrt
-#   jacobian_parallel: 127 compare and select, 85 add, 17 divide, 119 multiply, 7 sincos, 7 sqrt
-#   jacobian_serial: 113 compare and select, 85 add, 17 divide, 131 multiply, 7 sincos, 7 sqrt
-#   jacobian: 123 compare and select, 103 add, 29 divide, 168 multiply, 7 sincos, 7 sqrt
-#   singularities: 116 compare and select, 85 add, 17 divide, 132 multiply, 7 sincos, 7 sqrt
-#   condition_number: 123 compare and select, 129 add, 25 divide, 177 multiply, 7 sincos, 11 sqrt
-#   ik: 149 compare and select, 107 add, 4 atan2, 14 divide, 133 multiply, 5 sincos, 14 sqrt
-#   workspace_contains: 53 compare and select, 26 add, 8 divide, 31 multiply, 5 sincos, 5 sqrt
+#   fk: 117 compare and select, 76 add, 7 divide, 129 multiply, 7 sincos, 7 sqrt
+#   skeleton: 124 compare and select, 79 add, 9 divide, 127 multiply, 7 sincos, 7 sqrt
+#   jacobian_parallel: 127 compare and select, 85 add, 9 divide, 127 multiply, 7 sincos, 7 sqrt
+#   jacobian_serial: 113 compare and select, 85 add, 9 divide, 139 multiply, 7 sincos, 7 sqrt
+#   jacobian: 123 compare and select, 103 add, 21 divide, 176 multiply, 7 sincos, 7 sqrt
+#   singularities: 116 compare and select, 85 add, 9 divide, 140 multiply, 7 sincos, 7 sqrt
+#   condition_number: 123 compare and select, 129 add, 17 divide, 185 multiply, 7 sincos, 11 sqrt
+#   ik: 149 compare and select, 107 add, 4 atan2, 9 divide, 138 multiply, 5 sincos, 14 sqrt
+#   workspace_contains: 53 compare and select, 26 add, 3 divide, 36 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
 
 All axes meet in the centre O, and all links are arcs of great circles of a sphere of radius r

@@ -13,7 +13,7 @@
 #   determinant: 2 add, 10 multiply, 3 sincos, 1 sqrt
 #   singularities: 3 add, 11 multiply, 4 sincos, 1 sqrt
 #   arm_angle: 10 compare and select, 8 add, 1 atan2, 2 divide, 17 multiply, 3 sincos, 4 sqrt
-#   ik: 196 compare and select, 153 add, 13 atan2, 13 divide, 246 multiply, 1 sincos, 18 sqrt
+#   ik: 196 compare and select, 153 add, 13 atan2, 12 divide, 247 multiply, 1 sincos, 18 sqrt
 """Seven-joint arm with a spherical shoulder and wrist (SRS).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder, and those of theta5, theta6 and

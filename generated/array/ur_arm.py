@@ -10,7 +10,7 @@
 #   singularities: 6 add, 11 multiply, 4 sincos
 #   jacobian_space: 29 add, 57 multiply, 5 sincos
 #   jacobian_body: 27 add, 58 multiply, 5 sincos
-#   ik: 5558 compare and select, 2991 add, 32 atan2, 563 divide, 5396 multiply, 384 sqrt
+#   ik: 5558 compare and select, 2991 add, 32 atan2, 544 divide, 5415 multiply, 384 sqrt
 """UR-type arm (three parallel axes).
 
 theta1 turns about the vertical.  The axes of theta2, theta3 and theta4 are horizontal and

@@ -3,18 +3,18 @@
  * derivations/five_bar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 27 add, 33 compare and select, 4 divide, 21 multiply, 2 sincos, 2 sqrt
- *   passive_angles: 29 add, 36 compare and select, 4 atan2, 5 divide, 19 multiply, 2 sincos, 2
+ *   fk: 27 add, 33 compare and select, 2 divide, 23 multiply, 2 sincos, 2 sqrt
+ *   passive_angles: 29 add, 36 compare and select, 4 atan2, 3 divide, 21 multiply, 2 sincos, 2
  *     sqrt
- *   skeleton: 35 add, 32 compare and select, 5 divide, 19 multiply, 2 sincos, 2 sqrt
- *   jacobian_parallel: 33 add, 32 compare and select, 5 divide, 19 multiply, 2 sincos, 2 sqrt
- *   jacobian_serial: 33 add, 32 compare and select, 5 divide, 27 multiply, 2 sincos, 2 sqrt
- *   jacobian: 37 add, 32 compare and select, 13 divide, 36 multiply, 2 sincos, 2 sqrt
- *   determinant: 31 add, 32 compare and select, 7 divide, 30 multiply, 2 sincos, 2 sqrt
- *   singularities: 35 add, 32 compare and select, 5 divide, 28 multiply, 2 sincos, 2 sqrt
- *   condition_number: 41 add, 32 compare and select, 7 divide, 39 multiply, 2 sincos, 4 sqrt
- *   ik: 78 compare and select, 47 add, 4 atan2, 3 divide, 46 multiply, 4 sqrt
- *   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
+ *   skeleton: 35 add, 32 compare and select, 3 divide, 21 multiply, 2 sincos, 2 sqrt
+ *   jacobian_parallel: 33 add, 32 compare and select, 3 divide, 21 multiply, 2 sincos, 2 sqrt
+ *   jacobian_serial: 33 add, 32 compare and select, 3 divide, 29 multiply, 2 sincos, 2 sqrt
+ *   jacobian: 37 add, 32 compare and select, 11 divide, 38 multiply, 2 sincos, 2 sqrt
+ *   determinant: 31 add, 32 compare and select, 5 divide, 32 multiply, 2 sincos, 2 sqrt
+ *   singularities: 35 add, 32 compare and select, 3 divide, 30 multiply, 2 sincos, 2 sqrt
+ *   condition_number: 41 add, 32 compare and select, 5 divide, 41 multiply, 2 sincos, 4 sqrt
+ *   ik: 78 compare and select, 47 add, 4 atan2, 2 divide, 47 multiply, 4 sqrt
+ *   workspace_contains: 15 add, 28 compare and select, 5 multiply, 2 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not

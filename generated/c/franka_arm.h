@@ -12,8 +12,8 @@
  *   singularities: 5 add, 8 multiply, 3 sincos
  *   jacobian_space: 73 add, 155 multiply, 6 sincos
  *   jacobian_body: 83 add, 159 multiply, 6 sincos
- *   ik: 263 compare and select, 279 add, 23 atan2, 25 divide, 379 multiply, 1 sincos, 31 sqrt
- *   ik where nothing vanishes: 145 compare and select, 220 add, 23 atan2, 17 divide, 311 multiply,
+ *   ik: 263 compare and select, 279 add, 23 atan2, 21 divide, 383 multiply, 1 sincos, 31 sqrt
+ *   ik where nothing vanishes: 145 compare and select, 220 add, 23 atan2, 14 divide, 314 multiply,
  *     1 sincos, 24 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a

@@ -4,20 +4,20 @@
  * Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
  *     manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 45 add, 35 compare and select, 2 atan2, 8 divide, 60 multiply, 1 reduce to a turn, 6
+ *   fk: 45 add, 35 compare and select, 2 atan2, 4 divide, 64 multiply, 1 reduce to a turn, 6
  *     sincos, 3 sqrt
- *   pose: 72 add, 32 compare and select, 8 divide, 102 multiply, 6 sincos, 3 sqrt
+ *   pose: 72 add, 32 compare and select, 4 divide, 106 multiply, 6 sincos, 3 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
- *   skeleton: 157 add, 32 compare and select, 8 divide, 151 multiply, 6 sincos, 3 sqrt
- *   invariant_point: 19 add, 4 divide, 34 multiply, 2 compare and select, 5 sincos
- *   jacobian: 133 add, 30 compare and select, 40 divide, 168 multiply, 6 sincos, 3 sqrt
- *   determinant: 32 compare and select, 38 add, 9 divide, 71 multiply, 5 sincos, 3 sqrt
- *   singularities: 32 compare and select, 43 add, 8 divide, 60 multiply, 5 sincos, 3 sqrt
- *   ik: 725 compare and select, 539 add, 29 atan2, 173 divide, 743 multiply, 1 reduce to a turn, 3
+ *   skeleton: 157 add, 32 compare and select, 4 divide, 155 multiply, 6 sincos, 3 sqrt
+ *   invariant_point: 19 add, 38 multiply, 2 compare and select, 5 sincos
+ *   jacobian: 133 add, 30 compare and select, 18 divide, 190 multiply, 6 sincos, 3 sqrt
+ *   determinant: 32 compare and select, 38 add, 5 divide, 75 multiply, 5 sincos, 3 sqrt
+ *   singularities: 32 compare and select, 43 add, 4 divide, 64 multiply, 5 sincos, 3 sqrt
+ *   ik: 725 compare and select, 539 add, 29 atan2, 104 divide, 812 multiply, 1 reduce to a turn, 3
  *     sincos, 54 sqrt
- *   ik where nothing vanishes: 250 compare and select, 174 add, 16 atan2, 43 divide, 168 multiply,
+ *   ik where nothing vanishes: 250 compare and select, 174 add, 16 atan2, 15 divide, 196 multiply,
  *     1 reduce to a turn, 3 sincos, 25 sqrt
- *   wrist_length: 21 compare and select, 6 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
+ *   wrist_length: 21 compare and select, 6 add, 1 divide, 7 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
  *   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt

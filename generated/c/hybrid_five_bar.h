@@ -4,18 +4,18 @@
  * Source: Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid
  *     Manipulator.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 22 add, 22 compare and select, 5 divide, 20 multiply, 3 sincos, 2 sqrt
- *   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 15 multiply, 2 sincos, 2
+ *   fk: 22 add, 22 compare and select, 1 divide, 24 multiply, 3 sincos, 2 sqrt
+ *   passive_angles: 16 add, 25 compare and select, 4 atan2, 2 divide, 18 multiply, 2 sincos, 2
  *     sqrt
- *   skeleton: 30 add, 21 compare and select, 5 divide, 23 multiply, 3 sincos, 2 sqrt
- *   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 21 multiply, 3 sincos, 2 sqrt
- *   jacobian_serial: 24 add, 21 compare and select, 5 divide, 25 multiply, 2 sincos, 2 sqrt
- *   jacobian: 35 add, 21 compare and select, 17 divide, 44 multiply, 3 sincos, 2 sqrt
- *   determinant: 20 add, 21 compare and select, 7 divide, 28 multiply, 2 sincos, 2 sqrt
- *   singularities: 26 add, 21 compare and select, 5 divide, 24 multiply, 2 sincos, 2 sqrt
- *   condition_number: 9 add, 22 compare and select, 3 divide, 11 multiply, 2 sincos, 2 sqrt
- *   ik: 75 compare and select, 53 add, 6 atan2, 2 divide, 54 multiply, 5 sqrt
- *   workspace_contains: 21 compare and select, 13 add, 2 divide, 13 multiply
+ *   skeleton: 30 add, 21 compare and select, 2 divide, 26 multiply, 3 sincos, 2 sqrt
+ *   jacobian_parallel: 27 add, 21 compare and select, 2 divide, 24 multiply, 3 sincos, 2 sqrt
+ *   jacobian_serial: 24 add, 21 compare and select, 2 divide, 28 multiply, 2 sincos, 2 sqrt
+ *   jacobian: 35 add, 21 compare and select, 14 divide, 47 multiply, 3 sincos, 2 sqrt
+ *   determinant: 20 add, 21 compare and select, 4 divide, 31 multiply, 2 sincos, 2 sqrt
+ *   singularities: 26 add, 21 compare and select, 2 divide, 27 multiply, 2 sincos, 2 sqrt
+ *   condition_number: 9 add, 22 compare and select, 1 divide, 13 multiply, 2 sincos, 2 sqrt
+ *   ik: 75 compare and select, 53 add, 6 atan2, 56 multiply, 5 sqrt
+ *   workspace_contains: 21 compare and select, 13 add, 15 multiply
  *   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a

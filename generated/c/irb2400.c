@@ -13,7 +13,7 @@
  *   jacobian_body: 29 add, 64 multiply, 5 sincos
  *   joints_from_motors: 1 add
  *   motors_from_joints: 1 add
- *   ik: 153 compare and select, 159 add, 22 atan2, 13 divide, 183 multiply, 11 sqrt
+ *   ik: 153 compare and select, 159 add, 22 atan2, 12 divide, 184 multiply, 11 sqrt
  */
 #include "irb2400.h"
 

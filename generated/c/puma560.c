@@ -12,7 +12,7 @@
  *   singularities: 5 add, 9 multiply, 3 sincos
  *   jacobian_space: 29 add, 65 multiply, 5 sincos
  *   jacobian_body: 26 add, 61 multiply, 5 sincos
- *   ik: 141 compare and select, 146 add, 20 atan2, 11 divide, 178 multiply, 11 sqrt
+ *   ik: 141 compare and select, 146 add, 20 atan2, 9 divide, 180 multiply, 11 sqrt
  */
 #include "puma560.h"
 

@@ -11,7 +11,7 @@
  *   singularities: 1 sincos
  *   jacobian_space: 4 add, 8 multiply, 2 sincos
  *   jacobian_body: 4 add, 8 multiply, 2 sincos
- *   ik: 32 add, 37 compare and select, 5 atan2, 5 divide, 39 multiply, 1 sincos, 2 sqrt
+ *   ik: 32 add, 37 compare and select, 5 atan2, 3 divide, 41 multiply, 1 sincos, 2 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not

@@ -3,16 +3,16 @@
  * derivations/three_prs.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Three legs in vertical planes that lift and tilt a hand.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   hand_pose: 13 add, 9 divide, 2 compare and select, 27 multiply, 2 sincos, 1 sqrt
- *   jacobian_parallel: 78 add, 42 divide, 2 compare and select, 86 multiply, 2 sincos, 1 sqrt
- *   jacobian_serial: 15 add, 5 divide, 2 compare and select, 16 multiply, 2 sincos, 1 sqrt
- *   jacobian_inverse: 78 add, 48 divide, 2 compare and select, 86 multiply, 2 sincos, 1 sqrt
- *   jacobian: 92 add, 51 divide, 2 compare and select, 119 multiply, 2 sincos, 1 sqrt
- *   determinant: 83 add, 43 divide, 2 compare and select, 100 multiply, 2 sincos, 1 sqrt
- *   singularities: 83 add, 42 divide, 2 compare and select, 98 multiply, 2 sincos, 1 sqrt
- *   skeleton: 25 add, 13 divide, 2 compare and select, 29 multiply, 2 sincos, 1 sqrt
- *   ik: 75 compare and select, 215 add, 40 divide, 250 multiply, 2 sincos, 4 sqrt
- *   workspace_contains: 30 compare and select, 31 add, 15 divide, 24 multiply, 2 sincos, 1 sqrt
+ *   hand_pose: 13 add, 3 divide, 2 compare and select, 33 multiply, 2 sincos, 1 sqrt
+ *   jacobian_parallel: 78 add, 7 divide, 2 compare and select, 121 multiply, 2 sincos, 1 sqrt
+ *   jacobian_serial: 15 add, 3 divide, 2 compare and select, 18 multiply, 2 sincos, 1 sqrt
+ *   jacobian_inverse: 78 add, 13 divide, 2 compare and select, 121 multiply, 2 sincos, 1 sqrt
+ *   jacobian: 92 add, 16 divide, 2 compare and select, 154 multiply, 2 sincos, 1 sqrt
+ *   determinant: 83 add, 8 divide, 2 compare and select, 135 multiply, 2 sincos, 1 sqrt
+ *   singularities: 83 add, 7 divide, 2 compare and select, 133 multiply, 2 sincos, 1 sqrt
+ *   skeleton: 25 add, 3 divide, 2 compare and select, 39 multiply, 2 sincos, 1 sqrt
+ *   ik: 75 compare and select, 215 add, 4 divide, 286 multiply, 2 sincos, 4 sqrt
+ *   workspace_contains: 30 compare and select, 31 add, 3 divide, 36 multiply, 2 sincos, 1 sqrt
  */
 #include "three_prs.h"
 

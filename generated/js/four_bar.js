@@ -9,8 +9,8 @@
 //   jacobian: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
 //   determinant: 30 add, 31 compare and select, 3 divide, 28 multiply, 1 sincos, 2 sqrt
 //   singularities: 32 add, 31 compare and select, 1 divide, 28 multiply, 1 sincos, 2 sqrt
-//   ik: 44 compare and select, 25 add, 2 atan2, 2 divide, 28 multiply, 1 sincos, 2 sqrt
-//   workspace_contains: 9 add, 20 compare and select, 1 divide, 5 multiply, 1 sincos, 1 sqrt
+//   ik: 44 compare and select, 25 add, 2 atan2, 1 divide, 29 multiply, 1 sincos, 2 sqrt
+//   workspace_contains: 9 add, 20 compare and select, 6 multiply, 1 sincos, 1 sqrt
 
 /**
  * Planar four-bar linkage.

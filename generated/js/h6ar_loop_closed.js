@@ -3,20 +3,20 @@
 // Source: Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel
 //     manipulator.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 59 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
+//   fk: 59 compare and select, 81 add, 2 atan2, 13 divide, 129 multiply, 1 reduce to a turn, 6
 //     sincos, 6 sqrt
-//   pose: 57 compare and select, 108 add, 21 divide, 162 multiply, 6 sincos, 6 sqrt
-//   skeleton: 57 compare and select, 175 add, 21 divide, 201 multiply, 6 sincos, 6 sqrt
+//   pose: 57 compare and select, 108 add, 13 divide, 170 multiply, 6 sincos, 6 sqrt
+//   skeleton: 57 compare and select, 175 add, 13 divide, 209 multiply, 6 sincos, 6 sqrt
 //   arm_tips: 18 add, 26 multiply, 5 sincos
-//   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
-//   jacobian: 55 compare and select, 208 add, 53 divide, 321 multiply, 6 sincos, 6 sqrt
-//   determinant: 55 compare and select, 86 add, 22 divide, 155 multiply, 5 sincos, 6 sqrt
-//   singularities: 55 compare and select, 91 add, 21 divide, 145 multiply, 5 sincos, 6 sqrt
-//   ik: 866 compare and select, 643 add, 28 atan2, 162 divide, 917 multiply, 1 reduce to a turn, 3
+//   invariant_point: 19 add, 37 multiply, 5 sincos
+//   jacobian: 55 compare and select, 208 add, 33 divide, 341 multiply, 6 sincos, 6 sqrt
+//   determinant: 55 compare and select, 86 add, 14 divide, 163 multiply, 5 sincos, 6 sqrt
+//   singularities: 55 compare and select, 91 add, 13 divide, 153 multiply, 5 sincos, 6 sqrt
+//   ik: 866 compare and select, 643 add, 28 atan2, 96 divide, 983 multiply, 1 reduce to a turn, 3
 //     sincos, 42 sqrt
-//   ik where nothing vanishes: 285 compare and select, 263 add, 23 atan2, 36 divide, 343 multiply,
+//   ik where nothing vanishes: 285 compare and select, 263 add, 23 atan2, 17 divide, 362 multiply,
 //     1 reduce to a turn, 3 sincos, 16 sqrt
-//   wrist_length: 22 compare and select, 7 add, 3 divide, 9 multiply, 2 sincos, 1 sqrt
+//   wrist_length: 22 compare and select, 7 add, 1 divide, 11 multiply, 2 sincos, 1 sqrt
 //   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 //   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
 //   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt

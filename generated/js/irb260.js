@@ -8,7 +8,7 @@
 //   motors_from_joints: 1 add
 //   fk: 9 add, 10 multiply, 2 reduce to a turn, 3 sincos, 1 compare and select
 //   pose: 10 add, 14 multiply, 4 sincos
-//   skeleton: 14 add, 3 divide, 18 multiply, 3 sincos
+//   skeleton: 14 add, 21 multiply, 3 sincos
 //   jacobian: 6 add, 14 multiply, 3 sincos
 //   jacobian_space: 6 add, 14 multiply, 3 sincos
 //   jacobian_body: 6 add, 14 multiply, 3 sincos

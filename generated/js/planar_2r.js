@@ -11,7 +11,7 @@
 //   determinant: 2 multiply, 1 sincos
 //   manipulability: 1 compare and select, 2 multiply, 1 sincos
 //   singularities: 1 sincos
-//   ik: 31 compare and select, 19 add, 3 atan2, 2 divide, 23 multiply, 1 sqrt
+//   ik: 31 compare and select, 19 add, 3 atan2, 25 multiply, 1 sqrt
 //   ik_pose: 61 compare and select, 25 add, 2 atan2, 1 divide, 27 multiply, 1 sqrt
 //   workspace_radii: 1 compare and select, 2 add
 

@@ -9,8 +9,8 @@
 //   jacobian: 17 compare and select, 13 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
 //   determinant: 17 compare and select, 13 add, 2 divide, 8 multiply, 1 sincos, 1 sqrt
 //   singularities: 17 compare and select, 15 add, 8 multiply, 1 sincos, 1 sqrt
-//   ik: 42 compare and select, 20 add, 2 atan2, 2 divide, 19 multiply, 2 sqrt
-//   workspace_contains: 18 compare and select, 8 add, 1 divide, 3 multiply, 1 sqrt
+//   ik: 42 compare and select, 20 add, 2 atan2, 1 divide, 20 multiply, 2 sqrt
+//   workspace_contains: 18 compare and select, 8 add, 4 multiply, 1 sqrt
 
 /**
  * Slider-crank.

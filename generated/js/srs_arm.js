@@ -13,7 +13,7 @@
 //   determinant: 2 add, 10 multiply, 3 sincos, 1 sqrt
 //   singularities: 3 add, 11 multiply, 4 sincos, 1 sqrt
 //   arm_angle: 6 compare and select, 7 add, 1 atan2, 2 divide, 14 multiply, 3 sincos, 2 sqrt
-//   ik: 113 compare and select, 138 add, 13 atan2, 9 divide, 173 multiply, 1 sincos, 9 sqrt
+//   ik: 113 compare and select, 138 add, 13 atan2, 8 divide, 174 multiply, 1 sincos, 9 sqrt
 
 /**
  * Seven-joint arm with a spherical shoulder and wrist (SRS).

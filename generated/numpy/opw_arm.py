@@ -12,8 +12,8 @@
 #   singularities: 6 add, 9 multiply, 3 sincos
 #   jacobian_space: 49 add, 90 multiply, 5 sincos
 #   jacobian_body: 33 add, 70 multiply, 5 sincos
-#   ik: 201 compare and select, 200 add, 22 atan2, 20 divide, 246 multiply, 13 sqrt
-#   ik where nothing vanishes: 128 compare and select, 170 add, 22 atan2, 14 divide, 197 multiply,
+#   ik: 201 compare and select, 200 add, 22 atan2, 18 divide, 248 multiply, 13 sqrt
+#   ik where nothing vanishes: 128 compare and select, 170 add, 22 atan2, 12 divide, 199 multiply,
 #     11 sqrt
 """Industrial six-axis arm (OPW).
 

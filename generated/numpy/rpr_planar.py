@@ -2,15 +2,15 @@
 # derivations/rpr_planar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 13 add, 24 compare and select, 4 divide, 11 multiply, 2 sqrt
-#   passive_angles: 15 add, 27 compare and select, 2 atan2, 4 divide, 11 multiply, 2 sqrt
-#   skeleton: 15 add, 23 compare and select, 4 divide, 11 multiply, 2 sqrt
-#   jacobian_parallel: 15 add, 23 compare and select, 4 divide, 11 multiply, 2 sqrt
+#   fk: 13 add, 24 compare and select, 2 divide, 13 multiply, 2 sqrt
+#   passive_angles: 15 add, 27 compare and select, 2 atan2, 2 divide, 13 multiply, 2 sqrt
+#   skeleton: 15 add, 23 compare and select, 2 divide, 13 multiply, 2 sqrt
+#   jacobian_parallel: 15 add, 23 compare and select, 2 divide, 13 multiply, 2 sqrt
 #   jacobian_serial: 8 add, 14 compare and select, 2 multiply
-#   jacobian: 17 add, 23 compare and select, 8 divide, 16 multiply, 2 sqrt
+#   jacobian: 17 add, 23 compare and select, 6 divide, 18 multiply, 2 sqrt
 #   determinant: 9 add, 21 compare and select, 2 divide, 9 multiply, 2 sqrt
 #   singularities: 11 add, 21 compare and select, 1 divide, 8 multiply, 2 sqrt
-#   condition_number: 19 add, 23 compare and select, 5 divide, 20 multiply, 3 sqrt
+#   condition_number: 19 add, 23 compare and select, 3 divide, 22 multiply, 3 sqrt
 #   ik: 10 compare and select, 5 add, 6 multiply, 2 sqrt
 """Planar parallel mechanism (two RPR legs).
 

@@ -10,7 +10,7 @@
 #   singularities: 1 sincos
 #   jacobian_space: 4 add, 8 multiply, 2 sincos
 #   jacobian_body: 4 add, 8 multiply, 2 sincos
-#   ik: 32 add, 37 compare and select, 5 atan2, 5 divide, 39 multiply, 1 sincos, 2 sqrt
+#   ik: 32 add, 37 compare and select, 5 atan2, 3 divide, 41 multiply, 1 sincos, 2 sqrt
 """SCARA arm (RRPR).
 
 Two links of lengths l1 and l2 turn in a horizontal plane at the height h.  At their end a

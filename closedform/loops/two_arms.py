@@ -166,7 +166,8 @@ class _Posture:
 
 def _state(m: TwoArms) -> Step:
     ends = (m.driver.end(), m.given.end(), m.tie.end())
-    rows = [(str(k), end.T, place.T) for k, (end, place) in enumerate(zip(ends, m.places), 1)]  # noqa: B905
+    both = zip(ends, m.places, strict=True)
+    rows = [(str(k), end.T, place.T) for k, (end, place) in enumerate(both, 1)]
     tie = sp.sympify(m.tie.rod, strict=True)
     return m.d.step(
         "The loop",

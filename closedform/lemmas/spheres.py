@@ -204,8 +204,7 @@ def _equal_spheres(
     Y = p.let("Y", choose(line, 0, left * part / 2))
     # the error that is allowed for the spheres makes the radius of the circle larger
     missed = 2 * share * scale * r
-    # lambda Y^2 is left^2 / (4 lambda)
-    square = choose(point, 0, mu * (1 + choose(line, 0, left**2 * part)) / 4)
+    square = choose(point, 0, mu * (1 + 2 * left * Y) / 4)  # 2 lambda Y is left
     slack = p.bound("slack", r**2 - square, missed, "the spheres meet")
     touching = p.vanishes("touching", slack, missed, "the spheres touch")
     rise = choose(touching, 0, sp.sqrt(slack * part))

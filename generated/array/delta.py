@@ -2,15 +2,15 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 79 compare and select, 63 add, 4 divide, 103 multiply, 6 sincos, 1 sqrt
-#   skeleton: 142 compare and select, 114 add, 4 divide, 109 multiply, 6 sincos, 1 sqrt
-#   jacobian_parallel: 90 compare and select, 72 add, 4 divide, 103 multiply, 6 sincos, 1 sqrt
-#   jacobian_serial: 78 compare and select, 84 add, 4 divide, 127 multiply, 6 sincos, 1 sqrt
-#   jacobian: 92 compare and select, 102 add, 22 divide, 182 multiply, 6 sincos, 1 sqrt
-#   determinant: 76 compare and select, 84 add, 6 divide, 132 multiply, 6 sincos, 1 sqrt
-#   singularities: 81 compare and select, 84 add, 4 divide, 128 multiply, 6 sincos, 1 sqrt
-#   condition_number: 78 compare and select, 122 add, 6 divide, 179 multiply, 6 sincos, 3 sqrt
-#   constraint: 74 compare and select, 94 add, 4 divide, 165 multiply, 6 sincos, 1 sqrt
+#   fk: 78 compare and select, 63 add, 4 divide, 105 multiply, 6 sincos, 1 sqrt
+#   skeleton: 141 compare and select, 114 add, 4 divide, 111 multiply, 6 sincos, 1 sqrt
+#   jacobian_parallel: 89 compare and select, 72 add, 4 divide, 105 multiply, 6 sincos, 1 sqrt
+#   jacobian_serial: 77 compare and select, 84 add, 4 divide, 129 multiply, 6 sincos, 1 sqrt
+#   jacobian: 91 compare and select, 102 add, 22 divide, 184 multiply, 6 sincos, 1 sqrt
+#   determinant: 75 compare and select, 84 add, 6 divide, 134 multiply, 6 sincos, 1 sqrt
+#   singularities: 80 compare and select, 84 add, 4 divide, 130 multiply, 6 sincos, 1 sqrt
+#   condition_number: 77 compare and select, 122 add, 6 divide, 181 multiply, 6 sincos, 3 sqrt
+#   constraint: 73 compare and select, 94 add, 4 divide, 167 multiply, 6 sincos, 1 sqrt
 #   ik: 187 compare and select, 157 add, 6 atan2, 9 divide, 179 multiply, 3 sincos, 18 sqrt
 #   workspace_contains: 48 add, 53 compare and select, 3 divide, 43 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -209,45 +209,44 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t10 * ops.feasibility
     t29 = l * size * 0.75
     t30 = l * l
+    t31 = 2.0 * t27
     g_1 = whole * d_z
     s_w = ops.sign(t15 * a_x)
-    t31 = whole * (t15 + a_x * s_w)
-    t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    t33 = t27 * t27
-    t34 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t32, m_m) * t33)
-    t35 = ops.select(all_same, 0.0, mu * (1.0 + t34) * 0.25)
-    t36 = t30 - t35
+    t32 = whole * (t15 + a_x * s_w)
+    t33 = 2.0 * (g_1 * g_1) + t32 * t32
+    t34 = 1.0 / ops.select(in_line, t33, m_m) * t27 * 0.5
+    t35 = mu * (1.0 + t31 * ops.select(in_line, 0.0, t34))
+    t36 = t30 - ops.select(all_same, 0.0, t35 * 0.25)
     unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
     t37 = ops.opposite(failed)
-    t38 = ops.opposite(in_line)
-    t39 = t37 & t38
     touching = ops.max(t36, 0.0) <= ops.vanishing * t29
-    t40 = t37 & ops.opposite(touching)
-    t41 = t39 | t40 | (t40 & ops.opposite(all_same) & t38)
-    t42 = ops.select((t39 & slim) | (t41 & t38 & slim), mu, 1.0)
-    over = 1.0 / t42
-    w_w = ops.select(in_line, t32, ops.select(slim, over * t26, product_2))
-    part = 1.0 / ops.select(t41, w_w, 1.0)
-    t43 = ops.select(in_line, 0.0, part * t27 * 0.5)
-    t44 = d_x * 0.5 - (t5 - t24 * t43)
+    t38 = t37 & ops.opposite(touching)
+    t39 = ops.opposite(in_line)
+    t40 = t38 | ((t37 | (t38 & ops.opposite(all_same))) & t39)
+    t41 = ops.select((t37 & t39 & slim) | (t40 & t39 & slim), mu, 1.0)
+    over = 1.0 / t41
+    w_w = ops.select(in_line, t33, ops.select(slim, over * t26, product_2))
+    part = 1.0 / ops.select(t40, w_w, 1.0)
+    t42 = ops.select(in_line, 0.0, part * t27 * 0.5)
+    t43 = d_x * 0.5 - (t5 - t24 * t42)
     m_x = ops.select(slim, over * (t15 * n_z - d_z * t25), t18)
-    t45 = mu * (1.0 + ops.select(in_line, 0.0, part * t33))
-    slack = ops.max(t30 - ops.select(all_same, 0.0, t45 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t40, part * slack, 1.0)))
+    t44 = ops.select(all_same, 0.0, mu * (1.0 + t31 * t42) * 0.25)
+    t45 = ops.select(t38, part * ops.max(t30 - t44, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t45))
     t46 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t47 = t15 * 0.5 - (t8 + t25 * t43)
+    t47 = t15 * 0.5 - (t8 + t25 * t42)
     t48 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
     t49 = h * ops.select(in_line, g_1, -t48)
-    t50 = d_z * 0.5 - (t3 + n_z * t43)
+    t50 = d_z * 0.5 - (t3 + n_z * t42)
     m_z = ops.select(slim, over * (a_x * t25 + t15 * t24), t22)
-    t51 = h * ops.select(in_line, -t31, m_z)
+    t51 = h * ops.select(in_line, -t32, m_z)
     t52 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t44 - t46),
+        ops.select(failed, ops.nan, t43 - t46),
         ops.select(failed, ops.nan, t47 - t49),
         ops.select(failed, ops.nan, t50 - t51),
-        ops.select(failed, ops.nan, t46 + t44),
+        ops.select(failed, ops.nan, t46 + t43),
         ops.select(failed, ops.nan, t49 + t47),
         ops.select(failed, ops.nan, t51 + t50),
         t52,
@@ -388,14 +387,14 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t48 = ops.abs(ops.select(in_line, -t47, 0.0)) <= t23 * ops.feasibility
     t49 = 0.9375 * (l * size)
     t50 = l * l
+    t51 = 2.0 * t47
     g_1 = whole * d_z
     s_w = ops.sign(t31 * a_x)
-    t51 = whole * (t31 + a_x * s_w)
-    t52 = 2.0 * (g_1 * g_1) + t51 * t51
-    t53 = t47 * t47
-    t54 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t52, m_m) * t53)
-    t55 = ops.select(all_same, 0.0, mu * (1.0 + t54) * 0.25)
-    t56 = t50 - t55
+    t52 = whole * (t31 + a_x * s_w)
+    t53 = 2.0 * (g_1 * g_1) + t52 * t52
+    t54 = t47 * (1.0 / ops.select(in_line, t53, m_m)) * 0.5
+    t55 = mu * (1.0 + t51 * ops.select(in_line, 0.0, t54))
+    t56 = t50 - ops.select(all_same, 0.0, t55 * 0.25)
     unreachable = ops.opposite(t48 & (-(ops.feasibility * t49) <= t56))
     failed = invalid | unreachable
     t57 = ops.select(failed, ops.nan, t6)
@@ -405,32 +404,31 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t61 = ops.select(failed, ops.nan, t17)
     t62 = ops.select(failed, ops.nan, -t3)
     t63 = ops.opposite(failed)
-    t64 = ops.opposite(in_line)
-    t65 = t63 & t64
     touching = ops.max(t56, 0.0) <= ops.vanishing * t49
-    t66 = t63 & ops.opposite(touching)
-    t67 = t65 | t66 | (t66 & ops.opposite(all_same) & t64)
-    t68 = ops.select((t65 & slim) | (t67 & t64 & slim), mu, 1.0)
-    over = 1.0 / t68
-    w_w = ops.select(in_line, t52, ops.select(slim, over * t46, product_2))
-    part = 1.0 / ops.select(t67, w_w, 1.0)
-    t69 = ops.select(in_line, 0.0, t47 * part * 0.5)
-    t70 = t44 * t69 + d_x * 0.5
+    t64 = t63 & ops.opposite(touching)
+    t65 = ops.opposite(in_line)
+    t66 = t64 | ((t63 | (t64 & ops.opposite(all_same))) & t65)
+    t67 = ops.select((t63 & t65 & slim) | (t66 & t65 & slim), mu, 1.0)
+    over = 1.0 / t67
+    w_w = ops.select(in_line, t53, ops.select(slim, over * t46, product_2))
+    part = 1.0 / ops.select(t66, w_w, 1.0)
+    t68 = ops.select(in_line, 0.0, t47 * part * 0.5)
+    t69 = t44 * t68 + d_x * 0.5
     m_x = ops.select(slim, over * (t31 * n_z - d_z * t45), t35)
-    t71 = mu * (1.0 + ops.select(in_line, 0.0, part * t53))
-    slack = ops.max(t50 - ops.select(all_same, 0.0, t71 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t66, part * slack, 1.0)))
+    t70 = ops.select(all_same, 0.0, mu * (1.0 + t51 * t68) * 0.25)
+    t71 = ops.select(t64, part * ops.max(t50 - t70, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t71))
     t72 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t73 = t9 - (t70 - t72)
+    t73 = t9 - (t69 - t72)
     t74 = t5 - t73
-    t75 = t45 * t69 - t31 * 0.5
+    t75 = t45 * t68 - t31 * 0.5
     t76 = ops.select(slim, over * (a_x * n_z + d_z * t44), t41)
     t77 = h * ops.select(in_line, g_1, -t76)
     t78 = t18 + (t75 + t77)
     t79 = t15 - t78
-    t80 = n_z * t69 - d_z * 0.5
+    t80 = n_z * t68 - d_z * 0.5
     m_z = ops.select(slim, over * (a_x * t45 + t31 * t44), t42)
-    t81 = h * ops.select(in_line, -t51, m_z)
+    t81 = h * ops.select(in_line, -t52, m_z)
     t82 = ops.select(failed, ops.nan, -(t3 + (t80 + t81)))
     t83 = t15 * 0.5
     t84 = ops.select(failed, ops.nan, t8 - t83)
@@ -464,7 +462,7 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t112 = ops.select(failed, ops.nan, t111 + t29)
     t113 = ops.select(failed, ops.nan, t109 + t38)
     t114 = ops.select(failed, ops.nan, t29 - t111)
-    t115 = t9 - (t70 + t72)
+    t115 = t9 - (t69 + t72)
     t116 = t5 - t115
     t117 = t18 + (t75 - t77)
     t118 = t15 - t117
@@ -714,43 +712,42 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t10 * ops.feasibility
     t29 = 0.9375 * (l * size)
     t30 = l * l
+    t31 = 2.0 * t27
     g_1 = whole * d_z
     s_w = ops.sign(t15 * a_x)
-    t31 = whole * (t15 + a_x * s_w)
-    t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    t33 = t27 * t27
-    t34 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t32, m_m) * t33)
-    t35 = ops.select(all_same, 0.0, mu * (1.0 + t34) * 0.25)
-    t36 = t30 - t35
+    t32 = whole * (t15 + a_x * s_w)
+    t33 = 2.0 * (g_1 * g_1) + t32 * t32
+    t34 = 1.0 / ops.select(in_line, t33, m_m) * t27 * 0.5
+    t35 = mu * (1.0 + t31 * ops.select(in_line, 0.0, t34))
+    t36 = t30 - ops.select(all_same, 0.0, t35 * 0.25)
     unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
     t37 = ops.opposite(failed)
     t38 = ops.opposite(in_line)
-    t39 = t37 & t38
     touching = ops.max(t36, 0.0) <= ops.vanishing * t29
-    t40 = t37 & ops.opposite(touching)
-    t41 = t39 | t40 | (t40 & ops.opposite(all_same) & t38)
-    t42 = ops.select((t39 & slim) | (t41 & t38 & slim), mu, 1.0)
-    over = 1.0 / t42
+    t39 = t37 & ops.opposite(touching)
+    t40 = t39 | ((t37 | (t39 & ops.opposite(all_same))) & t38)
+    t41 = ops.select((t37 & t38 & slim) | (t40 & t38 & slim), mu, 1.0)
+    over = 1.0 / t41
     m_x = ops.select(slim, over * (t15 * n_z - d_z * t25), t18)
-    w_w = ops.select(in_line, t32, ops.select(slim, over * t26, product_2))
-    part = 1.0 / ops.select(t41, w_w, 1.0)
-    t43 = mu * (1.0 + ops.select(in_line, 0.0, part * t33))
-    slack = ops.max(t30 - ops.select(all_same, 0.0, t43 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t40, part * slack, 1.0)))
-    t44 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t45 = ops.select(in_line, 0.0, part * t27 * 0.5)
-    t46 = t24 * t45 + d_x * 0.5
-    t47 = t44 - t46
+    w_w = ops.select(in_line, t33, ops.select(slim, over * t26, product_2))
+    part = 1.0 / ops.select(t40, w_w, 1.0)
+    t42 = ops.select(in_line, 0.0, part * t27 * 0.5)
+    t43 = ops.select(all_same, 0.0, mu * (1.0 + t31 * t42) * 0.25)
+    t44 = ops.select(t39, part * ops.max(t30 - t43, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t44))
+    t45 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t46 = t24 * t42 + d_x * 0.5
+    t47 = t45 - t46
     t48 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
     t49 = h * ops.select(in_line, g_1, -t48)
-    t50 = t25 * t45 - t15 * 0.5
+    t50 = t25 * t42 - t15 * 0.5
     t51 = t49 + t50
     m_z = ops.select(slim, over * (a_x * t25 + t15 * t24), t22)
-    t52 = h * ops.select(in_line, -t31, m_z)
-    t53 = n_z * t45 - d_z * 0.5
+    t52 = h * ops.select(in_line, -t32, m_z)
+    t53 = n_z * t42 - d_z * 0.5
     t54 = t52 + t53
-    A_11_above = t44 + t46
+    A_11_above = t45 + t46
     A_12_above = t49 - t50
     A_13_above = t52 - t53
     t55 = ops.select(failed, ops.nan, A_13_above - u_z)
@@ -884,43 +881,42 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t11 * ops.feasibility
     t31 = 0.9375 * (l * size)
     t32 = l * l
+    t33 = 2.0 * t29
     g_1 = whole * d_z
     s_w = ops.sign(t16 * a_x)
-    t33 = whole * (t16 + a_x * s_w)
-    t34 = 2.0 * (g_1 * g_1) + t33 * t33
-    t35 = t29 * t29
-    t36 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t34, m_m) * t35)
-    t37 = ops.select(all_same, 0.0, mu * (1.0 + t36) * 0.25)
-    t38 = t32 - t37
+    t34 = whole * (t16 + a_x * s_w)
+    t35 = 2.0 * (g_1 * g_1) + t34 * t34
+    t36 = 1.0 / ops.select(in_line, t35, m_m) * t29 * 0.5
+    t37 = mu * (1.0 + t33 * ops.select(in_line, 0.0, t36))
+    t38 = t32 - ops.select(all_same, 0.0, t37 * 0.25)
     unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
     t39 = c_alpha1 * t3
     t40 = ops.opposite(failed)
     t41 = ops.opposite(in_line)
-    t42 = t40 & t41
     touching = ops.max(t38, 0.0) <= ops.vanishing * t31
-    t43 = t40 & ops.opposite(touching)
-    t44 = t42 | t43 | (t43 & ops.opposite(all_same) & t41)
-    t45 = ops.select((t42 & slim) | (t44 & t41 & slim), mu, 1.0)
-    over = 1.0 / t45
+    t42 = t40 & ops.opposite(touching)
+    t43 = t42 | ((t40 | (t42 & ops.opposite(all_same))) & t41)
+    t44 = ops.select((t40 & t41 & slim) | (t43 & t41 & slim), mu, 1.0)
+    over = 1.0 / t44
     m_x = ops.select(slim, over * (t16 * n_z - d_z * t27), t20)
-    w_w = ops.select(in_line, t34, ops.select(slim, over * t28, product_2))
-    part = 1.0 / ops.select(t44, w_w, 1.0)
-    t46 = mu * (1.0 + ops.select(in_line, 0.0, part * t35))
-    slack = ops.max(t32 - ops.select(all_same, 0.0, t46 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t43, part * slack, 1.0)))
-    t47 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t48 = ops.select(in_line, 0.0, part * t29 * 0.5)
-    t49 = t26 * t48 + d_x * 0.5
-    t50 = t47 - t49
+    w_w = ops.select(in_line, t35, ops.select(slim, over * t28, product_2))
+    part = 1.0 / ops.select(t43, w_w, 1.0)
+    t45 = ops.select(in_line, 0.0, part * t29 * 0.5)
+    t46 = ops.select(all_same, 0.0, mu * (1.0 + t33 * t45) * 0.25)
+    t47 = ops.select(t42, part * ops.max(t32 - t46, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t47))
+    t48 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t49 = t26 * t45 + d_x * 0.5
+    t50 = t48 - t49
     t51 = s_alpha1 * t3
     t52 = ops.select(slim, over * (a_x * n_z + d_z * t26), t23)
     t53 = h * ops.select(in_line, g_1, -t52)
-    t54 = t27 * t48 - t16 * 0.5
+    t54 = t27 * t45 - t16 * 0.5
     t55 = t53 + t54
     m_z = ops.select(slim, over * (a_x * t27 + t16 * t26), t24)
-    t56 = h * ops.select(in_line, -t33, m_z)
-    t57 = n_z * t48 - d_z * 0.5
+    t56 = h * ops.select(in_line, -t34, m_z)
+    t57 = n_z * t45 - d_z * 0.5
     t58 = t56 + t57
     t59 = ops.select(failed, ops.nan, t39 * t50 + t51 * t55 + t5 * t58)
     t60 = c_alpha2 * t4
@@ -929,7 +925,7 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t62 = c_alpha3 * t17
     t63 = s_alpha3 * t17
     B_33 = t62 * (t21 + t50) + t63 * (t15 + t55) + t14 * (v_z + t58)
-    A_11_above = t47 + t49
+    A_11_above = t48 + t49
     A_12_above = t53 - t54
     t64 = t56 - t57
     t65 = t39 * A_11_above + t51 * A_12_above + t5 * t64
@@ -1052,44 +1048,43 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t11 * ops.feasibility
     t31 = 0.9375 * (l * size)
     t32 = l * l
+    t33 = 2.0 * t29
     g_1 = whole * d_z
     s_w = ops.sign(t16 * a_x)
-    t33 = whole * (t16 + a_x * s_w)
-    t34 = 2.0 * (g_1 * g_1) + t33 * t33
-    t35 = t29 * t29
-    t36 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t34, m_m) * t35)
-    t37 = ops.select(all_same, 0.0, mu * (1.0 + t36) * 0.25)
-    t38 = t32 - t37
+    t34 = whole * (t16 + a_x * s_w)
+    t35 = 2.0 * (g_1 * g_1) + t34 * t34
+    t36 = 1.0 / ops.select(in_line, t35, m_m) * t29 * 0.5
+    t37 = mu * (1.0 + t33 * ops.select(in_line, 0.0, t36))
+    t38 = t32 - ops.select(all_same, 0.0, t37 * 0.25)
     unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
     t39 = c_alpha1 * t3
     t40 = ops.opposite(failed)
     t41 = ops.opposite(in_line)
-    t42 = t40 & t41
     touching = ops.max(t38, 0.0) <= ops.vanishing * t31
-    t43 = t40 & ops.opposite(touching)
-    t44 = t42 | t43 | (t43 & ops.opposite(all_same) & t41)
-    t45 = ops.select((t42 & slim) | ((t40 | (t44 & t41)) & slim), mu, 1.0)
-    over = 1.0 / t45
+    t42 = t40 & ops.opposite(touching)
+    t43 = t42 | ((t40 | (t42 & ops.opposite(all_same))) & t41)
+    t44 = (t40 & t41 & slim) | ((t40 | (t43 & t41)) & slim)
+    over = 1.0 / ops.select(t44, mu, 1.0)
     m_x = ops.select(slim, over * (t16 * n_z - d_z * t27), t20)
     m_m_2 = ops.select(slim, over * t28, product_2)
-    t46 = ops.select(t44, ops.select(in_line, t34, m_m_2), 1.0)
-    part = 1.0 / t46
-    t47 = mu * (1.0 + ops.select(in_line, 0.0, part * t35))
-    slack = ops.max(t32 - ops.select(all_same, 0.0, t47 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t43, part * slack, 1.0)))
-    t48 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t49 = ops.select(in_line, 0.0, part * t29 * 0.5)
-    t50 = t26 * t49 + d_x * 0.5
-    t51 = t48 - t50
+    t45 = ops.select(t43, ops.select(in_line, t35, m_m_2), 1.0)
+    part = 1.0 / t45
+    t46 = ops.select(in_line, 0.0, part * t29 * 0.5)
+    t47 = ops.select(all_same, 0.0, mu * (1.0 + t33 * t46) * 0.25)
+    t48 = ops.select(t42, part * ops.max(t32 - t47, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t48))
+    t49 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t50 = t26 * t46 + d_x * 0.5
+    t51 = t49 - t50
     t52 = s_alpha1 * t3
     t53 = ops.select(slim, over * (a_x * n_z + d_z * t26), t23)
     t54 = h * ops.select(in_line, g_1, -t53)
-    t55 = t27 * t49 - t16 * 0.5
+    t55 = t27 * t46 - t16 * 0.5
     t56 = t54 + t55
     m_z = ops.select(slim, over * (a_x * t27 + t16 * t26), t24)
-    t57 = h * ops.select(in_line, -t33, m_z)
-    t58 = n_z * t49 - d_z * 0.5
+    t57 = h * ops.select(in_line, -t34, m_z)
+    t58 = n_z * t46 - d_z * 0.5
     t59 = t57 + t58
     t60 = t39 * t51 + t52 * t56 + t5 * t59
     t61 = t10 + t56
@@ -1114,7 +1109,7 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t80 = ops.select(failed, ops.nan, -(t60 * (t64 * t68 - t61 * t73) / t65))
     t81 = ops.select(failed, ops.nan, t70 * (t51 * t64 - t56 * t73) / t65)
     t82 = ops.select(failed, ops.nan, -(t75 * (t51 * t61 - t56 * t68) / t65))
-    A_11_above = t48 + t50
+    A_11_above = t49 + t50
     A_12_above = t54 - t55
     t83 = t57 - t58
     t84 = t39 * A_11_above + t52 * A_12_above + t5 * t83
@@ -1263,44 +1258,43 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t11 * ops.feasibility
     t31 = 0.9375 * (l * size)
     t32 = l * l
+    t33 = 2.0 * t29
     g_1 = whole * d_z
     s_w = ops.sign(t16 * a_x)
-    t33 = whole * (t16 + a_x * s_w)
-    t34 = 2.0 * (g_1 * g_1) + t33 * t33
-    t35 = t29 * t29
-    t36 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t34, m_m) * t35)
-    t37 = ops.select(all_same, 0.0, mu * (1.0 + t36) * 0.25)
-    t38 = t32 - t37
+    t34 = whole * (t16 + a_x * s_w)
+    t35 = 2.0 * (g_1 * g_1) + t34 * t34
+    t36 = 1.0 / ops.select(in_line, t35, m_m) * t29 * 0.5
+    t37 = mu * (1.0 + t33 * ops.select(in_line, 0.0, t36))
+    t38 = t32 - ops.select(all_same, 0.0, t37 * 0.25)
     unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
     t39 = c_alpha1 * t3
     t40 = ops.opposite(failed)
     t41 = ops.opposite(in_line)
-    t42 = t40 & t41
     touching = ops.max(t38, 0.0) <= ops.vanishing * t31
-    t43 = t40 & ops.opposite(touching)
-    t44 = t42 | t43 | (t43 & ops.opposite(all_same) & t41)
-    t45 = ops.select((t42 & slim) | ((t40 | (t44 & t41)) & slim), mu, 1.0)
-    over = 1.0 / t45
+    t42 = t40 & ops.opposite(touching)
+    t43 = t42 | ((t40 | (t42 & ops.opposite(all_same))) & t41)
+    t44 = (t40 & t41 & slim) | ((t40 | (t43 & t41)) & slim)
+    over = 1.0 / ops.select(t44, mu, 1.0)
     m_x = ops.select(slim, over * (t16 * n_z - d_z * t27), t20)
     m_m_2 = ops.select(slim, over * t28, product_2)
-    t46 = ops.select(t44, ops.select(in_line, t34, m_m_2), 1.0)
-    part = 1.0 / t46
-    t47 = mu * (1.0 + ops.select(in_line, 0.0, part * t35))
-    slack = ops.max(t32 - ops.select(all_same, 0.0, t47 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t43, part * slack, 1.0)))
-    t48 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t49 = ops.select(in_line, 0.0, part * t29 * 0.5)
-    t50 = t26 * t49 + d_x * 0.5
-    t51 = t48 - t50
+    t45 = ops.select(t43, ops.select(in_line, t35, m_m_2), 1.0)
+    part = 1.0 / t45
+    t46 = ops.select(in_line, 0.0, part * t29 * 0.5)
+    t47 = ops.select(all_same, 0.0, mu * (1.0 + t33 * t46) * 0.25)
+    t48 = ops.select(t42, part * ops.max(t32 - t47, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t48))
+    t49 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t50 = t26 * t46 + d_x * 0.5
+    t51 = t49 - t50
     t52 = s_alpha1 * t3
     t53 = ops.select(slim, over * (a_x * n_z + d_z * t26), t23)
     t54 = h * ops.select(in_line, g_1, -t53)
-    t55 = t27 * t49 - t16 * 0.5
+    t55 = t27 * t46 - t16 * 0.5
     t56 = t54 + t55
     m_z = ops.select(slim, over * (a_x * t27 + t16 * t26), t24)
-    t57 = h * ops.select(in_line, -t33, m_z)
-    t58 = n_z * t49 - d_z * 0.5
+    t57 = h * ops.select(in_line, -t34, m_z)
+    t58 = n_z * t46 - d_z * 0.5
     t59 = t57 + t58
     t60 = c_alpha2 * t4
     t61 = s_alpha2 * t4
@@ -1310,7 +1304,7 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t65 = t63 * (t21 + t51) + t64 * (t15 + t56) + t14 * (v_z + t59)
     t66 = (t39 * t51 + t52 * t56 + t5 * t59) * t62 * t65
     t67 = ops.select(t40, m_m_2 * h, 1.0)
-    A_11_above = t48 + t50
+    A_11_above = t49 + t50
     A_12_above = t54 - t55
     t68 = t57 - t58
     t69 = t39 * A_11_above + t52 * A_12_above + t5 * t68
@@ -1428,44 +1422,43 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= t11 * ops.feasibility
     t31 = 0.9375 * (l * size)
     t32 = l * l
+    t33 = 2.0 * t29
     g_1 = whole * d_z
     s_w = ops.sign(t16 * a_x)
-    t33 = whole * (t16 + a_x * s_w)
-    t34 = 2.0 * (g_1 * g_1) + t33 * t33
-    t35 = t29 * t29
-    t36 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t34, m_m) * t35)
-    t37 = ops.select(all_same, 0.0, mu * (1.0 + t36) * 0.25)
-    t38 = t32 - t37
+    t34 = whole * (t16 + a_x * s_w)
+    t35 = 2.0 * (g_1 * g_1) + t34 * t34
+    t36 = 1.0 / ops.select(in_line, t35, m_m) * t29 * 0.5
+    t37 = mu * (1.0 + t33 * ops.select(in_line, 0.0, t36))
+    t38 = t32 - ops.select(all_same, 0.0, t37 * 0.25)
     unreachable = ops.opposite(t30 & (-(ops.feasibility * t31) <= t38))
     failed = invalid | unreachable
     t39 = c_alpha1 * t3
     t40 = ops.opposite(failed)
     t41 = ops.opposite(in_line)
-    t42 = t40 & t41
     touching = ops.max(t38, 0.0) <= ops.vanishing * t31
-    t43 = t40 & ops.opposite(touching)
-    t44 = t42 | t43 | (t43 & ops.opposite(all_same) & t41)
-    t45 = ops.select((t42 & slim) | ((t40 | (t44 & t41)) & slim), mu, 1.0)
-    over = 1.0 / t45
+    t42 = t40 & ops.opposite(touching)
+    t43 = t42 | ((t40 | (t42 & ops.opposite(all_same))) & t41)
+    t44 = (t40 & t41 & slim) | ((t40 | (t43 & t41)) & slim)
+    over = 1.0 / ops.select(t44, mu, 1.0)
     m_x = ops.select(slim, over * (t16 * n_z - d_z * t27), t20)
     m_m_2 = ops.select(slim, over * t28, product_2)
-    t46 = ops.select(t44, ops.select(in_line, t34, m_m_2), 1.0)
-    part = 1.0 / t46
-    t47 = mu * (1.0 + ops.select(in_line, 0.0, part * t35))
-    slack = ops.max(t32 - ops.select(all_same, 0.0, t47 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t43, part * slack, 1.0)))
-    t48 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t49 = ops.select(in_line, 0.0, part * t29 * 0.5)
-    t50 = t26 * t49 + d_x * 0.5
-    t51 = t48 - t50
+    t45 = ops.select(t43, ops.select(in_line, t35, m_m_2), 1.0)
+    part = 1.0 / t45
+    t46 = ops.select(in_line, 0.0, part * t29 * 0.5)
+    t47 = ops.select(all_same, 0.0, mu * (1.0 + t33 * t46) * 0.25)
+    t48 = ops.select(t42, part * ops.max(t32 - t47, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t48))
+    t49 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t50 = t26 * t46 + d_x * 0.5
+    t51 = t49 - t50
     t52 = s_alpha1 * t3
     t53 = ops.select(slim, over * (a_x * n_z + d_z * t26), t23)
     t54 = h * ops.select(in_line, g_1, -t53)
-    t55 = t27 * t49 - t16 * 0.5
+    t55 = t27 * t46 - t16 * 0.5
     t56 = t54 + t55
     m_z = ops.select(slim, over * (a_x * t27 + t16 * t26), t24)
-    t57 = h * ops.select(in_line, -t33, m_z)
-    t58 = n_z * t49 - d_z * 0.5
+    t57 = h * ops.select(in_line, -t34, m_z)
+    t58 = n_z * t46 - d_z * 0.5
     t59 = t57 + t58
     t60 = ops.select(failed, ops.nan, t39 * t51 + t52 * t56 + t5 * t59)
     t61 = c_alpha2 * t4
@@ -1475,7 +1468,7 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t64 = s_alpha3 * t17
     B_33 = t63 * (t21 + t51) + t64 * (t15 + t56) + t14 * (v_z + t59)
     Delta = m_m_2 * h
-    A_11_above = t48 + t50
+    A_11_above = t49 + t50
     A_12_above = t54 - t55
     t65 = t57 - t58
     t66 = t39 * A_11_above + t52 * A_12_above + t5 * t65
@@ -1598,42 +1591,41 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t10 * ops.feasibility
     t29 = 0.9375 * (l * size)
     t30 = l * l
+    t31 = 2.0 * t27
     g_1 = whole * d_z
     s_w = ops.sign(t15 * a_x)
-    t31 = whole * (t15 + a_x * s_w)
-    t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    t33 = t27 * t27
-    t34 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t32, m_m) * t33)
-    t35 = ops.select(all_same, 0.0, mu * (1.0 + t34) * 0.25)
-    t36 = t30 - t35
+    t32 = whole * (t15 + a_x * s_w)
+    t33 = 2.0 * (g_1 * g_1) + t32 * t32
+    t34 = 1.0 / ops.select(in_line, t33, m_m) * t27 * 0.5
+    t35 = mu * (1.0 + t31 * ops.select(in_line, 0.0, t34))
+    t36 = t30 - ops.select(all_same, 0.0, t35 * 0.25)
     unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
     t37 = ops.opposite(failed)
     t38 = ops.opposite(in_line)
-    t39 = t37 & t38
     touching = ops.max(t36, 0.0) <= ops.vanishing * t29
-    t40 = t37 & ops.opposite(touching)
-    t41 = t39 | t40 | (t40 & ops.opposite(all_same) & t38)
-    t42 = ops.select((t39 & slim) | ((t37 | (t41 & t38)) & slim), mu, 1.0)
-    over = 1.0 / t42
+    t39 = t37 & ops.opposite(touching)
+    t40 = t39 | ((t37 | (t39 & ops.opposite(all_same))) & t38)
+    t41 = (t37 & t38 & slim) | ((t37 | (t40 & t38)) & slim)
+    over = 1.0 / ops.select(t41, mu, 1.0)
     m_x = ops.select(slim, over * (t15 * n_z - d_z * t25), t18)
     m_m_2 = ops.select(slim, over * t26, product_2)
-    t43 = ops.select(t41, ops.select(in_line, t32, m_m_2), 1.0)
-    part = 1.0 / t43
-    t44 = mu * (1.0 + ops.select(in_line, 0.0, part * t33))
-    slack = ops.max(t30 - ops.select(all_same, 0.0, t44 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t40, part * slack, 1.0)))
-    t45 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t46 = ops.select(in_line, 0.0, part * t27 * 0.5)
-    t47 = t24 * t46 + d_x * 0.5
-    t48 = t45 - t47
+    t42 = ops.select(t40, ops.select(in_line, t33, m_m_2), 1.0)
+    part = 1.0 / t42
+    t43 = ops.select(in_line, 0.0, part * t27 * 0.5)
+    t44 = ops.select(all_same, 0.0, mu * (1.0 + t31 * t43) * 0.25)
+    t45 = ops.select(t39, part * ops.max(t30 - t44, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t45))
+    t46 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t47 = t24 * t43 + d_x * 0.5
+    t48 = t46 - t47
     t49 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
     t50 = h * ops.select(in_line, g_1, -t49)
-    t51 = t25 * t46 - t15 * 0.5
+    t51 = t25 * t43 - t15 * 0.5
     t52 = t50 + t51
     m_z = ops.select(slim, over * (a_x * t25 + t15 * t24), t22)
-    t53 = h * ops.select(in_line, -t31, m_z)
-    t54 = n_z * t46 - d_z * 0.5
+    t53 = h * ops.select(in_line, -t32, m_z)
+    t54 = n_z * t43 - d_z * 0.5
     t55 = t53 + t54
     t56 = t7 + t48
     t57 = t9 + t52
@@ -1656,7 +1648,7 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     t74 = (t59 + (t60 * t60 + t61 * t61 + t62 * t62)) * (t72 + t73 * t73)
     t75 = ops.select(t37, 3.0 * (m_m_2 * h), 1.0)
     t76 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t37, t74, 1.0)) / t75)
-    A_11_above = t45 + t47
+    A_11_above = t46 + t47
     A_12_above = t50 - t51
     t77 = A_11_above * A_11_above + A_12_above * A_12_above
     t78 = t53 - t54
@@ -1790,14 +1782,14 @@ def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t28 = ops.abs(ops.select(in_line, -t27, 0.0)) <= t10 * ops.feasibility
     t29 = 0.9375 * (l * size)
     t30 = l * l
+    t31 = 2.0 * t27
     g_1 = whole * d_z
     s_w = ops.sign(t15 * a_x)
-    t31 = whole * (t15 + a_x * s_w)
-    t32 = 2.0 * (g_1 * g_1) + t31 * t31
-    t33 = t27 * t27
-    t34 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t32, m_m) * t33)
-    t35 = ops.select(all_same, 0.0, mu * (1.0 + t34) * 0.25)
-    t36 = t30 - t35
+    t32 = whole * (t15 + a_x * s_w)
+    t33 = 2.0 * (g_1 * g_1) + t32 * t32
+    t34 = 1.0 / ops.select(in_line, t33, m_m) * t27 * 0.5
+    t35 = mu * (1.0 + t31 * ops.select(in_line, 0.0, t34))
+    t36 = t30 - ops.select(all_same, 0.0, t35 * 0.25)
     unreachable = ops.opposite(t28 & (-(ops.feasibility * t29) <= t36))
     failed = invalid | unreachable
     t37 = c_alpha1 * s_alpha2
@@ -1805,32 +1797,31 @@ def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t38 = ops.opposite(failed)
     t39 = t38 & ops.opposite(touching)
     t40 = ops.opposite(in_line)
-    t41 = t38 & t40
-    t42 = t41 | t39 | (t39 & ops.opposite(all_same) & t40)
-    t43 = ops.select((t41 & slim) | (t42 & t40 & slim), mu, 1.0)
-    over = 1.0 / t43
-    w_w = ops.select(in_line, t32, ops.select(slim, over * t26, product_2))
-    part = 1.0 / ops.select(t42, w_w, 1.0)
-    t44 = mu * (1.0 + ops.select(in_line, 0.0, part * t33))
-    slack = ops.max(t30 - ops.select(all_same, 0.0, t44 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t39, part * slack, 1.0)))
+    t41 = t39 | ((t38 | (t39 & ops.opposite(all_same))) & t40)
+    t42 = ops.select((t38 & t40 & slim) | (t41 & t40 & slim), mu, 1.0)
+    over = 1.0 / t42
+    w_w = ops.select(in_line, t33, ops.select(slim, over * t26, product_2))
+    part = 1.0 / ops.select(t41, w_w, 1.0)
+    t43 = ops.select(in_line, 0.0, part * t27 * 0.5)
+    t44 = ops.select(all_same, 0.0, mu * (1.0 + t31 * t43) * 0.25)
+    t45 = ops.select(t39, part * ops.max(t30 - t44, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t45))
     m_z = ops.select(slim, over * (a_x * t25 + t15 * t24), t22)
-    t45 = h * ops.select(in_line, -t31, m_z)
-    t46 = ops.select(in_line, 0.0, part * t27 * 0.5)
-    t47 = n_z * t46 - d_z * 0.5
-    t48 = t45 + t47
+    t46 = h * ops.select(in_line, -t32, m_z)
+    t47 = n_z * t43 - d_z * 0.5
+    t48 = t46 + t47
     t49 = s_alpha3 * t48
     t50 = t37 * t49
     t51 = u_z + t48
     t52 = ops.select(slim, over * (a_x * n_z + d_z * t24), t21)
     t53 = h * ops.select(in_line, g_1, -t52)
-    t54 = t25 * t46 - t15 * 0.5
+    t54 = t25 * t43 - t15 * 0.5
     t55 = t53 + t54
     t56 = t51 * (t14 + t55)
     t57 = c_alpha3 * t37
     m_x = ops.select(slim, over * (t15 * n_z - d_z * t25), t18)
     t58 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t59 = t24 * t46 + d_x * 0.5
+    t59 = t24 * t43 + d_x * 0.5
     t60 = t58 - t59
     t61 = v_z + t48
     t62 = t51 * t61
@@ -1852,7 +1843,7 @@ def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t78 = t76 + t75 * t50 + t73 * t77 - t37 * t72 * t77
     t79 = ops.select(failed, ops.nan, t50 * t56 - (t78 + t69 * t49 * t56))
     A_11_above = t58 + t59
-    t80 = t45 - t47
+    t80 = t46 - t47
     t81 = u_z - t80
     t82 = v_z - t80
     t83 = t81 * t82

@@ -2,15 +2,15 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 78 compare and select, 49 add, 4 divide, 82 multiply, 1 sqrt
-#   skeleton: 117 compare and select, 83 add, 4 divide, 84 multiply, 1 sqrt
-#   jacobian_parallel: 87 compare and select, 57 add, 4 divide, 82 multiply, 1 sqrt
-#   jacobian_serial: 73 compare and select, 43 add, 4 divide, 69 multiply, 1 sqrt
-#   jacobian: 91 compare and select, 75 add, 22 divide, 133 multiply, 1 sqrt
-#   determinant: 71 compare and select, 43 add, 6 divide, 74 multiply, 1 sqrt
-#   singularities: 76 compare and select, 43 add, 4 divide, 70 multiply, 1 sqrt
-#   condition_number: 77 compare and select, 107 add, 6 divide, 152 multiply, 3 sqrt
-#   constraint: 73 compare and select, 65 add, 4 divide, 112 multiply, 1 sqrt
+#   fk: 77 compare and select, 49 add, 4 divide, 84 multiply, 1 sqrt
+#   skeleton: 116 compare and select, 83 add, 4 divide, 86 multiply, 1 sqrt
+#   jacobian_parallel: 86 compare and select, 57 add, 4 divide, 84 multiply, 1 sqrt
+#   jacobian_serial: 72 compare and select, 43 add, 4 divide, 71 multiply, 1 sqrt
+#   jacobian: 90 compare and select, 75 add, 22 divide, 135 multiply, 1 sqrt
+#   determinant: 70 compare and select, 43 add, 6 divide, 76 multiply, 1 sqrt
+#   singularities: 75 compare and select, 43 add, 4 divide, 72 multiply, 1 sqrt
+#   condition_number: 76 compare and select, 107 add, 6 divide, 154 multiply, 3 sqrt
+#   constraint: 72 compare and select, 65 add, 4 divide, 114 multiply, 1 sqrt
 #   ik: 78 compare and select, 69 add, 52 multiply, 12 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 13 multiply, 3 sqrt
 """Delta robot with linear drives.
@@ -177,45 +177,44 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = l * size * 0.1875
     t21 = l * l
-    t22 = whole * t12
+    t22 = 2.0 * t18
+    t23 = whole * t12
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    t24 = t18 * t18
-    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
-    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
-    t27 = t21 - t26
+    t24 = 2.0 * (t23 * t23) + g_2 * g_2
+    t25 = 1.0 / ops.select(in_line, t24, m_m) * t18 * 0.5
+    t26 = mu * (1.0 + t22 * ops.select(in_line, 0.0, t25))
+    t27 = t21 - ops.select(all_same, 0.0, t26 * 0.25)
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = invalid | unreachable
     t28 = ops.opposite(failed)
-    t29 = ops.opposite(in_line)
-    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t31 = t28 & ops.opposite(touching)
-    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
-    t33 = ops.select((t30 & slim) | (t32 & t29 & slim), mu, 1.0)
-    over = 1.0 / t33
-    w_w = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
-    part = 1.0 / ops.select(t32, w_w, 1.0)
-    t34 = ops.select(in_line, 0.0, part * t18 * 0.5)
-    t35 = c1_x - t4 * 0.5 + t15 * t34
-    t36 = ops.select(slim, over * (d_y * t16 - t12 * n_y), t13)
-    t37 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
-    slack = ops.max(t21 - ops.select(all_same, 0.0, t37 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
-    t38 = ops.select(in_line, t22 * s_w, t36) * h
-    t39 = n_y * t34 - d_y * 0.5
+    t29 = t28 & ops.opposite(touching)
+    t30 = ops.opposite(in_line)
+    t31 = t29 | ((t28 | (t29 & ops.opposite(all_same))) & t30)
+    t32 = ops.select((t28 & t30 & slim) | (t31 & t30 & slim), mu, 1.0)
+    over = 1.0 / t32
+    w_w = ops.select(in_line, t24, ops.select(slim, over * t17, product_2))
+    part = 1.0 / ops.select(t31, w_w, 1.0)
+    t33 = ops.select(in_line, 0.0, part * t18 * 0.5)
+    t34 = c1_x - t4 * 0.5 + t15 * t33
+    t35 = ops.select(slim, over * (d_y * t16 - t12 * n_y), t13)
+    t36 = ops.select(all_same, 0.0, mu * (1.0 + t22 * t33) * 0.25)
+    t37 = ops.select(t29, part * ops.max(t21 - t36, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t37))
+    t38 = ops.select(in_line, t23 * s_w, t35) * h
+    t39 = n_y * t33 - d_y * 0.5
     m_y = ops.select(slim, over * (a_x * t16 + t12 * t15), product_y)
-    t40 = h * ops.select(in_line, -t22, m_y)
-    t41 = t12 * 0.5 - (rho1 + t16 * t34)
+    t40 = h * ops.select(in_line, -t23, m_y)
+    t41 = t12 * 0.5 - (rho1 + t16 * t33)
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
     t42 = h * ops.select(in_line, -g_2, m_z)
     t43 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t35 + t38),
+        ops.select(failed, ops.nan, t34 + t38),
         ops.select(failed, ops.nan, -(t39 + t40)),
         ops.select(failed, ops.nan, -(t41 + t42)),
-        ops.select(failed, ops.nan, t35 - t38),
+        ops.select(failed, ops.nan, t34 - t38),
         ops.select(failed, ops.nan, t40 - t39),
         ops.select(failed, ops.nan, t42 - t41),
         t43,
@@ -320,14 +319,14 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     t24 = ops.abs(ops.select(in_line, -t23, 0.0)) <= t11 * ops.feasibility
     t25 = 0.234375 * (l * size)
     t26 = l * l
-    t27 = whole * t16
+    t27 = 2.0 * t23
+    t28 = whole * t16
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t28 = 2.0 * (t27 * t27) + g_2 * g_2
-    t29 = t23 * t23
-    t30 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t28, m_m) * t29)
-    t31 = ops.select(all_same, 0.0, mu * (1.0 + t30) * 0.25)
-    t32 = t26 - t31
+    t29 = 2.0 * (t28 * t28) + g_2 * g_2
+    t30 = t23 * (1.0 / ops.select(in_line, t29, m_m)) * 0.5
+    t31 = mu * (1.0 + t27 * ops.select(in_line, 0.0, t30))
+    t32 = t26 - ops.select(all_same, 0.0, t31 * 0.25)
     unreachable = ops.opposite(t24 & (-(ops.feasibility * t25) <= t32))
     failed = ops.opposite(t2) | unreachable
     t33 = ops.select(failed, ops.nan, f)
@@ -335,30 +334,29 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     t35 = ops.select(failed, ops.nan, rho1)
     t36 = e + c1_x
     t37 = ops.opposite(failed)
-    t38 = ops.opposite(in_line)
-    t39 = t37 & t38
     touching = ops.max(t32, 0.0) <= ops.vanishing * t25
-    t40 = t37 & ops.opposite(touching)
-    t41 = t39 | t40 | (t40 & ops.opposite(all_same) & t38)
-    t42 = ops.select((t39 & slim) | (t41 & t38 & slim), mu, 1.0)
-    over = 1.0 / t42
-    w_w = ops.select(in_line, t28, ops.select(slim, over * t22, product_2))
-    part = 1.0 / ops.select(t41, w_w, 1.0)
-    t43 = ops.select(in_line, 0.0, t23 * part * 0.5)
-    t44 = t6 * 0.5 - t20 * t43
-    t45 = ops.select(slim, over * (d_y * t21 - t16 * n_y), t18)
-    t46 = mu * (1.0 + ops.select(in_line, 0.0, part * t29))
-    slack = ops.max(t26 - ops.select(all_same, 0.0, t46 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t40, part * slack, 1.0)))
-    t47 = ops.select(in_line, t27 * s_w, t45) * h
-    t48 = t44 - t47
+    t38 = t37 & ops.opposite(touching)
+    t39 = ops.opposite(in_line)
+    t40 = t38 | ((t37 | (t38 & ops.opposite(all_same))) & t39)
+    t41 = ops.select((t37 & t39 & slim) | (t40 & t39 & slim), mu, 1.0)
+    over = 1.0 / t41
+    w_w = ops.select(in_line, t29, ops.select(slim, over * t22, product_2))
+    part = 1.0 / ops.select(t40, w_w, 1.0)
+    t42 = ops.select(in_line, 0.0, t23 * part * 0.5)
+    t43 = t6 * 0.5 - t20 * t42
+    t44 = ops.select(slim, over * (d_y * t21 - t16 * n_y), t18)
+    t45 = ops.select(all_same, 0.0, mu * (1.0 + t27 * t42) * 0.25)
+    t46 = ops.select(t38, part * ops.max(t26 - t45, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t46))
+    t47 = ops.select(in_line, t28 * s_w, t44) * h
+    t48 = t43 - t47
     t49 = ops.select(failed, ops.nan, t36 - t48)
-    t50 = n_y * t43 - d_y * 0.5
+    t50 = n_y * t42 - d_y * 0.5
     m_y = ops.select(slim, over * (a_x * t21 + t16 * t20), product_y)
-    t51 = h * ops.select(in_line, -t27, m_y)
+    t51 = h * ops.select(in_line, -t28, m_y)
     t52 = t50 + t51
     t53 = ops.select(failed, ops.nan, -t52)
-    t54 = t21 * t43 - t16 * 0.5
+    t54 = t21 * t42 - t16 * 0.5
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t20), product_z)
     t55 = h * ops.select(in_line, -g_2, m_z)
     t56 = ops.select(failed, ops.nan, rho1 + (t54 - t55))
@@ -386,7 +384,7 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     t78 = ops.select(failed, ops.nan, rho3)
     t79 = ops.select(failed, ops.nan, -t71)
     t80 = ops.select(failed, ops.nan, -t68)
-    t81 = t44 + t47
+    t81 = t43 + t47
     t82 = ops.select(failed, ops.nan, t36 - t81)
     t83 = t50 - t51
     t84 = ops.select(failed, ops.nan, -t83)
@@ -614,44 +612,43 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
     t21 = l * l
-    t22 = whole * t12
+    t22 = 2.0 * t18
+    t23 = whole * t12
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    t24 = t18 * t18
-    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
-    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
-    t27 = t21 - t26
+    t24 = 2.0 * (t23 * t23) + g_2 * g_2
+    t25 = 1.0 / ops.select(in_line, t24, m_m) * t18 * 0.5
+    t26 = mu * (1.0 + t22 * ops.select(in_line, 0.0, t25))
+    t27 = t21 - ops.select(all_same, 0.0, t26 * 0.25)
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
     t28 = ops.opposite(failed)
-    t29 = ops.opposite(in_line)
-    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t31 = t28 & ops.opposite(touching)
-    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
-    t33 = ops.select((t30 & slim) | (t32 & t29 & slim), mu, 1.0)
-    over = 1.0 / t33
-    w_w = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
-    part = 1.0 / ops.select(t32, w_w, 1.0)
-    t34 = ops.select(in_line, 0.0, part * t18 * 0.5)
-    t35 = t4 * 0.5 - t15 * t34
-    t36 = ops.select(slim, over * (d_y * t16 - t12 * n_y), t13)
-    t37 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
-    slack = ops.max(t21 - ops.select(all_same, 0.0, t37 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
-    t38 = ops.select(in_line, t22 * s_w, t36) * h
-    t39 = t35 - t38
-    t40 = n_y * t34 - d_y * 0.5
+    t29 = t28 & ops.opposite(touching)
+    t30 = ops.opposite(in_line)
+    t31 = t29 | ((t28 | (t29 & ops.opposite(all_same))) & t30)
+    t32 = ops.select((t28 & t30 & slim) | (t31 & t30 & slim), mu, 1.0)
+    over = 1.0 / t32
+    w_w = ops.select(in_line, t24, ops.select(slim, over * t17, product_2))
+    part = 1.0 / ops.select(t31, w_w, 1.0)
+    t33 = ops.select(in_line, 0.0, part * t18 * 0.5)
+    t34 = t4 * 0.5 - t15 * t33
+    t35 = ops.select(slim, over * (d_y * t16 - t12 * n_y), t13)
+    t36 = ops.select(all_same, 0.0, mu * (1.0 + t22 * t33) * 0.25)
+    t37 = ops.select(t29, part * ops.max(t21 - t36, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t37))
+    t38 = ops.select(in_line, t23 * s_w, t35) * h
+    t39 = t34 - t38
+    t40 = n_y * t33 - d_y * 0.5
     m_y = ops.select(slim, over * (a_x * t16 + t12 * t15), product_y)
-    t41 = h * ops.select(in_line, -t22, m_y)
+    t41 = h * ops.select(in_line, -t23, m_y)
     t42 = t40 + t41
-    t43 = t16 * t34 - t12 * 0.5
+    t43 = t16 * t33 - t12 * 0.5
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
     t44 = h * ops.select(in_line, -g_2, m_z)
     A_13 = t43 - t44
     t45 = ops.select(failed, ops.nan, t4 - t39)
-    t46 = t35 + t38
+    t46 = t34 + t38
     t47 = t40 - t41
     A_13_above = t43 + t44
     t48 = ops.select(failed, ops.nan, t4 - t46)
@@ -758,34 +755,32 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
     t21 = l * l
-    t22 = whole * t11
+    t22 = 2.0 * t18
+    t23 = whole * t11
     g_2 = whole * (d_y + a_x * ops.sign(a_x * d_y))
-    t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    t24 = t18 * t18
-    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
-    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
-    t27 = t21 - t26
+    t24 = 2.0 * (t23 * t23) + g_2 * g_2
+    t25 = 1.0 / ops.select(in_line, t24, m_m) * t18 * 0.5
+    t26 = mu * (1.0 + t22 * ops.select(in_line, 0.0, t25))
+    t27 = t21 - ops.select(all_same, 0.0, t26 * 0.25)
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
     t28 = ops.opposite(failed)
-    t29 = ops.opposite(in_line)
-    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t31 = t28 & ops.opposite(touching)
-    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
-    t33 = ops.select((t30 & slim) | (t32 & t29 & slim), mu, 1.0)
-    over = 1.0 / t33
-    w_w = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
-    part = 1.0 / ops.select(t32, w_w, 1.0)
-    t34 = t16 * ops.select(in_line, 0.0, part * t18 * 0.5)
-    t35 = t34 - t11 * 0.5
+    t29 = t28 & ops.opposite(touching)
+    t30 = ops.opposite(in_line)
+    t31 = t29 | ((t28 | (t29 & ops.opposite(all_same))) & t30)
+    t32 = ops.select((t28 & t30 & slim) | (t31 & t30 & slim), mu, 1.0)
+    over = 1.0 / t32
+    w_w = ops.select(in_line, t24, ops.select(slim, over * t17, product_2))
+    part = 1.0 / ops.select(t31, w_w, 1.0)
+    t33 = ops.select(in_line, 0.0, part * t18 * 0.5)
+    t34 = t16 * t33 - t11 * 0.5
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
-    t36 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
-    slack = ops.max(t21 - ops.select(all_same, 0.0, t36 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
-    t37 = ops.select(in_line, -g_2, m_z) * h
-    A_13 = t35 - t37
-    A_13_above = t35 + t37
+    t35 = ops.select(all_same, 0.0, mu * (1.0 + t22 * t33) * 0.25)
+    t36 = ops.select(t29, part * ops.max(t21 - t35, 0.0), 1.0)
+    t37 = ops.select(in_line, -g_2, m_z) * ops.select(touching, 0.0, ops.sqrt(t36))
+    A_13 = t34 - t37
+    A_13_above = t34 + t37
     return (
         ops.select(failed, ops.nan, A_13),
         ops.select(failed, ops.nan, t3 + A_13),
@@ -877,38 +872,37 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
     t21 = l * l
-    t22 = whole * t11
+    t22 = 2.0 * t18
+    t23 = whole * t11
     s_w = ops.sign(a_x * d_y)
     g_2 = whole * (d_y + a_x * s_w)
-    t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    t24 = t18 * t18
-    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
-    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
-    t27 = t21 - t26
+    t24 = 2.0 * (t23 * t23) + g_2 * g_2
+    t25 = 1.0 / ops.select(in_line, t24, m_m) * t18 * 0.5
+    t26 = mu * (1.0 + t22 * ops.select(in_line, 0.0, t25))
+    t27 = t21 - ops.select(all_same, 0.0, t26 * 0.25)
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
     t28 = ops.opposite(failed)
-    t29 = ops.opposite(in_line)
-    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t31 = t28 & ops.opposite(touching)
-    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
-    t33 = ops.select((t30 & slim) | ((t28 | (t32 & t29)) & slim), mu, 1.0)
-    over = 1.0 / t33
+    t29 = t28 & ops.opposite(touching)
+    t30 = ops.opposite(in_line)
+    t31 = t29 | ((t28 | (t29 & ops.opposite(all_same))) & t30)
+    t32 = (t28 & t30 & slim) | ((t28 | (t31 & t30)) & slim)
+    over = 1.0 / ops.select(t32, mu, 1.0)
     m_m_2 = ops.select(slim, over * t17, product_2)
-    t34 = ops.select(t32, ops.select(in_line, t23, m_m_2), 1.0)
-    part = 1.0 / t34
-    t35 = ops.select(in_line, 0.0, part * t18 * 0.5)
-    t36 = t16 * t35 - t11 * 0.5
+    t33 = ops.select(t31, ops.select(in_line, t24, m_m_2), 1.0)
+    part = 1.0 / t33
+    t34 = ops.select(in_line, 0.0, part * t18 * 0.5)
+    t35 = t16 * t34 - t11 * 0.5
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
-    t37 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
-    slack = ops.max(t21 - ops.select(all_same, 0.0, t37 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
+    t36 = ops.select(all_same, 0.0, mu * (1.0 + t22 * t34) * 0.25)
+    t37 = ops.select(t29, part * ops.max(t21 - t36, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t37))
     t38 = ops.select(in_line, -g_2, m_z) * h
-    A_13 = t36 - t38
-    t39 = n_y * t35 - d_y * 0.5
+    A_13 = t35 - t38
+    t39 = n_y * t34 - d_y * 0.5
     m_y = ops.select(slim, over * (a_x * t16 + t11 * t15), product_y)
-    t40 = h * ops.select(in_line, -t22, m_y)
+    t40 = h * ops.select(in_line, -t23, m_y)
     t41 = t39 + t40
     A_22 = c3_y - t41
     A_33 = t9 + A_13
@@ -918,9 +912,9 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t44 = ops.select(failed, ops.nan, -(A_13 * (A_22 * A_33 + A_23 * t42) / t43))
     t45 = ops.select(failed, ops.nan, -(A_23 * (t41 * A_33 - A_13 * t42) / t43))
     t46 = ops.select(failed, ops.nan, A_33 * (t41 * A_23 + A_13 * A_22) / t43)
-    t47 = t4 * 0.5 - t15 * t35
+    t47 = t4 * 0.5 - t15 * t34
     t48 = ops.select(slim, over * (d_y * t16 - t11 * n_y), t13)
-    t49 = h * ops.select(in_line, t22 * s_w, t48)
+    t49 = h * ops.select(in_line, t23 * s_w, t48)
     t50 = t47 - t49
     A_21 = t4 - t50
     t51 = ops.select(failed, ops.nan, A_13 * (A_33 * A_21 - A_23 * A_21) / t43)
@@ -931,7 +925,7 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t56 = t41 * A_21
     t57 = ops.select(failed, ops.nan, A_23 * (t42 * t50 + t56) / t43)
     t58 = ops.select(failed, ops.nan, -(A_33 * (t56 - A_22 * t50) / t43))
-    A_13_above = t36 + t38
+    A_13_above = t35 + t38
     t59 = t39 - t40
     A_22_above = c3_y - t59
     A_33_above = t9 + A_13_above
@@ -1055,37 +1049,36 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
     t21 = l * l
-    t22 = whole * t11
+    t22 = 2.0 * t18
+    t23 = whole * t11
     g_2 = whole * (d_y + a_x * ops.sign(a_x * d_y))
-    t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    t24 = t18 * t18
-    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
-    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
-    t27 = t21 - t26
+    t24 = 2.0 * (t23 * t23) + g_2 * g_2
+    t25 = 1.0 / ops.select(in_line, t24, m_m) * t18 * 0.5
+    t26 = mu * (1.0 + t22 * ops.select(in_line, 0.0, t25))
+    t27 = t21 - ops.select(all_same, 0.0, t26 * 0.25)
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
     t28 = ops.opposite(failed)
-    t29 = ops.opposite(in_line)
-    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t31 = t28 & ops.opposite(touching)
-    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
-    t33 = ops.select((t30 & slim) | ((t28 | (t32 & t29)) & slim), mu, 1.0)
-    over = 1.0 / t33
+    t29 = t28 & ops.opposite(touching)
+    t30 = ops.opposite(in_line)
+    t31 = t29 | ((t28 | (t29 & ops.opposite(all_same))) & t30)
+    t32 = (t28 & t30 & slim) | ((t28 | (t31 & t30)) & slim)
+    over = 1.0 / ops.select(t32, mu, 1.0)
     m_m_2 = ops.select(slim, over * t17, product_2)
-    t34 = ops.select(t32, ops.select(in_line, t23, m_m_2), 1.0)
-    part = 1.0 / t34
-    t35 = t16 * ops.select(in_line, 0.0, part * t18 * 0.5)
-    t36 = t35 - t11 * 0.5
+    t33 = ops.select(t31, ops.select(in_line, t24, m_m_2), 1.0)
+    part = 1.0 / t33
+    t34 = ops.select(in_line, 0.0, part * t18 * 0.5)
+    t35 = t16 * t34 - t11 * 0.5
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
-    t37 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
-    slack = ops.max(t21 - ops.select(all_same, 0.0, t37 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
+    t36 = ops.select(all_same, 0.0, mu * (1.0 + t22 * t34) * 0.25)
+    t37 = ops.select(t29, part * ops.max(t21 - t36, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t37))
     t38 = ops.select(in_line, -g_2, m_z) * h
-    A_13 = t36 - t38
+    A_13 = t35 - t38
     t39 = ops.select(t28, m_m_2 * h, 1.0)
     t40 = ops.select(failed, ops.nan, -(A_13 * (t3 + A_13) * (t9 + A_13) / t39))
-    A_13_above = t36 + t38
+    A_13_above = t35 + t38
     t41 = A_13_above * (t3 + A_13_above) * (t9 + A_13_above)
     return (
         t40,
@@ -1174,36 +1167,35 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
     t21 = l * l
-    t22 = whole * t11
+    t22 = 2.0 * t18
+    t23 = whole * t11
     g_2 = whole * (d_y + a_x * ops.sign(a_x * d_y))
-    t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    t24 = t18 * t18
-    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
-    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
-    t27 = t21 - t26
+    t24 = 2.0 * (t23 * t23) + g_2 * g_2
+    t25 = 1.0 / ops.select(in_line, t24, m_m) * t18 * 0.5
+    t26 = mu * (1.0 + t22 * ops.select(in_line, 0.0, t25))
+    t27 = t21 - ops.select(all_same, 0.0, t26 * 0.25)
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
     t28 = ops.opposite(failed)
-    t29 = ops.opposite(in_line)
-    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t31 = t28 & ops.opposite(touching)
-    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
-    t33 = ops.select((t30 & slim) | ((t28 | (t32 & t29)) & slim), mu, 1.0)
-    over = 1.0 / t33
+    t29 = t28 & ops.opposite(touching)
+    t30 = ops.opposite(in_line)
+    t31 = t29 | ((t28 | (t29 & ops.opposite(all_same))) & t30)
+    t32 = (t28 & t30 & slim) | ((t28 | (t31 & t30)) & slim)
+    over = 1.0 / ops.select(t32, mu, 1.0)
     m_m_2 = ops.select(slim, over * t17, product_2)
-    t34 = ops.select(t32, ops.select(in_line, t23, m_m_2), 1.0)
-    part = 1.0 / t34
-    t35 = t16 * ops.select(in_line, 0.0, part * t18 * 0.5)
-    t36 = t35 - t11 * 0.5
+    t33 = ops.select(t31, ops.select(in_line, t24, m_m_2), 1.0)
+    part = 1.0 / t33
+    t34 = ops.select(in_line, 0.0, part * t18 * 0.5)
+    t35 = t16 * t34 - t11 * 0.5
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
-    t37 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
-    slack = ops.max(t21 - ops.select(all_same, 0.0, t37 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
+    t36 = ops.select(all_same, 0.0, mu * (1.0 + t22 * t34) * 0.25)
+    t37 = ops.select(t29, part * ops.max(t21 - t36, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t37))
     t38 = ops.select(in_line, -g_2, m_z) * h
-    A_13 = t36 - t38
+    A_13 = t35 - t38
     Delta = m_m_2 * h
-    A_13_above = t36 + t38
+    A_13_above = t35 + t38
     return (
         ops.select(failed, ops.nan, A_13),
         ops.select(failed, ops.nan, t3 + A_13),
@@ -1297,40 +1289,39 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
     t21 = l * l
-    t22 = whole * t12
+    t22 = 2.0 * t18
+    t23 = whole * t12
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    t24 = t18 * t18
-    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
-    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
-    t27 = t21 - t26
+    t24 = 2.0 * (t23 * t23) + g_2 * g_2
+    t25 = 1.0 / ops.select(in_line, t24, m_m) * t18 * 0.5
+    t26 = mu * (1.0 + t22 * ops.select(in_line, 0.0, t25))
+    t27 = t21 - ops.select(all_same, 0.0, t26 * 0.25)
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
     t28 = ops.opposite(failed)
-    t29 = ops.opposite(in_line)
-    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t31 = t28 & ops.opposite(touching)
-    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
-    t33 = ops.select((t30 & slim) | ((t28 | (t32 & t29)) & slim), mu, 1.0)
-    over = 1.0 / t33
+    t29 = t28 & ops.opposite(touching)
+    t30 = ops.opposite(in_line)
+    t31 = t29 | ((t28 | (t29 & ops.opposite(all_same))) & t30)
+    t32 = (t28 & t30 & slim) | ((t28 | (t31 & t30)) & slim)
+    over = 1.0 / ops.select(t32, mu, 1.0)
     m_m_2 = ops.select(slim, over * t17, product_2)
-    t34 = ops.select(t32, ops.select(in_line, t23, m_m_2), 1.0)
-    part = 1.0 / t34
-    t35 = ops.select(in_line, 0.0, part * t18 * 0.5)
-    t36 = t4 * 0.5 - t15 * t35
-    t37 = ops.select(slim, over * (d_y * t16 - t12 * n_y), t13)
-    t38 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
-    slack = ops.max(t21 - ops.select(all_same, 0.0, t38 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
-    t39 = ops.select(in_line, t22 * s_w, t37) * h
-    t40 = t36 - t39
-    t41 = n_y * t35 - d_y * 0.5
+    t33 = ops.select(t31, ops.select(in_line, t24, m_m_2), 1.0)
+    part = 1.0 / t33
+    t34 = ops.select(in_line, 0.0, part * t18 * 0.5)
+    t35 = t4 * 0.5 - t15 * t34
+    t36 = ops.select(slim, over * (d_y * t16 - t12 * n_y), t13)
+    t37 = ops.select(all_same, 0.0, mu * (1.0 + t22 * t34) * 0.25)
+    t38 = ops.select(t29, part * ops.max(t21 - t37, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t38))
+    t39 = ops.select(in_line, t23 * s_w, t36) * h
+    t40 = t35 - t39
+    t41 = n_y * t34 - d_y * 0.5
     m_y = ops.select(slim, over * (a_x * t16 + t12 * t15), product_y)
-    t42 = h * ops.select(in_line, -t22, m_y)
+    t42 = h * ops.select(in_line, -t23, m_y)
     t43 = t41 + t42
-    t44 = t16 * t35 - t12 * 0.5
+    t44 = t16 * t34 - t12 * 0.5
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
     t45 = h * ops.select(in_line, -g_2, m_z)
     A_13 = t44 - t45
@@ -1357,7 +1348,7 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     t62 = (t47 + (t46 + t48 * t48 + A_33 * A_33)) * (t60 + t61 * t61)
     t63 = ops.select(t28, 3.0 * (m_m_2 * h), 1.0)
     t64 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t28, t62, 1.0)) / t63)
-    t65 = t36 + t39
+    t65 = t35 + t39
     t66 = t41 - t42
     A_13_above = t44 + t45
     square1_above = t65 * t65 + t66 * t66 + A_13_above * A_13_above
@@ -1472,35 +1463,34 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     t19 = ops.abs(ops.select(in_line, -t18, 0.0)) <= t6 * ops.feasibility
     t20 = 0.234375 * (l * size)
     t21 = l * l
-    t22 = whole * t12
+    t22 = 2.0 * t18
+    t23 = whole * t12
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t23 = 2.0 * (t22 * t22) + g_2 * g_2
-    t24 = t18 * t18
-    t25 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t23, m_m) * t24)
-    t26 = ops.select(all_same, 0.0, mu * (1.0 + t25) * 0.25)
-    t27 = t21 - t26
+    t24 = 2.0 * (t23 * t23) + g_2 * g_2
+    t25 = 1.0 / ops.select(in_line, t24, m_m) * t18 * 0.5
+    t26 = mu * (1.0 + t22 * ops.select(in_line, 0.0, t25))
+    t27 = t21 - ops.select(all_same, 0.0, t26 * 0.25)
     unreachable = ops.opposite(t19 & (-(ops.feasibility * t20) <= t27))
     failed = ops.opposite(t2) | unreachable
     t28 = ops.opposite(failed)
-    t29 = ops.opposite(in_line)
-    t30 = t28 & t29
     touching = ops.max(t27, 0.0) <= ops.vanishing * t20
-    t31 = t28 & ops.opposite(touching)
-    t32 = t30 | t31 | (t31 & ops.opposite(all_same) & t29)
-    t33 = ops.select((t30 & slim) | (t32 & t29 & slim), mu, 1.0)
-    over = 1.0 / t33
-    w_w = ops.select(in_line, t23, ops.select(slim, over * t17, product_2))
-    part = 1.0 / ops.select(t32, w_w, 1.0)
-    t34 = ops.select(in_line, 0.0, part * t18 * 0.5)
-    t35 = t4 * 0.5 - t15 * t34
-    t36 = ops.select(slim, over * (d_y * t16 - t12 * n_y), t13)
-    t37 = mu * (1.0 + ops.select(in_line, 0.0, part * t24))
-    slack = ops.max(t21 - ops.select(all_same, 0.0, t37 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t31, part * slack, 1.0)))
-    t38 = ops.select(in_line, t22 * s_w, t36) * h
-    t39 = t35 - t38
-    t40 = t16 * t34 - t12 * 0.5
+    t29 = t28 & ops.opposite(touching)
+    t30 = ops.opposite(in_line)
+    t31 = t29 | ((t28 | (t29 & ops.opposite(all_same))) & t30)
+    t32 = ops.select((t28 & t30 & slim) | (t31 & t30 & slim), mu, 1.0)
+    over = 1.0 / t32
+    w_w = ops.select(in_line, t24, ops.select(slim, over * t17, product_2))
+    part = 1.0 / ops.select(t31, w_w, 1.0)
+    t33 = ops.select(in_line, 0.0, part * t18 * 0.5)
+    t34 = t4 * 0.5 - t15 * t33
+    t35 = ops.select(slim, over * (d_y * t16 - t12 * n_y), t13)
+    t36 = ops.select(all_same, 0.0, mu * (1.0 + t22 * t33) * 0.25)
+    t37 = ops.select(t29, part * ops.max(t21 - t36, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t37))
+    t38 = ops.select(in_line, t23 * s_w, t35) * h
+    t39 = t34 - t38
+    t40 = t16 * t33 - t12 * 0.5
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t15), product_z)
     t41 = h * ops.select(in_line, -g_2, m_z)
     A_13 = t40 - t41
@@ -1509,13 +1499,13 @@ def _constraint(ops, rho1, rho2, rho3, f, e, l):
     t42 = (t4 - t39) * (1.7320508075688772 * A_13)
     t43 = 1.7320508075688772 * t39 * A_23 * A_33 * 0.5 + A_33 * t42 * 0.25
     t44 = 0.75 * A_13
-    t45 = n_y * t34 - d_y * 0.5
+    t45 = n_y * t33 - d_y * 0.5
     m_y = ops.select(slim, over * (a_x * t16 + t12 * t15), product_y)
-    t46 = h * ops.select(in_line, -t22, m_y)
+    t46 = h * ops.select(in_line, -t23, m_y)
     t47 = t45 + t46
     t48 = t43 - A_33 * t44 * (c3_y - t47) + A_23 * t42 * 0.25
     t49 = ops.select(failed, ops.nan, t48 - A_23 * t44 * (c3_y + t47))
-    t50 = t35 + t38
+    t50 = t34 + t38
     A_13_above = t40 + t41
     A_23_above = t3 + A_13_above
     A_33_above = t9 + A_13_above

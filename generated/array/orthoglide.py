@@ -2,15 +2,15 @@
 # derivations/orthoglide.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 74 compare and select, 39 add, 4 divide, 75 multiply, 1 sqrt
-#   skeleton: 91 compare and select, 52 add, 4 divide, 76 multiply, 1 sqrt
-#   jacobian_parallel: 79 compare and select, 44 add, 4 divide, 75 multiply, 1 sqrt
-#   jacobian_serial: 73 compare and select, 42 add, 4 divide, 75 multiply, 1 sqrt
-#   jacobian: 87 compare and select, 62 add, 22 divide, 118 multiply, 1 sqrt
-#   determinant: 71 compare and select, 42 add, 6 divide, 80 multiply, 1 sqrt
-#   singularities: 76 compare and select, 42 add, 4 divide, 76 multiply, 1 sqrt
-#   condition_number: 73 compare and select, 94 add, 6 divide, 133 multiply, 3 sqrt
-#   constraint: 69 compare and select, 46 add, 4 divide, 83 multiply, 1 sqrt
+#   fk: 73 compare and select, 39 add, 4 divide, 77 multiply, 1 sqrt
+#   skeleton: 90 compare and select, 52 add, 4 divide, 78 multiply, 1 sqrt
+#   jacobian_parallel: 78 compare and select, 44 add, 4 divide, 77 multiply, 1 sqrt
+#   jacobian_serial: 72 compare and select, 42 add, 4 divide, 77 multiply, 1 sqrt
+#   jacobian: 86 compare and select, 62 add, 22 divide, 120 multiply, 1 sqrt
+#   determinant: 70 compare and select, 42 add, 6 divide, 82 multiply, 1 sqrt
+#   singularities: 75 compare and select, 42 add, 4 divide, 78 multiply, 1 sqrt
+#   condition_number: 72 compare and select, 94 add, 6 divide, 135 multiply, 3 sqrt
+#   constraint: 68 compare and select, 46 add, 4 divide, 85 multiply, 1 sqrt
 #   ik: 74 compare and select, 51 add, 48 multiply, 12 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 5 multiply, 3 sqrt
 """Orthoglide.
@@ -161,45 +161,44 @@ def _fk(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = L * size * 0.1875
     t15 = L * L
+    t16 = 2.0 * t12
     g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    t17 = t12 * t12
-    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
-    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
-    t20 = t15 - t19
+    t17 = 2.0 * (g_1 * g_1) + g_2 * g_2
+    t18 = 1.0 / ops.select(in_line, t17, m_m) * t12 * 0.5
+    t19 = mu * (1.0 + t16 * ops.select(in_line, 0.0, t18))
+    t20 = t15 - ops.select(all_same, 0.0, t19 * 0.25)
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = invalid | unreachable
     t21 = ops.opposite(failed)
     t22 = ops.opposite(in_line)
-    t23 = t21 & t22
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t24 = t21 & ops.opposite(touching)
-    t25 = t23 | t24 | (t24 & ops.opposite(all_same) & t22)
-    t26 = ops.select((t23 & slim) | (t25 & t22 & slim), mu, 1.0)
-    over = 1.0 / t26
+    t23 = t21 & ops.opposite(touching)
+    t24 = t23 | ((t21 | (t23 & ops.opposite(all_same))) & t22)
+    t25 = ops.select((t21 & t22 & slim) | (t24 & t22 & slim), mu, 1.0)
+    over = 1.0 / t25
     m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
-    w_w = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
-    part = 1.0 / ops.select(t25, w_w, 1.0)
-    t27 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
-    slack = ops.max(t15 - ops.select(all_same, 0.0, t27 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t24, part * slack, 1.0)))
-    t28 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t29 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t30 = t10 * t29 + (rho1 - rho1 * 0.5)
+    w_w = ops.select(in_line, t17, ops.select(slim, over * t11, product_2))
+    part = 1.0 / ops.select(t24, w_w, 1.0)
+    t26 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t27 = ops.select(all_same, 0.0, mu * (1.0 + t16 * t26) * 0.25)
+    t28 = ops.select(t23, part * ops.max(t15 - t27, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t28))
+    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t30 = t10 * t26 + (rho1 - rho1 * 0.5)
     t31 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
     t32 = h * ops.select(in_line, g_1, -t31)
-    t33 = n_y * t29 - d_y * 0.5
+    t33 = n_y * t26 - d_y * 0.5
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
     t34 = h * ops.select(in_line, -g_2, m_z)
-    t35 = n_z * t29 - d_z * 0.5
+    t35 = n_z * t26 - d_z * 0.5
     t36 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t28 + t30),
+        ops.select(failed, ops.nan, t29 + t30),
         ops.select(failed, ops.nan, t32 - t33),
         ops.select(failed, ops.nan, t34 - t35),
-        ops.select(failed, ops.nan, t30 - t28),
+        ops.select(failed, ops.nan, t30 - t29),
         ops.select(failed, ops.nan, -(t32 + t33)),
         ops.select(failed, ops.nan, -(t34 + t35)),
         t36,
@@ -293,14 +292,14 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
+    t16 = 2.0 * t12
     g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    t17 = t12 * t12
-    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
-    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
-    t20 = t15 - t19
+    t17 = 2.0 * (g_1 * g_1) + g_2 * g_2
+    t18 = t12 * (1.0 / ops.select(in_line, t17, m_m)) * 0.5
+    t19 = mu * (1.0 + t16 * ops.select(in_line, 0.0, t18))
+    t20 = t15 - ops.select(all_same, 0.0, t19 * 0.25)
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
     t21 = ops.select(failed, ops.nan, 0.0)
@@ -310,36 +309,35 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     t25 = ops.select(failed, ops.nan, -t23)
     t26 = ops.opposite(failed)
     t27 = ops.opposite(in_line)
-    t28 = t26 & t27
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t29 = t26 & ops.opposite(touching)
-    t30 = t28 | t29 | (t29 & ops.opposite(all_same) & t27)
-    t31 = ops.select((t28 & slim) | (t30 & t27 & slim), mu, 1.0)
-    over = 1.0 / t31
+    t28 = t26 & ops.opposite(touching)
+    t29 = t28 | ((t26 | (t28 & ops.opposite(all_same))) & t27)
+    t30 = ops.select((t26 & t27 & slim) | (t29 & t27 & slim), mu, 1.0)
+    over = 1.0 / t30
     m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
-    w_w = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
-    part = 1.0 / ops.select(t30, w_w, 1.0)
-    t32 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
-    slack = ops.max(t15 - ops.select(all_same, 0.0, t32 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t29, part * slack, 1.0)))
-    t33 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t34 = ops.select(in_line, 0.0, t12 * part * 0.5)
-    t35 = rho1 * 0.5 - t10 * t34
-    t36 = rho1 + (t33 - t35)
+    w_w = ops.select(in_line, t17, ops.select(slim, over * t11, product_2))
+    part = 1.0 / ops.select(t29, w_w, 1.0)
+    t31 = ops.select(in_line, 0.0, t12 * part * 0.5)
+    t32 = ops.select(all_same, 0.0, mu * (1.0 + t16 * t31) * 0.25)
+    t33 = ops.select(t28, part * ops.max(t15 - t32, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t33))
+    t34 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t35 = rho1 * 0.5 - t10 * t31
+    t36 = rho1 + (t34 - t35)
     t37 = ops.select(failed, ops.nan, t36)
     t38 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
     t39 = h * ops.select(in_line, g_1, -t38)
-    t40 = n_y * t34 - d_y * 0.5
+    t40 = n_y * t31 - d_y * 0.5
     A_12 = t39 - t40
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
     t41 = h * ops.select(in_line, -g_2, m_z)
-    t42 = n_z * t34 - d_z * 0.5
+    t42 = n_z * t31 - d_z * 0.5
     A_13 = t41 - t42
     t43 = ops.select(failed, ops.nan, A_13)
     t44 = ops.select(failed, ops.nan, rho2)
     t45 = ops.select(failed, ops.nan, A_12)
     t46 = ops.select(failed, ops.nan, rho3)
-    t47 = rho1 - (t33 + t35)
+    t47 = rho1 - (t34 + t35)
     t48 = ops.select(failed, ops.nan, t47)
     t49 = t39 + t40
     t50 = t41 + t42
@@ -541,46 +539,45 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
+    t16 = 2.0 * t12
     g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    t17 = t12 * t12
-    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
-    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
-    t20 = t15 - t19
+    t17 = 2.0 * (g_1 * g_1) + g_2 * g_2
+    t18 = 1.0 / ops.select(in_line, t17, m_m) * t12 * 0.5
+    t19 = mu * (1.0 + t16 * ops.select(in_line, 0.0, t18))
+    t20 = t15 - ops.select(all_same, 0.0, t19 * 0.25)
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
     t21 = ops.opposite(failed)
     t22 = ops.opposite(in_line)
-    t23 = t21 & t22
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t24 = t21 & ops.opposite(touching)
-    t25 = t23 | t24 | (t24 & ops.opposite(all_same) & t22)
-    t26 = ops.select((t23 & slim) | (t25 & t22 & slim), mu, 1.0)
-    over = 1.0 / t26
+    t23 = t21 & ops.opposite(touching)
+    t24 = t23 | ((t21 | (t23 & ops.opposite(all_same))) & t22)
+    t25 = ops.select((t21 & t22 & slim) | (t24 & t22 & slim), mu, 1.0)
+    over = 1.0 / t25
     m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
-    w_w = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
-    part = 1.0 / ops.select(t25, w_w, 1.0)
-    t27 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
-    slack = ops.max(t15 - ops.select(all_same, 0.0, t27 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t24, part * slack, 1.0)))
-    t28 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t29 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t30 = rho1 * 0.5 - t10 * t29
-    A_11 = t28 - t30
+    w_w = ops.select(in_line, t17, ops.select(slim, over * t11, product_2))
+    part = 1.0 / ops.select(t24, w_w, 1.0)
+    t26 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t27 = ops.select(all_same, 0.0, mu * (1.0 + t16 * t26) * 0.25)
+    t28 = ops.select(t23, part * ops.max(t15 - t27, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t28))
+    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t30 = rho1 * 0.5 - t10 * t26
+    A_11 = t29 - t30
     t31 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
     t32 = h * ops.select(in_line, g_1, -t31)
-    t33 = n_y * t29 - d_y * 0.5
+    t33 = n_y * t26 - d_y * 0.5
     A_12 = t32 - t33
     t34 = ops.select(failed, ops.nan, A_12)
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
     t35 = h * ops.select(in_line, -g_2, m_z)
-    t36 = n_z * t29 - d_z * 0.5
+    t36 = n_z * t26 - d_z * 0.5
     A_13 = t35 - t36
     t37 = ops.select(failed, ops.nan, A_13)
     t38 = ops.select(failed, ops.nan, rho1 + A_11)
-    t39 = t28 + t30
+    t39 = t29 + t30
     t40 = t32 + t33
     t41 = ops.select(failed, ops.nan, -t40)
     t42 = t35 + t36
@@ -684,48 +681,47 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
+    t16 = 2.0 * t12
     g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    t17 = t12 * t12
-    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
-    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
-    t20 = t15 - t19
+    t17 = 2.0 * (g_1 * g_1) + g_2 * g_2
+    t18 = 1.0 / ops.select(in_line, t17, m_m) * t12 * 0.5
+    t19 = mu * (1.0 + t16 * ops.select(in_line, 0.0, t18))
+    t20 = t15 - ops.select(all_same, 0.0, t19 * 0.25)
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
     t21 = ops.opposite(failed)
     t22 = ops.opposite(in_line)
-    t23 = t21 & t22
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t24 = t21 & ops.opposite(touching)
-    t25 = t23 | t24 | (t24 & ops.opposite(all_same) & t22)
-    t26 = ops.select((t23 & slim) | (t25 & t22 & slim), mu, 1.0)
-    over = 1.0 / t26
+    t23 = t21 & ops.opposite(touching)
+    t24 = t23 | ((t21 | (t23 & ops.opposite(all_same))) & t22)
+    t25 = ops.select((t21 & t22 & slim) | (t24 & t22 & slim), mu, 1.0)
+    over = 1.0 / t25
     m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
-    w_w = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
-    part = 1.0 / ops.select(t25, w_w, 1.0)
-    t27 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
-    slack = ops.max(t15 - ops.select(all_same, 0.0, t27 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t24, part * slack, 1.0)))
-    t28 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t29 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t30 = rho1 * 0.5 - t10 * t29
+    w_w = ops.select(in_line, t17, ops.select(slim, over * t11, product_2))
+    part = 1.0 / ops.select(t24, w_w, 1.0)
+    t26 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t27 = ops.select(all_same, 0.0, mu * (1.0 + t16 * t26) * 0.25)
+    t28 = ops.select(t23, part * ops.max(t15 - t27, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t28))
+    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t30 = rho1 * 0.5 - t10 * t26
     t31 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
     t32 = h * ops.select(in_line, g_1, -t31)
-    t33 = n_y * t29 - d_y * 0.5
+    t33 = n_y * t26 - d_y * 0.5
     t34 = ops.select(failed, ops.nan, t32 - t33 - rho2)
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
     t35 = h * ops.select(in_line, -g_2, m_z)
-    t36 = n_z * t29 - d_z * 0.5
+    t36 = n_z * t26 - d_z * 0.5
     t37 = ops.select(failed, ops.nan, t35 - t36 - rho3)
     t38 = ops.select(failed, ops.nan, -(rho2 + (t32 + t33)))
     t39 = ops.select(failed, ops.nan, -(rho3 + (t35 + t36)))
     return (
-        ops.select(failed, ops.nan, t28 - t30),
+        ops.select(failed, ops.nan, t29 - t30),
         t34,
         t37,
-        ops.select(failed, ops.nan, -(t28 + t30)),
+        ops.select(failed, ops.nan, -(t29 + t30)),
         t38,
         t39,
     )
@@ -807,42 +803,41 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
+    t16 = 2.0 * t12
     g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    t17 = t12 * t12
-    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
-    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
-    t20 = t15 - t19
+    t17 = 2.0 * (g_1 * g_1) + g_2 * g_2
+    t18 = 1.0 / ops.select(in_line, t17, m_m) * t12 * 0.5
+    t19 = mu * (1.0 + t16 * ops.select(in_line, 0.0, t18))
+    t20 = t15 - ops.select(all_same, 0.0, t19 * 0.25)
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
     t21 = ops.opposite(failed)
     t22 = ops.opposite(in_line)
-    t23 = t21 & t22
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t24 = t21 & ops.opposite(touching)
-    t25 = t23 | t24 | (t24 & ops.opposite(all_same) & t22)
-    t26 = ops.select((t23 & slim) | ((t21 | (t25 & t22)) & slim), mu, 1.0)
-    over = 1.0 / t26
+    t23 = t21 & ops.opposite(touching)
+    t24 = t23 | ((t21 | (t23 & ops.opposite(all_same))) & t22)
+    t25 = (t21 & t22 & slim) | ((t21 | (t24 & t22)) & slim)
+    over = 1.0 / ops.select(t25, mu, 1.0)
     m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     m_m_2 = ops.select(slim, over * t11, product_2)
-    t27 = ops.select(t25, ops.select(in_line, t16, m_m_2), 1.0)
-    part = 1.0 / t27
-    t28 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
-    slack = ops.max(t15 - ops.select(all_same, 0.0, t28 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t24, part * slack, 1.0)))
-    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t30 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t31 = rho1 * 0.5 - t10 * t30
-    A_11 = t29 - t31
+    t26 = ops.select(t24, ops.select(in_line, t17, m_m_2), 1.0)
+    part = 1.0 / t26
+    t27 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t28 = ops.select(all_same, 0.0, mu * (1.0 + t16 * t27) * 0.25)
+    t29 = ops.select(t23, part * ops.max(t15 - t28, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t29))
+    t30 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t31 = rho1 * 0.5 - t10 * t27
+    A_11 = t30 - t31
     t32 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
     t33 = h * ops.select(in_line, g_1, -t32)
-    t34 = n_y * t30 - d_y * 0.5
+    t34 = n_y * t27 - d_y * 0.5
     t35 = t33 - t34
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
     t36 = h * ops.select(in_line, -g_2, m_z)
-    t37 = n_z * t30 - d_z * 0.5
+    t37 = n_z * t27 - d_z * 0.5
     t38 = t36 - t37
     t39 = t35 * t38
     t40 = rho2 - t35
@@ -860,7 +855,7 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     t51 = ops.select(failed, ops.nan, A_11 * (t50 + t40 * A_21) / t42)
     t52 = ops.select(failed, ops.nan, -(t40 * (t50 - A_11 * t35) / t42))
     t53 = ops.select(failed, ops.nan, t41 * (t50 + A_11 * t40) / t42)
-    t54 = t29 + t31
+    t54 = t30 + t31
     t55 = t33 + t34
     t56 = t36 + t37
     t57 = t55 * t56
@@ -977,43 +972,42 @@ def _determinant(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
+    t16 = 2.0 * t12
     g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    t17 = t12 * t12
-    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
-    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
-    t20 = t15 - t19
+    t17 = 2.0 * (g_1 * g_1) + g_2 * g_2
+    t18 = 1.0 / ops.select(in_line, t17, m_m) * t12 * 0.5
+    t19 = mu * (1.0 + t16 * ops.select(in_line, 0.0, t18))
+    t20 = t15 - ops.select(all_same, 0.0, t19 * 0.25)
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
     t21 = ops.opposite(failed)
     t22 = ops.opposite(in_line)
-    t23 = t21 & t22
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t24 = t21 & ops.opposite(touching)
-    t25 = t23 | t24 | (t24 & ops.opposite(all_same) & t22)
-    t26 = ops.select((t23 & slim) | ((t21 | (t25 & t22)) & slim), mu, 1.0)
-    over = 1.0 / t26
+    t23 = t21 & ops.opposite(touching)
+    t24 = t23 | ((t21 | (t23 & ops.opposite(all_same))) & t22)
+    t25 = (t21 & t22 & slim) | ((t21 | (t24 & t22)) & slim)
+    over = 1.0 / ops.select(t25, mu, 1.0)
     m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     m_m_2 = ops.select(slim, over * t11, product_2)
-    t27 = ops.select(t25, ops.select(in_line, t16, m_m_2), 1.0)
-    part = 1.0 / t27
-    t28 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
-    slack = ops.max(t15 - ops.select(all_same, 0.0, t28 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t24, part * slack, 1.0)))
-    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t30 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t31 = rho1 * 0.5 - t10 * t30
+    t26 = ops.select(t24, ops.select(in_line, t17, m_m_2), 1.0)
+    part = 1.0 / t26
+    t27 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t28 = ops.select(all_same, 0.0, mu * (1.0 + t16 * t27) * 0.25)
+    t29 = ops.select(t23, part * ops.max(t15 - t28, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t29))
+    t30 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t31 = rho1 * 0.5 - t10 * t27
     t32 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
     t33 = h * ops.select(in_line, g_1, -t32)
-    t34 = n_y * t30 - d_y * 0.5
+    t34 = n_y * t27 - d_y * 0.5
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
     t35 = h * ops.select(in_line, -g_2, m_z)
-    t36 = n_z * t30 - d_z * 0.5
-    t37 = (t29 - t31) * (rho2 - (t33 - t34)) * (rho3 - (t35 - t36))
+    t36 = n_z * t27 - d_z * 0.5
+    t37 = (t30 - t31) * (rho2 - (t33 - t34)) * (rho3 - (t35 - t36))
     t38 = ops.select(t21, m_m_2 * h, 1.0)
-    t39 = (t29 + t31) * (rho2 + (t33 + t34)) * (rho3 + (t35 + t36))
+    t39 = (t30 + t31) * (rho2 + (t33 + t34)) * (rho3 + (t35 + t36))
     return (
         ops.select(failed, ops.nan, t37 / t38),
         ops.select(failed, ops.nan, t39 / t38),
@@ -1096,51 +1090,50 @@ def _singularities(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
+    t16 = 2.0 * t12
     g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    t17 = t12 * t12
-    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
-    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
-    t20 = t15 - t19
+    t17 = 2.0 * (g_1 * g_1) + g_2 * g_2
+    t18 = 1.0 / ops.select(in_line, t17, m_m) * t12 * 0.5
+    t19 = mu * (1.0 + t16 * ops.select(in_line, 0.0, t18))
+    t20 = t15 - ops.select(all_same, 0.0, t19 * 0.25)
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
     t21 = ops.opposite(failed)
     t22 = ops.opposite(in_line)
-    t23 = t21 & t22
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t24 = t21 & ops.opposite(touching)
-    t25 = t23 | t24 | (t24 & ops.opposite(all_same) & t22)
-    t26 = ops.select((t23 & slim) | ((t21 | (t25 & t22)) & slim), mu, 1.0)
-    over = 1.0 / t26
+    t23 = t21 & ops.opposite(touching)
+    t24 = t23 | ((t21 | (t23 & ops.opposite(all_same))) & t22)
+    t25 = (t21 & t22 & slim) | ((t21 | (t24 & t22)) & slim)
+    over = 1.0 / ops.select(t25, mu, 1.0)
     m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     m_m_2 = ops.select(slim, over * t11, product_2)
-    t27 = ops.select(t25, ops.select(in_line, t16, m_m_2), 1.0)
-    part = 1.0 / t27
-    t28 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
-    slack = ops.max(t15 - ops.select(all_same, 0.0, t28 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t24, part * slack, 1.0)))
-    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t30 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t31 = rho1 * 0.5 - t10 * t30
+    t26 = ops.select(t24, ops.select(in_line, t17, m_m_2), 1.0)
+    part = 1.0 / t26
+    t27 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t28 = ops.select(all_same, 0.0, mu * (1.0 + t16 * t27) * 0.25)
+    t29 = ops.select(t23, part * ops.max(t15 - t28, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t29))
+    t30 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t31 = rho1 * 0.5 - t10 * t27
     t32 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
     t33 = h * ops.select(in_line, g_1, -t32)
-    t34 = n_y * t30 - d_y * 0.5
+    t34 = n_y * t27 - d_y * 0.5
     t35 = ops.select(failed, ops.nan, t33 - t34 - rho2)
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
     t36 = h * ops.select(in_line, -g_2, m_z)
-    t37 = n_z * t30 - d_z * 0.5
+    t37 = n_z * t27 - d_z * 0.5
     t38 = ops.select(failed, ops.nan, t36 - t37 - rho3)
     Delta = m_m_2 * h
     t39 = ops.select(failed, ops.nan, -(rho2 + (t33 + t34)))
     t40 = ops.select(failed, ops.nan, -(rho3 + (t36 + t37)))
     return (
-        ops.select(failed, ops.nan, t29 - t31),
+        ops.select(failed, ops.nan, t30 - t31),
         t35,
         t38,
         ops.select(failed, ops.nan, Delta),
-        ops.select(failed, ops.nan, -(t29 + t31)),
+        ops.select(failed, ops.nan, -(t30 + t31)),
         t39,
         t40,
         ops.select(failed, ops.nan, -Delta),
@@ -1223,43 +1216,42 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
+    t16 = 2.0 * t12
     g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    t17 = t12 * t12
-    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
-    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
-    t20 = t15 - t19
+    t17 = 2.0 * (g_1 * g_1) + g_2 * g_2
+    t18 = 1.0 / ops.select(in_line, t17, m_m) * t12 * 0.5
+    t19 = mu * (1.0 + t16 * ops.select(in_line, 0.0, t18))
+    t20 = t15 - ops.select(all_same, 0.0, t19 * 0.25)
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
     t21 = ops.opposite(failed)
     t22 = ops.opposite(in_line)
-    t23 = t21 & t22
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
-    t24 = t21 & ops.opposite(touching)
-    t25 = t23 | t24 | (t24 & ops.opposite(all_same) & t22)
-    t26 = ops.select((t23 & slim) | ((t21 | (t25 & t22)) & slim), mu, 1.0)
-    over = 1.0 / t26
+    t23 = t21 & ops.opposite(touching)
+    t24 = t23 | ((t21 | (t23 & ops.opposite(all_same))) & t22)
+    t25 = (t21 & t22 & slim) | ((t21 | (t24 & t22)) & slim)
+    over = 1.0 / ops.select(t25, mu, 1.0)
     m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     m_m_2 = ops.select(slim, over * t11, product_2)
-    t27 = ops.select(t25, ops.select(in_line, t16, m_m_2), 1.0)
-    part = 1.0 / t27
-    t28 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
-    slack = ops.max(t15 - ops.select(all_same, 0.0, t28 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t24, part * slack, 1.0)))
-    t29 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t30 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t31 = rho1 * 0.5 - t10 * t30
-    A_11 = t29 - t31
+    t26 = ops.select(t24, ops.select(in_line, t17, m_m_2), 1.0)
+    part = 1.0 / t26
+    t27 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t28 = ops.select(all_same, 0.0, mu * (1.0 + t16 * t27) * 0.25)
+    t29 = ops.select(t23, part * ops.max(t15 - t28, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t29))
+    t30 = ops.select(in_line, g_1 * s_w, m_x) * h
+    t31 = rho1 * 0.5 - t10 * t27
+    A_11 = t30 - t31
     t32 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
     t33 = h * ops.select(in_line, g_1, -t32)
-    t34 = n_y * t30 - d_y * 0.5
+    t34 = n_y * t27 - d_y * 0.5
     t35 = t33 - t34
     t36 = t35 * t35
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
     t37 = h * ops.select(in_line, -g_2, m_z)
-    t38 = n_z * t30 - d_z * 0.5
+    t38 = n_z * t27 - d_z * 0.5
     t39 = t37 - t38
     t40 = t39 * t39
     A_21 = rho1 + A_11
@@ -1284,7 +1276,7 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     t59 = (t43 + (t36 + t41 + t44 * t44)) * (t57 + t58 * t58)
     t60 = ops.select(t21, 3.0 * (m_m_2 * h), 1.0)
     t61 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t21, t59, 1.0)) / t60)
-    t62 = t29 + t31
+    t62 = t30 + t31
     t63 = t33 + t34
     t64 = t63 * t63
     t65 = t37 + t38
@@ -1393,45 +1385,44 @@ def _constraint(ops, rho1, rho2, rho3, L):
     t13 = ops.abs(ops.select(in_line, -t12, 0.0)) <= t3 * ops.feasibility
     t14 = 0.234375 * (L * size)
     t15 = L * L
+    t16 = 2.0 * t12
     g_1 = whole * d_z
     s_w = ops.sign(d_y * a_x)
     g_2 = whole * (d_y + a_x * s_w)
-    t16 = 2.0 * (g_1 * g_1) + g_2 * g_2
-    t17 = t12 * t12
-    t18 = ops.select(in_line, 0.0, 1.0 / ops.select(in_line, t16, m_m) * t17)
-    t19 = ops.select(all_same, 0.0, mu * (1.0 + t18) * 0.25)
-    t20 = t15 - t19
+    t17 = 2.0 * (g_1 * g_1) + g_2 * g_2
+    t18 = 1.0 / ops.select(in_line, t17, m_m) * t12 * 0.5
+    t19 = mu * (1.0 + t16 * ops.select(in_line, 0.0, t18))
+    t20 = t15 - ops.select(all_same, 0.0, t19 * 0.25)
     unreachable = ops.opposite(t13 & (-(ops.feasibility * t14) <= t20))
     failed = ops.opposite(t1) | unreachable
     touching = ops.max(t20, 0.0) <= ops.vanishing * t14
     t21 = ops.opposite(failed)
     t22 = t21 & ops.opposite(touching)
     t23 = ops.opposite(in_line)
-    t24 = t21 & t23
-    t25 = t24 | t22 | (t22 & ops.opposite(all_same) & t23)
-    t26 = ops.select((t24 & slim) | (t25 & t23 & slim), mu, 1.0)
-    over = 1.0 / t26
-    w_w = ops.select(in_line, t16, ops.select(slim, over * t11, product_2))
-    part = 1.0 / ops.select(t25, w_w, 1.0)
-    t27 = mu * (1.0 + ops.select(in_line, 0.0, part * t17))
-    slack = ops.max(t15 - ops.select(all_same, 0.0, t27 * 0.25), 0.0)
-    h = ops.select(touching, 0.0, ops.sqrt(ops.select(t22, part * slack, 1.0)))
-    t28 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
-    t29 = h * ops.select(in_line, g_1, -t28)
-    t30 = ops.select(in_line, 0.0, part * t12 * 0.5)
-    t31 = n_y * t30 - d_y * 0.5
-    t32 = t29 - t31
+    t24 = t22 | ((t21 | (t22 & ops.opposite(all_same))) & t23)
+    t25 = ops.select((t21 & t23 & slim) | (t24 & t23 & slim), mu, 1.0)
+    over = 1.0 / t25
+    w_w = ops.select(in_line, t17, ops.select(slim, over * t11, product_2))
+    part = 1.0 / ops.select(t24, w_w, 1.0)
+    t26 = ops.select(in_line, 0.0, part * t12 * 0.5)
+    t27 = ops.select(all_same, 0.0, mu * (1.0 + t16 * t26) * 0.25)
+    t28 = ops.select(t22, part * ops.max(t15 - t27, 0.0), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t28))
+    t29 = ops.select(slim, over * (a_x * n_z + d_z * t10), t8)
+    t30 = h * ops.select(in_line, g_1, -t29)
+    t31 = n_y * t26 - d_y * 0.5
+    t32 = t30 - t31
     m_z = ops.select(slim, over * (a_x * n_y + d_y * t10), product_z)
     t33 = h * ops.select(in_line, -g_2, m_z)
-    t34 = n_z * t30 - d_z * 0.5
+    t34 = n_z * t26 - d_z * 0.5
     t35 = t33 - t34
     m_x = ops.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     t36 = ops.select(in_line, g_1 * s_w, m_x) * h
-    t37 = rho1 * 0.5 - t10 * t30
+    t37 = rho1 * 0.5 - t10 * t26
     A_11 = t36 - t37
     t38 = t32 * t35 * (rho1 + A_11) - A_11 * (rho2 - t32) * (rho3 - t35)
     t39 = t36 + t37
-    t40 = t29 + t31
+    t40 = t30 + t31
     t41 = t33 + t34
     t42 = t39 * (rho2 + t40) * (rho3 + t41) + t40 * t41 * (rho1 - t39)
     return (

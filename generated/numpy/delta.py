@@ -2,25 +2,25 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 52 compare and select, 67 add, 2 divide, 99 multiply, 6 sincos, 1 sqrt
+#   fk: 51 compare and select, 67 add, 2 divide, 99 multiply, 6 sincos, 1 sqrt
 #   fk where nothing vanishes: 60 add, 29 compare and select, 1 divide, 77 multiply, 6 sincos, 1
 #     sqrt
-#   skeleton: 51 compare and select, 182 add, 2 divide, 105 multiply, 6 sincos, 1 sqrt
-#   jacobian_parallel: 51 compare and select, 88 add, 2 divide, 99 multiply, 6 sincos, 1 sqrt
+#   skeleton: 50 compare and select, 182 add, 2 divide, 105 multiply, 6 sincos, 1 sqrt
+#   jacobian_parallel: 50 compare and select, 88 add, 2 divide, 99 multiply, 6 sincos, 1 sqrt
 #   jacobian_parallel where nothing vanishes: 81 add, 28 compare and select, 1 divide, 77
 #     multiply, 6 sincos, 1 sqrt
-#   jacobian_serial: 51 compare and select, 88 add, 2 divide, 123 multiply, 6 sincos, 1 sqrt
+#   jacobian_serial: 50 compare and select, 88 add, 2 divide, 123 multiply, 6 sincos, 1 sqrt
 #   jacobian_serial where nothing vanishes: 81 add, 28 compare and select, 1 divide, 101 multiply,
 #     6 sincos, 1 sqrt
-#   jacobian: 51 compare and select, 118 add, 20 divide, 178 multiply, 6 sincos, 1 sqrt
-#   determinant: 51 compare and select, 84 add, 4 divide, 128 multiply, 6 sincos, 1 sqrt
+#   jacobian: 50 compare and select, 118 add, 20 divide, 178 multiply, 6 sincos, 1 sqrt
+#   determinant: 50 compare and select, 84 add, 4 divide, 128 multiply, 6 sincos, 1 sqrt
 #   determinant where nothing vanishes: 77 add, 28 compare and select, 3 divide, 106 multiply, 6
 #     sincos, 1 sqrt
-#   singularities: 51 compare and select, 90 add, 2 divide, 124 multiply, 6 sincos, 1 sqrt
+#   singularities: 50 compare and select, 90 add, 2 divide, 124 multiply, 6 sincos, 1 sqrt
 #   singularities where nothing vanishes: 83 add, 28 compare and select, 1 divide, 102 multiply, 6
 #     sincos, 1 sqrt
-#   condition_number: 51 compare and select, 122 add, 4 divide, 175 multiply, 6 sincos, 3 sqrt
-#   constraint: 51 compare and select, 94 add, 2 divide, 161 multiply, 6 sincos, 1 sqrt
+#   condition_number: 50 compare and select, 122 add, 4 divide, 175 multiply, 6 sincos, 3 sqrt
+#   constraint: 50 compare and select, 94 add, 2 divide, 161 multiply, 6 sincos, 1 sqrt
 #   constraint where nothing vanishes: 87 add, 28 compare and select, 1 divide, 129 multiply, 6
 #     sincos, 1 sqrt
 #   ik: 139 compare and select, 130 add, 6 atan2, 9 divide, 155 multiply, 3 sincos, 9 sqrt
@@ -241,52 +241,51 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del d_x, t3
     m_x = _runtime.select(slim, over * (t14 * n_z - d_z * t23), t21)
     del t21
-    t28 = _runtime.select(in_line, 0.0, part * (t25 * t25))
-    t29 = _runtime.select(all_same, 0.0, mu * (1.0 + t28) * 0.25)
-    del all_same, mu, t28
-    t30 = l * l - t29
-    del t29
-    slack = np.maximum(t30, 0.0)
-    t31 = l * size * 0.75
+    t28 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t25 * t26) * 0.25)
+    del all_same, mu
+    t29 = l * l - t28
+    del t28
+    slack = np.maximum(t29, 0.0)
+    t30 = l * size * 0.75
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t31, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t30, 0.0, np.sqrt(part * slack))
     del part, slack
-    t32 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    t31 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t33 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t34 = t33 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t33
-    t35 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    invalid = np.logical_not(t34 & t35)
-    del t34, t35
-    t36 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t8 * _runtime.FEASIBILITY
+    t32 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t33 = t32 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t32
+    t34 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    invalid = np.logical_not(t33 & t34)
+    del t33, t34
+    t35 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t8 * _runtime.FEASIBILITY
     del t25, t8
-    unreachable = np.logical_not(t36 & (-(_runtime.FEASIBILITY * t31) <= t30))
-    del t30, t31, t36
-    t37 = _runtime.poison(invalid | unreachable)
-    t38 = t14 * 0.5 - (t6 + t23 * t26)
+    unreachable = np.logical_not(t35 & (-(_runtime.FEASIBILITY * t30) <= t29))
+    del t29, t30, t35
+    t36 = _runtime.poison(invalid | unreachable)
+    t37 = t14 * 0.5 - (t6 + t23 * t26)
     del t6
-    t39 = _runtime.select(slim, over * (a_x * n_z + d_z * t20), t19)
+    t38 = _runtime.select(slim, over * (a_x * n_z + d_z * t20), t19)
     del t19
-    t40 = h * _runtime.select(in_line, g_1, -t39)
-    del g_1, t39
-    t41 = d_z * 0.5 - (t1 + n_z * t26)
+    t39 = h * _runtime.select(in_line, g_1, -t38)
+    del g_1, t38
+    t40 = d_z * 0.5 - (t1 + n_z * t26)
     del d_z, n_z, t1, t26
     m_z = _runtime.select(slim, over * (a_x * t23 + t14 * t20), t17)
     del a_x, over, slim, t14, t17, t20, t23
-    t42 = h * _runtime.select(in_line, -t24, m_z)
+    t41 = h * _runtime.select(in_line, -t24, m_z)
     del h, m_z, t24
-    t43 = _runtime.status(invalid, unreachable, in_line)
+    t42 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t27 - t32 + t37,
-        t38 - t40 + t37,
-        t41 - t42 + t37,
-        t32 + t27 + t37,
-        t40 + t38 + t37,
-        t42 + t41 + t37,
-        t43,
-        t43,
+        t27 - t31 + t36,
+        t37 - t39 + t36,
+        t40 - t41 + t36,
+        t31 + t27 + t36,
+        t39 + t37 + t36,
+        t41 + t40 + t36,
+        t42,
+        t42,
     )
 
 
@@ -332,7 +331,7 @@ def _fk_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t15 = t4 * 0.5 - (t2 - (t6 * m_z + u_z * t11) * t14)
     del t2
     u_u = u_z * u_z + t4 * t4 + t6 * t6
-    t16 = l * l - u_u * (1.0 + part * (t13 * t13)) * 0.25
+    t16 = l * l - u_u * (1.0 + 2.0 * t13 * t14) * 0.25
     del t13
     slack = np.maximum(t16, 0.0)
     h = np.sqrt(part * slack)
@@ -546,9 +545,9 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del m_m
     part = 1.0 / w_w
     del w_w
-    t51 = _runtime.select(in_line, 0.0, part * (t47 * t47))
-    t52 = _runtime.select(all_same, 0.0, mu * (1.0 + t51) * 0.25)
-    del all_same, mu, t51
+    t51 = _runtime.select(in_line, 0.0, t47 * part * 0.5)
+    t52 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t47 * t51) * 0.25)
+    del all_same, mu, t47
     t53 = l * l - t52
     del t52
     unreachable = np.logical_not(t48 & (-(_runtime.FEASIBILITY * t49) <= t53))
@@ -563,9 +562,7 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t58 = t9 + t54
     t59 = t18 + t54
     t60 = -t5 + t54
-    t61 = _runtime.select(in_line, 0.0, t47 * part * 0.5)
-    del t47
-    t62 = t45 * t61 + d_x * 0.5
+    t61 = t45 * t51 + d_x * 0.5
     del d_x
     m_x = _runtime.select(slim, over * (t32 * n_z - d_z * t46), t36)
     del t36
@@ -573,85 +570,85 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del t53
     h = _runtime.select(slack <= _runtime.VANISHING * t49, 0.0, np.sqrt(part * slack))
     del part, slack, t49
-    t63 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    t62 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t64 = t10 - (t62 - t63)
-    t65 = t7 - t64
-    t66 = t46 * t61 - t32 * 0.5
-    t67 = _runtime.select(slim, over * (a_x * n_z + d_z * t45), t42)
+    t63 = t10 - (t61 - t62)
+    t64 = t7 - t63
+    t65 = t46 * t51 - t32 * 0.5
+    t66 = _runtime.select(slim, over * (a_x * n_z + d_z * t45), t42)
     del t42
-    t68 = h * _runtime.select(in_line, g_1, -t67)
-    del g_1, t67
-    t69 = t19 + (t66 + t68)
-    t70 = t16 - t69
-    t71 = n_z * t61 - d_z * 0.5
-    del d_z, n_z, t61
+    t67 = h * _runtime.select(in_line, g_1, -t66)
+    del g_1, t66
+    t68 = t19 + (t65 + t67)
+    t69 = t16 - t68
+    t70 = n_z * t51 - d_z * 0.5
+    del d_z, n_z, t51
     m_z = _runtime.select(slim, over * (a_x * t46 + t32 * t45), t43)
     del a_x, over, slim, t32, t43, t45, t46
-    t72 = h * _runtime.select(in_line, -t50, m_z)
+    t71 = h * _runtime.select(in_line, -t50, m_z)
     del h, in_line, m_z, t50
-    t73 = -(t5 + (t71 + t72)) + t54
-    t74 = t16 * 0.5
-    t75 = t9 - t74 + t54
-    t76 = t7 * 0.5
-    t77 = t76 + t18 + t54
-    t78 = t74 + t9 + t54
+    t72 = -(t5 + (t70 + t71)) + t54
+    t73 = t16 * 0.5
+    t74 = t9 - t73 + t54
+    t75 = t7 * 0.5
+    t76 = t75 + t18 + t54
+    t77 = t73 + t9 + t54
     del t9
-    t79 = t18 - t76 + t54
+    t78 = t18 - t75 + t54
     del t18
-    t80 = t12 + t54
+    t79 = t12 + t54
     del t12
-    t81 = t21 + t54
+    t80 = t21 + t54
     del t21
-    t82 = t14 + t54
-    t83 = t22 + t54
-    t84 = -t6 + t54
+    t81 = t14 + t54
+    t82 = t22 + t54
+    t83 = -t6 + t54
     del t6
-    t85 = t11 - t64
-    t86 = t20 - t69
-    t87 = t20 * 0.5
-    t88 = t14 - t87 + t54
-    t89 = t11 * 0.5
-    t90 = t89 + t22 + t54
-    t91 = t87 + t14 + t54
+    t84 = t11 - t63
+    t85 = t20 - t68
+    t86 = t20 * 0.5
+    t87 = t14 - t86 + t54
+    t88 = t11 * 0.5
+    t89 = t88 + t22 + t54
+    t90 = t86 + t14 + t54
     del t14
-    t92 = t22 - t89 + t54
+    t91 = t22 - t88 + t54
     del t22
-    t93 = t38 + t54
+    t92 = t38 + t54
     del t38
-    t94 = t28 + t54
+    t93 = t28 + t54
     del t28
-    t95 = t39 + t54
-    t96 = t30 + t54
-    t97 = -t33 + t54
+    t94 = t39 + t54
+    t95 = t30 + t54
+    t96 = -t33 + t54
     del t33
-    t98 = t37 - t64
-    t99 = t27 - t69
-    t100 = t27 * 0.5
-    t101 = t39 - t100 + t54
-    t102 = t37 * 0.5
-    t103 = t102 + t30 + t54
-    t104 = t100 + t39 + t54
+    t97 = t37 - t63
+    t98 = t27 - t68
+    t99 = t27 * 0.5
+    t100 = t39 - t99 + t54
+    t101 = t37 * 0.5
+    t102 = t101 + t30 + t54
+    t103 = t99 + t39 + t54
     del t39
-    t105 = t30 - t102 + t54
+    t104 = t30 - t101 + t54
     del t30
-    t106 = t10 - (t62 + t63)
-    del t10, t62, t63
-    t107 = t7 - t106
+    t105 = t10 - (t61 + t62)
+    del t10, t61, t62
+    t106 = t7 - t105
     del t7
-    t108 = t19 + (t66 - t68)
-    del t19, t66, t68
-    t109 = t16 - t108
+    t107 = t19 + (t65 - t67)
+    del t19, t65, t67
+    t108 = t16 - t107
     del t16
-    t110 = -(t5 + (t71 - t72)) + t54
-    del t5, t71, t72
-    t111 = t11 - t106
+    t109 = -(t5 + (t70 - t71)) + t54
+    del t5, t70, t71
+    t110 = t11 - t105
     del t11
-    t112 = t20 - t108
+    t111 = t20 - t107
     del t20
-    t113 = t37 - t106
+    t112 = t37 - t105
     del t37
-    t114 = t27 - t108
+    t113 = t27 - t107
     del t27
     return (
         t55,
@@ -660,132 +657,132 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
         t58,
         t59,
         t60,
-        t65 + t54,
-        t70 + t54,
-        t73,
-        t75,
+        t64 + t54,
+        t69 + t54,
+        t72,
+        t74,
+        t76,
+        t60,
         t77,
-        t60,
         t78,
-        t79,
         t60,
-        t65 - t74 + t54,
-        t76 + t70 + t54,
-        t73,
-        t74 + t65 + t54,
-        t70 - t76 + t54,
-        t73,
+        t64 - t73 + t54,
+        t75 + t69 + t54,
+        t72,
+        t73 + t64 + t54,
+        t69 - t75 + t54,
+        t72,
+        t79,
         t80,
-        t81,
         t57,
+        t81,
         t82,
         t83,
-        t84,
+        t84 + t54,
         t85 + t54,
-        t86 + t54,
-        t73,
-        t88,
+        t72,
+        t87,
+        t89,
+        t83,
         t90,
-        t84,
         t91,
+        t83,
+        t84 - t86 + t54,
+        t88 + t85 + t54,
+        t72,
+        t86 + t84 + t54,
+        t85 - t88 + t54,
+        t72,
         t92,
-        t84,
-        t85 - t87 + t54,
-        t89 + t86 + t54,
-        t73,
-        t87 + t85 + t54,
-        t86 - t89 + t54,
-        t73,
         t93,
-        t94,
         t57,
+        t94,
         t95,
         t96,
-        t97,
+        t97 + t54,
         t98 + t54,
-        t99 + t54,
-        t73,
-        t101,
+        t72,
+        t100,
+        t102,
+        t96,
         t103,
-        t97,
         t104,
-        t105,
-        t97,
-        t98 - t100 + t54,
-        t102 + t99 + t54,
-        t73,
-        t100 + t98 + t54,
-        t99 - t102 + t54,
-        t73,
-        -t64 + t54,
-        -t69 + t54,
-        t73,
+        t96,
+        t97 - t99 + t54,
+        t101 + t98 + t54,
+        t72,
+        t99 + t97 + t54,
+        t98 - t101 + t54,
+        t72,
+        -t63 + t54,
+        -t68 + t54,
+        t72,
         t55,
         t56,
         t57,
         t58,
         t59,
         t60,
-        t107 + t54,
-        t109 + t54,
-        t110,
-        t75,
+        t106 + t54,
+        t108 + t54,
+        t109,
+        t74,
+        t76,
+        t60,
         t77,
-        t60,
         t78,
-        t79,
         t60,
-        t107 - t74 + t54,
-        t76 + t109 + t54,
-        t110,
-        t74 + t107 + t54,
-        t109 - t76 + t54,
-        t110,
+        t106 - t73 + t54,
+        t75 + t108 + t54,
+        t109,
+        t73 + t106 + t54,
+        t108 - t75 + t54,
+        t109,
+        t79,
         t80,
-        t81,
         t57,
+        t81,
         t82,
         t83,
-        t84,
+        t110 + t54,
         t111 + t54,
-        t112 + t54,
-        t110,
-        t88,
+        t109,
+        t87,
+        t89,
+        t83,
         t90,
-        t84,
         t91,
+        t83,
+        t110 - t86 + t54,
+        t88 + t111 + t54,
+        t109,
+        t86 + t110 + t54,
+        t111 - t88 + t54,
+        t109,
         t92,
-        t84,
-        t111 - t87 + t54,
-        t89 + t112 + t54,
-        t110,
-        t87 + t111 + t54,
-        t112 - t89 + t54,
-        t110,
         t93,
-        t94,
         t57,
+        t94,
         t95,
         t96,
-        t97,
+        t112 + t54,
         t113 + t54,
-        t114 + t54,
-        t110,
-        t101,
+        t109,
+        t100,
+        t102,
+        t96,
         t103,
-        t97,
         t104,
-        t105,
-        t97,
-        t113 - t100 + t54,
-        t102 + t114 + t54,
-        t110,
-        t100 + t113 + t54,
-        t114 - t102 + t54,
-        t110,
-        -t106 + t54,
-        -t108 + t54,
-        t110,
+        t96,
+        t112 - t99 + t54,
+        t101 + t113 + t54,
+        t109,
+        t99 + t112 + t54,
+        t113 - t101 + t54,
+        t109,
+        -t105 + t54,
+        -t107 + t54,
+        t109,
     )
 
 
@@ -904,79 +901,77 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     s_w = _runtime.sign(t13 * a_x)
     m_x = _runtime.select(slim, over * (t13 * n_z - d_z * t23), t16)
     del t16
-    t24 = whole * (t13 + a_x * s_w)
+    t24 = t18 * (d_x - t18) + t15 * (t13 - t15) + t14 * (d_z - t14)
+    del t14, t15, t18
+    t25 = whole * (t13 + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t24 * t24, m_m)
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t25 * t25, m_m)
     del m_m
     part = 1.0 / w_w
     del w_w
-    t25 = t18 * (d_x - t18) + t15 * (t13 - t15) + t14 * (d_z - t14)
-    del t14, t15, t18
-    t26 = _runtime.select(in_line, 0.0, part * (t25 * t25))
-    t27 = _runtime.select(all_same, 0.0, mu * (1.0 + t26) * 0.25)
-    del all_same, mu, t26
+    t26 = _runtime.select(in_line, 0.0, part * t24 * 0.5)
+    t27 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t24 * t26) * 0.25)
+    del all_same, mu
     t28 = l * l - t27
     del t27
     slack = np.maximum(t28, 0.0)
     t29 = 0.9375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t29, 0.0, np.sqrt(part * slack))
-    del slack
+    del part, slack
     t30 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t31 = _runtime.select(in_line, 0.0, part * t25 * 0.5)
-    del part
-    t32 = t22 * t31 + d_x * 0.5
+    t31 = t22 * t26 + d_x * 0.5
     del d_x
-    t33 = t30 - t32
-    t34 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t35 = t34 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t34
-    t36 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t37 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t8 * _runtime.FEASIBILITY
-    del t25, t8
-    unreachable = np.logical_not(t37 & (-(_runtime.FEASIBILITY * t29) <= t28))
-    del t28, t29, t37
-    t38 = _runtime.poison(np.logical_not(t35 & t36) | unreachable)
-    del t35, t36, unreachable
-    t39 = _runtime.select(slim, over * (a_x * n_z + d_z * t22), t19)
+    t32 = t30 - t31
+    t33 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t34 = t33 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t33
+    t35 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t36 = np.abs(_runtime.select(in_line, -t24, 0.0)) <= t8 * _runtime.FEASIBILITY
+    del t24, t8
+    unreachable = np.logical_not(t36 & (-(_runtime.FEASIBILITY * t29) <= t28))
+    del t28, t29, t36
+    t37 = _runtime.poison(np.logical_not(t34 & t35) | unreachable)
+    del t34, t35, unreachable
+    t38 = _runtime.select(slim, over * (a_x * n_z + d_z * t22), t19)
     del t19
-    t40 = h * _runtime.select(in_line, g_1, -t39)
-    del g_1, t39
-    t41 = t23 * t31 - t13 * 0.5
-    t42 = t40 + t41
+    t39 = h * _runtime.select(in_line, g_1, -t38)
+    del g_1, t38
+    t40 = t23 * t26 - t13 * 0.5
+    t41 = t39 + t40
     m_z = _runtime.select(slim, over * (a_x * t23 + t13 * t22), t20)
     del a_x, over, slim, t13, t20, t22, t23
-    t43 = h * _runtime.select(in_line, -t24, m_z)
-    del h, in_line, m_z, t24
-    t44 = n_z * t31 - d_z * 0.5
-    del d_z, n_z, t31
-    t45 = t43 + t44
-    A_11_above = t30 + t32
-    del t30, t32
-    A_12_above = t40 - t41
-    del t40, t41
-    A_13_above = t43 - t44
-    del t43, t44
+    t42 = h * _runtime.select(in_line, -t25, m_z)
+    del h, in_line, m_z, t25
+    t43 = n_z * t26 - d_z * 0.5
+    del d_z, n_z, t26
+    t44 = t42 + t43
+    A_11_above = t30 + t31
+    del t30, t31
+    A_12_above = t39 - t40
+    del t39, t40
+    A_13_above = t42 - t43
+    del t42, t43
     return (
-        -t33 + t38,
-        -t42 + t38,
-        -t45 + t38,
-        -(t5 + t33) + t38,
-        -(t7 + t42) + t38,
-        -(u_z + t45) + t38,
-        -(t17 + t33) + t38,
-        -(t12 + t42) + t38,
-        -(v_z + t45) + t38,
-        A_11_above + t38,
-        A_12_above + t38,
-        A_13_above + t38,
-        A_11_above - t5 + t38,
-        A_12_above - t7 + t38,
-        A_13_above - u_z + t38,
-        A_11_above - t17 + t38,
-        A_12_above - t12 + t38,
-        A_13_above - v_z + t38,
+        -t32 + t37,
+        -t41 + t37,
+        -t44 + t37,
+        -(t5 + t32) + t37,
+        -(t7 + t41) + t37,
+        -(u_z + t44) + t37,
+        -(t17 + t32) + t37,
+        -(t12 + t41) + t37,
+        -(v_z + t44) + t37,
+        A_11_above + t37,
+        A_12_above + t37,
+        A_13_above + t37,
+        A_11_above - t5 + t37,
+        A_12_above - t7 + t37,
+        A_13_above - u_z + t37,
+        A_11_above - t17 + t37,
+        A_12_above - t12 + t37,
+        A_13_above - v_z + t37,
     )
 
 
@@ -1019,14 +1014,15 @@ def _jacobian_parallel_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2
     part = 1.0 / product_2
     u_u = u_z * u_z + t10 * t10 + t5 * t5
     t13 = v_z * (u_z - v_z) + t11 * (t10 - t11) + t7 * (t5 - t7)
-    t14 = l * l - u_u * (1.0 + part * (t13 * t13)) * 0.25
-    slack = np.maximum(t14, 0.0)
+    t14 = part * t13 * 0.5
+    t15 = l * l - u_u * (1.0 + 2.0 * t13 * t14) * 0.25
+    del t13
+    slack = np.maximum(t15, 0.0)
     h = np.sqrt(part * slack)
-    t15 = t8 * h
-    t16 = part * t13 * 0.5
-    del part, t13
-    t17 = (t5 * m_z + u_z * t12) * t16 + t10 * 0.5
-    t18 = t15 - t17
+    del part
+    t16 = t8 * h
+    t17 = (t5 * m_z + u_z * t12) * t14 + t10 * 0.5
+    t18 = t16 - t17
     t19 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
     t20 = t19 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     del t19
@@ -1035,22 +1031,22 @@ def _jacobian_parallel_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2
     t22 = size * size
     t23 = 0.9375 * (l * size)
     del size
-    t24 = (np.abs(0.0) <= t22 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t23) <= t14)
-    del t14
+    t24 = (np.abs(0.0) <= t22 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t23) <= t15)
+    del t15
     failed = np.logical_not(t20 & t21) | np.logical_not(t24)
     del t20, t21, t24
     t25 = _runtime.poison(failed)
     del failed
     t26 = t12 * h
-    t27 = t16 * (t10 * m_z - u_z * t8) - t5 * 0.5
+    t27 = t14 * (t10 * m_z - u_z * t8) - t5 * 0.5
     A_12 = t26 - t27
     t28 = m_z * h
     del h, m_z
-    t29 = u_z * 0.5 - t16 * (t10 * t12 + t5 * t8)
-    del t12, t16, t8
+    t29 = u_z * 0.5 - t14 * (t10 * t12 + t5 * t8)
+    del t12, t14, t8
     t30 = t28 - t29
-    A_11_above = t15 + t17
-    del t15, t17
+    A_11_above = t16 + t17
+    del t16, t17
     t31 = t26 + t27
     del t26, t27
     A_13_above = t28 + t29
@@ -1200,84 +1196,82 @@ def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     s_w = _runtime.sign(t15 * a_x)
     m_x = _runtime.select(slim, over * (t15 * n_z - d_z * t26), t19)
     del t19
-    t27 = whole * (t15 + a_x * s_w)
+    t27 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
+    del t17, t18, t21
+    t28 = whole * (t15 + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t27 * t27, m_m)
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t28 * t28, m_m)
     del m_m
     part = 1.0 / w_w
     del w_w
-    t28 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
-    del t17, t18, t21
-    t29 = _runtime.select(in_line, 0.0, part * (t28 * t28))
-    t30 = _runtime.select(all_same, 0.0, mu * (1.0 + t29) * 0.25)
-    del all_same, mu, t29
+    t29 = _runtime.select(in_line, 0.0, part * t27 * 0.5)
+    t30 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t27 * t29) * 0.25)
+    del all_same, mu
     t31 = l * l - t30
     del t30
     slack = np.maximum(t31, 0.0)
     t32 = 0.9375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t32, 0.0, np.sqrt(part * slack))
-    del slack
+    del part, slack
     t33 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t34 = _runtime.select(in_line, 0.0, part * t28 * 0.5)
-    del part
-    t35 = t25 * t34 + d_x * 0.5
+    t34 = t25 * t29 + d_x * 0.5
     del d_x
-    t36 = t33 - t35
-    t37 = s_alpha1 * t1
+    t35 = t33 - t34
+    t36 = s_alpha1 * t1
     del s_alpha1, t1
-    t38 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
+    t37 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
     del t22
-    t39 = h * _runtime.select(in_line, g_1, -t38)
-    del g_1, t38
-    t40 = t26 * t34 - t15 * 0.5
-    t41 = t39 + t40
+    t38 = h * _runtime.select(in_line, g_1, -t37)
+    del g_1, t37
+    t39 = t26 * t29 - t15 * 0.5
+    t40 = t38 + t39
     m_z = _runtime.select(slim, over * (a_x * t26 + t15 * t25), t23)
     del a_x, over, slim, t15, t23, t25, t26
-    t42 = h * _runtime.select(in_line, -t27, m_z)
-    del h, m_z, t27
-    t43 = n_z * t34 - d_z * 0.5
-    del d_z, n_z, t34
-    t44 = t42 + t43
-    t45 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t46 = t45 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t45
-    t47 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t48 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= t10 * _runtime.FEASIBILITY
-    del in_line, t10, t28
-    unreachable = np.logical_not(t48 & (-(_runtime.FEASIBILITY * t32) <= t31))
-    del t31, t32, t48
-    t49 = _runtime.poison(np.logical_not(t46 & t47) | unreachable)
-    del t46, t47, unreachable
-    t50 = c_alpha2 * t3
+    t41 = h * _runtime.select(in_line, -t28, m_z)
+    del h, m_z, t28
+    t42 = n_z * t29 - d_z * 0.5
+    del d_z, n_z, t29
+    t43 = t41 + t42
+    t44 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t45 = t44 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t44
+    t46 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t47 = np.abs(_runtime.select(in_line, -t27, 0.0)) <= t10 * _runtime.FEASIBILITY
+    del in_line, t10, t27
+    unreachable = np.logical_not(t47 & (-(_runtime.FEASIBILITY * t32) <= t31))
+    del t31, t32, t47
+    t48 = _runtime.poison(np.logical_not(t45 & t46) | unreachable)
+    del t45, t46, unreachable
+    t49 = c_alpha2 * t3
     del c_alpha2
-    t51 = s_alpha2 * t3
+    t50 = s_alpha2 * t3
     del s_alpha2, t3
-    B_22 = t50 * (t7 + t36) + t51 * (t9 + t41) + t6 * (u_z + t44)
-    t52 = c_alpha3 * t16
+    B_22 = t49 * (t7 + t35) + t50 * (t9 + t40) + t6 * (u_z + t43)
+    t51 = c_alpha3 * t16
     del c_alpha3
-    t53 = s_alpha3 * t16
+    t52 = s_alpha3 * t16
     del s_alpha3, t16
-    B_33 = t52 * (t20 + t36) + t53 * (t14 + t41) + t13 * (v_z + t44)
-    A_11_above = t33 + t35
-    del t33, t35
-    A_12_above = t39 - t40
-    del t39, t40
-    t54 = t42 - t43
-    del t42, t43
-    t55 = t2 * A_11_above + t37 * A_12_above + t4 * t54
-    t56 = t50 * (t7 - A_11_above) + t51 * (t9 - A_12_above)
-    del t50, t51, t7, t9
-    t57 = t52 * (t20 - A_11_above) + t53 * (t14 - A_12_above)
-    del A_11_above, A_12_above, t14, t20, t52, t53
+    B_33 = t51 * (t20 + t35) + t52 * (t14 + t40) + t13 * (v_z + t43)
+    A_11_above = t33 + t34
+    del t33, t34
+    A_12_above = t38 - t39
+    del t38, t39
+    t53 = t41 - t42
+    del t41, t42
+    t54 = t2 * A_11_above + t36 * A_12_above + t4 * t53
+    t55 = t49 * (t7 - A_11_above) + t50 * (t9 - A_12_above)
+    del t49, t50, t7, t9
+    t56 = t51 * (t20 - A_11_above) + t52 * (t14 - A_12_above)
+    del A_11_above, A_12_above, t14, t20, t51, t52
     return (
-        t2 * t36 + t37 * t41 + t4 * t44 + t49,
-        B_22 + t49,
-        B_33 + t49,
-        -t55 + t49,
-        t56 + t6 * (u_z - t54) + t49,
-        t57 + t13 * (v_z - t54) + t49,
+        t2 * t35 + t36 * t40 + t4 * t43 + t48,
+        B_22 + t48,
+        B_33 + t48,
+        -t54 + t48,
+        t55 + t6 * (u_z - t53) + t48,
+        t56 + t13 * (v_z - t53) + t48,
     )
 
 
@@ -1320,23 +1314,24 @@ def _jacobian_serial_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     part = 1.0 / product_2
     u_u = u_z * u_z + t13 * t13 + t7 * t7
     t16 = v_z * (u_z - v_z) + t14 * (t13 - t14) + t10 * (t7 - t10)
-    t17 = l * l - u_u * (1.0 + part * (t16 * t16)) * 0.25
-    slack = np.maximum(t17, 0.0)
+    t17 = part * t16 * 0.5
+    t18 = l * l - u_u * (1.0 + 2.0 * t16 * t17) * 0.25
+    del t16
+    slack = np.maximum(t18, 0.0)
     h = np.sqrt(part * slack)
-    t18 = t11 * h
-    t19 = part * t16 * 0.5
-    del part, t16
-    t20 = (t7 * m_z + u_z * t15) * t19 + t13 * 0.5
-    t21 = t18 - t20
+    del part
+    t19 = t11 * h
+    t20 = (t7 * m_z + u_z * t15) * t17 + t13 * 0.5
+    t21 = t19 - t20
     t22 = s_alpha1 * t1
     del s_alpha1, t1
     t23 = t15 * h
-    t24 = t19 * (t13 * m_z - u_z * t11) - t7 * 0.5
+    t24 = t17 * (t13 * m_z - u_z * t11) - t7 * 0.5
     A_12 = t23 - t24
     t25 = m_z * h
     del h, m_z
-    t26 = u_z * 0.5 - t19 * (t13 * t15 + t7 * t11)
-    del t11, t15, t19
+    t26 = u_z * 0.5 - t17 * (t13 * t15 + t7 * t11)
+    del t11, t15, t17
     t27 = t25 - t26
     t28 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
     t29 = t28 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
@@ -1346,8 +1341,8 @@ def _jacobian_serial_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     t31 = size * size
     t32 = 0.9375 * (l * size)
     del size
-    t33 = (np.abs(0.0) <= t31 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t32) <= t17)
-    del t17
+    t33 = (np.abs(0.0) <= t31 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t32) <= t18)
+    del t18
     failed = np.logical_not(t29 & t30) | np.logical_not(t33)
     del t29, t30, t33
     t34 = _runtime.poison(failed)
@@ -1362,8 +1357,8 @@ def _jacobian_serial_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     t38 = s_alpha3 * t3
     del s_alpha3, t3
     B_33 = t37 * (t14 + t21) + t38 * (t10 - A_12) + t9 * (v_z + t27)
-    A_11_above = t18 + t20
-    del t18, t20
+    A_11_above = t19 + t20
+    del t19, t20
     t39 = t23 + t24
     del t23, t24
     t40 = t25 + t26
@@ -1507,134 +1502,132 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     s_w = _runtime.sign(t15 * a_x)
     m_x = _runtime.select(slim, over * (t15 * n_z - d_z * t26), t19)
     del t19
-    t27 = whole * (t15 + a_x * s_w)
+    t27 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
+    del t17, t18, t21
+    t28 = whole * (t15 + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t27 * t27, m_m)
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t28 * t28, m_m)
     part = 1.0 / w_w
     del w_w
-    t28 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
-    del t17, t18, t21
-    t29 = _runtime.select(in_line, 0.0, part * (t28 * t28))
-    t30 = _runtime.select(all_same, 0.0, mu * (1.0 + t29) * 0.25)
-    del all_same, mu, t29
+    t29 = _runtime.select(in_line, 0.0, part * t27 * 0.5)
+    t30 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t27 * t29) * 0.25)
+    del all_same, mu
     t31 = l * l - t30
     del t30
     slack = np.maximum(t31, 0.0)
     t32 = 0.9375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t32, 0.0, np.sqrt(part * slack))
-    del slack
+    del part, slack
     t33 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t34 = _runtime.select(in_line, 0.0, part * t28 * 0.5)
-    del part
-    t35 = t25 * t34 + d_x * 0.5
+    t34 = t25 * t29 + d_x * 0.5
     del d_x
-    t36 = t33 - t35
-    t37 = s_alpha1 * t1
+    t35 = t33 - t34
+    t36 = s_alpha1 * t1
     del s_alpha1, t1
-    t38 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
+    t37 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
     del t22
-    t39 = h * _runtime.select(in_line, g_1, -t38)
-    del g_1, t38
-    t40 = t26 * t34 - t15 * 0.5
-    t41 = t39 + t40
+    t38 = h * _runtime.select(in_line, g_1, -t37)
+    del g_1, t37
+    t39 = t26 * t29 - t15 * 0.5
+    t40 = t38 + t39
     m_z = _runtime.select(slim, over * (a_x * t26 + t15 * t25), t23)
     del a_x, over, slim, t15, t23, t25, t26
-    t42 = h * _runtime.select(in_line, -t27, m_z)
-    del m_z, t27
-    t43 = n_z * t34 - d_z * 0.5
-    del d_z, n_z, t34
-    t44 = t42 + t43
-    t45 = t2 * t36 + t37 * t41 + t4 * t44
-    t46 = t9 + t41
-    t47 = v_z + t44
-    t48 = u_z + t44
-    t49 = t14 + t41
+    t41 = h * _runtime.select(in_line, -t28, m_z)
+    del m_z, t28
+    t42 = n_z * t29 - d_z * 0.5
+    del d_z, n_z, t29
+    t43 = t41 + t42
+    t44 = t2 * t35 + t36 * t40 + t4 * t43
+    t45 = t9 + t40
+    t46 = v_z + t43
+    t47 = u_z + t43
+    t48 = t14 + t40
     Delta = m_m * h
     del h, m_m
-    t50 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t51 = t50 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t50
-    t52 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t53 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= t10 * _runtime.FEASIBILITY
-    del in_line, t10, t28
-    unreachable = np.logical_not(t53 & (-(_runtime.FEASIBILITY * t32) <= t31))
-    del t31, t32, t53
-    t54 = _runtime.poison(np.logical_not(t51 & t52) | unreachable)
-    del t51, t52, unreachable
-    t55 = -(t45 * (t46 * t47 - t48 * t49) / Delta) + t54
-    t56 = c_alpha2 * t3
+    t49 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t50 = t49 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t49
+    t51 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t52 = np.abs(_runtime.select(in_line, -t27, 0.0)) <= t10 * _runtime.FEASIBILITY
+    del in_line, t10, t27
+    unreachable = np.logical_not(t52 & (-(_runtime.FEASIBILITY * t32) <= t31))
+    del t31, t32, t52
+    t53 = _runtime.poison(np.logical_not(t50 & t51) | unreachable)
+    del t50, t51, unreachable
+    t54 = -(t44 * (t45 * t46 - t47 * t48) / Delta) + t53
+    t55 = c_alpha2 * t3
     del c_alpha2
-    t57 = t7 + t36
-    t58 = s_alpha2 * t3
+    t56 = t7 + t35
+    t57 = s_alpha2 * t3
     del s_alpha2, t3
-    t59 = t56 * t57 + t58 * t46 + t6 * t48
-    t60 = c_alpha3 * t16
+    t58 = t55 * t56 + t57 * t45 + t6 * t47
+    t59 = c_alpha3 * t16
     del c_alpha3
-    t61 = t20 + t36
-    t62 = s_alpha3 * t16
+    t60 = t20 + t35
+    t61 = s_alpha3 * t16
     del s_alpha3, t16
-    t63 = t60 * t61 + t62 * t49 + t13 * t47
-    t64 = -(t63 * (t41 * t48 - t44 * t46) / Delta) + t54
-    t65 = -(t59 * (t36 * t47 - t44 * t61) / Delta) + t54
-    t66 = -(t45 * (t49 * t57 - t46 * t61) / Delta) + t54
-    t67 = -(t63 * (t36 * t46 - t41 * t57) / Delta) + t54
-    del t46
-    A_11_above = t33 + t35
-    del t33, t35
-    A_12_above = t39 - t40
-    del t39, t40
-    t68 = t42 - t43
-    del t42, t43
-    t69 = t2 * A_11_above + t37 * A_12_above + t4 * t68
-    del t2, t37, t4
-    t70 = t9 - A_12_above
+    t62 = t59 * t60 + t61 * t48 + t13 * t46
+    t63 = -(t62 * (t40 * t47 - t43 * t45) / Delta) + t53
+    t64 = -(t58 * (t35 * t46 - t43 * t60) / Delta) + t53
+    t65 = -(t44 * (t48 * t56 - t45 * t60) / Delta) + t53
+    t66 = -(t62 * (t35 * t45 - t40 * t56) / Delta) + t53
+    del t45
+    A_11_above = t33 + t34
+    del t33, t34
+    A_12_above = t38 - t39
+    del t38, t39
+    t67 = t41 - t42
+    del t41, t42
+    t68 = t2 * A_11_above + t36 * A_12_above + t4 * t67
+    del t2, t36, t4
+    t69 = t9 - A_12_above
     del t9
-    t71 = v_z - t68
+    t70 = v_z - t67
     del v_z
-    t72 = u_z - t68
+    t71 = u_z - t67
     del u_z
-    t73 = t14 - A_12_above
+    t72 = t14 - A_12_above
     del t14
-    t74 = -(t69 * (t70 * t71 - t72 * t73) / Delta) + t54
-    t75 = t7 - A_11_above
+    t73 = -(t68 * (t69 * t70 - t71 * t72) / Delta) + t53
+    t74 = t7 - A_11_above
     del t7
-    t76 = t56 * t75 + t58 * t70 + t6 * t72
-    del t56, t58, t6
-    t77 = t76 * (A_12_above * t71 - t68 * t73) / Delta + t54
-    t78 = t20 - A_11_above
+    t75 = t55 * t74 + t57 * t69 + t6 * t71
+    del t55, t57, t6
+    t76 = t75 * (A_12_above * t70 - t67 * t72) / Delta + t53
+    t77 = t20 - A_11_above
     del t20
-    t79 = t60 * t78 + t62 * t73 + t13 * t71
-    del t13, t60, t62
-    t80 = -(t79 * (A_12_above * t72 - t68 * t70) / Delta)
-    t81 = -(t76 * (A_11_above * t71 - t68 * t78) / Delta)
-    t82 = t79 * (A_11_above * t72 - t68 * t75) / Delta + t54
-    del t68
-    t83 = -(t69 * (t73 * t75 - t70 * t78) / Delta) + t54
-    t84 = t76 * (A_11_above * t73 - A_12_above * t78) / Delta
-    del t73, t76
-    t85 = t79 * (A_11_above * t70 - A_12_above * t75) / Delta
-    del A_11_above, A_12_above, t70, t79
+    t78 = t59 * t77 + t61 * t72 + t13 * t70
+    del t13, t59, t61
+    t79 = -(t78 * (A_12_above * t71 - t67 * t69) / Delta)
+    t80 = -(t75 * (A_11_above * t70 - t67 * t77) / Delta)
+    t81 = t78 * (A_11_above * t71 - t67 * t74) / Delta + t53
+    del t67
+    t82 = -(t68 * (t72 * t74 - t69 * t77) / Delta) + t53
+    t83 = t75 * (A_11_above * t72 - A_12_above * t77) / Delta
+    del t72, t75
+    t84 = t78 * (A_11_above * t69 - A_12_above * t74) / Delta
+    del A_11_above, A_12_above, t69, t78
     return (
-        t55,
-        t59 * (t41 * t47 - t44 * t49) / Delta + t54,
+        t54,
+        t58 * (t40 * t46 - t43 * t48) / Delta + t53,
+        t63,
+        t44 * (t46 * t56 - t47 * t60) / Delta + t53,
         t64,
-        t45 * (t47 * t57 - t48 * t61) / Delta + t54,
+        t62 * (t35 * t47 - t43 * t56) / Delta + t53,
         t65,
-        t63 * (t36 * t48 - t44 * t57) / Delta + t54,
+        t58 * (t35 * t48 - t40 * t60) / Delta + t53,
         t66,
-        t59 * (t36 * t49 - t41 * t61) / Delta + t54,
-        t67,
-        t74,
-        t77,
-        t80 + t54,
-        t69 * (t71 * t75 - t72 * t78) / Delta + t54,
-        t81 + t54,
+        t73,
+        t76,
+        t79 + t53,
+        t68 * (t70 * t74 - t71 * t77) / Delta + t53,
+        t80 + t53,
+        t81,
         t82,
-        t83,
-        t84 + t54,
-        -t85 + t54,
+        t83 + t53,
+        -t84 + t53,
     )
 
 
@@ -1752,86 +1745,84 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     s_w = _runtime.sign(t15 * a_x)
     m_x = _runtime.select(slim, over * (t15 * n_z - d_z * t26), t19)
     del t19
-    t27 = whole * (t15 + a_x * s_w)
+    t27 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
+    del t17, t18, t21
+    t28 = whole * (t15 + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t27 * t27, m_m)
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t28 * t28, m_m)
     part = 1.0 / w_w
     del w_w
-    t28 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
-    del t17, t18, t21
-    t29 = _runtime.select(in_line, 0.0, part * (t28 * t28))
-    t30 = _runtime.select(all_same, 0.0, mu * (1.0 + t29) * 0.25)
-    del all_same, mu, t29
+    t29 = _runtime.select(in_line, 0.0, part * t27 * 0.5)
+    t30 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t27 * t29) * 0.25)
+    del all_same, mu
     t31 = l * l - t30
     del t30
     slack = np.maximum(t31, 0.0)
     t32 = 0.9375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t32, 0.0, np.sqrt(part * slack))
-    del slack
+    del part, slack
     t33 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t34 = _runtime.select(in_line, 0.0, part * t28 * 0.5)
-    del part
-    t35 = t25 * t34 + d_x * 0.5
+    t34 = t25 * t29 + d_x * 0.5
     del d_x
-    t36 = t33 - t35
-    t37 = s_alpha1 * t1
+    t35 = t33 - t34
+    t36 = s_alpha1 * t1
     del s_alpha1, t1
-    t38 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
+    t37 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
     del t22
-    t39 = h * _runtime.select(in_line, g_1, -t38)
-    del g_1, t38
-    t40 = t26 * t34 - t15 * 0.5
-    t41 = t39 + t40
+    t38 = h * _runtime.select(in_line, g_1, -t37)
+    del g_1, t37
+    t39 = t26 * t29 - t15 * 0.5
+    t40 = t38 + t39
     m_z = _runtime.select(slim, over * (a_x * t26 + t15 * t25), t23)
     del a_x, over, slim, t15, t23, t25, t26
-    t42 = h * _runtime.select(in_line, -t27, m_z)
-    del m_z, t27
-    t43 = n_z * t34 - d_z * 0.5
-    del d_z, n_z, t34
-    t44 = t42 + t43
-    t45 = c_alpha2 * t3
+    t41 = h * _runtime.select(in_line, -t28, m_z)
+    del m_z, t28
+    t42 = n_z * t29 - d_z * 0.5
+    del d_z, n_z, t29
+    t43 = t41 + t42
+    t44 = c_alpha2 * t3
     del c_alpha2
-    t46 = s_alpha2 * t3
+    t45 = s_alpha2 * t3
     del s_alpha2, t3
-    t47 = t45 * (t7 + t36) + t46 * (t9 + t41) + t6 * (u_z + t44)
-    t48 = c_alpha3 * t16
+    t46 = t44 * (t7 + t35) + t45 * (t9 + t40) + t6 * (u_z + t43)
+    t47 = c_alpha3 * t16
     del c_alpha3
-    t49 = s_alpha3 * t16
+    t48 = s_alpha3 * t16
     del s_alpha3, t16
-    t50 = t48 * (t20 + t36) + t49 * (t14 + t41) + t13 * (v_z + t44)
-    t51 = (t2 * t36 + t37 * t41 + t4 * t44) * t47 * t50
-    del t36, t41, t44, t47, t50
+    t49 = t47 * (t20 + t35) + t48 * (t14 + t40) + t13 * (v_z + t43)
+    t50 = (t2 * t35 + t36 * t40 + t4 * t43) * t46 * t49
+    del t35, t40, t43, t46, t49
     Delta = m_m * h
     del h, m_m
-    t52 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t53 = t52 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t52
-    t54 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t55 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= t10 * _runtime.FEASIBILITY
-    del in_line, t10, t28
-    unreachable = np.logical_not(t55 & (-(_runtime.FEASIBILITY * t32) <= t31))
-    del t31, t32, t55
-    t56 = _runtime.poison(np.logical_not(t53 & t54) | unreachable)
-    del t53, t54, unreachable
-    A_11_above = t33 + t35
-    del t33, t35
-    A_12_above = t39 - t40
-    del t39, t40
-    t57 = t42 - t43
-    del t42, t43
-    t58 = t2 * A_11_above + t37 * A_12_above + t4 * t57
-    del t2, t37, t4
-    t59 = t45 * (t7 - A_11_above) + t46 * (t9 - A_12_above)
-    del t45, t46, t7, t9
-    t60 = t48 * (t20 - A_11_above) + t49 * (t14 - A_12_above)
-    del A_11_above, A_12_above, t14, t20, t48, t49
-    t61 = t58 * (t59 + t6 * (u_z - t57)) * (t60 + t13 * (v_z - t57))
-    del t13, t57, t58, t59, t6, t60, u_z, v_z
+    t51 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t52 = t51 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t51
+    t53 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t54 = np.abs(_runtime.select(in_line, -t27, 0.0)) <= t10 * _runtime.FEASIBILITY
+    del in_line, t10, t27
+    unreachable = np.logical_not(t54 & (-(_runtime.FEASIBILITY * t32) <= t31))
+    del t31, t32, t54
+    t55 = _runtime.poison(np.logical_not(t52 & t53) | unreachable)
+    del t52, t53, unreachable
+    A_11_above = t33 + t34
+    del t33, t34
+    A_12_above = t38 - t39
+    del t38, t39
+    t56 = t41 - t42
+    del t41, t42
+    t57 = t2 * A_11_above + t36 * A_12_above + t4 * t56
+    del t2, t36, t4
+    t58 = t44 * (t7 - A_11_above) + t45 * (t9 - A_12_above)
+    del t44, t45, t7, t9
+    t59 = t47 * (t20 - A_11_above) + t48 * (t14 - A_12_above)
+    del A_11_above, A_12_above, t14, t20, t47, t48
+    t60 = t57 * (t58 + t6 * (u_z - t56)) * (t59 + t13 * (v_z - t56))
+    del t13, t56, t57, t58, t59, t6, u_z, v_z
     return (
-        -(t51 / Delta) + t56,
-        -(t61 / Delta) + t56,
+        -(t50 / Delta) + t55,
+        -(t60 / Delta) + t55,
     )
 
 
@@ -1874,23 +1865,24 @@ def _determinant_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     part = 1.0 / product_2
     u_u = u_z * u_z + t13 * t13 + t7 * t7
     t16 = v_z * (u_z - v_z) + t14 * (t13 - t14) + t10 * (t7 - t10)
-    t17 = l * l - u_u * (1.0 + part * (t16 * t16)) * 0.25
-    slack = np.maximum(t17, 0.0)
+    t17 = part * t16 * 0.5
+    t18 = l * l - u_u * (1.0 + 2.0 * t16 * t17) * 0.25
+    del t16
+    slack = np.maximum(t18, 0.0)
     h = np.sqrt(part * slack)
-    t18 = t11 * h
-    t19 = part * t16 * 0.5
-    del part, t16
-    t20 = (t7 * m_z + u_z * t15) * t19 + t13 * 0.5
-    t21 = t18 - t20
+    del part
+    t19 = t11 * h
+    t20 = (t7 * m_z + u_z * t15) * t17 + t13 * 0.5
+    t21 = t19 - t20
     t22 = s_alpha1 * t1
     del s_alpha1, t1
     t23 = t15 * h
-    t24 = t19 * (t13 * m_z - u_z * t11) - t7 * 0.5
+    t24 = t17 * (t13 * m_z - u_z * t11) - t7 * 0.5
     A_12 = t23 - t24
     t25 = m_z * h
     del m_z
-    t26 = u_z * 0.5 - t19 * (t13 * t15 + t7 * t11)
-    del t11, t15, t19
+    t26 = u_z * 0.5 - t17 * (t13 * t15 + t7 * t11)
+    del t11, t15, t17
     t27 = t25 - t26
     t28 = c_alpha2 * t8
     del c_alpha2
@@ -1914,14 +1906,14 @@ def _determinant_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t38 = size * size
     t39 = 0.9375 * (l * size)
     del size
-    t40 = (np.abs(0.0) <= t38 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t39) <= t17)
-    del t17
+    t40 = (np.abs(0.0) <= t38 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t39) <= t18)
+    del t18
     failed = np.logical_not(t36 & t37) | np.logical_not(t40)
     del t36, t37, t40
     t41 = _runtime.poison(failed)
     del failed
-    A_11_above = t18 + t20
-    del t18, t20
+    A_11_above = t19 + t20
+    del t19, t20
     t42 = t23 + t24
     del t23, t24
     t43 = t25 + t26
@@ -2062,87 +2054,85 @@ def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     s_w = _runtime.sign(t15 * a_x)
     m_x = _runtime.select(slim, over * (t15 * n_z - d_z * t26), t19)
     del t19
-    t27 = whole * (t15 + a_x * s_w)
+    t27 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
+    del t17, t18, t21
+    t28 = whole * (t15 + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t27 * t27, m_m)
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t28 * t28, m_m)
     part = 1.0 / w_w
     del w_w
-    t28 = t21 * (d_x - t21) + t18 * (t15 - t18) + t17 * (d_z - t17)
-    del t17, t18, t21
-    t29 = _runtime.select(in_line, 0.0, part * (t28 * t28))
-    t30 = _runtime.select(all_same, 0.0, mu * (1.0 + t29) * 0.25)
-    del all_same, mu, t29
+    t29 = _runtime.select(in_line, 0.0, part * t27 * 0.5)
+    t30 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t27 * t29) * 0.25)
+    del all_same, mu
     t31 = l * l - t30
     del t30
     slack = np.maximum(t31, 0.0)
     t32 = 0.9375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t32, 0.0, np.sqrt(part * slack))
-    del slack
+    del part, slack
     t33 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t34 = _runtime.select(in_line, 0.0, part * t28 * 0.5)
-    del part
-    t35 = t25 * t34 + d_x * 0.5
+    t34 = t25 * t29 + d_x * 0.5
     del d_x
-    t36 = t33 - t35
-    t37 = s_alpha1 * t1
+    t35 = t33 - t34
+    t36 = s_alpha1 * t1
     del s_alpha1, t1
-    t38 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
+    t37 = _runtime.select(slim, over * (a_x * n_z + d_z * t25), t22)
     del t22
-    t39 = h * _runtime.select(in_line, g_1, -t38)
-    del g_1, t38
-    t40 = t26 * t34 - t15 * 0.5
-    t41 = t39 + t40
+    t38 = h * _runtime.select(in_line, g_1, -t37)
+    del g_1, t37
+    t39 = t26 * t29 - t15 * 0.5
+    t40 = t38 + t39
     m_z = _runtime.select(slim, over * (a_x * t26 + t15 * t25), t23)
     del a_x, over, slim, t15, t23, t25, t26
-    t42 = h * _runtime.select(in_line, -t27, m_z)
-    del m_z, t27
-    t43 = n_z * t34 - d_z * 0.5
-    del d_z, n_z, t34
-    t44 = t42 + t43
-    t45 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t46 = t45 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t45
-    t47 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t48 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= t10 * _runtime.FEASIBILITY
-    del in_line, t10, t28
-    unreachable = np.logical_not(t48 & (-(_runtime.FEASIBILITY * t32) <= t31))
-    del t31, t32, t48
-    t49 = _runtime.poison(np.logical_not(t46 & t47) | unreachable)
-    del t46, t47, unreachable
-    t50 = c_alpha2 * t3
+    t41 = h * _runtime.select(in_line, -t28, m_z)
+    del m_z, t28
+    t42 = n_z * t29 - d_z * 0.5
+    del d_z, n_z, t29
+    t43 = t41 + t42
+    t44 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t45 = t44 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t44
+    t46 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t47 = np.abs(_runtime.select(in_line, -t27, 0.0)) <= t10 * _runtime.FEASIBILITY
+    del in_line, t10, t27
+    unreachable = np.logical_not(t47 & (-(_runtime.FEASIBILITY * t32) <= t31))
+    del t31, t32, t47
+    t48 = _runtime.poison(np.logical_not(t45 & t46) | unreachable)
+    del t45, t46, unreachable
+    t49 = c_alpha2 * t3
     del c_alpha2
-    t51 = s_alpha2 * t3
+    t50 = s_alpha2 * t3
     del s_alpha2, t3
-    B_22 = t50 * (t7 + t36) + t51 * (t9 + t41) + t6 * (u_z + t44)
-    t52 = c_alpha3 * t16
+    B_22 = t49 * (t7 + t35) + t50 * (t9 + t40) + t6 * (u_z + t43)
+    t51 = c_alpha3 * t16
     del c_alpha3
-    t53 = s_alpha3 * t16
+    t52 = s_alpha3 * t16
     del s_alpha3, t16
-    B_33 = t52 * (t20 + t36) + t53 * (t14 + t41) + t13 * (v_z + t44)
+    B_33 = t51 * (t20 + t35) + t52 * (t14 + t40) + t13 * (v_z + t43)
     Delta = m_m * h
     del h, m_m
-    A_11_above = t33 + t35
-    del t33, t35
-    A_12_above = t39 - t40
-    del t39, t40
-    t54 = t42 - t43
-    del t42, t43
-    t55 = t2 * A_11_above + t37 * A_12_above + t4 * t54
-    t56 = t50 * (t7 - A_11_above) + t51 * (t9 - A_12_above)
-    del t50, t51, t7, t9
-    t57 = t52 * (t20 - A_11_above) + t53 * (t14 - A_12_above)
-    del A_11_above, A_12_above, t14, t20, t52, t53
+    A_11_above = t33 + t34
+    del t33, t34
+    A_12_above = t38 - t39
+    del t38, t39
+    t53 = t41 - t42
+    del t41, t42
+    t54 = t2 * A_11_above + t36 * A_12_above + t4 * t53
+    t55 = t49 * (t7 - A_11_above) + t50 * (t9 - A_12_above)
+    del t49, t50, t7, t9
+    t56 = t51 * (t20 - A_11_above) + t52 * (t14 - A_12_above)
+    del A_11_above, A_12_above, t14, t20, t51, t52
     return (
-        t2 * t36 + t37 * t41 + t4 * t44 + t49,
-        B_22 + t49,
-        B_33 + t49,
-        -Delta + t49,
-        -t55 + t49,
-        t56 + t6 * (u_z - t54) + t49,
-        t57 + t13 * (v_z - t54) + t49,
-        Delta + t49,
+        t2 * t35 + t36 * t40 + t4 * t43 + t48,
+        B_22 + t48,
+        B_33 + t48,
+        -Delta + t48,
+        -t54 + t48,
+        t55 + t6 * (u_z - t53) + t48,
+        t56 + t13 * (v_z - t53) + t48,
+        Delta + t48,
     )
 
 
@@ -2185,23 +2175,24 @@ def _singularities_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     part = 1.0 / product_2
     u_u = u_z * u_z + t13 * t13 + t7 * t7
     t16 = v_z * (u_z - v_z) + t14 * (t13 - t14) + t10 * (t7 - t10)
-    t17 = l * l - u_u * (1.0 + part * (t16 * t16)) * 0.25
-    slack = np.maximum(t17, 0.0)
+    t17 = part * t16 * 0.5
+    t18 = l * l - u_u * (1.0 + 2.0 * t16 * t17) * 0.25
+    del t16
+    slack = np.maximum(t18, 0.0)
     h = np.sqrt(part * slack)
-    t18 = t11 * h
-    t19 = part * t16 * 0.5
-    del part, t16
-    t20 = (t7 * m_z + u_z * t15) * t19 + t13 * 0.5
-    t21 = t18 - t20
+    del part
+    t19 = t11 * h
+    t20 = (t7 * m_z + u_z * t15) * t17 + t13 * 0.5
+    t21 = t19 - t20
     t22 = s_alpha1 * t1
     del s_alpha1, t1
     t23 = t15 * h
-    t24 = t19 * (t13 * m_z - u_z * t11) - t7 * 0.5
+    t24 = t17 * (t13 * m_z - u_z * t11) - t7 * 0.5
     A_12 = t23 - t24
     t25 = m_z * h
     del m_z
-    t26 = u_z * 0.5 - t19 * (t13 * t15 + t7 * t11)
-    del t11, t15, t19
+    t26 = u_z * 0.5 - t17 * (t13 * t15 + t7 * t11)
+    del t11, t15, t17
     t27 = t25 - t26
     t28 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
     t29 = t28 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
@@ -2211,8 +2202,8 @@ def _singularities_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t31 = size * size
     t32 = 0.9375 * (l * size)
     del size
-    t33 = (np.abs(0.0) <= t31 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t32) <= t17)
-    del t17
+    t33 = (np.abs(0.0) <= t31 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t32) <= t18)
+    del t18
     failed = np.logical_not(t29 & t30) | np.logical_not(t33)
     del t29, t30, t33
     t34 = _runtime.poison(failed)
@@ -2229,8 +2220,8 @@ def _singularities_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     B_33 = t37 * (t14 + t21) + t38 * (t10 - A_12) + t9 * (v_z + t27)
     Delta = product_2 * h
     del h
-    A_11_above = t18 + t20
-    del t18, t20
+    A_11_above = t19 + t20
+    del t19, t20
     t39 = t23 + t24
     del t23, t24
     t40 = t25 + t26
@@ -2376,124 +2367,122 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     s_w = _runtime.sign(t13 * a_x)
     m_x = _runtime.select(slim, over * (t13 * n_z - d_z * t23), t16)
     del t16
-    t24 = whole * (t13 + a_x * s_w)
+    t24 = t18 * (d_x - t18) + t15 * (t13 - t15) + t14 * (d_z - t14)
+    del t14, t15, t18
+    t25 = whole * (t13 + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t24 * t24, m_m)
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t25 * t25, m_m)
     part = 1.0 / w_w
     del w_w
-    t25 = t18 * (d_x - t18) + t15 * (t13 - t15) + t14 * (d_z - t14)
-    del t14, t15, t18
-    t26 = _runtime.select(in_line, 0.0, part * (t25 * t25))
-    t27 = _runtime.select(all_same, 0.0, mu * (1.0 + t26) * 0.25)
-    del all_same, mu, t26
+    t26 = _runtime.select(in_line, 0.0, part * t24 * 0.5)
+    t27 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t24 * t26) * 0.25)
+    del all_same, mu
     t28 = l * l - t27
     del t27
     slack = np.maximum(t28, 0.0)
     t29 = 0.9375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t29, 0.0, np.sqrt(part * slack))
-    del slack
+    del part, slack
     t30 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t31 = _runtime.select(in_line, 0.0, part * t25 * 0.5)
-    del part
-    t32 = t22 * t31 + d_x * 0.5
+    t31 = t22 * t26 + d_x * 0.5
     del d_x
-    t33 = t30 - t32
-    t34 = _runtime.select(slim, over * (a_x * n_z + d_z * t22), t19)
+    t32 = t30 - t31
+    t33 = _runtime.select(slim, over * (a_x * n_z + d_z * t22), t19)
     del t19
-    t35 = h * _runtime.select(in_line, g_1, -t34)
-    del g_1, t34
-    t36 = t23 * t31 - t13 * 0.5
-    t37 = t35 + t36
+    t34 = h * _runtime.select(in_line, g_1, -t33)
+    del g_1, t33
+    t35 = t23 * t26 - t13 * 0.5
+    t36 = t34 + t35
     m_z = _runtime.select(slim, over * (a_x * t23 + t13 * t22), t20)
     del a_x, over, slim, t13, t20, t22, t23
-    t38 = h * _runtime.select(in_line, -t24, m_z)
-    del m_z, t24
-    t39 = n_z * t31 - d_z * 0.5
-    del d_z, n_z, t31
-    t40 = t38 + t39
-    t41 = t5 + t33
-    t42 = t7 + t37
-    t43 = u_z + t40
-    t44 = t33 * t33 + t37 * t37 + t40 * t40 + (t41 * t41 + t42 * t42 + t43 * t43)
-    t45 = t17 + t33
-    t46 = t12 + t37
-    t47 = v_z + t40
-    t48 = t33 * t42 - t37 * t41
-    t49 = t33 * t43 - t40 * t41
-    t50 = t33 * t46 - t37 * t45
-    t51 = t33 * t47 - t40 * t45
-    del t33
-    t52 = t48 * t48 + t49 * t49 + t50 * t50 + t51 * t51
-    del t48, t49, t50, t51
-    t53 = t37 * t43 - t40 * t42
-    t54 = t37 * t47 - t40 * t46
-    del t37, t40
-    t55 = t41 * t46 - t42 * t45
-    t56 = t41 * t47 - t43 * t45
-    del t41
-    t57 = t52 + t53 * t53 + t54 * t54 + t55 * t55 + t56 * t56
-    del t52, t53, t54, t55, t56
-    t58 = t42 * t47 - t43 * t46
-    del t42, t43
-    t59 = (t44 + (t45 * t45 + t46 * t46 + t47 * t47)) * (t57 + t58 * t58)
-    del t44, t45, t46, t47, t57, t58
-    t60 = 3.0 * (m_m * h)
+    t37 = h * _runtime.select(in_line, -t25, m_z)
+    del m_z, t25
+    t38 = n_z * t26 - d_z * 0.5
+    del d_z, n_z, t26
+    t39 = t37 + t38
+    t40 = t5 + t32
+    t41 = t7 + t36
+    t42 = u_z + t39
+    t43 = t32 * t32 + t36 * t36 + t39 * t39 + (t40 * t40 + t41 * t41 + t42 * t42)
+    t44 = t17 + t32
+    t45 = t12 + t36
+    t46 = v_z + t39
+    t47 = t32 * t41 - t36 * t40
+    t48 = t32 * t42 - t39 * t40
+    t49 = t32 * t45 - t36 * t44
+    t50 = t32 * t46 - t39 * t44
+    del t32
+    t51 = t47 * t47 + t48 * t48 + t49 * t49 + t50 * t50
+    del t47, t48, t49, t50
+    t52 = t36 * t42 - t39 * t41
+    t53 = t36 * t46 - t39 * t45
+    del t36, t39
+    t54 = t40 * t45 - t41 * t44
+    t55 = t40 * t46 - t42 * t44
+    del t40
+    t56 = t51 + t52 * t52 + t53 * t53 + t54 * t54 + t55 * t55
+    del t51, t52, t53, t54, t55
+    t57 = t41 * t46 - t42 * t45
+    del t41, t42
+    t58 = (t43 + (t44 * t44 + t45 * t45 + t46 * t46)) * (t56 + t57 * t57)
+    del t43, t44, t45, t46, t56, t57
+    t59 = 3.0 * (m_m * h)
     del h, m_m
-    t61 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t62 = t61 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t61
-    t63 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t64 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= t8 * _runtime.FEASIBILITY
-    del in_line, t25, t8
-    unreachable = np.logical_not(t64 & (-(_runtime.FEASIBILITY * t29) <= t28))
-    del t28, t29, t64
-    t65 = _runtime.poison(np.logical_not(t62 & t63) | unreachable)
-    del t62, t63, unreachable
-    A_11_above = t30 + t32
-    del t30, t32
-    A_12_above = t35 - t36
-    del t35, t36
-    t66 = A_11_above * A_11_above + A_12_above * A_12_above
-    t67 = t38 - t39
-    del t38, t39
-    t68 = t5 - A_11_above
+    t60 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t61 = t60 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t60
+    t62 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t63 = np.abs(_runtime.select(in_line, -t24, 0.0)) <= t8 * _runtime.FEASIBILITY
+    del in_line, t24, t8
+    unreachable = np.logical_not(t63 & (-(_runtime.FEASIBILITY * t29) <= t28))
+    del t28, t29, t63
+    t64 = _runtime.poison(np.logical_not(t61 & t62) | unreachable)
+    del t61, t62, unreachable
+    A_11_above = t30 + t31
+    del t30, t31
+    A_12_above = t34 - t35
+    del t34, t35
+    t65 = A_11_above * A_11_above + A_12_above * A_12_above
+    t66 = t37 - t38
+    del t37, t38
+    t67 = t5 - A_11_above
     del t5
-    t69 = t7 - A_12_above
+    t68 = t7 - A_12_above
     del t7
-    t70 = u_z - t67
+    t69 = u_z - t66
     del u_z
-    t71 = t66 + t67 * t67 + (t68 * t68 + t69 * t69 + t70 * t70)
-    del t66
-    t72 = t17 - A_11_above
+    t70 = t65 + t66 * t66 + (t67 * t67 + t68 * t68 + t69 * t69)
+    del t65
+    t71 = t17 - A_11_above
     del t17
-    t73 = t12 - A_12_above
+    t72 = t12 - A_12_above
     del t12
-    t74 = v_z - t67
+    t73 = v_z - t66
     del v_z
-    t75 = A_11_above * t69 - A_12_above * t68
-    t76 = A_11_above * t70 - t67 * t68
-    t77 = A_11_above * t73 - A_12_above * t72
-    t78 = A_11_above * t74 - t67 * t72
+    t74 = A_11_above * t68 - A_12_above * t67
+    t75 = A_11_above * t69 - t66 * t67
+    t76 = A_11_above * t72 - A_12_above * t71
+    t77 = A_11_above * t73 - t66 * t71
     del A_11_above
-    t79 = t75 * t75 + t76 * t76 + t77 * t77 + t78 * t78
-    del t75, t76, t77, t78
-    t80 = A_12_above * t70 - t67 * t69
-    t81 = A_12_above * t74 - t67 * t73
-    del A_12_above, t67
-    t82 = t68 * t73 - t69 * t72
-    t83 = t68 * t74 - t70 * t72
-    del t68
-    t84 = t79 + t80 * t80 + t81 * t81 + t82 * t82 + t83 * t83
-    del t79, t80, t81, t82, t83
-    t85 = t69 * t74 - t70 * t73
-    del t69, t70
-    t86 = (t71 + (t72 * t72 + t73 * t73 + t74 * t74)) * (t84 + t85 * t85)
-    del t71, t72, t73, t74, t84, t85
+    t78 = t74 * t74 + t75 * t75 + t76 * t76 + t77 * t77
+    del t74, t75, t76, t77
+    t79 = A_12_above * t69 - t66 * t68
+    t80 = A_12_above * t73 - t66 * t72
+    del A_12_above, t66
+    t81 = t67 * t72 - t68 * t71
+    t82 = t67 * t73 - t69 * t71
+    del t67
+    t83 = t78 + t79 * t79 + t80 * t80 + t81 * t81 + t82 * t82
+    del t78, t79, t80, t81, t82
+    t84 = t68 * t73 - t69 * t72
+    del t68, t69
+    t85 = (t70 + (t71 * t71 + t72 * t72 + t73 * t73)) * (t83 + t84 * t84)
+    del t70, t71, t72, t73, t83, t84
     return (
-        np.sqrt(t59) / t60 + t65,
-        np.sqrt(t86) / t60 + t65,
+        np.sqrt(t58) / t59 + t64,
+        np.sqrt(t85) / t59 + t64,
     )
 
 
@@ -2583,150 +2572,149 @@ def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     same = u_u <= t14
     del t14
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
-    t15 = _runtime.select(same, t11, t8)
-    t16 = _runtime.select(same, u_z, v_z)
-    t17 = _runtime.select(same, t8, t11)
-    d_z = _runtime.select(same, v_z, u_z)
-    t18 = t15 * t16 - t17 * d_z
+    t15 = _runtime.select(same, t6, t10)
     d_x = _runtime.select(same, t10, t6)
+    t16 = _runtime.select(same, t8, t11)
+    t17 = _runtime.select(same, t11, t8)
+    t18 = _runtime.select(same, u_z, v_z)
+    d_z = _runtime.select(same, v_z, u_z)
+    t19 = t15 * (d_x - t15) + t16 * (t17 - t16) + t18 * (d_z - t18)
+    t20 = t17 * t18 - t16 * d_z
     a_x = _runtime.select(all_same, whole, d_x)
-    t19 = _runtime.select(same, t6, t10)
-    t20 = a_x * t16 - t19 * d_z
-    t21 = a_x * t17 - t15 * t19
-    product_2 = t18 * t18 + t20 * t20 + t21 * t21
-    t22 = mu * _runtime.select(same, u_u, v_v)
+    t21 = a_x * t18 - t15 * d_z
+    del t18
+    t22 = a_x * t16 - t17 * t15
+    del t15, t16
+    product_2 = t20 * t20 + t21 * t21 + t22 * t22
+    t23 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = product_2 - t22 * 0.000244140625 <= _runtime.VANISHING * t22
-    del t22
+    slim = product_2 - t23 * 0.000244140625 <= _runtime.VANISHING * t23
+    del t23
     over = 1.0 / mu
-    t23 = t15 * t21 + d_z * t20
-    t24 = a_x * t21 - d_z * t18
-    n_z = a_x * t20 + t15 * t18
-    m_m = _runtime.select(slim, over * (t23 * t23 + t24 * t24 + n_z * n_z), product_2)
+    t24 = t17 * t22 + d_z * t21
+    t25 = a_x * t22 - d_z * t20
+    n_z = a_x * t21 + t17 * t20
+    m_m = _runtime.select(slim, over * (t24 * t24 + t25 * t25 + n_z * n_z), product_2)
     del product_2
     in_line = m_m <= t13 * (t12 * mu)
     del t13
     g_1 = whole * d_z
-    s_w = _runtime.sign(t15 * a_x)
-    t25 = whole * (t15 + a_x * s_w)
+    s_w = _runtime.sign(t17 * a_x)
+    t26 = whole * (t17 + a_x * s_w)
     del whole
-    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t25 * t25, m_m)
+    w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + t26 * t26, m_m)
     del m_m
     part = 1.0 / w_w
     del w_w
-    t26 = t19 * (d_x - t19) + t17 * (t15 - t17) + t16 * (d_z - t16)
-    del t16, t17, t19
-    t27 = _runtime.select(in_line, 0.0, part * (t26 * t26))
-    t28 = _runtime.select(all_same, 0.0, mu * (1.0 + t27) * 0.25)
-    del all_same, mu, t27
+    t27 = _runtime.select(in_line, 0.0, part * t19 * 0.5)
+    t28 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t19 * t27) * 0.25)
+    del all_same, mu
     t29 = l * l - t28
     del t28
     slack = np.maximum(t29, 0.0)
     t30 = 0.9375 * (l * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t30, 0.0, np.sqrt(part * slack))
-    del slack
-    m_z = _runtime.select(slim, over * (a_x * t24 + t15 * t23), t21)
-    del t21
-    t31 = h * _runtime.select(in_line, -t25, m_z)
-    del m_z, t25
-    t32 = _runtime.select(in_line, 0.0, part * t26 * 0.5)
-    del part
-    t33 = n_z * t32 - d_z * 0.5
-    t34 = t31 + t33
-    t35 = s_alpha3 * t34
-    t36 = t1 * t35
-    t37 = u_z + t34
-    t38 = _runtime.select(slim, over * (a_x * n_z + d_z * t23), t20)
-    del a_x, t20
-    t39 = h * _runtime.select(in_line, g_1, -t38)
-    del t38
-    t40 = t24 * t32 - t15 * 0.5
-    t41 = t39 + t40
-    t42 = t37 * (t11 + t41)
-    t43 = c_alpha3 * t1
-    m_x = _runtime.select(slim, over * (t15 * n_z - d_z * t24), t18)
-    del d_z, n_z, over, slim, t15, t18, t24
-    t44 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    del part, slack
+    m_z = _runtime.select(slim, over * (a_x * t25 + t17 * t24), t22)
+    del t22
+    t31 = h * _runtime.select(in_line, -t26, m_z)
+    del m_z, t26
+    t32 = n_z * t27 - d_z * 0.5
+    t33 = t31 + t32
+    t34 = s_alpha3 * t33
+    t35 = t1 * t34
+    t36 = u_z + t33
+    t37 = _runtime.select(slim, over * (a_x * n_z + d_z * t24), t21)
+    del a_x, t21
+    t38 = h * _runtime.select(in_line, g_1, -t37)
+    del t37
+    t39 = t25 * t27 - t17 * 0.5
+    t40 = t38 + t39
+    t41 = t36 * (t11 + t40)
+    t42 = c_alpha3 * t1
+    m_x = _runtime.select(slim, over * (t17 * n_z - d_z * t25), t20)
+    del d_z, n_z, over, slim, t17, t20, t25
+    t43 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del g_1, h, m_x, s_w
-    t45 = t23 * t32 + d_x * 0.5
-    del d_x, t23, t32
-    t46 = t44 - t45
-    t47 = v_z + t34
-    t48 = t37 * t47
-    t49 = t46 * t48
-    t50 = c_alpha1 * c_alpha2
+    t44 = t24 * t27 + d_x * 0.5
+    del d_x, t24, t27
+    t45 = t43 - t44
+    t46 = v_z + t33
+    t47 = t36 * t46
+    t48 = t45 * t47
+    t49 = c_alpha1 * c_alpha2
     del c_alpha1
-    t51 = s_alpha3 * t50
-    t52 = s_alpha1 * s_alpha2
+    t50 = s_alpha3 * t49
+    t51 = s_alpha1 * s_alpha2
     del s_alpha2
-    t53 = c_alpha3 * t52
-    t54 = t48 * t41
-    del t48
-    t55 = s_alpha1 * c_alpha2
+    t52 = c_alpha3 * t51
+    t53 = t47 * t40
+    del t47
+    t54 = s_alpha1 * c_alpha2
     del c_alpha2, s_alpha1
-    t56 = s_alpha3 * t55
-    t57 = t43 * t49 - t51 * t49 + t53 * t54 - t56 * t54
-    del t49, t54
-    t58 = c_alpha3 * t34
-    del t34
-    t59 = t55 * t58
-    t60 = t47 * (t6 + t46)
-    t61 = t47 * (t8 + t41)
-    del t41, t47
-    t62 = t57 - t59 * t60 + t50 * t60 * t35 - t52 * t58 * t61
-    del t57, t60
-    t63 = t37 * (t10 + t46)
-    del t37, t46
-    t64 = t62 + t61 * t36 + t59 * t63 - t1 * t58 * t63 + t55 * t35 * t42
-    del t35, t58, t59, t61, t62, t63
-    t65 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t66 = t65 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t65
-    t67 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t68 = np.abs(_runtime.select(in_line, -t26, 0.0)) <= t12 * _runtime.FEASIBILITY
-    del in_line, t12, t26
-    unreachable = np.logical_not(t68 & (-(_runtime.FEASIBILITY * t30) <= t29))
-    del t29, t30, t68
-    t69 = _runtime.poison(np.logical_not(t66 & t67) | unreachable)
-    del t66, t67, unreachable
-    A_11_above = t44 + t45
-    del t44, t45
-    t70 = t31 - t33
-    del t31, t33
-    t71 = u_z - t70
+    t55 = s_alpha3 * t54
+    t56 = t42 * t48 - t50 * t48 + t52 * t53 - t55 * t53
+    del t48, t53
+    t57 = c_alpha3 * t33
+    del t33
+    t58 = t54 * t57
+    t59 = t46 * (t6 + t45)
+    t60 = t46 * (t8 + t40)
+    del t40, t46
+    t61 = t56 - t58 * t59 + t49 * t59 * t34 - t51 * t57 * t60
+    del t56, t59
+    t62 = t36 * (t10 + t45)
+    del t36, t45
+    t63 = t61 + t60 * t35 + t58 * t62 - t1 * t57 * t62 + t54 * t34 * t41
+    del t34, t57, t58, t60, t61, t62
+    t64 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t65 = t64 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t64
+    t66 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t67 = np.abs(_runtime.select(in_line, -t19, 0.0)) <= t12 * _runtime.FEASIBILITY
+    del in_line, t12, t19
+    unreachable = np.logical_not(t67 & (-(_runtime.FEASIBILITY * t30) <= t29))
+    del t29, t30, t67
+    t68 = _runtime.poison(np.logical_not(t65 & t66) | unreachable)
+    del t65, t66, unreachable
+    A_11_above = t43 + t44
+    del t43, t44
+    t69 = t31 - t32
+    del t31, t32
+    t70 = u_z - t69
     del u_z
-    t72 = v_z - t70
+    t71 = v_z - t69
     del v_z
-    t73 = t71 * t72
-    t74 = A_11_above * t73
-    A_12_above = t39 - t40
-    del t39, t40
-    t75 = t73 * A_12_above
-    del t73
-    t76 = t43 * t74 - t51 * t74 + t53 * t75 - t56 * t75
-    del t43, t51, t53, t56, t74, t75
-    t77 = c_alpha3 * t70
+    t72 = t70 * t71
+    t73 = A_11_above * t72
+    A_12_above = t38 - t39
+    del t38, t39
+    t74 = t72 * A_12_above
+    del t72
+    t75 = t42 * t73 - t50 * t73 + t52 * t74 - t55 * t74
+    del t42, t50, t52, t55, t73, t74
+    t76 = c_alpha3 * t69
     del c_alpha3
-    t78 = t55 * t77
-    t79 = t72 * (t6 - A_11_above)
+    t77 = t54 * t76
+    t78 = t71 * (t6 - A_11_above)
     del t6
-    t80 = s_alpha3 * t70
-    del s_alpha3, t70
-    t81 = t72 * (t8 - A_12_above)
-    del t72, t8
-    t82 = t76 - t78 * t79 + t50 * t79 * t80 - t52 * t77 * t81
-    del t50, t52, t76, t79
-    t83 = t1 * t80
-    t84 = t71 * (t10 - A_11_above)
+    t79 = s_alpha3 * t69
+    del s_alpha3, t69
+    t80 = t71 * (t8 - A_12_above)
+    del t71, t8
+    t81 = t75 - t77 * t78 + t49 * t78 * t79 - t51 * t76 * t80
+    del t49, t51, t75, t78
+    t82 = t1 * t79
+    t83 = t70 * (t10 - A_11_above)
     del A_11_above, t10
-    t85 = t71 * (t11 - A_12_above)
-    del A_12_above, t11, t71
-    t86 = t82 + t81 * t83 + t78 * t84 - t1 * t77 * t84 + t55 * t80 * t85
-    del t1, t55, t77, t78, t80, t81, t82, t84
+    t84 = t70 * (t11 - A_12_above)
+    del A_12_above, t11, t70
+    t85 = t81 + t80 * t82 + t77 * t83 - t1 * t76 * t83 + t54 * t79 * t84
+    del t1, t54, t76, t77, t79, t80, t81, t83
     return (
-        t36 * t42 - t64 + t69,
-        t86 - t83 * t85 + t69,
+        t35 * t41 - t63 + t68,
+        t85 - t82 * t84 + t68,
     )
 
 
@@ -2768,26 +2756,27 @@ def _constraint_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     part = 1.0 / product_2
     u_u = u_z * u_z + t6 * t6 + t10 * t10
     t15 = v_z * (u_z - v_z) + t11 * (t6 - t11) + t9 * (t10 - t9)
-    t16 = l * l - u_u * (1.0 + part * (t15 * t15)) * 0.25
-    slack = np.maximum(t16, 0.0)
+    t16 = part * t15 * 0.5
+    t17 = l * l - u_u * (1.0 + 2.0 * t15 * t16) * 0.25
+    del t15
+    slack = np.maximum(t17, 0.0)
     h = np.sqrt(part * slack)
-    t17 = m_z * h
-    t18 = part * t15 * 0.5
-    del part, t15
-    t19 = u_z * 0.5 - t18 * (t6 * t14 + t10 * t13)
-    t20 = t17 - t19
+    del part
+    t18 = m_z * h
+    t19 = u_z * 0.5 - t16 * (t6 * t14 + t10 * t13)
+    t20 = t18 - t19
     t21 = u_z + t20
     t22 = t20 * t21
     t23 = t14 * h
-    t24 = t18 * (t6 * m_z - u_z * t13) - t10 * 0.5
+    t24 = t16 * (t6 * m_z - u_z * t13) - t10 * 0.5
     A_12 = t23 - t24
     t25 = t22 * (t9 - A_12)
     t26 = c_alpha3 * t1
     del t1
     t27 = t13 * h
     del h, t13
-    t28 = (t10 * m_z + u_z * t14) * t18 + t6 * 0.5
-    del m_z, t14, t18
+    t28 = (t10 * m_z + u_z * t14) * t16 + t6 * 0.5
+    del m_z, t14, t16
     t29 = t27 - t28
     t30 = v_z + t20
     t31 = t21 * t30
@@ -2826,16 +2815,16 @@ def _constraint_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     t49 = size * size
     t50 = 0.9375 * (l * size)
     del size
-    t51 = (np.abs(0.0) <= t49 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t50) <= t16)
-    del t16
+    t51 = (np.abs(0.0) <= t49 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t50) <= t17)
+    del t17
     failed = np.logical_not(t47 & t48) | np.logical_not(t51)
     del t47, t48, t51
     t52 = _runtime.poison(failed)
     del failed
     A_11_above = t27 + t28
     del t27, t28
-    t53 = t17 + t19
-    del t17, t19
+    t53 = t18 + t19
+    del t18, t19
     t54 = u_z - t53
     del u_z
     t55 = v_z - t53

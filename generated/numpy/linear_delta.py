@@ -2,29 +2,29 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 51 compare and select, 53 add, 2 divide, 78 multiply, 1 sqrt
+#   fk: 50 compare and select, 53 add, 2 divide, 78 multiply, 1 sqrt
 #   fk where nothing vanishes: 30 compare and select, 46 add, 1 divide, 55 multiply, 1 sqrt
-#   skeleton: 50 compare and select, 127 add, 2 divide, 80 multiply, 1 sqrt
+#   skeleton: 49 compare and select, 127 add, 2 divide, 80 multiply, 1 sqrt
 #   skeleton where nothing vanishes: 29 compare and select, 120 add, 1 divide, 57 multiply, 1 sqrt
-#   jacobian_parallel: 50 compare and select, 71 add, 2 divide, 78 multiply, 1 sqrt
+#   jacobian_parallel: 49 compare and select, 71 add, 2 divide, 78 multiply, 1 sqrt
 #   jacobian_parallel where nothing vanishes: 29 compare and select, 64 add, 1 divide, 55
 #     multiply, 1 sqrt
-#   jacobian_serial: 46 compare and select, 47 add, 2 divide, 65 multiply, 1 sqrt
+#   jacobian_serial: 45 compare and select, 47 add, 2 divide, 65 multiply, 1 sqrt
 #   jacobian_serial where nothing vanishes: 29 compare and select, 40 add, 1 divide, 45 multiply,
 #     1 sqrt
-#   jacobian: 50 compare and select, 91 add, 20 divide, 129 multiply, 1 sqrt
+#   jacobian: 49 compare and select, 91 add, 20 divide, 129 multiply, 1 sqrt
 #   jacobian where nothing vanishes: 29 compare and select, 84 add, 19 divide, 106 multiply, 1
 #     sqrt
-#   determinant: 46 compare and select, 43 add, 4 divide, 70 multiply, 1 sqrt
+#   determinant: 45 compare and select, 43 add, 4 divide, 70 multiply, 1 sqrt
 #   determinant where nothing vanishes: 29 compare and select, 36 add, 3 divide, 50 multiply, 1
 #     sqrt
-#   singularities: 46 compare and select, 49 add, 2 divide, 66 multiply, 1 sqrt
+#   singularities: 45 compare and select, 49 add, 2 divide, 66 multiply, 1 sqrt
 #   singularities where nothing vanishes: 29 compare and select, 42 add, 1 divide, 46 multiply, 1
 #     sqrt
-#   condition_number: 50 compare and select, 107 add, 4 divide, 148 multiply, 3 sqrt
+#   condition_number: 49 compare and select, 107 add, 4 divide, 148 multiply, 3 sqrt
 #   condition_number where nothing vanishes: 29 compare and select, 100 add, 3 divide, 125
 #     multiply, 3 sqrt
-#   constraint: 50 compare and select, 65 add, 2 divide, 108 multiply, 1 sqrt
+#   constraint: 49 compare and select, 65 add, 2 divide, 108 multiply, 1 sqrt
 #   constraint where nothing vanishes: 29 compare and select, 58 add, 1 divide, 85 multiply, 1
 #     sqrt
 #   ik: 60 compare and select, 63 add, 49 multiply, 6 sqrt
@@ -207,51 +207,50 @@ def _fk(rho1, rho2, rho3, f, e, l):
     del c1_x, t1
     t19 = _runtime.select(slim, over * (d_y * t14 - t9 * n_y), t12)
     del t12
-    t20 = _runtime.select(in_line, 0.0, part * (t16 * t16))
-    t21 = _runtime.select(all_same, 0.0, mu * (1.0 + t20) * 0.25)
-    del all_same, mu, t20
-    t22 = l * l - t21
-    del t21
-    slack = np.maximum(t22, 0.0)
-    t23 = l * size * 0.1875
+    t20 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t16 * t17) * 0.25)
+    del all_same, mu
+    t21 = l * l - t20
+    del t20
+    slack = np.maximum(t21, 0.0)
+    t22 = l * size * 0.1875
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t23, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t22, 0.0, np.sqrt(part * slack))
     del part, slack
-    t24 = _runtime.select(in_line, t15 * s_w, t19) * h
+    t23 = _runtime.select(in_line, t15 * s_w, t19) * h
     del s_w, t19
-    t25 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t26 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t27 = t25 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t26
-    del t25, t26
-    invalid = np.logical_not(t27)
-    del t27
-    t28 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t4 * _runtime.FEASIBILITY
+    t24 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t25 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t26 = t24 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t25
+    del t24, t25
+    invalid = np.logical_not(t26)
+    del t26
+    t27 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t4 * _runtime.FEASIBILITY
     del t16, t4
-    unreachable = np.logical_not(t28 & (-(_runtime.FEASIBILITY * t23) <= t22))
-    del t22, t23, t28
-    t29 = _runtime.poison(invalid | unreachable)
-    t30 = n_y * t17 - d_y * 0.5
+    unreachable = np.logical_not(t27 & (-(_runtime.FEASIBILITY * t22) <= t21))
+    del t21, t22, t27
+    t28 = _runtime.poison(invalid | unreachable)
+    t29 = n_y * t17 - d_y * 0.5
     m_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), product_y)
     del product_y
-    t31 = h * _runtime.select(in_line, -t15, m_y)
+    t30 = h * _runtime.select(in_line, -t15, m_y)
     del m_y, t15
-    t32 = t9 * 0.5 - (rho1 + t14 * t17)
+    t31 = t9 * 0.5 - (rho1 + t14 * t17)
     del t14, t17, t9
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), product_z)
     del a_x, d_y, n_y, over, product_z, slim, t11
-    t33 = h * _runtime.select(in_line, -g_2, m_z)
+    t32 = h * _runtime.select(in_line, -g_2, m_z)
     del g_2, h, m_z
-    t34 = _runtime.status(invalid, unreachable, in_line)
+    t33 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t18 + t24 + t29,
-        -(t30 + t31) + t29,
-        -(t32 + t33) + t29,
-        t18 - t24 + t29,
-        t31 - t30 + t29,
-        t33 - t32 + t29,
-        t34,
-        t34,
+        t18 + t23 + t28,
+        -(t29 + t30) + t28,
+        -(t31 + t32) + t28,
+        t18 - t23 + t28,
+        t30 - t29 + t28,
+        t32 - t31 + t28,
+        t33,
+        t33,
     )
 
 
@@ -275,7 +274,7 @@ def _fk_common(rho1, rho2, rho3, f, e, l):
     del c1_x
     t11 = t1 * t1 + c3_y * c3_y
     u_u = t4 * t4 + t11
-    t12 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
+    t12 = l * l - u_u * (1.0 + 2.0 * t8 * t9) * 0.25
     del t8
     slack = np.maximum(t12, 0.0)
     h = np.sqrt(part * slack)
@@ -446,9 +445,9 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     del m_m
     part = 1.0 / w_w
     del w_w
-    t27 = _runtime.select(in_line, 0.0, part * (t23 * t23))
-    t28 = _runtime.select(all_same, 0.0, mu * (1.0 + t27) * 0.25)
-    del all_same, mu, t27
+    t27 = _runtime.select(in_line, 0.0, t23 * part * 0.5)
+    t28 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t23 * t27) * 0.25)
+    del all_same, mu, t23
     t29 = l * l - t28
     del t28
     unreachable = np.logical_not(t24 & (-(_runtime.FEASIBILITY * t25) <= t29))
@@ -459,80 +458,78 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     t32 = 0.0 + t30
     t33 = rho1 + t30
     t34 = e + c1_x
-    t35 = _runtime.select(in_line, 0.0, t23 * part * 0.5)
-    del t23
-    t36 = t7 * 0.5 - t21 * t35
+    t35 = t7 * 0.5 - t21 * t27
     del t7
-    t37 = _runtime.select(slim, over * (d_y * t22 - t17 * n_y), t19)
+    t36 = _runtime.select(slim, over * (d_y * t22 - t17 * n_y), t19)
     del t19
     slack = np.maximum(t29, 0.0)
     del t29
     h = _runtime.select(slack <= _runtime.VANISHING * t25, 0.0, np.sqrt(part * slack))
     del part, slack, t25
-    t38 = _runtime.select(in_line, t26 * s_w, t37) * h
-    del s_w, t37
-    t39 = t36 - t38
-    t40 = t34 - t39 + t30
-    t41 = n_y * t35 - d_y * 0.5
+    t37 = _runtime.select(in_line, t26 * s_w, t36) * h
+    del s_w, t36
+    t38 = t35 - t37
+    t39 = t34 - t38 + t30
+    t40 = n_y * t27 - d_y * 0.5
     m_y = _runtime.select(slim, over * (a_x * t22 + t17 * t21), product_y)
     del product_y
-    t42 = h * _runtime.select(in_line, -t26, m_y)
+    t41 = h * _runtime.select(in_line, -t26, m_y)
     del m_y, t26
-    t43 = t41 + t42
-    t44 = -t43 + t30
-    t45 = t22 * t35 - t17 * 0.5
-    del t17, t22, t35
+    t42 = t40 + t41
+    t43 = -t42 + t30
+    t44 = t22 * t27 - t17 * 0.5
+    del t17, t22, t27
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t21), product_z)
     del a_x, d_y, n_y, over, product_z, slim, t21
-    t46 = h * _runtime.select(in_line, -g_2, m_z)
+    t45 = h * _runtime.select(in_line, -g_2, m_z)
     del g_2, h, in_line, m_z
-    t47 = rho1 + (t45 - t46) + t30
-    t48 = t5 + t30
-    t49 = -t5 + t30
-    t50 = -t6 + t30
-    t51 = t10 + t30
-    t52 = rho2 + t30
-    t53 = c1_x - t5
-    t54 = t53 - t39
-    t55 = t54 + t30
-    t56 = t8 * 0.25
+    t46 = rho1 + (t44 - t45) + t30
+    t47 = t5 + t30
+    t48 = -t5 + t30
+    t49 = -t6 + t30
+    t50 = t10 + t30
+    t51 = rho2 + t30
+    t52 = c1_x - t5
+    t53 = t52 - t38
+    t54 = t53 + t30
+    t55 = t8 * 0.25
     del t8
-    t57 = -(t6 + t56) + t30
-    t58 = e * 0.25
-    t59 = t10 - t58
-    t60 = t59 + t30
-    t61 = t56 - t6 + t30
+    t56 = -(t6 + t55) + t30
+    t57 = e * 0.25
+    t58 = t10 - t57
+    t59 = t58 + t30
+    t60 = t55 - t6 + t30
     del t6
-    t62 = t10 + t58
-    t63 = t62 + t30
-    t64 = t54 - t56 + t30
-    t65 = t9 - t58
-    t66 = t56 + t54 + t30
-    del t54
-    t67 = t9 + t58
-    del t58
-    t68 = -t10 + t30
-    del t10
-    t69 = rho3 + t30
-    t70 = -t62 + t30
-    del t62
-    t71 = -t59 + t30
-    del t59
-    t72 = t36 + t38
-    del t36, t38
-    t73 = t34 - t72 + t30
-    del t34
-    t74 = t41 - t42
-    del t41, t42
-    t75 = -t74 + t30
-    t76 = rho1 + (t45 + t46) + t30
-    del t45, t46
-    t77 = t53 - t72
+    t61 = t10 + t57
+    t62 = t61 + t30
+    t63 = t53 - t55 + t30
+    t64 = t9 - t57
+    t65 = t55 + t53 + t30
     del t53
-    t78 = t77 + t30
-    t79 = t77 - t56 + t30
-    t80 = t56 + t77 + t30
-    del t56, t77
+    t66 = t9 + t57
+    del t57
+    t67 = -t10 + t30
+    del t10
+    t68 = rho3 + t30
+    t69 = -t61 + t30
+    del t61
+    t70 = -t58 + t30
+    del t58
+    t71 = t35 + t37
+    del t35, t37
+    t72 = t34 - t71 + t30
+    del t34
+    t73 = t40 - t41
+    del t40, t41
+    t74 = -t73 + t30
+    t75 = rho1 + (t44 + t45) + t30
+    del t44, t45
+    t76 = t52 - t71
+    del t52
+    t77 = t76 + t30
+    t78 = t76 - t55 + t30
+    t79 = t55 + t76 + t30
+    del t55, t76
     return (
         t31,
         t32,
@@ -540,132 +537,132 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
         t31,
         t32,
         t33,
-        t40,
-        t44,
+        t39,
+        t43,
+        t46,
+        t31,
         t47,
+        t33,
         t31,
         t48,
         t33,
-        t31,
+        t39,
+        t5 - t42 + t30,
+        t46,
+        t39,
+        -(t5 + t42) + t30,
+        t46,
         t49,
-        t33,
-        t40,
-        t5 - t43 + t30,
-        t47,
-        t40,
-        -(t5 + t43) + t30,
-        t47,
         t50,
-        t51,
         t32,
+        t49,
         t50,
         t51,
-        t52,
-        t55,
-        t9 - t43 + t30,
-        t47,
-        t57,
+        t54,
+        t9 - t42 + t30,
+        t46,
+        t56,
+        t59,
+        t51,
         t60,
-        t52,
-        t61,
+        t62,
+        t51,
         t63,
-        t52,
-        t64,
-        t65 - t43 + t30,
-        t47,
-        t66,
-        t67 - t43 + t30,
-        t47,
-        t50,
-        t68,
+        t64 - t42 + t30,
+        t46,
+        t65,
+        t66 - t42 + t30,
+        t46,
+        t49,
+        t67,
         t32,
-        t50,
+        t49,
+        t67,
         t68,
+        t54,
+        -(t9 + t42) + t30,
+        t46,
+        t60,
         t69,
-        t55,
-        -(t9 + t43) + t30,
-        t47,
-        t61,
+        t68,
+        t56,
         t70,
-        t69,
-        t57,
-        t71,
-        t69,
-        t66,
-        -(t67 + t43) + t30,
-        t47,
-        t64,
-        -(t65 + t43) + t30,
-        t47,
-        c1_x - t39 + t30,
-        t44,
-        t47,
+        t68,
+        t65,
+        -(t66 + t42) + t30,
+        t46,
+        t63,
+        -(t64 + t42) + t30,
+        t46,
+        c1_x - t38 + t30,
+        t43,
+        t46,
         t31,
         t32,
         t32,
         t31,
         t32,
         t33,
-        t73,
+        t72,
+        t74,
         t75,
-        t76,
+        t31,
+        t47,
+        t33,
         t31,
         t48,
         t33,
-        t31,
-        t49,
-        t33,
-        t73,
-        t5 - t74 + t30,
-        t76,
-        t73,
-        -(t5 + t74) + t30,
-        t76,
-        t50,
-        t51,
-        t32,
-        t50,
-        t51,
-        t52,
-        t78,
-        t9 - t74 + t30,
-        t76,
-        t57,
-        t60,
-        t52,
-        t61,
-        t63,
-        t52,
-        t79,
-        t65 - t74 + t30,
-        t76,
-        t80,
-        t67 - t74 + t30,
-        t76,
-        t50,
-        t68,
-        t32,
-        t50,
-        t68,
-        t69,
-        t78,
-        -(t9 + t74) + t30,
-        t76,
-        t61,
-        t70,
-        t69,
-        t57,
-        t71,
-        t69,
-        t80,
-        -(t67 + t74) + t30,
-        t76,
-        t79,
-        -(t65 + t74) + t30,
-        t76,
-        c1_x - t72 + t30,
+        t72,
+        t5 - t73 + t30,
         t75,
-        t76,
+        t72,
+        -(t5 + t73) + t30,
+        t75,
+        t49,
+        t50,
+        t32,
+        t49,
+        t50,
+        t51,
+        t77,
+        t9 - t73 + t30,
+        t75,
+        t56,
+        t59,
+        t51,
+        t60,
+        t62,
+        t51,
+        t78,
+        t64 - t73 + t30,
+        t75,
+        t79,
+        t66 - t73 + t30,
+        t75,
+        t49,
+        t67,
+        t32,
+        t49,
+        t67,
+        t68,
+        t77,
+        -(t9 + t73) + t30,
+        t75,
+        t60,
+        t69,
+        t68,
+        t56,
+        t70,
+        t68,
+        t79,
+        -(t66 + t73) + t30,
+        t75,
+        t78,
+        -(t64 + t73) + t30,
+        t75,
+        c1_x - t71 + t30,
+        t74,
+        t75,
     )
 
 
@@ -691,86 +688,86 @@ def _skeleton_common(rho1, rho2, rho3, f, e, l):
     t13 = t9 * t9 + c3_y * c3_y
     u_u = t6 * t6 + t13
     t14 = rho1 - rho3
-    t15 = c3_y * t14 + c3_y * t6
-    t16 = t9 * t14 - t9 * t6
-    t17 = c3_y * t9
-    t18 = t17 + t17
-    del t17
-    product_2 = t15 * t15 + t16 * t16 + t18 * t18
+    t15 = c3_y * (c3_y + c3_y) - t14 * (t6 - t14)
+    t16 = c3_y * t14 + c3_y * t6
+    t17 = t9 * t14 - t9 * t6
+    t18 = c3_y * t9
+    t19 = t18 + t18
+    del t18
+    product_2 = t16 * t16 + t17 * t17 + t19 * t19
     part = 1.0 / product_2
-    t19 = c3_y * (c3_y + c3_y) - t14 * (t6 - t14)
-    t20 = l * l - u_u * (1.0 + part * (t19 * t19)) * 0.25
-    t21 = (np.abs(0.0) <= t4 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t5) <= t20)
-    t22 = _runtime.poison(np.logical_not(t3) | np.logical_not(t21))
-    del t21, t3
-    t23 = f + t22
-    t24 = 0.0 + t22
-    t25 = rho1 + t22
-    t26 = e + c1_x
-    t27 = part * t19 * 0.5
-    del t19
-    t28 = t9 * 0.5 + (c3_y * t18 - t6 * t16) * t27
-    slack = np.maximum(t20, 0.0)
-    del t20
+    t20 = t15 * part * 0.5
+    t21 = l * l - u_u * (1.0 + 2.0 * t15 * t20) * 0.25
+    del t15
+    t22 = (np.abs(0.0) <= t4 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t5) <= t21)
+    t23 = _runtime.poison(np.logical_not(t3) | np.logical_not(t22))
+    del t22, t3
+    t24 = f + t23
+    t25 = 0.0 + t23
+    t26 = rho1 + t23
+    t27 = e + c1_x
+    t28 = t9 * 0.5 + t20 * (c3_y * t19 - t6 * t17)
+    slack = np.maximum(t21, 0.0)
+    del t21
     h = np.sqrt(part * slack)
     del part
-    t29 = t15 * h
+    t29 = t16 * h
     t30 = t28 + t29
-    t31 = t26 - t30 + t22
-    t32 = t27 * (t9 * t18 + t6 * t15) - c3_y * 0.5
-    t33 = t16 * h
+    t31 = t27 - t30 + t23
+    t32 = t20 * (t9 * t19 + t6 * t16) - c3_y * 0.5
+    t33 = t17 * h
     A_12 = t32 + t33
-    t34 = A_12 + t22
-    t35 = t27 * (t9 * t16 + c3_y * t15) + t6 * 0.5
-    del c3_y, t15, t16, t27, t6, t9
-    t36 = t18 * h
-    del h, t18
-    t37 = rho1 - (t35 - t36) + t22
-    t38 = t7 + t22
-    t39 = -t7 + t22
-    t40 = -t8 + t22
-    t41 = t12 + t22
-    t42 = rho2 + t22
+    t34 = A_12 + t23
+    t35 = t20 * (t9 * t17 + c3_y * t16) + t6 * 0.5
+    del c3_y, t16, t17, t20, t6, t9
+    t36 = t19 * h
+    del h, t19
+    t37 = rho1 - (t35 - t36) + t23
+    t38 = t7 + t23
+    t39 = -t7 + t23
+    t40 = -t8 + t23
+    t41 = t12 + t23
+    t42 = rho2 + t23
     t43 = c1_x - t7
     t44 = t43 - t30
-    t45 = t44 + t22
+    t45 = t44 + t23
     t46 = t10 * 0.25
     del t10
-    t47 = -(t8 + t46) + t22
+    t47 = -(t8 + t46) + t23
     t48 = e * 0.25
     t49 = t12 - t48
-    t50 = t49 + t22
-    t51 = t46 - t8 + t22
+    t50 = t49 + t23
+    t51 = t46 - t8 + t23
     del t8
     t52 = t12 + t48
-    t53 = t52 + t22
-    t54 = t44 - t46 + t22
+    t53 = t52 + t23
+    t54 = t44 - t46 + t23
     t55 = t11 - t48
-    t56 = t46 + t44 + t22
+    t56 = t46 + t44 + t23
     del t44
     t57 = t11 + t48
     del t48
-    t58 = -t12 + t22
+    t58 = -t12 + t23
     del t12
-    t59 = rho3 + t22
-    t60 = -t52 + t22
+    t59 = rho3 + t23
+    t60 = -t52 + t23
     del t52
-    t61 = -t49 + t22
+    t61 = -t49 + t23
     del t49
     t62 = t28 - t29
     del t28, t29
-    t63 = t26 - t62 + t22
-    del t26
+    t63 = t27 - t62 + t23
+    del t27
     A_12_above = t32 - t33
     del t32, t33
-    t64 = A_12_above + t22
-    t65 = rho1 - (t35 + t36) + t22
+    t64 = A_12_above + t23
+    t65 = rho1 - (t35 + t36) + t23
     del t35, t36
     t66 = t43 - t62
     del t43
-    t67 = t66 + t22
-    t68 = t66 - t46 + t22
-    t69 = t46 + t66 + t22
+    t67 = t66 + t23
+    t68 = t66 - t46 + t23
+    t69 = t46 + t66 + t23
     del t46, t66
     t70 = _runtime.VANISHING * _runtime.VANISHING
     t71 = t4 * t70
@@ -782,35 +779,35 @@ def _skeleton_common(rho1, rho2, rho3, f, e, l):
     t73 = (u_u <= t71) | (u_u + v_v <= t71) | slim | (product_2 <= t70 * (t4 * u_u))
     del product_2, slim, t4, t70, t71, u_u, v_v
     return (
-        t23,
-        t24,
-        t24,
-        t23,
         t24,
         t25,
+        t25,
+        t24,
+        t25,
+        t26,
         t31,
         t34,
         t37,
-        t23,
+        t24,
         t38,
-        t25,
-        t23,
+        t26,
+        t24,
         t39,
-        t25,
+        t26,
         t31,
-        t7 + A_12 + t22,
+        t7 + A_12 + t23,
         t37,
         t31,
-        A_12 - t7 + t22,
+        A_12 - t7 + t23,
         t37,
         t40,
         t41,
-        t24,
+        t25,
         t40,
         t41,
         t42,
         t45,
-        t11 + A_12 + t22,
+        t11 + A_12 + t23,
         t37,
         t47,
         t50,
@@ -819,19 +816,19 @@ def _skeleton_common(rho1, rho2, rho3, f, e, l):
         t53,
         t42,
         t54,
-        t55 + A_12 + t22,
+        t55 + A_12 + t23,
         t37,
         t56,
-        t57 + A_12 + t22,
+        t57 + A_12 + t23,
         t37,
         t40,
         t58,
-        t24,
+        t25,
         t40,
         t58,
         t59,
         t45,
-        A_12 - t11 + t22,
+        A_12 - t11 + t23,
         t37,
         t51,
         t60,
@@ -840,43 +837,43 @@ def _skeleton_common(rho1, rho2, rho3, f, e, l):
         t61,
         t59,
         t56,
-        A_12 - t57 + t22,
+        A_12 - t57 + t23,
         t37,
         t54,
-        A_12 - t55 + t22,
+        A_12 - t55 + t23,
         t37,
-        c1_x - t30 + t22,
+        c1_x - t30 + t23,
         t34,
         t37,
-        t23,
-        t24,
-        t24,
-        t23,
         t24,
         t25,
+        t25,
+        t24,
+        t25,
+        t26,
         t63,
         t64,
         t65,
-        t23,
+        t24,
         t38,
-        t25,
-        t23,
+        t26,
+        t24,
         t39,
-        t25,
+        t26,
         t63,
-        t7 + A_12_above + t22,
+        t7 + A_12_above + t23,
         t65,
         t63,
-        A_12_above - t7 + t22,
+        A_12_above - t7 + t23,
         t65,
         t40,
         t41,
-        t24,
+        t25,
         t40,
         t41,
         t42,
         t67,
-        t11 + A_12_above + t22,
+        t11 + A_12_above + t23,
         t65,
         t47,
         t50,
@@ -885,19 +882,19 @@ def _skeleton_common(rho1, rho2, rho3, f, e, l):
         t53,
         t42,
         t68,
-        t55 + A_12_above + t22,
+        t55 + A_12_above + t23,
         t65,
         t69,
-        t57 + A_12_above + t22,
+        t57 + A_12_above + t23,
         t65,
         t40,
         t58,
-        t24,
+        t25,
         t40,
         t58,
         t59,
         t67,
-        A_12_above - t11 + t22,
+        A_12_above - t11 + t23,
         t65,
         t51,
         t60,
@@ -906,12 +903,12 @@ def _skeleton_common(rho1, rho2, rho3, f, e, l):
         t61,
         t59,
         t69,
-        A_12_above - t57 + t22,
+        A_12_above - t57 + t23,
         t65,
         t68,
-        A_12_above - t55 + t22,
+        A_12_above - t55 + t23,
         t65,
-        c1_x - t62 + t22,
+        c1_x - t62 + t23,
         t64,
         t65,
         t73 | (slack <= _runtime.VANISHING * t5),
@@ -1018,70 +1015,69 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     t18 = t1 * 0.5 - t11 * t17
     t19 = _runtime.select(slim, over * (d_y * t14 - t9 * n_y), t12)
     del t12
-    t20 = _runtime.select(in_line, 0.0, part * (t16 * t16))
-    t21 = _runtime.select(all_same, 0.0, mu * (1.0 + t20) * 0.25)
-    del all_same, mu, t20
-    t22 = l * l - t21
-    del t21
-    slack = np.maximum(t22, 0.0)
-    t23 = 0.234375 * (l * size)
+    t20 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t16 * t17) * 0.25)
+    del all_same, mu
+    t21 = l * l - t20
+    del t20
+    slack = np.maximum(t21, 0.0)
+    t22 = 0.234375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t23, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t22, 0.0, np.sqrt(part * slack))
     del part, slack
-    t24 = _runtime.select(in_line, t15 * s_w, t19) * h
+    t23 = _runtime.select(in_line, t15 * s_w, t19) * h
     del s_w, t19
-    t25 = t18 - t24
-    t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
-    del t26, t27
-    t29 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t4 * _runtime.FEASIBILITY
+    t24 = t18 - t23
+    t25 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t26 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t27 = t25 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t26
+    del t25, t26
+    t28 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t4 * _runtime.FEASIBILITY
     del t16, t4
-    unreachable = np.logical_not(t29 & (-(_runtime.FEASIBILITY * t23) <= t22))
-    del t22, t23, t29
-    t30 = _runtime.poison(np.logical_not(t28) | unreachable)
-    del t28, unreachable
-    t31 = n_y * t17 - d_y * 0.5
+    unreachable = np.logical_not(t28 & (-(_runtime.FEASIBILITY * t22) <= t21))
+    del t21, t22, t28
+    t29 = _runtime.poison(np.logical_not(t27) | unreachable)
+    del t27, unreachable
+    t30 = n_y * t17 - d_y * 0.5
     m_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), product_y)
     del product_y
-    t32 = h * _runtime.select(in_line, -t15, m_y)
+    t31 = h * _runtime.select(in_line, -t15, m_y)
     del m_y, t15
-    t33 = t31 + t32
-    t34 = t14 * t17 - t9 * 0.5
+    t32 = t30 + t31
+    t33 = t14 * t17 - t9 * 0.5
     del t14, t17, t9
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), product_z)
     del a_x, d_y, n_y, over, product_z, slim, t11
-    t35 = h * _runtime.select(in_line, -g_2, m_z)
+    t34 = h * _runtime.select(in_line, -g_2, m_z)
     del g_2, h, in_line, m_z
-    A_13 = t34 - t35
-    t36 = t1 - t25 + t30
-    t37 = t18 + t24
-    del t18, t24
-    t38 = t31 - t32
-    del t31, t32
-    A_13_above = t34 + t35
-    del t34, t35
-    t39 = t1 - t37 + t30
+    A_13 = t33 - t34
+    t35 = t1 - t24 + t29
+    t36 = t18 + t23
+    del t18, t23
+    t37 = t30 - t31
+    del t30, t31
+    A_13_above = t33 + t34
+    del t33, t34
+    t38 = t1 - t36 + t29
     del t1
     return (
-        -t25 + t30,
-        -t33 + t30,
-        A_13 + t30,
-        t36,
-        c3_y - t33 + t30,
-        t2 + A_13 + t30,
-        t36,
-        -(c3_y + t33) + t30,
-        t7 + A_13 + t30,
-        -t37 + t30,
-        -t38 + t30,
-        A_13_above + t30,
-        t39,
-        c3_y - t38 + t30,
-        t2 + A_13_above + t30,
-        t39,
-        -(c3_y + t38) + t30,
-        t7 + A_13_above + t30,
+        -t24 + t29,
+        -t32 + t29,
+        A_13 + t29,
+        t35,
+        c3_y - t32 + t29,
+        t2 + A_13 + t29,
+        t35,
+        -(c3_y + t32) + t29,
+        t7 + A_13 + t29,
+        -t36 + t29,
+        -t37 + t29,
+        A_13_above + t29,
+        t38,
+        c3_y - t37 + t29,
+        t2 + A_13_above + t29,
+        t38,
+        -(c3_y + t37) + t29,
+        t7 + A_13_above + t29,
     )
 
 
@@ -1103,7 +1099,7 @@ def _jacobian_parallel_common(rho1, rho2, rho3, f, e, l):
     t10 = t1 * 0.5 + (c3_y * t3 - t4 * t6) * t9
     t11 = t1 * t1 + c3_y * c3_y
     u_u = t4 * t4 + t11
-    t12 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
+    t12 = l * l - u_u * (1.0 + 2.0 * t8 * t9) * 0.25
     del t8
     slack = np.maximum(t12, 0.0)
     h = np.sqrt(part * slack)
@@ -1270,41 +1266,40 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     del t10, t8
     t17 = _runtime.select(in_line, 0.0, part * t16 * 0.5)
     t18 = t12 * t17 - t9 * 0.5
-    del t12, t17, t9
+    del t12, t9
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), product_z)
     del a_x, d_y, n_y, over, product_z, slim, t14
-    t19 = _runtime.select(in_line, 0.0, part * (t16 * t16))
-    t20 = _runtime.select(all_same, 0.0, mu * (1.0 + t19) * 0.25)
-    del all_same, mu, t19
-    t21 = l * l - t20
-    del t20
-    slack = np.maximum(t21, 0.0)
-    t22 = 0.234375 * (l * size)
+    t19 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t16 * t17) * 0.25)
+    del all_same, mu, t17
+    t20 = l * l - t19
+    del t19
+    slack = np.maximum(t20, 0.0)
+    t21 = 0.234375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t22, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t21, 0.0, np.sqrt(part * slack))
     del part, slack
-    t23 = _runtime.select(in_line, -g_2, m_z) * h
+    t22 = _runtime.select(in_line, -g_2, m_z) * h
     del g_2, h, m_z
-    A_13 = t18 - t23
-    t24 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t25 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t26 = t24 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t25
-    del t24, t25
-    t27 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t5 * _runtime.FEASIBILITY
+    A_13 = t18 - t22
+    t23 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t24 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t25 = t23 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t24
+    del t23, t24
+    t26 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t5 * _runtime.FEASIBILITY
     del in_line, t16, t5
-    unreachable = np.logical_not(t27 & (-(_runtime.FEASIBILITY * t22) <= t21))
-    del t21, t22, t27
-    t28 = _runtime.poison(np.logical_not(t26) | unreachable)
-    del t26, unreachable
-    A_13_above = t18 + t23
-    del t18, t23
+    unreachable = np.logical_not(t26 & (-(_runtime.FEASIBILITY * t21) <= t20))
+    del t20, t21, t26
+    t27 = _runtime.poison(np.logical_not(t25) | unreachable)
+    del t25, unreachable
+    A_13_above = t18 + t22
+    del t18, t22
     return (
-        A_13 + t28,
-        t1 + A_13 + t28,
-        t4 + A_13 + t28,
-        A_13_above + t28,
-        t1 + A_13_above + t28,
-        t4 + A_13_above + t28,
+        A_13 + t27,
+        t1 + A_13 + t27,
+        t4 + A_13 + t27,
+        A_13_above + t27,
+        t1 + A_13_above + t27,
+        t4 + A_13_above + t27,
     )
 
 
@@ -1322,48 +1317,49 @@ def _jacobian_serial_common(rho1, rho2, rho3, f, e, l):
     product_2 = t5 * t5 + t4 * t4 + t7 * t7
     part = 1.0 / product_2
     t8 = c3_y * (c3_y + c3_y) - t2 * (t3 - t2)
-    t9 = (t1 * t4 + c3_y * t5) * (part * t8 * 0.5) + t3 * 0.5
+    t9 = part * t8 * 0.5
+    t10 = (t1 * t4 + c3_y * t5) * t9 + t3 * 0.5
     del t4, t5
-    t10 = t1 * t1 + c3_y * c3_y
+    t11 = t1 * t1 + c3_y * c3_y
     del c3_y, t1
-    u_u = t3 * t3 + t10
-    t11 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
-    del t8
-    slack = np.maximum(t11, 0.0)
-    t12 = t7 * np.sqrt(part * slack)
+    u_u = t3 * t3 + t11
+    t12 = l * l - u_u * (1.0 + 2.0 * t8 * t9) * 0.25
+    del t8, t9
+    slack = np.maximum(t12, 0.0)
+    t13 = t7 * np.sqrt(part * slack)
     del part, t7
-    t13 = t9 - t12
-    t14 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t16 = t14 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t15
-    del t14, t15
+    t14 = t10 - t13
+    t15 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t16 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t17 = t15 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t16
+    del t15, t16
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t17 = size * size
-    t18 = 0.234375 * (l * size)
+    t18 = size * size
+    t19 = 0.234375 * (l * size)
     del size
-    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t11)
+    t20 = (np.abs(0.0) <= t18 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t19) <= t12)
+    del t12
+    t21 = _runtime.poison(np.logical_not(t17) | np.logical_not(t20))
+    del t17, t20
+    t22 = t10 + t13
+    del t10, t13
+    v_v = t2 * t2 + t11
     del t11
-    t20 = _runtime.poison(np.logical_not(t16) | np.logical_not(t19))
-    del t16, t19
-    t21 = t9 + t12
-    del t12, t9
-    v_v = t2 * t2 + t10
-    del t10
-    t22 = _runtime.VANISHING * _runtime.VANISHING
-    t23 = t17 * t22
-    t24 = u_u * v_v
-    slim = product_2 - t24 * 0.000244140625 <= _runtime.VANISHING * t24
-    del t24
-    t25 = (u_u + v_v <= t23) | (u_u <= t23) | slim | (product_2 <= t22 * (t17 * u_u))
-    del product_2, slim, t17, t22, t23, u_u, v_v
+    t23 = _runtime.VANISHING * _runtime.VANISHING
+    t24 = t18 * t23
+    t25 = u_u * v_v
+    slim = product_2 - t25 * 0.000244140625 <= _runtime.VANISHING * t25
+    del t25
+    t26 = (u_u + v_v <= t24) | (u_u <= t24) | slim | (product_2 <= t23 * (t18 * u_u))
+    del product_2, slim, t18, t23, t24, u_u, v_v
     return (
-        -t13 + t20,
-        t3 - t13 + t20,
-        t2 - t13 + t20,
-        -t21 + t20,
-        t3 - t21 + t20,
-        t2 - t21 + t20,
-        t25 | (slack <= _runtime.VANISHING * t18),
+        -t14 + t21,
+        t3 - t14 + t21,
+        t2 - t14 + t21,
+        -t22 + t21,
+        t3 - t22 + t21,
+        t2 - t22 + t21,
+        t26 | (slack <= _runtime.VANISHING * t19),
     )
 
 
@@ -1464,107 +1460,106 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     t18 = t12 * t17 - t9 * 0.5
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), product_z)
     del product_z
-    t19 = _runtime.select(in_line, 0.0, part * (t16 * t16))
-    t20 = _runtime.select(all_same, 0.0, mu * (1.0 + t19) * 0.25)
-    del all_same, mu, t19
-    t21 = l * l - t20
-    del t20
-    slack = np.maximum(t21, 0.0)
-    t22 = 0.234375 * (l * size)
+    t19 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t16 * t17) * 0.25)
+    del all_same, mu
+    t20 = l * l - t19
+    del t19
+    slack = np.maximum(t20, 0.0)
+    t21 = 0.234375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t22, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t21, 0.0, np.sqrt(part * slack))
     del part, slack
-    t23 = _runtime.select(in_line, -g_2, m_z) * h
+    t22 = _runtime.select(in_line, -g_2, m_z) * h
     del g_2, m_z
-    A_13 = t18 - t23
-    t24 = n_y * t17 - d_y * 0.5
+    A_13 = t18 - t22
+    t23 = n_y * t17 - d_y * 0.5
     m_y = _runtime.select(slim, over * (a_x * t12 + t9 * t14), product_y)
     del a_x, product_y
-    t25 = h * _runtime.select(in_line, -t15, m_y)
+    t24 = h * _runtime.select(in_line, -t15, m_y)
     del m_y
-    t26 = t24 + t25
-    A_22 = c3_y - t26
+    t25 = t23 + t24
+    A_22 = c3_y - t25
     A_33 = t4 + A_13
     A_23 = t1 + A_13
-    t27 = c3_y + t26
+    t26 = c3_y + t25
     Delta = m_m * h
     del m_m
-    t28 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t29 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t30 = t28 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t29
-    del t28, t29
-    t31 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t5 * _runtime.FEASIBILITY
+    t27 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t28 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t29 = t27 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t28
+    del t27, t28
+    t30 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t5 * _runtime.FEASIBILITY
     del t16, t5
-    unreachable = np.logical_not(t31 & (-(_runtime.FEASIBILITY * t22) <= t21))
-    del t21, t22, t31
-    t32 = _runtime.poison(np.logical_not(t30) | unreachable)
-    del t30, unreachable
-    t33 = -(A_13 * (A_22 * A_33 + A_23 * t27) / Delta) + t32
-    t34 = -(A_23 * (t26 * A_33 - A_13 * t27) / Delta) + t32
-    t35 = A_33 * (t26 * A_23 + A_13 * A_22) / Delta + t32
-    t36 = t2 * 0.5 - t14 * t17
+    unreachable = np.logical_not(t30 & (-(_runtime.FEASIBILITY * t21) <= t20))
+    del t20, t21, t30
+    t31 = _runtime.poison(np.logical_not(t29) | unreachable)
+    del t29, unreachable
+    t32 = -(A_13 * (A_22 * A_33 + A_23 * t26) / Delta) + t31
+    t33 = -(A_23 * (t25 * A_33 - A_13 * t26) / Delta) + t31
+    t34 = A_33 * (t25 * A_23 + A_13 * A_22) / Delta + t31
+    t35 = t2 * 0.5 - t14 * t17
     del t14, t17
-    t37 = _runtime.select(slim, over * (d_y * t12 - t9 * n_y), t11)
+    t36 = _runtime.select(slim, over * (d_y * t12 - t9 * n_y), t11)
     del d_y, n_y, over, slim, t11, t12, t9
-    t38 = h * _runtime.select(in_line, t15 * s_w, t37)
-    del h, in_line, s_w, t15, t37
-    t39 = t36 - t38
-    A_21 = t2 - t39
-    t40 = A_13 * (A_33 * A_21 - A_23 * A_21) / Delta + t32
-    t41 = A_13 * A_21
-    t42 = A_13 * (t27 * A_21 + A_22 * A_21) / Delta + t32
+    t37 = h * _runtime.select(in_line, t15 * s_w, t36)
+    del h, in_line, s_w, t15, t36
+    t38 = t35 - t37
+    A_21 = t2 - t38
+    t39 = A_13 * (A_33 * A_21 - A_23 * A_21) / Delta + t31
+    t40 = A_13 * A_21
+    t41 = A_13 * (t26 * A_21 + A_22 * A_21) / Delta + t31
     del A_13
-    t43 = t26 * A_21
-    del A_21, t26
-    A_13_above = t18 + t23
-    del t18, t23
-    t44 = t24 - t25
-    del t24, t25
-    A_22_above = c3_y - t44
+    t42 = t25 * A_21
+    del A_21, t25
+    A_13_above = t18 + t22
+    del t18, t22
+    t43 = t23 - t24
+    del t23, t24
+    A_22_above = c3_y - t43
     A_33_above = t4 + A_13_above
     del t4
     A_23_above = t1 + A_13_above
     del t1
-    t45 = c3_y + t44
+    t44 = c3_y + t43
     del c3_y
-    t46 = A_13_above * (A_22_above * A_33_above + A_23_above * t45)
-    t47 = A_23_above * (t44 * A_33_above - A_13_above * t45)
-    t48 = A_33_above * (t44 * A_23_above + A_13_above * A_22_above)
-    t49 = t36 + t38
-    del t36, t38
-    A_21_above = t2 - t49
+    t45 = A_13_above * (A_22_above * A_33_above + A_23_above * t44)
+    t46 = A_23_above * (t43 * A_33_above - A_13_above * t44)
+    t47 = A_33_above * (t43 * A_23_above + A_13_above * A_22_above)
+    t48 = t35 + t37
+    del t35, t37
+    A_21_above = t2 - t48
     del t2
-    t50 = A_33_above * A_21_above - A_23_above * A_21_above
-    t51 = A_13_above * A_21_above
-    t52 = A_23_above * (A_33_above * t49 + t51) / Delta
-    t53 = A_33_above * (t51 + A_23_above * t49) / Delta
-    del t51
-    t54 = A_13_above * (t45 * A_21_above + A_22_above * A_21_above)
-    t55 = t44 * A_21_above
-    del A_21_above, t44
-    t56 = -(A_23_above * (t45 * t49 + t55) / Delta) + t32
-    del A_23_above, t45
-    t57 = A_33_above * (t55 - A_22_above * t49) / Delta
-    del A_22_above, A_33_above, t49, t55
+    t49 = A_33_above * A_21_above - A_23_above * A_21_above
+    t50 = A_13_above * A_21_above
+    t51 = A_23_above * (A_33_above * t48 + t50) / Delta
+    t52 = A_33_above * (t50 + A_23_above * t48) / Delta
+    del t50
+    t53 = A_13_above * (t44 * A_21_above + A_22_above * A_21_above)
+    t54 = t43 * A_21_above
+    del A_21_above, t43
+    t55 = -(A_23_above * (t44 * t48 + t54) / Delta) + t31
+    del A_23_above, t44
+    t56 = A_33_above * (t54 - A_22_above * t48) / Delta
+    del A_22_above, A_33_above, t48, t54
     return (
+        t32,
         t33,
         t34,
-        t35,
-        t40,
-        A_23 * (A_33 * t39 + t41) / Delta + t32,
-        -(A_33 * (t41 + A_23 * t39) / Delta) + t32,
-        t42,
-        A_23 * (t27 * t39 + t43) / Delta + t32,
-        -(A_33 * (t43 - A_22 * t39) / Delta) + t32,
-        t46 / Delta + t32,
-        t47 / Delta + t32,
-        -(t48 / Delta) + t32,
-        -(A_13_above * t50 / Delta) + t32,
-        -t52 + t32,
-        t53 + t32,
-        -(t54 / Delta) + t32,
-        t56,
-        t57 + t32,
+        t39,
+        A_23 * (A_33 * t38 + t40) / Delta + t31,
+        -(A_33 * (t40 + A_23 * t38) / Delta) + t31,
+        t41,
+        A_23 * (t26 * t38 + t42) / Delta + t31,
+        -(A_33 * (t42 - A_22 * t38) / Delta) + t31,
+        t45 / Delta + t31,
+        t46 / Delta + t31,
+        -(t47 / Delta) + t31,
+        -(A_13_above * t49 / Delta) + t31,
+        -t51 + t31,
+        t52 + t31,
+        -(t53 / Delta) + t31,
+        t55,
+        t56 + t31,
     )
 
 
@@ -1586,7 +1581,7 @@ def _jacobian_common(rho1, rho2, rho3, f, e, l):
     t10 = (t1 * t4 + c3_y * t5) * t9 + t3 * 0.5
     t11 = t1 * t1 + c3_y * c3_y
     u_u = t3 * t3 + t11
-    t12 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
+    t12 = l * l - u_u * (1.0 + 2.0 * t8 * t9) * 0.25
     del t8
     slack = np.maximum(t12, 0.0)
     h = np.sqrt(part * slack)
@@ -1789,43 +1784,42 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     del t10, t8
     t17 = _runtime.select(in_line, 0.0, part * t16 * 0.5)
     t18 = t12 * t17 - t9 * 0.5
-    del t12, t17, t9
+    del t12, t9
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), product_z)
     del a_x, d_y, n_y, over, product_z, slim, t14
-    t19 = _runtime.select(in_line, 0.0, part * (t16 * t16))
-    t20 = _runtime.select(all_same, 0.0, mu * (1.0 + t19) * 0.25)
-    del all_same, mu, t19
-    t21 = l * l - t20
-    del t20
-    slack = np.maximum(t21, 0.0)
-    t22 = 0.234375 * (l * size)
+    t19 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t16 * t17) * 0.25)
+    del all_same, mu, t17
+    t20 = l * l - t19
+    del t19
+    slack = np.maximum(t20, 0.0)
+    t21 = 0.234375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t22, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t21, 0.0, np.sqrt(part * slack))
     del part, slack
-    t23 = _runtime.select(in_line, -g_2, m_z) * h
+    t22 = _runtime.select(in_line, -g_2, m_z) * h
     del g_2, m_z
-    A_13 = t18 - t23
+    A_13 = t18 - t22
     Delta = m_m * h
     del h, m_m
-    t24 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t25 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t26 = t24 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t25
-    del t24, t25
-    t27 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t5 * _runtime.FEASIBILITY
+    t23 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t24 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t25 = t23 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t24
+    del t23, t24
+    t26 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t5 * _runtime.FEASIBILITY
     del in_line, t16, t5
-    unreachable = np.logical_not(t27 & (-(_runtime.FEASIBILITY * t22) <= t21))
-    del t21, t22, t27
-    t28 = _runtime.poison(np.logical_not(t26) | unreachable)
-    del t26, unreachable
-    t29 = -(A_13 * (t1 + A_13) * (t4 + A_13) / Delta) + t28
+    unreachable = np.logical_not(t26 & (-(_runtime.FEASIBILITY * t21) <= t20))
+    del t20, t21, t26
+    t27 = _runtime.poison(np.logical_not(t25) | unreachable)
+    del t25, unreachable
+    t28 = -(A_13 * (t1 + A_13) * (t4 + A_13) / Delta) + t27
     del A_13
-    A_13_above = t18 + t23
-    del t18, t23
-    t30 = A_13_above * (t1 + A_13_above) * (t4 + A_13_above)
+    A_13_above = t18 + t22
+    del t18, t22
+    t29 = A_13_above * (t1 + A_13_above) * (t4 + A_13_above)
     del A_13_above, t1, t4
     return (
-        t29,
-        t30 / Delta + t28,
+        t28,
+        t29 / Delta + t27,
     )
 
 
@@ -1843,50 +1837,51 @@ def _determinant_common(rho1, rho2, rho3, f, e, l):
     product_2 = t5 * t5 + t4 * t4 + t7 * t7
     part = 1.0 / product_2
     t8 = c3_y * (c3_y + c3_y) - t2 * (t3 - t2)
-    t9 = (t1 * t4 + c3_y * t5) * (part * t8 * 0.5) + t3 * 0.5
+    t9 = part * t8 * 0.5
+    t10 = (t1 * t4 + c3_y * t5) * t9 + t3 * 0.5
     del t4, t5
-    t10 = t1 * t1 + c3_y * c3_y
+    t11 = t1 * t1 + c3_y * c3_y
     del c3_y, t1
-    u_u = t3 * t3 + t10
-    t11 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
-    del t8
-    slack = np.maximum(t11, 0.0)
+    u_u = t3 * t3 + t11
+    t12 = l * l - u_u * (1.0 + 2.0 * t8 * t9) * 0.25
+    del t8, t9
+    slack = np.maximum(t12, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t12 = t7 * h
+    t13 = t7 * h
     del t7
-    t13 = t9 - t12
+    t14 = t10 - t13
     Delta = product_2 * h
     del h
-    t14 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t16 = t14 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t15
-    del t14, t15
+    t15 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t16 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t17 = t15 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t16
+    del t15, t16
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t17 = size * size
-    t18 = 0.234375 * (l * size)
+    t18 = size * size
+    t19 = 0.234375 * (l * size)
     del size
-    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t11)
+    t20 = (np.abs(0.0) <= t18 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t19) <= t12)
+    del t12
+    t21 = _runtime.poison(np.logical_not(t17) | np.logical_not(t20))
+    del t17, t20
+    t22 = t10 + t13
+    del t10, t13
+    t23 = -(t22 * (t3 - t22) * (t2 - t22) / Delta) + t21
+    del t22
+    v_v = t2 * t2 + t11
     del t11
-    t20 = _runtime.poison(np.logical_not(t16) | np.logical_not(t19))
-    del t16, t19
-    t21 = t9 + t12
-    del t12, t9
-    t22 = -(t21 * (t3 - t21) * (t2 - t21) / Delta) + t20
-    del t21
-    v_v = t2 * t2 + t10
-    del t10
-    t23 = _runtime.VANISHING * _runtime.VANISHING
-    t24 = t17 * t23
-    t25 = u_u * v_v
-    slim = product_2 - t25 * 0.000244140625 <= _runtime.VANISHING * t25
-    del t25
-    t26 = (u_u + v_v <= t24) | (u_u <= t24) | slim | (product_2 <= t23 * (t17 * u_u))
-    del product_2, slim, t17, t23, t24, u_u, v_v
+    t24 = _runtime.VANISHING * _runtime.VANISHING
+    t25 = t18 * t24
+    t26 = u_u * v_v
+    slim = product_2 - t26 * 0.000244140625 <= _runtime.VANISHING * t26
+    del t26
+    t27 = (u_u + v_v <= t25) | (u_u <= t25) | slim | (product_2 <= t24 * (t18 * u_u))
+    del product_2, slim, t18, t24, t25, u_u, v_v
     return (
-        t13 * (t3 - t13) * (t2 - t13) / Delta + t20,
-        t22,
-        t26 | (slack <= _runtime.VANISHING * t18),
+        t14 * (t3 - t14) * (t2 - t14) / Delta + t21,
+        t23,
+        t27 | (slack <= _runtime.VANISHING * t19),
     )
 
 
@@ -1989,45 +1984,44 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     del t10, t8
     t17 = _runtime.select(in_line, 0.0, part * t16 * 0.5)
     t18 = t12 * t17 - t9 * 0.5
-    del t12, t17, t9
+    del t12, t9
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t14), product_z)
     del a_x, d_y, n_y, over, product_z, slim, t14
-    t19 = _runtime.select(in_line, 0.0, part * (t16 * t16))
-    t20 = _runtime.select(all_same, 0.0, mu * (1.0 + t19) * 0.25)
-    del all_same, mu, t19
-    t21 = l * l - t20
-    del t20
-    slack = np.maximum(t21, 0.0)
-    t22 = 0.234375 * (l * size)
+    t19 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t16 * t17) * 0.25)
+    del all_same, mu, t17
+    t20 = l * l - t19
+    del t19
+    slack = np.maximum(t20, 0.0)
+    t21 = 0.234375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t22, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t21, 0.0, np.sqrt(part * slack))
     del part, slack
-    t23 = _runtime.select(in_line, -g_2, m_z) * h
+    t22 = _runtime.select(in_line, -g_2, m_z) * h
     del g_2, m_z
-    A_13 = t18 - t23
-    t24 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t25 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t26 = t24 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t25
-    del t24, t25
-    t27 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t5 * _runtime.FEASIBILITY
+    A_13 = t18 - t22
+    t23 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t24 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t25 = t23 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t24
+    del t23, t24
+    t26 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t5 * _runtime.FEASIBILITY
     del in_line, t16, t5
-    unreachable = np.logical_not(t27 & (-(_runtime.FEASIBILITY * t22) <= t21))
-    del t21, t22, t27
-    t28 = _runtime.poison(np.logical_not(t26) | unreachable)
-    del t26, unreachable
+    unreachable = np.logical_not(t26 & (-(_runtime.FEASIBILITY * t21) <= t20))
+    del t20, t21, t26
+    t27 = _runtime.poison(np.logical_not(t25) | unreachable)
+    del t25, unreachable
     Delta = m_m * h
     del h, m_m
-    A_13_above = t18 + t23
-    del t18, t23
+    A_13_above = t18 + t22
+    del t18, t22
     return (
-        A_13 + t28,
-        t1 + A_13 + t28,
-        t4 + A_13 + t28,
-        -Delta + t28,
-        A_13_above + t28,
-        t1 + A_13_above + t28,
-        t4 + A_13_above + t28,
-        Delta + t28,
+        A_13 + t27,
+        t1 + A_13 + t27,
+        t4 + A_13 + t27,
+        -Delta + t27,
+        A_13_above + t27,
+        t1 + A_13_above + t27,
+        t4 + A_13_above + t27,
+        Delta + t27,
     )
 
 
@@ -2045,54 +2039,55 @@ def _singularities_common(rho1, rho2, rho3, f, e, l):
     product_2 = t5 * t5 + t4 * t4 + t7 * t7
     part = 1.0 / product_2
     t8 = c3_y * (c3_y + c3_y) - t2 * (t3 - t2)
-    t9 = (t1 * t4 + c3_y * t5) * (part * t8 * 0.5) + t3 * 0.5
+    t9 = part * t8 * 0.5
+    t10 = (t1 * t4 + c3_y * t5) * t9 + t3 * 0.5
     del t4, t5
-    t10 = t1 * t1 + c3_y * c3_y
+    t11 = t1 * t1 + c3_y * c3_y
     del c3_y, t1
-    u_u = t3 * t3 + t10
-    t11 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
-    del t8
-    slack = np.maximum(t11, 0.0)
+    u_u = t3 * t3 + t11
+    t12 = l * l - u_u * (1.0 + 2.0 * t8 * t9) * 0.25
+    del t8, t9
+    slack = np.maximum(t12, 0.0)
     h = np.sqrt(part * slack)
     del part
-    t12 = t7 * h
+    t13 = t7 * h
     del t7
-    t13 = t9 - t12
-    t14 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t15 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t16 = t14 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t15
-    del t14, t15
+    t14 = t10 - t13
+    t15 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t16 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t17 = t15 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t16
+    del t15, t16
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t17 = size * size
-    t18 = 0.234375 * (l * size)
+    t18 = size * size
+    t19 = 0.234375 * (l * size)
     del size
-    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t11)
-    del t11
-    t20 = _runtime.poison(np.logical_not(t16) | np.logical_not(t19))
-    del t16, t19
+    t20 = (np.abs(0.0) <= t18 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t19) <= t12)
+    del t12
+    t21 = _runtime.poison(np.logical_not(t17) | np.logical_not(t20))
+    del t17, t20
     Delta = product_2 * h
     del h
-    t21 = t9 + t12
-    del t12, t9
-    v_v = t2 * t2 + t10
-    del t10
-    t22 = _runtime.VANISHING * _runtime.VANISHING
-    t23 = t17 * t22
-    t24 = u_u * v_v
-    slim = product_2 - t24 * 0.000244140625 <= _runtime.VANISHING * t24
-    del t24
-    t25 = (u_u + v_v <= t23) | (u_u <= t23) | slim | (product_2 <= t22 * (t17 * u_u))
-    del product_2, slim, t17, t22, t23, u_u, v_v
+    t22 = t10 + t13
+    del t10, t13
+    v_v = t2 * t2 + t11
+    del t11
+    t23 = _runtime.VANISHING * _runtime.VANISHING
+    t24 = t18 * t23
+    t25 = u_u * v_v
+    slim = product_2 - t25 * 0.000244140625 <= _runtime.VANISHING * t25
+    del t25
+    t26 = (u_u + v_v <= t24) | (u_u <= t24) | slim | (product_2 <= t23 * (t18 * u_u))
+    del product_2, slim, t18, t23, t24, u_u, v_v
     return (
-        -t13 + t20,
-        t3 - t13 + t20,
-        t2 - t13 + t20,
-        -Delta + t20,
-        -t21 + t20,
-        t3 - t21 + t20,
-        t2 - t21 + t20,
-        Delta + t20,
-        t25 | (slack <= _runtime.VANISHING * t18),
+        -t14 + t21,
+        t3 - t14 + t21,
+        t2 - t14 + t21,
+        -Delta + t21,
+        -t22 + t21,
+        t3 - t22 + t21,
+        t2 - t22 + t21,
+        Delta + t21,
+        t26 | (slack <= _runtime.VANISHING * t19),
     )
 
 
@@ -2193,116 +2188,115 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     t18 = t1 * 0.5 - t11 * t17
     t19 = _runtime.select(slim, over * (d_y * t14 - t9 * n_y), t12)
     del t12
-    t20 = _runtime.select(in_line, 0.0, part * (t16 * t16))
-    t21 = _runtime.select(all_same, 0.0, mu * (1.0 + t20) * 0.25)
-    del all_same, mu, t20
-    t22 = l * l - t21
-    del t21
-    slack = np.maximum(t22, 0.0)
-    t23 = 0.234375 * (l * size)
+    t20 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t16 * t17) * 0.25)
+    del all_same, mu
+    t21 = l * l - t20
+    del t20
+    slack = np.maximum(t21, 0.0)
+    t22 = 0.234375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t23, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t22, 0.0, np.sqrt(part * slack))
     del part, slack
-    t24 = _runtime.select(in_line, t15 * s_w, t19) * h
+    t23 = _runtime.select(in_line, t15 * s_w, t19) * h
     del s_w, t19
-    t25 = t18 - t24
-    t26 = n_y * t17 - d_y * 0.5
+    t24 = t18 - t23
+    t25 = n_y * t17 - d_y * 0.5
     m_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), product_y)
     del product_y
-    t27 = h * _runtime.select(in_line, -t15, m_y)
+    t26 = h * _runtime.select(in_line, -t15, m_y)
     del m_y, t15
-    t28 = t26 + t27
-    t29 = t14 * t17 - t9 * 0.5
+    t27 = t25 + t26
+    t28 = t14 * t17 - t9 * 0.5
     del t14, t17, t9
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), product_z)
     del a_x, d_y, n_y, over, product_z, slim, t11
-    t30 = h * _runtime.select(in_line, -g_2, m_z)
+    t29 = h * _runtime.select(in_line, -g_2, m_z)
     del g_2, m_z
-    A_13 = t29 - t30
-    A_21 = t1 - t25
-    t31 = A_21 * A_21
-    A_22 = c3_y - t28
+    A_13 = t28 - t29
+    A_21 = t1 - t24
+    t30 = A_21 * A_21
+    A_22 = c3_y - t27
     A_23 = t2 + A_13
-    t32 = t25 * t25 + t28 * t28 + A_13 * A_13 + (t31 + A_22 * A_22 + A_23 * A_23)
-    t33 = c3_y + t28
+    t31 = t24 * t24 + t27 * t27 + A_13 * A_13 + (t30 + A_22 * A_22 + A_23 * A_23)
+    t32 = c3_y + t27
     A_33 = t7 + A_13
-    t34 = t28 * A_21
-    t35 = t25 * A_22 - t34
-    t36 = A_13 * A_21
-    t37 = t25 * A_23 + t36
-    t38 = t34 + t25 * t33
-    del t34
-    t39 = t36 + t25 * A_33
-    del t25, t36
-    t40 = t35 * t35 + t37 * t37 + t38 * t38 + t39 * t39
-    del t35, t37, t38, t39
-    t41 = t28 * A_23 + A_13 * A_22
-    t42 = t28 * A_33 - A_13 * t33
-    del A_13, t28
-    t43 = A_21 * t33 + A_21 * A_22
-    t44 = A_21 * A_33 - A_21 * A_23
+    t33 = t27 * A_21
+    t34 = t24 * A_22 - t33
+    t35 = A_13 * A_21
+    t36 = t24 * A_23 + t35
+    t37 = t33 + t24 * t32
+    del t33
+    t38 = t35 + t24 * A_33
+    del t24, t35
+    t39 = t34 * t34 + t36 * t36 + t37 * t37 + t38 * t38
+    del t34, t36, t37, t38
+    t40 = t27 * A_23 + A_13 * A_22
+    t41 = t27 * A_33 - A_13 * t32
+    del A_13, t27
+    t42 = A_21 * t32 + A_21 * A_22
+    t43 = A_21 * A_33 - A_21 * A_23
     del A_21
-    t45 = t40 + t41 * t41 + t42 * t42 + t43 * t43 + t44 * t44
-    del t40, t41, t42, t43, t44
-    t46 = A_22 * A_33 + A_23 * t33
+    t44 = t39 + t40 * t40 + t41 * t41 + t42 * t42 + t43 * t43
+    del t39, t40, t41, t42, t43
+    t45 = A_22 * A_33 + A_23 * t32
     del A_22, A_23
-    t47 = (t32 + (t31 + t33 * t33 + A_33 * A_33)) * (t45 + t46 * t46)
-    del A_33, t31, t32, t33, t45, t46
-    t48 = 3.0 * (m_m * h)
+    t46 = (t31 + (t30 + t32 * t32 + A_33 * A_33)) * (t44 + t45 * t45)
+    del A_33, t30, t31, t32, t44, t45
+    t47 = 3.0 * (m_m * h)
     del h, m_m
-    t49 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t50 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t51 = t49 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t50
-    del t49, t50
-    t52 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t4 * _runtime.FEASIBILITY
+    t48 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t49 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t50 = t48 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t49
+    del t48, t49
+    t51 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t4 * _runtime.FEASIBILITY
     del in_line, t16, t4
-    unreachable = np.logical_not(t52 & (-(_runtime.FEASIBILITY * t23) <= t22))
-    del t22, t23, t52
-    t53 = _runtime.poison(np.logical_not(t51) | unreachable)
-    del t51, unreachable
-    t54 = t18 + t24
-    del t18, t24
-    t55 = t26 - t27
-    del t26, t27
-    A_13_above = t29 + t30
-    del t29, t30
-    square1_above = t54 * t54 + t55 * t55 + A_13_above * A_13_above
-    A_21_above = t1 - t54
+    unreachable = np.logical_not(t51 & (-(_runtime.FEASIBILITY * t22) <= t21))
+    del t21, t22, t51
+    t52 = _runtime.poison(np.logical_not(t50) | unreachable)
+    del t50, unreachable
+    t53 = t18 + t23
+    del t18, t23
+    t54 = t25 - t26
+    del t25, t26
+    A_13_above = t28 + t29
+    del t28, t29
+    square1_above = t53 * t53 + t54 * t54 + A_13_above * A_13_above
+    A_21_above = t1 - t53
     del t1
-    t56 = A_21_above * A_21_above
-    A_22_above = c3_y - t55
+    t55 = A_21_above * A_21_above
+    A_22_above = c3_y - t54
     A_23_above = t2 + A_13_above
     del t2
-    square2_above = t56 + A_22_above * A_22_above + A_23_above * A_23_above
-    t57 = c3_y + t55
+    square2_above = t55 + A_22_above * A_22_above + A_23_above * A_23_above
+    t56 = c3_y + t54
     del c3_y
     A_33_above = t7 + A_13_above
     del t7
-    t58 = square1_above + square2_above + (t56 + t57 * t57 + A_33_above * A_33_above)
-    del square1_above, square2_above, t56
-    t59 = t55 * A_21_above
-    t60 = t54 * A_22_above - t59
-    t61 = A_13_above * A_21_above
-    t62 = t54 * A_23_above + t61
-    t63 = t59 + t54 * t57
-    del t59
-    t64 = t61 + t54 * A_33_above
-    del t54, t61
-    t65 = t60 * t60 + t62 * t62 + t63 * t63 + t64 * t64
-    del t60, t62, t63, t64
-    t66 = t55 * A_23_above + A_13_above * A_22_above
-    t67 = t55 * A_33_above - A_13_above * t57
-    del A_13_above, t55
-    t68 = A_21_above * t57 + A_21_above * A_22_above
-    t69 = A_21_above * A_33_above - A_21_above * A_23_above
+    t57 = square1_above + square2_above + (t55 + t56 * t56 + A_33_above * A_33_above)
+    del square1_above, square2_above, t55
+    t58 = t54 * A_21_above
+    t59 = t53 * A_22_above - t58
+    t60 = A_13_above * A_21_above
+    t61 = t53 * A_23_above + t60
+    t62 = t58 + t53 * t56
+    del t58
+    t63 = t60 + t53 * A_33_above
+    del t53, t60
+    t64 = t59 * t59 + t61 * t61 + t62 * t62 + t63 * t63
+    del t59, t61, t62, t63
+    t65 = t54 * A_23_above + A_13_above * A_22_above
+    t66 = t54 * A_33_above - A_13_above * t56
+    del A_13_above, t54
+    t67 = A_21_above * t56 + A_21_above * A_22_above
+    t68 = A_21_above * A_33_above - A_21_above * A_23_above
     del A_21_above
-    t70 = t65 + t66 * t66 + t67 * t67 + t68 * t68 + t69 * t69
-    del t65, t66, t67, t68, t69
-    t71 = A_22_above * A_33_above + A_23_above * t57
-    del A_22_above, A_23_above, A_33_above, t57
+    t69 = t64 + t65 * t65 + t66 * t66 + t67 * t67 + t68 * t68
+    del t64, t65, t66, t67, t68
+    t70 = A_22_above * A_33_above + A_23_above * t56
+    del A_22_above, A_23_above, A_33_above, t56
     return (
-        np.sqrt(t47) / t48 + t53,
-        np.sqrt(t58 * (t70 + t71 * t71)) / t48 + t53,
+        np.sqrt(t46) / t47 + t52,
+        np.sqrt(t57 * (t69 + t70 * t70)) / t47 + t52,
     )
 
 
@@ -2324,7 +2318,7 @@ def _condition_number_common(rho1, rho2, rho3, f, e, l):
     t10 = t1 * 0.5 + (c3_y * t3 - t4 * t6) * t9
     t11 = t1 * t1 + c3_y * c3_y
     u_u = t4 * t4 + t11
-    t12 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
+    t12 = l * l - u_u * (1.0 + 2.0 * t8 * t9) * 0.25
     del t8
     slack = np.maximum(t12, 0.0)
     h = np.sqrt(part * slack)
@@ -2536,73 +2530,72 @@ def _constraint(rho1, rho2, rho3, f, e, l):
     t18 = t1 * 0.5 - t11 * t17
     t19 = _runtime.select(slim, over * (d_y * t14 - t9 * n_y), t12)
     del t12
-    t20 = _runtime.select(in_line, 0.0, part * (t16 * t16))
-    t21 = _runtime.select(all_same, 0.0, mu * (1.0 + t20) * 0.25)
-    del all_same, mu, t20
-    t22 = l * l - t21
-    del t21
-    slack = np.maximum(t22, 0.0)
-    t23 = 0.234375 * (l * size)
+    t20 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t16 * t17) * 0.25)
+    del all_same, mu
+    t21 = l * l - t20
+    del t20
+    slack = np.maximum(t21, 0.0)
+    t22 = 0.234375 * (l * size)
     del size
-    h = _runtime.select(slack <= _runtime.VANISHING * t23, 0.0, np.sqrt(part * slack))
+    h = _runtime.select(slack <= _runtime.VANISHING * t22, 0.0, np.sqrt(part * slack))
     del part, slack
-    t24 = _runtime.select(in_line, t15 * s_w, t19) * h
+    t23 = _runtime.select(in_line, t15 * s_w, t19) * h
     del s_w, t19
-    t25 = t18 - t24
-    t26 = t14 * t17 - t9 * 0.5
+    t24 = t18 - t23
+    t25 = t14 * t17 - t9 * 0.5
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t11), product_z)
     del product_z
-    t27 = h * _runtime.select(in_line, -g_2, m_z)
+    t26 = h * _runtime.select(in_line, -g_2, m_z)
     del g_2, m_z
-    A_13 = t26 - t27
+    A_13 = t25 - t26
     A_23 = t2 + A_13
     A_33 = t7 + A_13
-    t28 = (t1 - t25) * (1.7320508075688772 * A_13)
-    t29 = 1.7320508075688772 * t25 * A_23 * A_33 * 0.5 + A_33 * t28 * 0.25
-    del t25
-    t30 = 0.75 * A_13
+    t27 = (t1 - t24) * (1.7320508075688772 * A_13)
+    t28 = 1.7320508075688772 * t24 * A_23 * A_33 * 0.5 + A_33 * t27 * 0.25
+    del t24
+    t29 = 0.75 * A_13
     del A_13
-    t31 = n_y * t17 - d_y * 0.5
+    t30 = n_y * t17 - d_y * 0.5
     del d_y, n_y, t17
     m_y = _runtime.select(slim, over * (a_x * t14 + t9 * t11), product_y)
     del a_x, over, product_y, slim, t11, t14, t9
-    t32 = h * _runtime.select(in_line, -t15, m_y)
+    t31 = h * _runtime.select(in_line, -t15, m_y)
     del h, m_y, t15
-    t33 = t31 + t32
-    t34 = t29 - A_33 * t30 * (c3_y - t33) + A_23 * t28 * 0.25
-    del A_33, t28, t29
-    t35 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
-    t36 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t37 = t35 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t36
-    del t35, t36
-    t38 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t4 * _runtime.FEASIBILITY
+    t32 = t30 + t31
+    t33 = t28 - A_33 * t29 * (c3_y - t32) + A_23 * t27 * 0.25
+    del A_33, t27, t28
+    t34 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t35 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t36 = t34 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t35
+    del t34, t35
+    t37 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= t4 * _runtime.FEASIBILITY
     del in_line, t16, t4
-    unreachable = np.logical_not(t38 & (-(_runtime.FEASIBILITY * t23) <= t22))
-    del t22, t23, t38
-    t39 = _runtime.poison(np.logical_not(t37) | unreachable)
-    del t37, unreachable
-    t40 = t18 + t24
-    del t18, t24
-    A_13_above = t26 + t27
-    del t26, t27
+    unreachable = np.logical_not(t37 & (-(_runtime.FEASIBILITY * t22) <= t21))
+    del t21, t22, t37
+    t38 = _runtime.poison(np.logical_not(t36) | unreachable)
+    del t36, unreachable
+    t39 = t18 + t23
+    del t18, t23
+    A_13_above = t25 + t26
+    del t25, t26
     A_23_above = t2 + A_13_above
     del t2
     A_33_above = t7 + A_13_above
     del t7
-    t41 = 1.7320508075688772 * t40 * A_23_above * A_33_above
-    t42 = (t1 - t40) * (1.7320508075688772 * A_13_above)
-    del t1, t40
-    t43 = 0.75 * A_13_above
+    t40 = 1.7320508075688772 * t39 * A_23_above * A_33_above
+    t41 = (t1 - t39) * (1.7320508075688772 * A_13_above)
+    del t1, t39
+    t42 = 0.75 * A_13_above
     del A_13_above
-    t44 = t31 - t32
-    del t31, t32
-    t45 = t41 * 0.5 + A_33_above * t42 * 0.25 - A_33_above * t43 * (c3_y - t44)
-    del A_33_above, t41
-    t46 = t45 + A_23_above * t42 * 0.25 - A_23_above * t43 * (c3_y + t44)
-    del A_23_above, t42, t43, t44, t45
+    t43 = t30 - t31
+    del t30, t31
+    t44 = t40 * 0.5 + A_33_above * t41 * 0.25 - A_33_above * t42 * (c3_y - t43)
+    del A_33_above, t40
+    t45 = t44 + A_23_above * t41 * 0.25 - A_23_above * t42 * (c3_y + t43)
+    del A_23_above, t41, t42, t43, t44
     return (
-        t34 - A_23 * t30 * (c3_y + t33) + t39,
-        t46 + t39,
+        t33 - A_23 * t29 * (c3_y + t32) + t38,
+        t45 + t38,
     )
 
 
@@ -2624,7 +2617,7 @@ def _constraint_common(rho1, rho2, rho3, f, e, l):
     t10 = t1 * 0.5 + (c3_y * t3 - t4 * t6) * t9
     t11 = t1 * t1 + c3_y * c3_y
     u_u = t4 * t4 + t11
-    t12 = l * l - u_u * (1.0 + part * (t8 * t8)) * 0.25
+    t12 = l * l - u_u * (1.0 + 2.0 * t8 * t9) * 0.25
     del t8
     slack = np.maximum(t12, 0.0)
     h = np.sqrt(part * slack)

@@ -2,28 +2,28 @@
 # derivations/orthoglide.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 47 compare and select, 43 add, 2 divide, 71 multiply, 1 sqrt
+#   fk: 46 compare and select, 43 add, 2 divide, 71 multiply, 1 sqrt
 #   fk where nothing vanishes: 26 compare and select, 27 add, 1 divide, 41 multiply, 1 sqrt
-#   skeleton: 46 compare and select, 74 add, 2 divide, 72 multiply, 1 sqrt
+#   skeleton: 45 compare and select, 74 add, 2 divide, 72 multiply, 1 sqrt
 #   skeleton where nothing vanishes: 25 compare and select, 58 add, 1 divide, 42 multiply, 1 sqrt
-#   jacobian_parallel: 46 compare and select, 54 add, 2 divide, 71 multiply, 1 sqrt
+#   jacobian_parallel: 45 compare and select, 54 add, 2 divide, 71 multiply, 1 sqrt
 #   jacobian_parallel where nothing vanishes: 25 compare and select, 38 add, 1 divide, 41
 #     multiply, 1 sqrt
-#   jacobian_serial: 46 compare and select, 46 add, 2 divide, 71 multiply, 1 sqrt
+#   jacobian_serial: 45 compare and select, 46 add, 2 divide, 71 multiply, 1 sqrt
 #   jacobian_serial where nothing vanishes: 25 compare and select, 30 add, 1 divide, 41 multiply,
 #     1 sqrt
-#   jacobian: 46 compare and select, 78 add, 20 divide, 114 multiply, 1 sqrt
+#   jacobian: 45 compare and select, 78 add, 20 divide, 114 multiply, 1 sqrt
 #   jacobian where nothing vanishes: 25 compare and select, 62 add, 19 divide, 84 multiply, 1 sqrt
-#   determinant: 46 compare and select, 42 add, 4 divide, 76 multiply, 1 sqrt
+#   determinant: 45 compare and select, 42 add, 4 divide, 76 multiply, 1 sqrt
 #   determinant where nothing vanishes: 25 compare and select, 26 add, 3 divide, 46 multiply, 1
 #     sqrt
-#   singularities: 46 compare and select, 48 add, 2 divide, 72 multiply, 1 sqrt
+#   singularities: 45 compare and select, 48 add, 2 divide, 72 multiply, 1 sqrt
 #   singularities where nothing vanishes: 25 compare and select, 32 add, 1 divide, 42 multiply, 1
 #     sqrt
-#   condition_number: 46 compare and select, 94 add, 4 divide, 129 multiply, 3 sqrt
+#   condition_number: 45 compare and select, 94 add, 4 divide, 129 multiply, 3 sqrt
 #   condition_number where nothing vanishes: 25 compare and select, 78 add, 3 divide, 99 multiply,
 #     3 sqrt
-#   constraint: 46 compare and select, 46 add, 2 divide, 79 multiply, 1 sqrt
+#   constraint: 45 compare and select, 46 add, 2 divide, 79 multiply, 1 sqrt
 #   constraint where nothing vanishes: 25 compare and select, 30 add, 1 divide, 49 multiply, 1
 #     sqrt
 #   ik: 56 compare and select, 45 add, 45 multiply, 6 sqrt
@@ -178,59 +178,57 @@ def _fk(rho1, rho2, rho3, L):
     s_w = _runtime.sign(d_y * a_x)
     m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     del product_x
+    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
+    del t5, t6
     g_2 = whole * (d_y + a_x * s_w)
     del whole
     w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
     del m_m
     part = 1.0 / w_w
     del w_w
-    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
-    del t5, t6
-    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
-    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
-    del all_same, mu, t11
+    t11 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t10 * t11) * 0.25)
+    del all_same, mu
     t13 = L * L - t12
     del t12
     slack = np.maximum(t13, 0.0)
     t14 = L * size * 0.1875
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
-    del slack
+    del part, slack
     t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t16 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
-    del part
-    t17 = t9 * t16 + (rho1 - rho1 * 0.5)
-    t18 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t18)
-    del t18
-    t19 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
+    t16 = t9 * t11 + (rho1 - rho1 * 0.5)
+    t17 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t17)
+    del t17
+    t18 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
     del t10, t2
-    unreachable = np.logical_not(t19 & (-(_runtime.FEASIBILITY * t14) <= t13))
-    del t13, t14, t19
-    t20 = _runtime.poison(invalid | unreachable)
-    t21 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
+    unreachable = np.logical_not(t18 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t18
+    t19 = _runtime.poison(invalid | unreachable)
+    t20 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
     del t7
-    t22 = h * _runtime.select(in_line, g_1, -t21)
-    del g_1, t21
-    t23 = n_y * t16 - d_y * 0.5
+    t21 = h * _runtime.select(in_line, g_1, -t20)
+    del g_1, t20
+    t22 = n_y * t11 - d_y * 0.5
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
     del a_x, d_y, n_y, over, product_z, slim, t9
-    t24 = h * _runtime.select(in_line, -g_2, m_z)
+    t23 = h * _runtime.select(in_line, -g_2, m_z)
     del g_2, h, m_z
-    t25 = n_z * t16 - d_z * 0.5
-    del d_z, n_z, t16
-    t26 = _runtime.status(invalid, unreachable, in_line)
+    t24 = n_z * t11 - d_z * 0.5
+    del d_z, n_z, t11
+    t25 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t15 + t17 + t20,
-        t22 - t23 + t20,
-        t24 - t25 + t20,
-        t17 - t15 + t20,
-        -(t22 + t23) + t20,
-        -(t24 + t25) + t20,
-        t26,
-        t26,
+        t15 + t16 + t19,
+        t21 - t22 + t19,
+        t23 - t24 + t19,
+        t16 - t15 + t19,
+        -(t21 + t22) + t19,
+        -(t23 + t24) + t19,
+        t25,
+        t25,
     )
 
 
@@ -244,13 +242,13 @@ def _fk_common(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
     t2 = rho3 * rho3
-    t3 = L * L - u_u * (1.0 + part * (t2 * t2)) * 0.25
-    slack = np.maximum(t3, 0.0)
+    t3 = t2 * part * 0.5
+    t4 = L * L - u_u * (1.0 + t2 * 2.0 * t3) * 0.25
+    slack = np.maximum(t4, 0.0)
     h = np.sqrt(part * slack)
-    t4 = product_x * h
-    t5 = t2 * part * 0.5
     del part
-    t6 = rho1 - rho1 * 0.5 - rho2 * product_z * t5
+    t5 = product_x * h
+    t6 = rho1 - rho1 * 0.5 - rho2 * product_z * t3
     t7 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t7)
     del t7
@@ -258,15 +256,15 @@ def _fk_common(rho1, rho2, rho3, L):
     t8 = size * size
     t9 = L * size * 0.1875
     del size
-    t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t3)
-    del t3
+    t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t4)
+    del t4
     unreachable = np.logical_not(t10)
     del t10
     t11 = _runtime.poison(invalid | unreachable)
     t12 = m_y * h
-    t13 = t5 * (rho1 * product_z) - rho2 * 0.5
-    t14 = t5 * (rho1 * m_y + rho2 * product_x)
-    del m_y, product_x, t5
+    t13 = t3 * (rho1 * product_z) - rho2 * 0.5
+    t14 = t3 * (rho1 * m_y + rho2 * product_x)
+    del m_y, product_x, t3
     t15 = product_z * h
     del h, product_z
     t16 = _runtime.status(invalid, unreachable, np.False_)
@@ -281,10 +279,10 @@ def _fk_common(rho1, rho2, rho3, L):
     t20 = (u_u <= t18) | (u_u + v_v <= t18) | slim | (product_2 <= t17 * (u_u * t8))
     del product_2, slim, t17, t18, t8, u_u, v_v
     return (
-        t4 + t6 + t11,
+        t5 + t6 + t11,
         t12 - t13 + t11,
         t14 + t15 + t11,
-        t6 - t4 + t11,
+        t6 - t5 + t11,
         -(t12 + t13) + t11,
         t14 - t15 + t11,
         t16,
@@ -400,9 +398,9 @@ def _skeleton(rho1, rho2, rho3, L):
     del m_m
     part = 1.0 / w_w
     del w_w
-    t14 = _runtime.select(in_line, 0.0, part * (t11 * t11))
-    t15 = _runtime.select(all_same, 0.0, mu * (1.0 + t14) * 0.25)
-    del all_same, mu, t14
+    t14 = _runtime.select(in_line, 0.0, t11 * part * 0.5)
+    t15 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t11 * t14) * 0.25)
+    del all_same, mu, t11
     t16 = L * L - t15
     del t15
     unreachable = np.logical_not(t12 & (-(_runtime.FEASIBILITY * t13) <= t16))
@@ -419,40 +417,38 @@ def _skeleton(rho1, rho2, rho3, L):
     slack = np.maximum(t16, 0.0)
     del t16
     h = _runtime.select(slack <= _runtime.VANISHING * t13, 0.0, np.sqrt(part * slack))
-    del slack, t13
+    del part, slack, t13
     t23 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t24 = _runtime.select(in_line, 0.0, t11 * part * 0.5)
-    del part, t11
-    t25 = rho1 * 0.5 - t10 * t24
-    t26 = rho1 + (t23 - t25)
-    t27 = t26 + t17
-    t28 = _runtime.select(slim, over * (a_x * n_z + d_z * t10), t8)
+    t24 = rho1 * 0.5 - t10 * t14
+    t25 = rho1 + (t23 - t24)
+    t26 = t25 + t17
+    t27 = _runtime.select(slim, over * (a_x * n_z + d_z * t10), t8)
     del t8
-    t29 = h * _runtime.select(in_line, g_1, -t28)
-    del g_1, t28
-    t30 = n_y * t24 - d_y * 0.5
-    A_12 = t29 - t30
+    t28 = h * _runtime.select(in_line, g_1, -t27)
+    del g_1, t27
+    t29 = n_y * t14 - d_y * 0.5
+    A_12 = t28 - t29
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t10), product_z)
     del a_x, d_y, n_y, over, product_z, slim, t10
-    t31 = h * _runtime.select(in_line, -g_2, m_z)
+    t30 = h * _runtime.select(in_line, -g_2, m_z)
     del g_2, h, in_line, m_z
-    t32 = n_z * t24 - d_z * 0.5
-    del d_z, n_z, t24
-    A_13 = t31 - t32
-    t33 = A_13 + t17
-    t34 = rho2 + t17
-    t35 = A_12 + t17
-    t36 = rho3 + t17
-    t37 = rho1 - (t23 + t25)
-    del t23, t25
-    t38 = t37 + t17
-    t39 = t29 + t30
-    del t29, t30
-    t40 = t31 + t32
-    del t31, t32
-    t41 = -t40 + t17
-    t42 = -t39 + t17
+    t31 = n_z * t14 - d_z * 0.5
+    del d_z, n_z, t14
+    A_13 = t30 - t31
+    t32 = A_13 + t17
+    t33 = rho2 + t17
+    t34 = A_12 + t17
+    t35 = rho3 + t17
+    t36 = rho1 - (t23 + t24)
+    del t23, t24
+    t37 = t36 + t17
+    t38 = t28 + t29
+    del t28, t29
+    t39 = t30 + t31
+    del t30, t31
+    t40 = -t39 + t17
+    t41 = -t38 + t17
     return (
         t18,
         t18,
@@ -466,51 +462,51 @@ def _skeleton(rho1, rho2, rho3, L):
         t19,
         t22,
         t18,
-        t27,
+        t26,
         t20 + A_12 + t17,
-        t33,
-        t27,
+        t32,
+        t26,
         A_12 - t20 + t17,
+        t32,
+        t18,
+        t18,
+        t18,
+        t18,
         t33,
         t18,
         t18,
-        t18,
-        t18,
-        t34,
-        t18,
-        t18,
-        t34,
+        t33,
         t21,
         t18,
-        t34,
+        t33,
         t22,
-        t27,
-        t35,
+        t26,
+        t34,
         t20 + A_13 + t17,
-        t27,
-        t35,
+        t26,
+        t34,
         A_13 - t20 + t17,
         t18,
         t18,
         t18,
         t18,
         t18,
-        t36,
+        t35,
         t21,
         t18,
-        t36,
+        t35,
         t22,
         t18,
-        t36,
-        t20 + t26 + t17,
         t35,
-        t33,
-        t26 - t20 + t17,
-        t35,
-        t33,
-        t27,
-        t35,
-        t33,
+        t20 + t25 + t17,
+        t34,
+        t32,
+        t25 - t20 + t17,
+        t34,
+        t32,
+        t26,
+        t34,
+        t32,
         t18,
         t18,
         t18,
@@ -523,51 +519,51 @@ def _skeleton(rho1, rho2, rho3, L):
         t19,
         t22,
         t18,
-        t38,
+        t37,
+        t20 - t38 + t17,
+        t40,
+        t37,
+        -(t20 + t38) + t17,
+        t40,
+        t18,
+        t18,
+        t18,
+        t18,
+        t33,
+        t18,
+        t18,
+        t33,
+        t21,
+        t18,
+        t33,
+        t22,
+        t37,
+        t41,
         t20 - t39 + t17,
+        t37,
         t41,
-        t38,
         -(t20 + t39) + t17,
-        t41,
         t18,
         t18,
         t18,
         t18,
-        t34,
         t18,
-        t18,
-        t34,
+        t35,
         t21,
         t18,
-        t34,
-        t22,
-        t38,
-        t42,
-        t20 - t40 + t17,
-        t38,
-        t42,
-        -(t20 + t40) + t17,
-        t18,
-        t18,
-        t18,
-        t18,
-        t18,
-        t36,
-        t21,
-        t18,
-        t36,
+        t35,
         t22,
         t18,
-        t36,
-        t20 + t37 + t17,
-        t42,
+        t35,
+        t20 + t36 + t17,
         t41,
-        t37 - t20 + t17,
-        t42,
+        t40,
+        t36 - t20 + t17,
         t41,
-        t38,
-        t42,
+        t40,
+        t37,
         t41,
+        t40,
     )
 
 
@@ -582,51 +578,51 @@ def _skeleton_common(rho1, rho2, rho3, L):
     del size
     t4 = rho1 * rho1
     u_u = t4 + rho2 * rho2
+    t5 = rho3 * rho3
     product_x = rho2 * rho3
     m_y = rho1 * rho3
     product_z = rho1 * rho2
     product_2 = product_x * product_x + m_y * m_y + product_z * product_z
     part = 1.0 / product_2
-    t5 = rho3 * rho3
-    t6 = L * L - u_u * (1.0 + part * (t5 * t5)) * 0.25
-    t7 = (np.abs(0.0) <= t2 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t3) <= t6)
-    t8 = _runtime.poison(invalid | np.logical_not(t7))
-    del invalid, t7
-    t9 = 0.0 + t8
-    t10 = rho1 + t8
-    t11 = L * 0.0625
-    t12 = t11 + t8
-    t13 = -t11 + t8
-    slack = np.maximum(t6, 0.0)
-    del t6
+    t6 = t5 * part * 0.5
+    t7 = L * L - u_u * (1.0 + t5 * 2.0 * t6) * 0.25
+    t8 = (np.abs(0.0) <= t2 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t3) <= t7)
+    t9 = _runtime.poison(invalid | np.logical_not(t8))
+    del invalid, t8
+    t10 = 0.0 + t9
+    t11 = rho1 + t9
+    t12 = L * 0.0625
+    t13 = t12 + t9
+    t14 = -t12 + t9
+    slack = np.maximum(t7, 0.0)
+    del t7
     h = np.sqrt(part * slack)
-    t14 = product_x * h
-    t15 = t5 * part * 0.5
     del part
-    t16 = rho1 * 0.5 + rho2 * product_z * t15
-    t17 = rho1 + (t14 - t16)
-    t18 = t17 + t8
+    t15 = product_x * h
+    t16 = rho1 * 0.5 + t6 * (rho2 * product_z)
+    t17 = rho1 + (t15 - t16)
+    t18 = t17 + t9
     t19 = m_y * h
-    t20 = t15 * (rho1 * product_z) - rho2 * 0.5
+    t20 = t6 * (rho1 * product_z) - rho2 * 0.5
     A_12 = t19 - t20
-    t21 = t15 * (rho1 * m_y + rho2 * product_x)
-    del m_y, product_x, t15
+    t21 = t6 * (rho1 * m_y + rho2 * product_x)
+    del m_y, product_x, t6
     t22 = product_z * h
     del h, product_z
     A_13 = t21 + t22
-    t23 = A_13 + t8
-    t24 = rho2 + t8
-    t25 = A_12 + t8
-    t26 = rho3 + t8
-    t27 = rho1 - (t14 + t16)
-    del t14, t16
-    t28 = t27 + t8
+    t23 = A_13 + t9
+    t24 = rho2 + t9
+    t25 = A_12 + t9
+    t26 = rho3 + t9
+    t27 = rho1 - (t15 + t16)
+    del t15, t16
+    t28 = t27 + t9
     t29 = t19 + t20
     del t19, t20
     A_13_inner = t21 - t22
     del t21, t22
-    t30 = A_13_inner + t8
-    t31 = -t29 + t8
+    t30 = A_13_inner + t9
+    t31 = -t29 + t9
     t32 = _runtime.VANISHING * _runtime.VANISHING
     t33 = t2 * t32
     v_v = t4 + t5
@@ -637,115 +633,115 @@ def _skeleton_common(rho1, rho2, rho3, L):
     t35 = (u_u <= t33) | (u_u + v_v <= t33) | slim | (product_2 <= t32 * (u_u * t2))
     del product_2, slim, t2, t32, t33, u_u, v_v
     return (
-        t9,
-        t9,
-        t9,
         t10,
-        t9,
-        t9,
         t10,
-        t12,
-        t9,
         t10,
+        t11,
+        t10,
+        t10,
+        t11,
         t13,
-        t9,
+        t10,
+        t11,
+        t14,
+        t10,
         t18,
-        t11 + A_12 + t8,
+        t12 + A_12 + t9,
         t23,
         t18,
-        A_12 - t11 + t8,
+        A_12 - t12 + t9,
         t23,
-        t9,
-        t9,
-        t9,
-        t9,
+        t10,
+        t10,
+        t10,
+        t10,
         t24,
-        t9,
-        t9,
-        t24,
-        t12,
-        t9,
+        t10,
+        t10,
         t24,
         t13,
+        t10,
+        t24,
+        t14,
         t18,
         t25,
-        t11 + A_13 + t8,
+        t12 + A_13 + t9,
         t18,
         t25,
-        A_13 - t11 + t8,
-        t9,
-        t9,
-        t9,
-        t9,
-        t9,
-        t26,
-        t12,
-        t9,
+        A_13 - t12 + t9,
+        t10,
+        t10,
+        t10,
+        t10,
+        t10,
         t26,
         t13,
-        t9,
+        t10,
         t26,
-        t11 + t17 + t8,
+        t14,
+        t10,
+        t26,
+        t12 + t17 + t9,
         t25,
         t23,
-        t17 - t11 + t8,
+        t17 - t12 + t9,
         t25,
         t23,
         t18,
         t25,
         t23,
-        t9,
-        t9,
-        t9,
         t10,
-        t9,
-        t9,
         t10,
-        t12,
-        t9,
         t10,
+        t11,
+        t10,
+        t10,
+        t11,
         t13,
-        t9,
+        t10,
+        t11,
+        t14,
+        t10,
         t28,
-        t11 - t29 + t8,
+        t12 - t29 + t9,
         t30,
         t28,
-        -(t11 + t29) + t8,
+        -(t12 + t29) + t9,
         t30,
-        t9,
-        t9,
-        t9,
-        t9,
+        t10,
+        t10,
+        t10,
+        t10,
         t24,
-        t9,
-        t9,
-        t24,
-        t12,
-        t9,
+        t10,
+        t10,
         t24,
         t13,
+        t10,
+        t24,
+        t14,
         t28,
         t31,
-        t11 + A_13_inner + t8,
+        t12 + A_13_inner + t9,
         t28,
         t31,
-        A_13_inner - t11 + t8,
-        t9,
-        t9,
-        t9,
-        t9,
-        t9,
-        t26,
-        t12,
-        t9,
+        A_13_inner - t12 + t9,
+        t10,
+        t10,
+        t10,
+        t10,
+        t10,
         t26,
         t13,
-        t9,
+        t10,
         t26,
-        t11 + t27 + t8,
+        t14,
+        t10,
+        t26,
+        t12 + t27 + t9,
         t31,
         t30,
-        t27 - t11 + t8,
+        t27 - t12 + t9,
         t31,
         t30,
         t28,
@@ -841,83 +837,81 @@ def _jacobian_parallel(rho1, rho2, rho3, L):
     s_w = _runtime.sign(d_y * a_x)
     m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     del product_x
+    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
+    del t5, t6
     g_2 = whole * (d_y + a_x * s_w)
     del whole
     w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
     del m_m
     part = 1.0 / w_w
     del w_w
-    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
-    del t5, t6
-    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
-    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
-    del all_same, mu, t11
+    t11 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t10 * t11) * 0.25)
+    del all_same, mu
     t13 = L * L - t12
     del t12
     slack = np.maximum(t13, 0.0)
     t14 = 0.234375 * (L * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
-    del slack
+    del part, slack
     t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t16 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
-    del part
-    t17 = rho1 * 0.5 - t9 * t16
-    A_11 = t15 - t17
-    t18 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t18)
-    del t18
-    t19 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
+    t16 = rho1 * 0.5 - t9 * t11
+    A_11 = t15 - t16
+    t17 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t17)
+    del t17
+    t18 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
     del t10, t2
-    unreachable = np.logical_not(t19 & (-(_runtime.FEASIBILITY * t14) <= t13))
-    del t13, t14, t19
-    t20 = _runtime.poison(invalid | unreachable)
+    unreachable = np.logical_not(t18 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t18
+    t19 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    t21 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
+    t20 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
     del t7
-    t22 = h * _runtime.select(in_line, g_1, -t21)
-    del g_1, t21
-    t23 = n_y * t16 - d_y * 0.5
-    A_12 = t22 - t23
-    t24 = A_12 + t20
+    t21 = h * _runtime.select(in_line, g_1, -t20)
+    del g_1, t20
+    t22 = n_y * t11 - d_y * 0.5
+    A_12 = t21 - t22
+    t23 = A_12 + t19
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
     del a_x, d_y, n_y, over, product_z, slim, t9
-    t25 = h * _runtime.select(in_line, -g_2, m_z)
+    t24 = h * _runtime.select(in_line, -g_2, m_z)
     del g_2, h, in_line, m_z
-    t26 = n_z * t16 - d_z * 0.5
-    del d_z, n_z, t16
-    A_13 = t25 - t26
-    t27 = A_13 + t20
-    t28 = rho1 + A_11 + t20
-    t29 = t15 + t17
-    del t15, t17
-    t30 = t22 + t23
-    del t22, t23
-    t31 = -t30 + t20
-    t32 = t25 + t26
-    del t25, t26
-    t33 = -t32 + t20
-    t34 = rho1 - t29 + t20
+    t25 = n_z * t11 - d_z * 0.5
+    del d_z, n_z, t11
+    A_13 = t24 - t25
+    t26 = A_13 + t19
+    t27 = rho1 + A_11 + t19
+    t28 = t15 + t16
+    del t15, t16
+    t29 = t21 + t22
+    del t21, t22
+    t30 = -t29 + t19
+    t31 = t24 + t25
+    del t24, t25
+    t32 = -t31 + t19
+    t33 = rho1 - t28 + t19
     return (
-        A_11 + t20,
-        t24,
+        A_11 + t19,
+        t23,
+        t26,
         t27,
-        t28,
-        A_12 - rho2 + t20,
+        A_12 - rho2 + t19,
+        t26,
         t27,
-        t28,
-        t24,
-        A_13 - rho3 + t20,
-        -t29 + t20,
-        t31,
+        t23,
+        A_13 - rho3 + t19,
+        -t28 + t19,
+        t30,
+        t32,
         t33,
-        t34,
-        -(rho2 + t30) + t20,
+        -(rho2 + t29) + t19,
+        t32,
         t33,
-        t34,
-        t31,
-        -(rho3 + t32) + t20,
+        t30,
+        -(rho3 + t31) + t19,
     )
 
 
@@ -931,14 +925,14 @@ def _jacobian_parallel_common(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
     t2 = rho3 * rho3
-    t3 = L * L - u_u * (1.0 + part * (t2 * t2)) * 0.25
-    slack = np.maximum(t3, 0.0)
+    t3 = t2 * part * 0.5
+    t4 = L * L - u_u * (1.0 + t2 * 2.0 * t3) * 0.25
+    slack = np.maximum(t4, 0.0)
     h = np.sqrt(part * slack)
-    t4 = product_x * h
-    t5 = t2 * part * 0.5
     del part
-    t6 = rho1 * 0.5 + rho2 * product_z * t5
-    A_11 = t4 - t6
+    t5 = product_x * h
+    t6 = rho1 * 0.5 + rho2 * product_z * t3
+    A_11 = t5 - t6
     t7 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t7)
     del t7
@@ -946,23 +940,23 @@ def _jacobian_parallel_common(rho1, rho2, rho3, L):
     t8 = size * size
     t9 = 0.234375 * (L * size)
     del size
-    t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t3)
-    del t3
+    t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t4)
+    del t4
     t11 = _runtime.poison(invalid | np.logical_not(t10))
     del invalid, t10
     t12 = m_y * h
-    t13 = t5 * (rho1 * product_z) - rho2 * 0.5
+    t13 = t3 * (rho1 * product_z) - rho2 * 0.5
     A_12 = t12 - t13
     t14 = A_12 + t11
-    t15 = t5 * (rho1 * m_y + rho2 * product_x)
-    del m_y, product_x, t5
+    t15 = t3 * (rho1 * m_y + rho2 * product_x)
+    del m_y, product_x, t3
     t16 = product_z * h
     del h, product_z
     A_13 = t15 + t16
     t17 = A_13 + t11
     t18 = rho1 + A_11 + t11
-    t19 = t4 + t6
-    del t4, t6
+    t19 = t5 + t6
+    del t5, t6
     t20 = t12 + t13
     del t12, t13
     t21 = -t20 + t11
@@ -1086,56 +1080,54 @@ def _jacobian_serial(rho1, rho2, rho3, L):
     s_w = _runtime.sign(d_y * a_x)
     m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     del product_x
+    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
+    del t5, t6
     g_2 = whole * (d_y + a_x * s_w)
     del whole
     w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
     del m_m
     part = 1.0 / w_w
     del w_w
-    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
-    del t5, t6
-    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
-    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
-    del all_same, mu, t11
+    t11 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t10 * t11) * 0.25)
+    del all_same, mu
     t13 = L * L - t12
     del t12
     slack = np.maximum(t13, 0.0)
     t14 = 0.234375 * (L * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
-    del slack
+    del part, slack
     t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t16 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
-    del part
-    t17 = rho1 * 0.5 - t9 * t16
-    t18 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t18)
-    del t18
-    t19 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
+    t16 = rho1 * 0.5 - t9 * t11
+    t17 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t17)
+    del t17
+    t18 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
     del t10, t2
-    unreachable = np.logical_not(t19 & (-(_runtime.FEASIBILITY * t14) <= t13))
-    del t13, t14, t19
-    t20 = _runtime.poison(invalid | unreachable)
+    unreachable = np.logical_not(t18 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t18
+    t19 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    t21 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
+    t20 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
     del t7
-    t22 = h * _runtime.select(in_line, g_1, -t21)
-    del g_1, t21
-    t23 = n_y * t16 - d_y * 0.5
+    t21 = h * _runtime.select(in_line, g_1, -t20)
+    del g_1, t20
+    t22 = n_y * t11 - d_y * 0.5
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
     del a_x, d_y, n_y, over, product_z, slim, t9
-    t24 = h * _runtime.select(in_line, -g_2, m_z)
+    t23 = h * _runtime.select(in_line, -g_2, m_z)
     del g_2, h, in_line, m_z
-    t25 = n_z * t16 - d_z * 0.5
-    del d_z, n_z, t16
+    t24 = n_z * t11 - d_z * 0.5
+    del d_z, n_z, t11
     return (
-        t15 - t17 + t20,
-        t22 - t23 - rho2 + t20,
-        t24 - t25 - rho3 + t20,
-        -(t15 + t17) + t20,
-        -(rho2 + (t22 + t23)) + t20,
-        -(rho3 + (t24 + t25)) + t20,
+        t15 - t16 + t19,
+        t21 - t22 - rho2 + t19,
+        t23 - t24 - rho3 + t19,
+        -(t15 + t16) + t19,
+        -(rho2 + (t21 + t22)) + t19,
+        -(rho3 + (t23 + t24)) + t19,
     )
 
 
@@ -1149,13 +1141,13 @@ def _jacobian_serial_common(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
     t2 = rho3 * rho3
-    t3 = L * L - u_u * (1.0 + part * (t2 * t2)) * 0.25
-    slack = np.maximum(t3, 0.0)
+    t3 = t2 * part * 0.5
+    t4 = L * L - u_u * (1.0 + t2 * 2.0 * t3) * 0.25
+    slack = np.maximum(t4, 0.0)
     h = np.sqrt(part * slack)
-    t4 = product_x * h
-    t5 = t2 * part * 0.5
     del part
-    t6 = rho1 * 0.5 + rho2 * product_z * t5
+    t5 = product_x * h
+    t6 = rho1 * 0.5 + rho2 * product_z * t3
     t7 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t7)
     del t7
@@ -1163,14 +1155,14 @@ def _jacobian_serial_common(rho1, rho2, rho3, L):
     t8 = size * size
     t9 = 0.234375 * (L * size)
     del size
-    t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t3)
-    del t3
+    t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t4)
+    del t4
     t11 = _runtime.poison(invalid | np.logical_not(t10))
     del invalid, t10
     t12 = m_y * h
-    t13 = t5 * (rho1 * product_z) - rho2 * 0.5
-    t14 = t5 * (rho1 * m_y + rho2 * product_x)
-    del m_y, product_x, t5
+    t13 = t3 * (rho1 * product_z) - rho2 * 0.5
+    t14 = t3 * (rho1 * m_y + rho2 * product_x)
+    del m_y, product_x, t3
     t15 = product_z * h
     del h, product_z
     t16 = _runtime.VANISHING * _runtime.VANISHING
@@ -1183,10 +1175,10 @@ def _jacobian_serial_common(rho1, rho2, rho3, L):
     t19 = (u_u <= t17) | (u_u + v_v <= t17) | slim | (product_2 <= t16 * (u_u * t8))
     del product_2, slim, t16, t17, t8, u_u, v_v
     return (
-        t4 - t6 + t11,
+        t5 - t6 + t11,
         t12 - t13 - rho2 + t11,
         t14 + t15 - rho3 + t11,
-        -(t4 + t6) + t11,
+        -(t5 + t6) + t11,
         -(rho2 + (t12 + t13)) + t11,
         t14 - t15 - rho3 + t11,
         t19 | (slack <= _runtime.VANISHING * t9),
@@ -1277,93 +1269,91 @@ def _jacobian(rho1, rho2, rho3, L):
     s_w = _runtime.sign(d_y * a_x)
     m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     del product_x
+    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
+    del t5, t6
     g_2 = whole * (d_y + a_x * s_w)
     del whole
     w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
     part = 1.0 / w_w
     del w_w
-    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
-    del t5, t6
-    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
-    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
-    del all_same, mu, t11
+    t11 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t10 * t11) * 0.25)
+    del all_same, mu
     t13 = L * L - t12
     del t12
     slack = np.maximum(t13, 0.0)
     t14 = 0.234375 * (L * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
-    del slack
+    del part, slack
     t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t16 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
-    del part
-    t17 = rho1 * 0.5 - t9 * t16
-    A_11 = t15 - t17
-    t18 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
+    t16 = rho1 * 0.5 - t9 * t11
+    A_11 = t15 - t16
+    t17 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
     del t7
-    t19 = h * _runtime.select(in_line, g_1, -t18)
-    del g_1, t18
-    t20 = n_y * t16 - d_y * 0.5
-    t21 = t19 - t20
+    t18 = h * _runtime.select(in_line, g_1, -t17)
+    del g_1, t17
+    t19 = n_y * t11 - d_y * 0.5
+    t20 = t18 - t19
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
     del a_x, d_y, n_y, over, product_z, slim, t9
-    t22 = h * _runtime.select(in_line, -g_2, m_z)
+    t21 = h * _runtime.select(in_line, -g_2, m_z)
     del g_2, m_z
-    t23 = n_z * t16 - d_z * 0.5
-    del d_z, n_z, t16
-    t24 = t22 - t23
-    t25 = t21 * t24
-    t26 = rho2 - t21
-    t27 = rho3 - t24
+    t22 = n_z * t11 - d_z * 0.5
+    del d_z, n_z, t11
+    t23 = t21 - t22
+    t24 = t20 * t23
+    t25 = rho2 - t20
+    t26 = rho3 - t23
     Delta = m_m * h
     del h, m_m
-    t28 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t28)
-    del t28
-    t29 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
+    t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t27)
+    del t27
+    t28 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
     del in_line, t10, t2
-    unreachable = np.logical_not(t29 & (-(_runtime.FEASIBILITY * t14) <= t13))
-    del t13, t14, t29
-    t30 = _runtime.poison(invalid | unreachable)
+    unreachable = np.logical_not(t28 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t28
+    t29 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
     A_21 = rho1 + A_11
-    t31 = t24 * A_21
-    t32 = t21 * A_21
-    t33 = t15 + t17
-    del t15, t17
-    t34 = t19 + t20
-    del t19, t20
-    t35 = t22 + t23
-    del t22, t23
-    t36 = t34 * t35
-    t37 = rho2 + t34
-    t38 = rho3 + t35
-    A_21_inner = rho1 - t33
-    t39 = t35 * A_21_inner
-    t40 = -(t33 * (t39 - t38 * A_21_inner) / Delta) + t30
-    t41 = t34 * A_21_inner
-    t42 = -(t33 * (t41 - t37 * A_21_inner) / Delta) + t30
+    t30 = t23 * A_21
+    t31 = t20 * A_21
+    t32 = t15 + t16
+    del t15, t16
+    t33 = t18 + t19
+    del t18, t19
+    t34 = t21 + t22
+    del t21, t22
+    t35 = t33 * t34
+    t36 = rho2 + t33
+    t37 = rho3 + t34
+    A_21_inner = rho1 - t32
+    t38 = t34 * A_21_inner
+    t39 = -(t32 * (t38 - t37 * A_21_inner) / Delta) + t29
+    t40 = t33 * A_21_inner
+    t41 = -(t32 * (t40 - t36 * A_21_inner) / Delta) + t29
     del A_21_inner
     return (
-        -(A_11 * (t25 - t26 * t27) / Delta) + t30,
-        -(t26 * (t25 + t21 * t27) / Delta) + t30,
-        -(t27 * (t25 + t24 * t26) / Delta) + t30,
-        A_11 * (t31 + t27 * A_21) / Delta + t30,
-        t26 * (t31 + A_11 * t27) / Delta + t30,
-        -(t27 * (t31 - A_11 * t24) / Delta) + t30,
-        A_11 * (t32 + t26 * A_21) / Delta + t30,
-        -(t26 * (t32 - A_11 * t21) / Delta) + t30,
-        t27 * (t32 + A_11 * t26) / Delta + t30,
-        -(t33 * (t36 - t37 * t38) / Delta) + t30,
-        t37 * (t36 - t34 * t38) / Delta + t30,
-        t38 * (t36 - t35 * t37) / Delta + t30,
-        t40,
-        t37 * (t39 + t33 * t38) / Delta + t30,
-        -(t38 * (t39 + t33 * t35) / Delta) + t30,
-        t42,
-        -(t37 * (t41 + t33 * t34) / Delta) + t30,
-        t38 * (t41 + t33 * t37) / Delta + t30,
+        -(A_11 * (t24 - t25 * t26) / Delta) + t29,
+        -(t25 * (t24 + t20 * t26) / Delta) + t29,
+        -(t26 * (t24 + t23 * t25) / Delta) + t29,
+        A_11 * (t30 + t26 * A_21) / Delta + t29,
+        t25 * (t30 + A_11 * t26) / Delta + t29,
+        -(t26 * (t30 - A_11 * t23) / Delta) + t29,
+        A_11 * (t31 + t25 * A_21) / Delta + t29,
+        -(t25 * (t31 - A_11 * t20) / Delta) + t29,
+        t26 * (t31 + A_11 * t25) / Delta + t29,
+        -(t32 * (t35 - t36 * t37) / Delta) + t29,
+        t36 * (t35 - t33 * t37) / Delta + t29,
+        t37 * (t35 - t34 * t36) / Delta + t29,
+        t39,
+        t36 * (t38 + t32 * t37) / Delta + t29,
+        -(t37 * (t38 + t32 * t34) / Delta) + t29,
+        t41,
+        -(t36 * (t40 + t32 * t33) / Delta) + t29,
+        t37 * (t40 + t32 * t36) / Delta + t29,
     )
 
 
@@ -1377,22 +1367,22 @@ def _jacobian_common(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
     t2 = rho3 * rho3
-    t3 = L * L - u_u * (1.0 + part * (t2 * t2)) * 0.25
-    slack = np.maximum(t3, 0.0)
+    t3 = t2 * part * 0.5
+    t4 = L * L - u_u * (1.0 + t2 * 2.0 * t3) * 0.25
+    slack = np.maximum(t4, 0.0)
     h = np.sqrt(part * slack)
-    t4 = product_x * h
-    t5 = t2 * part * 0.5
     del part
-    t6 = rho1 * 0.5 + rho2 * product_z * t5
-    A_11 = t4 - t6
-    t7 = t5 * (rho1 * m_y + rho2 * product_x)
+    t5 = product_x * h
+    t6 = rho1 * 0.5 + rho2 * product_z * t3
+    A_11 = t5 - t6
+    t7 = t3 * (rho1 * m_y + rho2 * product_x)
     del product_x
     t8 = product_z * h
     t9 = t7 + t8
     t10 = m_y * h
     del m_y
-    t11 = t5 * (rho1 * product_z) - rho2 * 0.5
-    del product_z, t5
+    t11 = t3 * (rho1 * product_z) - rho2 * 0.5
+    del product_z, t3
     t12 = t10 - t11
     t13 = t9 * t12
     t14 = rho3 - t9
@@ -1406,15 +1396,15 @@ def _jacobian_common(rho1, rho2, rho3, L):
     t17 = size * size
     t18 = 0.234375 * (L * size)
     del size
-    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t3)
-    del t3
+    t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t4)
+    del t4
     t20 = _runtime.poison(invalid | np.logical_not(t19))
     del invalid, t19
     A_21 = rho1 + A_11
     t21 = t9 * A_21
     t22 = t12 * A_21
-    t23 = t4 + t6
-    del t4, t6
+    t23 = t5 + t6
+    del t5, t6
     t24 = t7 - t8
     del t7, t8
     t25 = t10 + t11
@@ -1543,56 +1533,54 @@ def _determinant(rho1, rho2, rho3, L):
     s_w = _runtime.sign(d_y * a_x)
     m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     del product_x
+    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
+    del t5, t6
     g_2 = whole * (d_y + a_x * s_w)
     del whole
     w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
     part = 1.0 / w_w
     del w_w
-    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
-    del t5, t6
-    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
-    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
-    del all_same, mu, t11
+    t11 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t10 * t11) * 0.25)
+    del all_same, mu
     t13 = L * L - t12
     del t12
     slack = np.maximum(t13, 0.0)
     t14 = 0.234375 * (L * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
-    del slack
+    del part, slack
     t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t16 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
-    del part
-    t17 = rho1 * 0.5 - t9 * t16
-    t18 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
+    t16 = rho1 * 0.5 - t9 * t11
+    t17 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
     del t7
-    t19 = h * _runtime.select(in_line, g_1, -t18)
-    del g_1, t18
-    t20 = n_y * t16 - d_y * 0.5
+    t18 = h * _runtime.select(in_line, g_1, -t17)
+    del g_1, t17
+    t19 = n_y * t11 - d_y * 0.5
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
     del a_x, d_y, n_y, over, product_z, slim, t9
-    t21 = h * _runtime.select(in_line, -g_2, m_z)
+    t20 = h * _runtime.select(in_line, -g_2, m_z)
     del g_2, m_z
-    t22 = n_z * t16 - d_z * 0.5
-    del d_z, n_z, t16
-    t23 = (t15 - t17) * (rho2 - (t19 - t20)) * (rho3 - (t21 - t22))
+    t21 = n_z * t11 - d_z * 0.5
+    del d_z, n_z, t11
+    t22 = (t15 - t16) * (rho2 - (t18 - t19)) * (rho3 - (t20 - t21))
     Delta = m_m * h
     del h, m_m
-    t24 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t24)
-    del t24
-    t25 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
+    t23 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t23)
+    del t23
+    t24 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
     del in_line, t10, t2
-    unreachable = np.logical_not(t25 & (-(_runtime.FEASIBILITY * t14) <= t13))
-    del t13, t14, t25
-    t26 = _runtime.poison(invalid | unreachable)
+    unreachable = np.logical_not(t24 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t24
+    t25 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    t27 = (t15 + t17) * (rho2 + (t19 + t20)) * (rho3 + (t21 + t22))
-    del t15, t17, t19, t20, t21, t22
+    t26 = (t15 + t16) * (rho2 + (t18 + t19)) * (rho3 + (t20 + t21))
+    del t15, t16, t18, t19, t20, t21
     return (
-        t23 / Delta + t26,
-        t27 / Delta + t26,
+        t22 / Delta + t25,
+        t26 / Delta + t25,
     )
 
 
@@ -1608,7 +1596,7 @@ def _determinant_common(rho1, rho2, rho3, L):
     t3 = t2 * (rho1 * m_y + rho2 * product_x)
     t4 = rho1 * rho1
     u_u = t4 + rho2 * rho2
-    t5 = L * L - u_u * (1.0 + part * (t1 * t1)) * 0.25
+    t5 = L * L - u_u * (1.0 + t1 * 2.0 * t2) * 0.25
     slack = np.maximum(t5, 0.0)
     h = np.sqrt(part * slack)
     del part
@@ -1736,59 +1724,57 @@ def _singularities(rho1, rho2, rho3, L):
     s_w = _runtime.sign(d_y * a_x)
     m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     del product_x
+    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
+    del t5, t6
     g_2 = whole * (d_y + a_x * s_w)
     del whole
     w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
     part = 1.0 / w_w
     del w_w
-    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
-    del t5, t6
-    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
-    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
-    del all_same, mu, t11
+    t11 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t10 * t11) * 0.25)
+    del all_same, mu
     t13 = L * L - t12
     del t12
     slack = np.maximum(t13, 0.0)
     t14 = 0.234375 * (L * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
-    del slack
+    del part, slack
     t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t16 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
-    del part
-    t17 = rho1 * 0.5 - t9 * t16
-    t18 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t18)
-    del t18
-    t19 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
+    t16 = rho1 * 0.5 - t9 * t11
+    t17 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t17)
+    del t17
+    t18 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
     del t10, t2
-    unreachable = np.logical_not(t19 & (-(_runtime.FEASIBILITY * t14) <= t13))
-    del t13, t14, t19
-    t20 = _runtime.poison(invalid | unreachable)
+    unreachable = np.logical_not(t18 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t18
+    t19 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    t21 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
+    t20 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
     del t7
-    t22 = h * _runtime.select(in_line, g_1, -t21)
-    del g_1, t21
-    t23 = n_y * t16 - d_y * 0.5
+    t21 = h * _runtime.select(in_line, g_1, -t20)
+    del g_1, t20
+    t22 = n_y * t11 - d_y * 0.5
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
     del a_x, d_y, n_y, over, product_z, slim, t9
-    t24 = h * _runtime.select(in_line, -g_2, m_z)
+    t23 = h * _runtime.select(in_line, -g_2, m_z)
     del g_2, in_line, m_z
-    t25 = n_z * t16 - d_z * 0.5
-    del d_z, n_z, t16
+    t24 = n_z * t11 - d_z * 0.5
+    del d_z, n_z, t11
     Delta = m_m * h
     del h, m_m
     return (
-        t15 - t17 + t20,
-        t22 - t23 - rho2 + t20,
-        t24 - t25 - rho3 + t20,
-        Delta + t20,
-        -(t15 + t17) + t20,
-        -(rho2 + (t22 + t23)) + t20,
-        -(rho3 + (t24 + t25)) + t20,
-        -Delta + t20,
+        t15 - t16 + t19,
+        t21 - t22 - rho2 + t19,
+        t23 - t24 - rho3 + t19,
+        Delta + t19,
+        -(t15 + t16) + t19,
+        -(rho2 + (t21 + t22)) + t19,
+        -(rho3 + (t23 + t24)) + t19,
+        -Delta + t19,
     )
 
 
@@ -1802,13 +1788,13 @@ def _singularities_common(rho1, rho2, rho3, L):
     t1 = rho1 * rho1
     u_u = t1 + rho2 * rho2
     t2 = rho3 * rho3
-    t3 = L * L - u_u * (1.0 + part * (t2 * t2)) * 0.25
-    slack = np.maximum(t3, 0.0)
+    t3 = t2 * part * 0.5
+    t4 = L * L - u_u * (1.0 + t2 * 2.0 * t3) * 0.25
+    slack = np.maximum(t4, 0.0)
     h = np.sqrt(part * slack)
-    t4 = product_x * h
-    t5 = t2 * part * 0.5
     del part
-    t6 = rho1 * 0.5 + rho2 * product_z * t5
+    t5 = product_x * h
+    t6 = rho1 * 0.5 + rho2 * product_z * t3
     t7 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t7)
     del t7
@@ -1816,14 +1802,14 @@ def _singularities_common(rho1, rho2, rho3, L):
     t8 = size * size
     t9 = 0.234375 * (L * size)
     del size
-    t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t3)
-    del t3
+    t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t4)
+    del t4
     t11 = _runtime.poison(invalid | np.logical_not(t10))
     del invalid, t10
     t12 = m_y * h
-    t13 = t5 * (rho1 * product_z) - rho2 * 0.5
-    t14 = t5 * (rho1 * m_y + rho2 * product_x)
-    del m_y, product_x, t5
+    t13 = t3 * (rho1 * product_z) - rho2 * 0.5
+    t14 = t3 * (rho1 * m_y + rho2 * product_x)
+    del m_y, product_x, t3
     t15 = product_z * h
     del product_z
     Delta = product_2 * h
@@ -1838,11 +1824,11 @@ def _singularities_common(rho1, rho2, rho3, L):
     t19 = (u_u <= t17) | (u_u + v_v <= t17) | slim | (product_2 <= t16 * (u_u * t8))
     del product_2, slim, t16, t17, t8, u_u, v_v
     return (
-        t4 - t6 + t11,
+        t5 - t6 + t11,
         t12 - t13 - rho2 + t11,
         t14 + t15 - rho3 + t11,
         Delta + t11,
-        -(t4 + t6) + t11,
+        -(t5 + t6) + t11,
         -(rho2 + (t12 + t13)) + t11,
         t14 - t15 - rho3 + t11,
         -Delta + t11,
@@ -1934,124 +1920,122 @@ def _condition_number(rho1, rho2, rho3, L):
     s_w = _runtime.sign(d_y * a_x)
     m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     del product_x
+    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
+    del t5, t6
     g_2 = whole * (d_y + a_x * s_w)
     del whole
     w_w = _runtime.select(in_line, 2.0 * (g_1 * g_1) + g_2 * g_2, m_m)
     part = 1.0 / w_w
     del w_w
-    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
-    del t5, t6
-    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
-    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
-    del all_same, mu, t11
+    t11 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t10 * t11) * 0.25)
+    del all_same, mu
     t13 = L * L - t12
     del t12
     slack = np.maximum(t13, 0.0)
     t14 = 0.234375 * (L * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
-    del slack
+    del part, slack
     t15 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del m_x, s_w
-    t16 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
-    del part
-    t17 = rho1 * 0.5 - t9 * t16
-    A_11 = t15 - t17
-    t18 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
+    t16 = rho1 * 0.5 - t9 * t11
+    A_11 = t15 - t16
+    t17 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
     del t7
-    t19 = h * _runtime.select(in_line, g_1, -t18)
-    del g_1, t18
-    t20 = n_y * t16 - d_y * 0.5
-    t21 = t19 - t20
-    t22 = t21 * t21
+    t18 = h * _runtime.select(in_line, g_1, -t17)
+    del g_1, t17
+    t19 = n_y * t11 - d_y * 0.5
+    t20 = t18 - t19
+    t21 = t20 * t20
     m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
     del a_x, d_y, n_y, over, product_z, slim, t9
-    t23 = h * _runtime.select(in_line, -g_2, m_z)
+    t22 = h * _runtime.select(in_line, -g_2, m_z)
     del g_2, m_z
-    t24 = n_z * t16 - d_z * 0.5
-    del d_z, n_z, t16
-    t25 = t23 - t24
-    t26 = t25 * t25
+    t23 = n_z * t11 - d_z * 0.5
+    del d_z, n_z, t11
+    t24 = t22 - t23
+    t25 = t24 * t24
     A_21 = rho1 + A_11
-    t27 = A_21 * A_21
-    t28 = rho2 - t21
-    t29 = A_11 * A_11 + t22 + t26 + (t26 + t27 + t28 * t28)
-    del t26
-    t30 = rho3 - t25
-    t31 = t21 * A_21
-    t32 = A_11 * t21 - t31
-    t33 = t25 * A_21
-    t34 = A_11 * t25 - t33
-    t35 = t31 + A_11 * t28
-    t36 = t33 + A_11 * t30
+    t26 = A_21 * A_21
+    t27 = rho2 - t20
+    t28 = A_11 * A_11 + t21 + t25 + (t25 + t26 + t27 * t27)
+    del t25
+    t29 = rho3 - t24
+    t30 = t20 * A_21
+    t31 = A_11 * t20 - t30
+    t32 = t24 * A_21
+    t33 = A_11 * t24 - t32
+    t34 = t30 + A_11 * t27
+    t35 = t32 + A_11 * t29
     del A_11
-    t37 = t32 * t32 + t34 * t34 + t35 * t35 + t36 * t36
-    del t32, t34, t35, t36
-    t38 = t21 * t25
-    t39 = t38 - t28 * t30
-    t40 = t38 + t21 * t30
-    del t21
-    t41 = t38 + t25 * t28
-    del t25, t38
-    t42 = t31 + A_21 * t28
-    del t28, t31
-    t43 = t37 + t39 * t39 + t40 * t40 + t41 * t41 + t42 * t42
-    del t37, t39, t40, t41, t42
-    t44 = t33 + A_21 * t30
-    del A_21, t33
-    t45 = (t29 + (t22 + t27 + t30 * t30)) * (t43 + t44 * t44)
-    del t22, t27, t29, t30, t43, t44
-    t46 = 3.0 * (m_m * h)
+    t36 = t31 * t31 + t33 * t33 + t34 * t34 + t35 * t35
+    del t31, t33, t34, t35
+    t37 = t20 * t24
+    t38 = t37 - t27 * t29
+    t39 = t37 + t20 * t29
+    del t20
+    t40 = t37 + t24 * t27
+    del t24, t37
+    t41 = t30 + A_21 * t27
+    del t27, t30
+    t42 = t36 + t38 * t38 + t39 * t39 + t40 * t40 + t41 * t41
+    del t36, t38, t39, t40, t41
+    t43 = t32 + A_21 * t29
+    del A_21, t32
+    t44 = (t28 + (t21 + t26 + t29 * t29)) * (t42 + t43 * t43)
+    del t21, t26, t28, t29, t42, t43
+    t45 = 3.0 * (m_m * h)
     del h, m_m
-    t47 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t47)
-    del t47
-    t48 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
+    t46 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t46)
+    del t46
+    t47 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
     del in_line, t10, t2
-    unreachable = np.logical_not(t48 & (-(_runtime.FEASIBILITY * t14) <= t13))
-    del t13, t14, t48
-    t49 = _runtime.poison(invalid | unreachable)
+    unreachable = np.logical_not(t47 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t47
+    t48 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    t50 = t15 + t17
-    del t15, t17
-    t51 = t19 + t20
-    del t19, t20
-    t52 = t51 * t51
-    t53 = t23 + t24
-    del t23, t24
-    t54 = t53 * t53
-    A_21_inner = rho1 - t50
-    t55 = A_21_inner * A_21_inner
-    t56 = rho2 + t51
-    t57 = t50 * t50 + t52 + t54 + (t54 + t55 + t56 * t56)
-    del t54
-    t58 = rho3 + t53
-    t59 = t51 * A_21_inner
-    t60 = t50 * t51 + t59
-    t61 = t53 * A_21_inner
-    t62 = t50 * t53 + t61
-    t63 = t59 + t50 * t56
-    t64 = t61 + t50 * t58
+    t49 = t15 + t16
+    del t15, t16
+    t50 = t18 + t19
+    del t18, t19
+    t51 = t50 * t50
+    t52 = t22 + t23
+    del t22, t23
+    t53 = t52 * t52
+    A_21_inner = rho1 - t49
+    t54 = A_21_inner * A_21_inner
+    t55 = rho2 + t50
+    t56 = t49 * t49 + t51 + t53 + (t53 + t54 + t55 * t55)
+    del t53
+    t57 = rho3 + t52
+    t58 = t50 * A_21_inner
+    t59 = t49 * t50 + t58
+    t60 = t52 * A_21_inner
+    t61 = t49 * t52 + t60
+    t62 = t58 + t49 * t55
+    t63 = t60 + t49 * t57
+    del t49
+    t64 = t59 * t59 + t61 * t61 + t62 * t62 + t63 * t63
+    del t59, t61, t62, t63
+    t65 = t50 * t52
+    t66 = t65 - t55 * t57
+    t67 = t65 - t50 * t57
     del t50
-    t65 = t60 * t60 + t62 * t62 + t63 * t63 + t64 * t64
-    del t60, t62, t63, t64
-    t66 = t51 * t53
-    t67 = t66 - t56 * t58
-    t68 = t66 - t51 * t58
-    del t51
-    t69 = t66 - t53 * t56
-    del t53, t66
-    t70 = t59 - A_21_inner * t56
-    del t56, t59
-    t71 = t65 + t67 * t67 + t68 * t68 + t69 * t69 + t70 * t70
-    del t65, t67, t68, t69, t70
-    t72 = t61 - A_21_inner * t58
-    del A_21_inner, t61
-    t73 = (t57 + (t52 + t55 + t58 * t58)) * (t71 + t72 * t72)
-    del t52, t55, t57, t58, t71, t72
+    t68 = t65 - t52 * t55
+    del t52, t65
+    t69 = t58 - A_21_inner * t55
+    del t55, t58
+    t70 = t64 + t66 * t66 + t67 * t67 + t68 * t68 + t69 * t69
+    del t64, t66, t67, t68, t69
+    t71 = t60 - A_21_inner * t57
+    del A_21_inner, t60
+    t72 = (t56 + (t51 + t54 + t57 * t57)) * (t70 + t71 * t71)
+    del t51, t54, t56, t57, t70, t71
     return (
-        np.sqrt(t45) / t46 + t49,
-        np.sqrt(t73) / t46 + t49,
+        np.sqrt(t44) / t45 + t48,
+        np.sqrt(t72) / t45 + t48,
     )
 
 
@@ -2067,7 +2051,7 @@ def _condition_number_common(rho1, rho2, rho3, L):
     t3 = t2 * (rho1 * m_y + rho2 * product_x)
     t4 = rho1 * rho1
     u_u = t4 + rho2 * rho2
-    t5 = L * L - u_u * (1.0 + part * (t1 * t1)) * 0.25
+    t5 = L * L - u_u * (1.0 + t1 * 2.0 * t2) * 0.25
     slack = np.maximum(t5, 0.0)
     h = np.sqrt(part * slack)
     del part
@@ -2239,24 +2223,27 @@ def _constraint(rho1, rho2, rho3, L):
     same = u_u <= t4
     del t4
     mu = _runtime.select(all_same, whole * whole, _runtime.select(same, v_v, u_u))
+    t5 = _runtime.select(same, rho2, 0.0)
     d_y = _runtime.select(same, 0.0, rho2)
-    t5 = _runtime.select(same, 0.0, rho3)
-    t6 = _runtime.select(same, rho2, 0.0)
+    t6 = _runtime.select(same, 0.0, rho3)
     d_z = _runtime.select(same, rho3, 0.0)
-    product_x = d_y * t5 - t6 * d_z
+    t7 = t5 * (d_y - t5) + t6 * (d_z - t6)
+    product_x = d_y * t6 - t5 * d_z
     a_x = _runtime.select(all_same, whole, -rho1)
-    t7 = a_x * t5 + rho1 * d_z
-    product_z = a_x * t6 + rho1 * d_y
-    product_2 = product_x * product_x + t7 * t7 + product_z * product_z
-    t8 = mu * _runtime.select(same, u_u, v_v)
+    t8 = a_x * t6 + rho1 * d_z
+    del t6
+    product_z = a_x * t5 + rho1 * d_y
+    del t5
+    product_2 = product_x * product_x + t8 * t8 + product_z * product_z
+    t9 = mu * _runtime.select(same, u_u, v_v)
     del same, u_u, v_v
-    slim = product_2 - t8 * 0.000244140625 <= _runtime.VANISHING * t8
-    del t8
+    slim = product_2 - t9 * 0.000244140625 <= _runtime.VANISHING * t9
+    del t9
     over = 1.0 / mu
-    t9 = d_y * product_z + d_z * t7
+    t10 = d_y * product_z + d_z * t8
     n_y = a_x * product_z - d_z * product_x
-    n_z = a_x * t7 + d_y * product_x
-    m_m = _runtime.select(slim, over * (t9 * t9 + n_y * n_y + n_z * n_z), product_2)
+    n_z = a_x * t8 + d_y * product_x
+    m_m = _runtime.select(slim, over * (t10 * t10 + n_y * n_y + n_z * n_z), product_2)
     del product_2
     in_line = m_m <= t3 * (t2 * mu)
     del t3
@@ -2268,61 +2255,57 @@ def _constraint(rho1, rho2, rho3, L):
     del m_m
     part = 1.0 / w_w
     del w_w
-    t10 = t6 * (d_y - t6) + t5 * (d_z - t5)
-    del t5, t6
-    t11 = _runtime.select(in_line, 0.0, part * (t10 * t10))
-    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + t11) * 0.25)
-    del all_same, mu, t11
+    t11 = _runtime.select(in_line, 0.0, part * t7 * 0.5)
+    t12 = _runtime.select(all_same, 0.0, mu * (1.0 + 2.0 * t7 * t11) * 0.25)
+    del all_same, mu
     t13 = L * L - t12
     del t12
     slack = np.maximum(t13, 0.0)
     t14 = 0.234375 * (L * size)
     del size
     h = _runtime.select(slack <= _runtime.VANISHING * t14, 0.0, np.sqrt(part * slack))
-    del slack
-    t15 = _runtime.select(slim, over * (a_x * n_z + d_z * t9), t7)
-    del t7
+    del part, slack
+    t15 = _runtime.select(slim, over * (a_x * n_z + d_z * t10), t8)
+    del t8
     t16 = h * _runtime.select(in_line, g_1, -t15)
     del t15
-    t17 = _runtime.select(in_line, 0.0, part * t10 * 0.5)
-    del part
-    t18 = n_y * t17 - d_y * 0.5
-    t19 = t16 - t18
-    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t9), product_z)
+    t17 = n_y * t11 - d_y * 0.5
+    t18 = t16 - t17
+    m_z = _runtime.select(slim, over * (a_x * n_y + d_y * t10), product_z)
     del a_x, product_z
-    t20 = h * _runtime.select(in_line, -g_2, m_z)
+    t19 = h * _runtime.select(in_line, -g_2, m_z)
     del g_2, m_z
-    t21 = n_z * t17 - d_z * 0.5
-    t22 = t20 - t21
+    t20 = n_z * t11 - d_z * 0.5
+    t21 = t19 - t20
     m_x = _runtime.select(slim, over * (d_y * n_z - d_z * n_y), product_x)
     del d_y, d_z, n_y, n_z, over, product_x, slim
-    t23 = _runtime.select(in_line, g_1 * s_w, m_x) * h
+    t22 = _runtime.select(in_line, g_1 * s_w, m_x) * h
     del g_1, h, m_x, s_w
-    t24 = rho1 * 0.5 - t9 * t17
-    del t17, t9
-    A_11 = t23 - t24
-    t25 = t19 * t22 * (rho1 + A_11) - A_11 * (rho2 - t19) * (rho3 - t22)
-    del A_11, t19, t22
-    t26 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t26)
-    del t26
-    t27 = np.abs(_runtime.select(in_line, -t10, 0.0)) <= t2 * _runtime.FEASIBILITY
-    del in_line, t10, t2
-    unreachable = np.logical_not(t27 & (-(_runtime.FEASIBILITY * t14) <= t13))
-    del t13, t14, t27
-    t28 = _runtime.poison(invalid | unreachable)
+    t23 = rho1 * 0.5 - t10 * t11
+    del t10, t11
+    A_11 = t22 - t23
+    t24 = t18 * t21 * (rho1 + A_11) - A_11 * (rho2 - t18) * (rho3 - t21)
+    del A_11, t18, t21
+    t25 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t25)
+    del t25
+    t26 = np.abs(_runtime.select(in_line, -t7, 0.0)) <= t2 * _runtime.FEASIBILITY
+    del in_line, t2, t7
+    unreachable = np.logical_not(t26 & (-(_runtime.FEASIBILITY * t14) <= t13))
+    del t13, t14, t26
+    t27 = _runtime.poison(invalid | unreachable)
     del invalid, unreachable
-    t29 = t23 + t24
-    del t23, t24
-    t30 = t16 + t18
-    del t16, t18
-    t31 = t20 + t21
-    del t20, t21
-    t32 = t29 * (rho2 + t30) * (rho3 + t31) + t30 * t31 * (rho1 - t29)
-    del t29, t30, t31
+    t28 = t22 + t23
+    del t22, t23
+    t29 = t16 + t17
+    del t16, t17
+    t30 = t19 + t20
+    del t19, t20
+    t31 = t28 * (rho2 + t29) * (rho3 + t30) + t29 * t30 * (rho1 - t28)
+    del t28, t29, t30
     return (
-        t25 + t28,
-        t32 + t28,
+        t24 + t27,
+        t31 + t27,
     )
 
 
@@ -2338,7 +2321,7 @@ def _constraint_common(rho1, rho2, rho3, L):
     t3 = t2 * (rho1 * m_y + rho2 * product_x)
     t4 = rho1 * rho1
     u_u = t4 + rho2 * rho2
-    t5 = L * L - u_u * (1.0 + part * (t1 * t1)) * 0.25
+    t5 = L * L - u_u * (1.0 + t1 * 2.0 * t2) * 0.25
     slack = np.maximum(t5, 0.0)
     h = np.sqrt(part * slack)
     del part

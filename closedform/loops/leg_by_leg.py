@@ -171,6 +171,11 @@ def record_lemma(d: Derivation, function: str, link: Link) -> None:
     d.solved.append(Solved(function, link.unknowns[0], link.lemma, link.lemma.equations[0]))
 
 
+def solution_of(links: Iterable[Link]) -> dict[sp.Symbol, sp.Expr]:
+    """What the lemmas of some links find, by unknown."""
+    return {x: e for link in links if link.lemma for x, e in link.lemma.solution.items()}
+
+
 def where_free(found: Iterable[Solution]) -> list[str]:
     """Notes on where the joint of a leg is free; what holds for several legs is said once."""
     free: dict[str, list[str]] = {}
@@ -250,6 +255,7 @@ __all__ = [
     "record_lemma",
     "signs_of_modes",
     "size_of",
+    "solution_of",
     "where_free",
 ]
 

@@ -22,9 +22,11 @@ from closedform.loops.leg_by_leg import (
     named_rod,
     record_lemma,
     size_of,
+    solution_of,
 )
 from closedform.loops.modes import export
 from closedform.loops.platform_legs import Platform, Posture, certify_forward, jacobians, matrices
+from closedform.loops.points import NEAR
 from closedform.model.functions import Program, branches, choose, real
 from closedform.model.inverse import Degenerate, Link
 from closedform.model.pair import Pair
@@ -37,7 +39,6 @@ C = sp.Matrix([real("C_x"), real("C_y")])
 D = sp.Matrix([real("D_x"), real("D_y")])
 """The end of the third leg."""
 ON_HAND = "all legs end in one point of the hand"
-NEAR = "Ill-conditioned near the parallel singularities, where two modes meet."
 
 
 @dataclass(frozen=True)
@@ -158,7 +159,7 @@ def _forward(meet: Meet, loop: Step) -> Posture:
     if meet.common == C:
         links += [coordinate(x, e) for x, e in zip(m.pose[:2], position, strict=True)]
     _state(meet, loop)
-    solved = {x: e for link in links if link.lemma for x, e in link.lemma.solution.items()}
+    solved = solution_of(links)
     d.function(
         "fk",
         "Position and yaw of the hand in all assembly modes.",

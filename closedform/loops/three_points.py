@@ -22,11 +22,19 @@ from closedform.lemmas.missed import MOVED, SHARE
 from closedform.lemmas.spheres import three_spheres
 from closedform.lemmas.two_vectors import two_vectors
 from closedform.loops.hand import square
-from closedform.loops.leg_by_leg import SIGN, named, named_rod, record_lemma, size_of
+from closedform.loops.leg_by_leg import SIGN, named, named_rod, record_lemma, size_of, solution_of
 from closedform.loops.modes import export
 from closedform.loops.platform_legs import Platform, Posture, certify_forward, matrices
+from closedform.loops.points import (
+    FREE_POINT,
+    NEAR,
+    named_point,
+    require_triangle,
+    side_length,
+    with_roles,
+)
 from closedform.mechanics.frames import rotation
-from closedform.model.functions import Program, branches, choose, real
+from closedform.model.functions import Program, branches, real
 from closedform.model.inverse import Link
 from closedform.model.names import listed
 from closedform.model.step import Step
@@ -38,7 +46,6 @@ SIZES = [3, 2, 1]
 NAMES = "CDE"
 SIGMAS = tuple(real(f"sigma_{name}") for name in NAMES)
 UNKNOWN = {name: sp.Matrix([real(f"{name}_{i}") for i in "xyz"]) for name in NAMES}
-NEAR = "Ill-conditioned near the parallel singularities, where two modes meet."
 
 
 @dataclass(frozen=True)
@@ -121,10 +128,7 @@ class ThreePoints:
         radii = {k: named_rod(f, k, self.m.legs[k - 1], size) for k in self.order}
         spans = [named(f, name, e) for name, e in zip("de", self.spans, strict=True)]
         sides = self._sides(f)
-        normal = spans[0].cross(spans[1])
-        if not (across := normal.dot(normal)).is_number:
-            flat = f.vanishes("flat", across, size**4, self.in_line, squares=True)
-            f.require([choose(flat, 1, 0)], 1, self.in_line)
+        apart = require_triangle(f, spans, size, self.in_line)
         links: list[Link] = []
 
         def met(
@@ -142,11 +146,8 @@ class ThreePoints:
                 share=share,
                 free=tuple(x),
             )
-            start = len(f.body)
-            place = sp.Matrix([f.let(str(e), found.lemma[e]) for e in x])
-            link = replace(found.link, lemma=replace(found.lemma, roles=self._roles(which)))
-            body, means = (*link.body, *f.body[start:]), dict(zip(place, x, strict=True))
-            links.append(replace(link, body=body, means=means))
+            place, link = named_point(f, found, x, self._roles(which))
+            links.append(link)
             return place, found.volume
 
         *three, i, j, last = self.order
@@ -156,19 +157,18 @@ class ThreePoints:
         turned = [named(f, name, x - C) for name, x in zip("uv", (D, E), strict=True)]
         link, turn = two_vectors(f, spans, turned, self.turn, name="Q" if self.on_ground else "R")
         R = turn.T if self.on_ground else turn
-        assert link.lemma
         start = "p" if self.unknown[0] == m.position else "C"
         roles: list[tuple[str, Any]] = [("R", "R^T")] if self.on_ground else []
         roles += [(rf"\mathbf {x}", e) for x, e in zip("de", self.spans, strict=True)]
         roles += [(rf"\mathbf {x}", f"{e} - {start}") for x, e in zip("uv", "DE", strict=True)]
-        links.append(replace(link, lemma=replace(link.lemma, roles=tuple(roles))))
+        links.append(with_roles(link, roles))
         position = named(f, "p", self.position_from(C, R))
         if self.unknown[0] != m.position:
             links += [coordinate(x, e) for x, e in zip(m.position, position, strict=True)]
         told = len(links)
         links += [coordinate(x, sp.Integer(k == 3)) for k, x in enumerate(m.pose[3, :])]
         self._state(loop)
-        solved = {x: e for link in links if link.lemma for x, e in link.lemma.solution.items()}
+        solved = solution_of(links)
         d.function(
             "fk",
             "Pose of the hand in all assembly modes.",
@@ -179,9 +179,8 @@ class ThreePoints:
             result="Positions",
             notes=(
                 "UNREACHABLE: the rods do not meet.",
-                "SINGULAR: the centres of three spheres are in line, and the point where they meet "
-                "is free on a circle; one of its points is returned.",
-                *([] if across.is_number else [f"INVALID: also unless {self.in_line}."]),
+                FREE_POINT,
+                *apart,
                 NEAR,
             ),
         )
@@ -217,7 +216,7 @@ class ThreePoints:
             (E, C, D, f"{end}_{last}"),
         ][which]
         sides = [[], [d], [e, e - d]][which]
-        lengths = [_length(side) for side in sides]
+        lengths = [side_length(side) for side in sides]
         lengths += [
             sp.sympify(self.m.legs[k - 1].rod, strict=True) for k in [three, [i, j], [last]][which]
         ]
@@ -231,7 +230,7 @@ class ThreePoints:
         """The distances of C from D, of C from E and of D from E on the hand."""
         d, e = self.spans
         return [
-            p.let(name, _length(side), nonnegative=True)
+            p.let(name, side_length(side), nonnegative=True)
             for name, side in (("side_CD", d), ("side_CE", e), ("side_DE", e - d))
         ]
 
@@ -447,10 +446,6 @@ class ThreePoints:
 
 def _length_of(v: sp.Matrix) -> sp.Expr:
     return sp.sqrt(square(v))
-
-
-def _length(vector: sp.Matrix) -> sp.Expr:
-    return sp.sqrt(sp.factor(sp.expand(square(vector))))
 
 
 __all__ = ["ThreePoints"]

@@ -28,14 +28,23 @@ from closedform.loops.leg_by_leg import (
     named,
     record_lemma,
     size_of,
+    solution_of,
     where_free,
 )
 from closedform.loops.letters import letters
 from closedform.loops.modes import NO_MODE, export
+from closedform.loops.points import (
+    FREE_POINT,
+    NEAR,
+    named_point,
+    require_triangle,
+    side_length,
+    with_roles,
+)
 from closedform.mechanics.frames import pose_symbols
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Branches, Program, branches, choose, real
+from closedform.model.functions import Branches, Program, branches, real
 from closedform.model.inverse import Inverse
 from closedform.model.step import Step
 
@@ -123,7 +132,7 @@ class TwoArms:
     def sides(self) -> list[sp.Expr]:
         """The lengths of the spans, and the distance of their ends."""
         first, second = self.spans
-        return [*map(_length, (first, second, second - first))]
+        return [*map(side_length, (first, second, second - first))]
 
     @property
     def follower(self) -> Crank:
@@ -188,10 +197,7 @@ def _forward(m: TwoArms, loop: Step) -> _Posture:
     size = f.let("size", size_of(d, (m.driver, m.given, m.tie), slid))
     share = MOVED if slid else SHARE
     spans = [named(f, name, e) for name, e in zip("de", m.spans, strict=True)]
-    normal = spans[0].cross(spans[1])
-    if not (across := normal.dot(normal)).is_number:
-        flat = f.vanishes("flat", across, size**4, IN_LINE, squares=True)
-        f.require([choose(flat, 1, 0)], 1, IN_LINE)
+    apart = require_triangle(f, spans, size, IN_LINE)
     b, n = named(f, "b_1", m.driver.end()), named(f, "b_3", m.tie.end())
     sides = [
         f.let(name, e, nonnegative=True)
@@ -215,30 +221,21 @@ def _forward(m: TwoArms, loop: Step) -> _Posture:
         share=share,
         free=tuple(THIRD),
     )
-    start = len(f.body)
-    end = sp.Matrix([f.let(str(e), found.lemma[e]) for e in THIRD])
-    links.append(
-        replace(
-            found.link,
-            lemma=replace(found.lemma, roles=_roles(m)),
-            body=(*found.link.body, *f.body[start:]),
-            means=dict(zip(end, THIRD, strict=True)),
-        )
-    )
+    end, link = named_point(f, found, THIRD, _roles(m))
+    links.append(link)
     turned = [named(f, name, x - b) for name, x in zip("uv", (c, end), strict=True)]
     link, R = two_vectors(f, spans, turned, m.pose[:3, :3])
-    assert link.lemma
     roles: list[tuple[str, Any]] = [
         (rf"\mathbf {x}", e) for x, e in zip("de", m.spans, strict=True)
     ]
     roles += [(rf"\mathbf {x}", f"{e} - b_1") for x, e in zip("uv", ("b_2", "C"), strict=True)]
-    links.append(replace(link, lemma=replace(link.lemma, roles=tuple(roles))))
+    links.append(with_roles(link, roles))
     position = named(f, "p", b - R * m.places[0])
     links += [coordinate(x, e) for x, e in zip(m.pose[:3, 3], position, strict=True)]
     told = len(links)
     links += [coordinate(x, sp.Integer(k == 3)) for k, x in enumerate(m.pose[3, :])]
     _state_modes(m, loop)
-    solved = {x: e for link in links if link.lemma for x, e in link.lemma.solution.items()}
+    solved = solution_of(links)
     d.function(
         "fk",
         "Pose of the hand in all assembly modes.",
@@ -250,10 +247,9 @@ def _forward(m: TwoArms, loop: Step) -> _Posture:
         notes=(
             "UNREACHABLE: the arms or the rod do not reach.",
             *where_free([met]),
-            "SINGULAR: the centres of three spheres are in line, and the point where they meet "
-            "is free on a circle; one of its points is returned.",
-            *([] if across.is_number else [f"INVALID: also unless {IN_LINE}."]),
-            "Ill-conditioned near the parallel singularities, where two modes meet.",
+            FREE_POINT,
+            *apart,
+            NEAR,
         ),
     )
     d.inverses.append(
@@ -440,7 +436,7 @@ def _draw(m: TwoArms, at: _Posture) -> None:
     if "P" not in names:
         links["hand0"] = ("P", first)
         gap = square(position - m.driver.end())
-        lengths["P", first] = _length(m.places[0])
+        lengths["P", first] = side_length(m.places[0])
         closing["P", first] = sp.expand(gap - square(m.places[0]))
     posture = placed([m.driver.end(), m.given.end(), THIRD], m.tie.end(), position)
     skeleton(
@@ -458,10 +454,6 @@ def _draw(m: TwoArms, at: _Posture) -> None:
         at_posture=[posture],
         closing=closing,
     )
-
-
-def _length(v: sp.Matrix) -> sp.Expr:
-    return sp.sqrt(sp.factor(sp.expand(square(v))))
 
 
 __all__ = ["TwoArms", "two_arms"]

@@ -315,7 +315,8 @@ class Solutions:
             return np.ones((len(self._maps), len(rows)), bool)
         shape = (len(rows), len(self._maps), len(self._reach.exprs))
         middle, radius = (x.reshape(shape) for x in self._reach.balls(rows))
-        return np.asarray(~(middle + radius < 0).any(axis=2).T)
+        with np.errstate(invalid="ignore"):
+            return np.asarray(~(middle + radius < 0).any(axis=2).T)
 
     def missed(
         self,

@@ -274,10 +274,18 @@ class LinkAtHeight(Goal):
     def reached(self, turn: Tangency) -> Reached:
         """The pair of the turn by the better of both squares."""
         p, at, suffix = turn.chain.program, turn.at, turn.suffix
-        # not the root, which is zero also where the turn is far out of reach
-        lever = p.let(f"lever{suffix}", sp.sqrt(sp.Abs((at.h - at.c) * (at.h + at.c))))
-        tangent = nearly_tangent(p, lever, at.h, suffix)
-        height = sp.Abs(self.height)
+        # not the square of the root, which is zero also where the turn is far out of reach
+        square = p.let(f"apart{suffix}", sp.Abs((at.h - at.c) * (at.h + at.c)), nonnegative=True)
+        # an earlier goal may have changed c by rounding, a large part in single precision
+        rounding = sp.Min(8 * turn.chain.size * ROUNDING, at.h / 4)
+        tangent = p.vanishes(
+            f"tangent{suffix}",
+            square - at.h * sp.Max(at.h / 2**16, rounding),
+            at.h**2,
+            "both solutions nearly coincide",
+            squares=True,
+        )
+        height = p.let(f"height{suffix}", sp.Abs(self.height), nonnegative=True)
         own = sp.Max(0, (self.length - height) * (self.length + height))
         square = sp.Piecewise((own, self.length < at.h), (at.below * at.above, True))
         return turn.with_square(p.let(f"held{suffix}", square, nonnegative=True), tangent)

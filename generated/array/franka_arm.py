@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 541 compare and select, 361 add, 23 atan2, 36 divide, 587 multiply, 1 sincos, 54 sqrt
+#   ik: 543 compare and select, 361 add, 23 atan2, 36 divide, 591 multiply, 1 sincos, 52 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder.  The axis of theta4, the elbow, is
@@ -1071,689 +1071,694 @@ def _ik(
     span_elbow = t41 * (t36 + t37)
     t43 = 1.0 / span_elbow
     t44 = (t42 - t41 * t37) * t43
-    t45 = ops.abs(w_y)
-    t46 = t45 < reach
-    t47 = ops.select(t46, -t32, level_s_elbow)
-    t48 = t47 * t44
-    t49 = ops.select(t46, level_s_elbow, t32)
+    height6 = ops.abs(w_y)
+    t45 = height6 < reach
+    t46 = ops.select(t45, -t32, level_s_elbow)
+    t47 = t46 * t44
+    t48 = ops.select(t45, level_s_elbow, t32)
     s__elbow_1_over_ahead_front = t43 * (2.0 * lever_elbow)
-    t50 = t49 * s__elbow_1_over_ahead_front
-    t51 = t48 + t50
-    t52 = c_straight * t44
-    t53 = s_straight * s__elbow_1_over_ahead_front
-    t54 = t52 + t53
-    t55 = s_straight * t44
-    t56 = c_straight * s__elbow_1_over_ahead_front
-    t57 = t55 - t56
-    q__elbow_1 = ops.select(t46, a5 + a4 * t54 - d3 * t57, d3 * t54 - (d5 - a4 * t57))
+    t49 = t48 * s__elbow_1_over_ahead_front
+    t50 = t47 + t49
+    t51 = c_straight * t44
+    t52 = s_straight * s__elbow_1_over_ahead_front
+    t53 = t51 + t52
+    t54 = s_straight * t44
+    t55 = c_straight * s__elbow_1_over_ahead_front
+    t56 = t54 - t55
+    q__elbow_1 = ops.select(t45, a5 + a4 * t53 - d3 * t56, d3 * t53 - (d5 - a4 * t56))
     size__elbow_1 = ops.abs(q__elbow_1)
-    t58 = size * ops.rounding
-    t59 = ops.select(t46, t45, 0.0) - t58
-    t60 = t58 + ops.select(t46, size, reach)
-    t61 = size__elbow_1 - ops.max(t59, ops.min(size__elbow_1, t60))
-    t62 = ops.sign(q__elbow_1)
-    t63 = t61 * t62
-    t64 = t49 * t44
-    t65 = t47 * s__elbow_1_over_ahead_front
-    t66 = t63 - 2.0 * (t64 - t65)
-    inner__elbow_1 = t51 * t51 - t63 * t66
-    t67 = inner__elbow_1 < 0.0
-    t68 = ops.sign(-t51)
-    t69 = t51 - t68 * ops.sqrt(ops.max(0.0, inner__elbow_1))
-    t70 = ops.select(t67, t66, t69)
-    t71 = ops.select(t67, t51, t63)
-    t72 = ops.abs(t70) <= ops.abs(t71)
-    half__elbow_1 = ops.select(t72, 0.0, t71 / t70)
-    t73 = half__elbow_1 * half__elbow_1
-    t74 = 1.0 / (1.0 + t73)
-    by_s__elbow_1 = 2.0 * half__elbow_1 * t74
-    t75 = ops.abs(span_elbow * 0.5 - t42)
-    by_c__elbow_1 = t74 * (1.0 - t73)
-    t76 = by_s__elbow_1 * by_s__elbow_1 / (1.0 + ops.abs(by_c__elbow_1))
-    versine__elbow_1 = ops.select(0.0 < by_c__elbow_1, t76, 1.0 - by_c__elbow_1)
-    cost__elbow_1 = lever_elbow * ops.abs(by_s__elbow_1) + t75 * versine__elbow_1
-    whole__elbow_1 = ops.rounding * (t58 + far)
-    t77 = cost__elbow_1 <= whole__elbow_1
-    sine__elbow_1 = ops.select(t77, by_s__elbow_1, 0.0)
-    cosine__elbow_1 = ops.select(t77, by_c__elbow_1, 1.0)
-    t78 = s__elbow_1_over_ahead_front * cosine__elbow_1
-    t79 = ops.select(tangent_elbow, t44 * sine__elbow_1 + t78, s__elbow_1_over_ahead_front)
-    selbow = ops.select(no_link_elbow, t35, -t79)
-    t80 = ops.select(t33, 1.0, level_s_elbow * t34)
-    t81 = t44 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
-    celbow = ops.select(no_link_elbow, t80, -ops.select(tangent_elbow, t81, t44))
-    t82 = c_straight * selbow - s_straight * celbow
-    t83 = c_straight * celbow + s_straight * selbow
-    t84 = d5 - a4 * t82 + d3 * t83
-    t85 = reach + t84
-    t86 = reach - t84
-    t87 = t27 & (-t13 <= t85) & (-t13 <= t86)
-    t88 = reach * 0.00390625
-    t89 = reach * ops.vanishing
-    tangent6 = ops.sqrt(ops.abs(t85 * t86)) - t88 <= t89
+    t57 = size * ops.rounding
+    t58 = ops.select(t45, height6, 0.0) - t57
+    t59 = t57 + ops.select(t45, size, reach)
+    t60 = size__elbow_1 - ops.max(t58, ops.min(size__elbow_1, t59))
+    t61 = ops.sign(q__elbow_1)
+    t62 = t60 * t61
+    t63 = t48 * t44
+    t64 = t46 * s__elbow_1_over_ahead_front
+    t65 = t62 - 2.0 * (t63 - t64)
+    inner__elbow_1 = t50 * t50 - t62 * t65
+    t66 = inner__elbow_1 < 0.0
+    t67 = ops.sign(-t50)
+    t68 = t50 - t67 * ops.sqrt(ops.max(0.0, inner__elbow_1))
+    t69 = ops.select(t66, t65, t68)
+    t70 = ops.select(t66, t50, t62)
+    t71 = ops.abs(t69) <= ops.abs(t70)
+    half__elbow_1 = ops.select(t71, 0.0, t70 / t69)
+    t72 = half__elbow_1 * half__elbow_1
+    t73 = 1.0 / (1.0 + t72)
+    by_s__elbow_1 = 2.0 * half__elbow_1 * t73
+    t74 = ops.abs(span_elbow * 0.5 - t42)
+    by_c__elbow_1 = t73 * (1.0 - t72)
+    t75 = by_s__elbow_1 * by_s__elbow_1 / (1.0 + ops.abs(by_c__elbow_1))
+    versine__elbow_1 = ops.select(0.0 < by_c__elbow_1, t75, 1.0 - by_c__elbow_1)
+    cost__elbow_1 = lever_elbow * ops.abs(by_s__elbow_1) + t74 * versine__elbow_1
+    whole__elbow_1 = ops.rounding * (t57 + far)
+    t76 = cost__elbow_1 <= whole__elbow_1
+    sine__elbow_1 = ops.select(t76, by_s__elbow_1, 0.0)
+    cosine__elbow_1 = ops.select(t76, by_c__elbow_1, 1.0)
+    t77 = s__elbow_1_over_ahead_front * cosine__elbow_1
+    t78 = ops.select(tangent_elbow, t44 * sine__elbow_1 + t77, s__elbow_1_over_ahead_front)
+    selbow = ops.select(no_link_elbow, t35, -t78)
+    t79 = ops.select(t33, 1.0, level_s_elbow * t34)
+    t80 = t44 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
+    celbow = ops.select(no_link_elbow, t79, -ops.select(tangent_elbow, t80, t44))
+    t81 = c_straight * selbow - s_straight * celbow
+    t82 = c_straight * celbow + s_straight * selbow
+    t83 = d5 - a4 * t81 + d3 * t82
+    t84 = reach + t83
+    t85 = reach - t83
+    t86 = t27 & (-t13 <= t84) & (-t13 <= t85)
+    t87 = ops.max(reach * 1.52587890625e-05, ops.min(reach * 0.25, t57 * 8.0))
+    t88 = reach * t87
+    t89 = ops.vanishing * ops.vanishing * (reach * reach)
+    tangent6 = ops.abs(t84 * t85) - t88 <= t89
     free6 = reach <= t39
-    v_x = a5 - a4 * t83 - d3 * t82
+    v_x = a5 - a4 * t82 - d3 * t81
     t90 = ops.abs(v_x)
     t91 = t90 < reach
-    below6 = ops.max(t85, 0.0)
-    above6 = ops.max(t86, 0.0)
-    t92 = below6 * above6
-    held6 = ops.select(t91, ops.max(0.0, -((t45 - t90) * (t45 + t90))), t92)
-    t93 = below6 - above6
-    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t93 * t93), below6 + above6)
-    t94 = 1.0 / (reach * span6)
-    t95 = u_x * 2.0
-    kept6 = ops.select(tangent6, ops.sqrt(held6), ops.sqrt(t92))
-    t96 = t94 * (t95 * kept6)
-    t97 = t94 * (s_z * t93)
-    c6 = ops.select(free6, 1.0, t96 + t97)
-    t98 = s_z * 2.0
-    t99 = t98 * kept6 * t94
-    t100 = t94 * (u_x * t93)
-    s6 = ops.select(free6, 0.0, t99 - t100)
+    t92 = ops.max(0.0, -((height6 - t90) * (height6 + t90)))
+    below6 = ops.max(t84, 0.0)
+    above6 = ops.max(t85, 0.0)
+    t93 = below6 * above6
+    held6 = ops.select(t91, t92, t93)
+    t94 = below6 - above6
+    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t94 * t94), below6 + above6)
+    t95 = 1.0 / (reach * span6)
+    t96 = u_x * 2.0
+    kept6 = ops.select(tangent6, ops.sqrt(held6), ops.sqrt(t93))
+    t97 = t95 * (t96 * kept6)
+    t98 = t95 * (s_z * t94)
+    c6 = ops.select(free6, 1.0, t97 + t98)
+    t99 = s_z * 2.0
+    t100 = t99 * kept6 * t95
+    t101 = t95 * (u_x * t94)
+    s6 = ops.select(free6, 0.0, t100 - t101)
     w_x = u_x * c6 + s_z * s6
-    t101 = ops.sqrt(t20 + w_x * w_x)
-    t102 = ops.sqrt(v_x * v_x)
-    t103 = ops.abs(ops.select(tangent6, t101 - t102, 0.0))
-    unreachable = ops.opposite(t87 & (t103 <= t13))
+    t102 = ops.sqrt(t20 + w_x * w_x)
+    t103 = ops.sqrt(v_x * v_x)
+    t104 = ops.abs(ops.select(tangent6, t102 - t103, 0.0))
+    unreachable = ops.opposite(t86 & (t104 <= t13))
     failed = invalid | unreachable
     R1_11 = T11 * c_x_theta7 - T12 * s_x_theta7
-    on_axis_5 = ops.min(t102, t101) <= t39
+    on_axis_5 = ops.min(t103, t102) <= t39
     dot_5 = v_x * w_x
-    t104 = w_y * v_x
-    t105 = t104 * t104
-    t106 = 1.0 / ops.sqrt(t105 + dot_5 * dot_5)
-    c5 = ops.select(on_axis_5, 1.0, dot_5 * t106)
+    t105 = w_y * v_x
+    t106 = t105 * t105
+    t107 = 1.0 / ops.sqrt(t106 + dot_5 * dot_5)
+    c5 = ops.select(on_axis_5, 1.0, dot_5 * t107)
     R1_13 = T11 * s_x_theta7 + T12 * c_x_theta7
-    t107 = ops.select(on_axis_5, 0.0, t104 * t106)
-    t108 = t82 * (c5 * (R1_11 * c6 + T13 * s6) - R1_13 * t107)
-    R4_13 = t83 * (R1_11 * s6 - T13 * c6) + t108
+    t108 = ops.select(on_axis_5, 0.0, t105 * t107)
+    t109 = t81 * (c5 * (R1_11 * c6 + T13 * s6) - R1_13 * t108)
+    R4_13 = t82 * (R1_11 * s6 - T13 * c6) + t109
     R1_21 = T21 * c_x_theta7 - T22 * s_x_theta7
     R1_23 = T21 * s_x_theta7 + T22 * c_x_theta7
-    t109 = t82 * (c5 * (R1_21 * c6 + T23 * s6) - R1_23 * t107)
-    R4_23 = t83 * (R1_21 * s6 - T23 * c6) + t109
-    t110 = ops.vanishing * 16.0
-    aligned_wrist = ops.sqrt(R4_13 * R4_13 + R4_23 * R4_23) <= t110
-    t111 = ops.opposite(failed)
-    c6_bent_behind_front = ops.select(free6, 1.0, t97 - t96)
-    t112 = ops.select(free6, 0.0, t99 + t100)
-    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t112
-    t113 = w_x_bent_behind_front * w_x_bent_behind_front
-    t114 = ops.sqrt(t20 + t113)
-    t115 = ops.abs(ops.select(tangent6, t114 - t102, 0.0))
-    unreachable_2 = ops.opposite(t87 & (t115 <= t13))
+    t110 = t81 * (c5 * (R1_21 * c6 + T23 * s6) - R1_23 * t108)
+    R4_23 = t82 * (R1_21 * s6 - T23 * c6) + t110
+    t111 = ops.vanishing * 16.0
+    aligned_wrist = ops.sqrt(R4_13 * R4_13 + R4_23 * R4_23) <= t111
+    t112 = ops.opposite(failed)
+    c6_bent_behind_front = ops.select(free6, 1.0, t98 - t97)
+    t113 = ops.select(free6, 0.0, t100 + t101)
+    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t113
+    t114 = w_x_bent_behind_front * w_x_bent_behind_front
+    t115 = ops.sqrt(t20 + t114)
+    t116 = ops.abs(ops.select(tangent6, t115 - t103, 0.0))
+    unreachable_2 = ops.opposite(t86 & (t116 <= t13))
     failed_2 = invalid | unreachable_2
-    t116 = ops.opposite(failed_2)
-    t117 = t111 | t116
-    t118 = t48 - t50
-    t119 = t52 - t53
-    t120 = t55 + t56
-    q__elbow_1_over_ahead_front = ops.select(t46, a5 + a4 * t119 - d3 * t120, d3 * t119 - (d5 - a4 * t120))
+    t117 = ops.opposite(failed_2)
+    t118 = t112 | t117
+    t119 = t47 - t49
+    t120 = t51 - t52
+    t121 = t54 + t55
+    q__elbow_1_over_ahead_front = ops.select(t45, a5 + a4 * t120 - d3 * t121, d3 * t120 - (d5 - a4 * t121))
     size__elbow_1_over_ahead_front = ops.abs(q__elbow_1_over_ahead_front)
-    t121 = ops.max(t59, ops.min(size__elbow_1_over_ahead_front, t60))
-    t122 = ops.sign(q__elbow_1_over_ahead_front)
-    t123 = (size__elbow_1_over_ahead_front - t121) * t122
-    t124 = t123 - 2.0 * (t64 + t65)
-    inner__elbow_1_over_ahead_front = t118 * t118 - t123 * t124
-    t125 = inner__elbow_1_over_ahead_front < 0.0
-    t126 = ops.sign(-t118)
-    t127 = ops.max(0.0, inner__elbow_1_over_ahead_front)
-    t128 = ops.select(t125, t124, t118 - t126 * ops.sqrt(t127))
-    t129 = ops.select(t125, t118, t123)
-    t130 = ops.abs(t128) <= ops.abs(t129)
-    half__elbow_1_over_ahead_front = ops.select(t130, 0.0, t129 / t128)
-    t131 = half__elbow_1_over_ahead_front * half__elbow_1_over_ahead_front
-    t132 = 1.0 / (1.0 + t131)
-    by_s__elbow_1_over_ahead_front = 2.0 * half__elbow_1_over_ahead_front * t132
-    t133 = lever_elbow * ops.abs(by_s__elbow_1_over_ahead_front)
-    by_c__elbow_1_over_ahead_front = t132 * (1.0 - t131)
-    t134 = by_s__elbow_1_over_ahead_front * by_s__elbow_1_over_ahead_front
-    t135 = 1.0 + ops.abs(by_c__elbow_1_over_ahead_front)
-    versine__elbow_1_over_ahead_front = ops.select(0.0 < by_c__elbow_1_over_ahead_front, t134 / t135, 1.0 - by_c__elbow_1_over_ahead_front)
-    cost__elbow_1_over_ahead_front = t133 + t75 * versine__elbow_1_over_ahead_front
-    t136 = cost__elbow_1_over_ahead_front <= whole__elbow_1
-    cosine__elbow_1_over_ahead_front = ops.select(t136, by_c__elbow_1_over_ahead_front, 1.0)
-    t137 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
-    sine__elbow_1_over_ahead_front = ops.select(t136, by_s__elbow_1_over_ahead_front, 0.0)
-    t138 = ops.select(tangent_elbow, t137 - t44 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
-    selbow_over_ahead_front = ops.select(no_link_elbow, t35, t138)
-    t139 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
-    t140 = t44 * cosine__elbow_1_over_ahead_front + t139
-    celbow_over_ahead_front = ops.select(no_link_elbow, t80, -ops.select(tangent_elbow, t140, t44))
-    t141 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
-    t142 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
-    t143 = d5 - a4 * t141 + d3 * t142
-    t144 = reach + t143
-    t145 = reach - t143
-    t146 = t27 & (-t13 <= t144) & (-t13 <= t145)
-    tangent6_over_ahead_front = ops.sqrt(ops.abs(t144 * t145)) - t88 <= t89
-    v_x_over_ahead_front = a5 - a4 * t142 - d3 * t141
-    t147 = ops.abs(v_x_over_ahead_front)
-    t148 = t147 < reach
-    below6_over_ahead_front = ops.max(t144, 0.0)
-    above6_over_ahead_front = ops.max(t145, 0.0)
-    t149 = below6_over_ahead_front * above6_over_ahead_front
-    held6_over_ahead_front = ops.select(t148, ops.max(0.0, -((t45 - t147) * (t45 + t147))), t149)
-    t150 = below6_over_ahead_front - above6_over_ahead_front
-    t151 = ops.sqrt(4.0 * held6_over_ahead_front + t150 * t150)
+    t122 = ops.max(t58, ops.min(size__elbow_1_over_ahead_front, t59))
+    t123 = ops.sign(q__elbow_1_over_ahead_front)
+    t124 = (size__elbow_1_over_ahead_front - t122) * t123
+    t125 = t124 - 2.0 * (t63 + t64)
+    inner__elbow_1_over_ahead_front = t119 * t119 - t124 * t125
+    t126 = inner__elbow_1_over_ahead_front < 0.0
+    t127 = ops.sign(-t119)
+    t128 = ops.max(0.0, inner__elbow_1_over_ahead_front)
+    t129 = ops.select(t126, t125, t119 - t127 * ops.sqrt(t128))
+    t130 = ops.select(t126, t119, t124)
+    t131 = ops.abs(t129) <= ops.abs(t130)
+    half__elbow_1_over_ahead_front = ops.select(t131, 0.0, t130 / t129)
+    t132 = half__elbow_1_over_ahead_front * half__elbow_1_over_ahead_front
+    t133 = 1.0 / (1.0 + t132)
+    by_s__elbow_1_over_ahead_front = 2.0 * half__elbow_1_over_ahead_front * t133
+    t134 = lever_elbow * ops.abs(by_s__elbow_1_over_ahead_front)
+    by_c__elbow_1_over_ahead_front = t133 * (1.0 - t132)
+    t135 = by_s__elbow_1_over_ahead_front * by_s__elbow_1_over_ahead_front
+    t136 = 1.0 + ops.abs(by_c__elbow_1_over_ahead_front)
+    versine__elbow_1_over_ahead_front = ops.select(0.0 < by_c__elbow_1_over_ahead_front, t135 / t136, 1.0 - by_c__elbow_1_over_ahead_front)
+    cost__elbow_1_over_ahead_front = t134 + t74 * versine__elbow_1_over_ahead_front
+    t137 = cost__elbow_1_over_ahead_front <= whole__elbow_1
+    cosine__elbow_1_over_ahead_front = ops.select(t137, by_c__elbow_1_over_ahead_front, 1.0)
+    t138 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
+    sine__elbow_1_over_ahead_front = ops.select(t137, by_s__elbow_1_over_ahead_front, 0.0)
+    t139 = ops.select(tangent_elbow, t138 - t44 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
+    selbow_over_ahead_front = ops.select(no_link_elbow, t35, t139)
+    t140 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
+    t141 = t44 * cosine__elbow_1_over_ahead_front + t140
+    celbow_over_ahead_front = ops.select(no_link_elbow, t79, -ops.select(tangent_elbow, t141, t44))
+    t142 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
+    t143 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
+    t144 = d5 - a4 * t142 + d3 * t143
+    t145 = reach + t144
+    t146 = reach - t144
+    t147 = t27 & (-t13 <= t145) & (-t13 <= t146)
+    tangent6_over_ahead_front = ops.abs(t145 * t146) - t88 <= t89
+    v_x_over_ahead_front = a5 - a4 * t143 - d3 * t142
+    t148 = ops.abs(v_x_over_ahead_front)
+    t149 = t148 < reach
+    t150 = ops.max(0.0, -((height6 - t148) * (height6 + t148)))
+    below6_over_ahead_front = ops.max(t145, 0.0)
+    above6_over_ahead_front = ops.max(t146, 0.0)
+    t151 = below6_over_ahead_front * above6_over_ahead_front
+    held6_over_ahead_front = ops.select(t149, t150, t151)
+    t152 = below6_over_ahead_front - above6_over_ahead_front
+    t153 = ops.sqrt(4.0 * held6_over_ahead_front + t152 * t152)
     width6_over_ahead_front = below6_over_ahead_front + above6_over_ahead_front
-    span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t151, width6_over_ahead_front)
-    t152 = 1.0 / (reach * span6_over_ahead_front)
-    kept6_over_ahead_front = ops.select(tangent6_over_ahead_front, ops.sqrt(held6_over_ahead_front), ops.sqrt(t149))
-    t153 = t152 * (t95 * kept6_over_ahead_front)
-    t154 = t152 * (s_z * t150)
-    c6_over_ahead_front = ops.select(free6, 1.0, t153 + t154)
-    t155 = t98 * kept6_over_ahead_front * t152
-    t156 = t152 * (u_x * t150)
-    s6_over_ahead_front = ops.select(free6, 0.0, t155 - t156)
+    span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t153, width6_over_ahead_front)
+    t154 = 1.0 / (reach * span6_over_ahead_front)
+    kept6_over_ahead_front = ops.select(tangent6_over_ahead_front, ops.sqrt(held6_over_ahead_front), ops.sqrt(t151))
+    t155 = t154 * (t96 * kept6_over_ahead_front)
+    t156 = t154 * (s_z * t152)
+    c6_over_ahead_front = ops.select(free6, 1.0, t155 + t156)
+    t157 = t99 * kept6_over_ahead_front * t154
+    t158 = t154 * (u_x * t152)
+    s6_over_ahead_front = ops.select(free6, 0.0, t157 - t158)
     w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
-    t157 = t20 + w_x_over_ahead_front * w_x_over_ahead_front
-    t158 = ops.sqrt(t157)
-    t159 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
-    t160 = ops.select(tangent6_over_ahead_front, t158 - t159, 0.0)
-    unreachable_3 = ops.opposite(t146 & (ops.abs(t160) <= t13))
+    t159 = t20 + w_x_over_ahead_front * w_x_over_ahead_front
+    t160 = ops.sqrt(t159)
+    t161 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    t162 = ops.select(tangent6_over_ahead_front, t160 - t161, 0.0)
+    unreachable_3 = ops.opposite(t147 & (ops.abs(t162) <= t13))
     failed_3 = invalid | unreachable_3
-    t161 = ops.opposite(failed_3)
-    c6_over_behind_front = ops.select(free6, 1.0, t154 - t153)
-    t162 = ops.select(free6, 0.0, t155 + t156)
-    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t162
-    t163 = w_x_over_behind_front * w_x_over_behind_front
-    t164 = ops.sqrt(t20 + t163)
-    t165 = ops.select(tangent6_over_ahead_front, t164 - t159, 0.0)
-    unreachable_4 = ops.opposite(t146 & (ops.abs(t165) <= t13))
+    t163 = ops.opposite(failed_3)
+    c6_over_behind_front = ops.select(free6, 1.0, t156 - t155)
+    t164 = ops.select(free6, 0.0, t157 + t158)
+    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t164
+    t165 = w_x_over_behind_front * w_x_over_behind_front
+    t166 = ops.sqrt(t20 + t165)
+    t167 = ops.select(tangent6_over_ahead_front, t166 - t161, 0.0)
+    unreachable_4 = ops.opposite(t147 & (ops.abs(t167) <= t13))
     failed_4 = invalid | unreachable_4
-    t166 = ops.opposite(failed_4)
-    t167 = t117 | t161 | t166
-    t168 = t161 | t166
-    t169 = ops.opposite(no_link_elbow)
-    t170 = t168 & t169
-    t171 = t170 & tangent_elbow & t136
-    t172 = t171 & ops.opposite(t130)
-    t173 = (t168 & no_link_elbow) | (t117 & no_link_elbow)
-    t174 = t173 & ops.opposite(t33)
-    t175 = t117 & t169
-    t176 = t175 & tangent_elbow & t77
-    t177 = t176 & ops.opposite(t72)
-    t178 = (t167 | t172 | t174 | t177) & ops.opposite(no_straight)
-    t179 = ops.select(t178, ops.sqrt(ops.select(t178, t30, 1.0)), 1.0)
-    t180 = 1.0 / t179
-    c_straight_2 = ops.select(no_straight, 1.0, -(t28 * t180))
-    s_straight_2 = ops.select(no_straight, 0.0, t29 * t180)
+    t168 = ops.opposite(failed_4)
+    t169 = t118 | t163 | t168
+    t170 = t163 | t168
+    t171 = ops.opposite(no_link_elbow)
+    t172 = t170 & t171
+    t173 = t172 & tangent_elbow & t137
+    t174 = t173 & ops.opposite(t131)
+    t175 = (t170 & no_link_elbow) | (t118 & no_link_elbow)
+    t176 = t175 & ops.opposite(t33)
+    t177 = t118 & t171
+    t178 = t177 & tangent_elbow & t76
+    t179 = t178 & ops.opposite(t71)
+    t180 = (t169 | t174 | t176 | t179) & ops.opposite(no_straight)
+    t181 = ops.select(t180, ops.sqrt(ops.select(t180, t30, 1.0)), 1.0)
+    t182 = 1.0 / t181
+    c_straight_2 = ops.select(no_straight, 1.0, -(t28 * t182))
+    s_straight_2 = ops.select(no_straight, 0.0, t29 * t182)
     level_s_elbow_2 = a4 * c_straight_2 - d3 * s_straight_2
-    t181 = a4 * s_straight_2 + d3 * c_straight_2
-    t182 = t181 * t181 + level_s_elbow_2 * level_s_elbow_2
-    t183 = ops.select(t174, ops.sqrt(ops.select(t174, t182, 1.0)), 1.0)
-    t184 = 1.0 / t183
-    t185 = ops.select(t33, 1.0, level_s_elbow_2 * t184)
-    t186 = t170 | t172 | t175 | t177
-    t187 = 1.0 / ops.select(t186, t40, 1.0)
-    upper_2 = ops.sqrt(ops.select(t186, t14, 1.0))
-    fore_2 = ops.sqrt(ops.select(t186, t15, 1.0))
-    t188 = upper_2 + fore_2
-    far_2 = ops.sqrt(ops.select(t186, t22, 1.0))
-    t189 = (t188 + far_2) * ops.max(t188 - far_2, 0.0)
-    t190 = upper_2 - fore_2
-    t191 = ops.max(t190 + far_2, 0.0) * ops.max(far_2 - t190, 0.0)
-    t192 = 1.0 / ops.select(t186, t187 * (t189 + t191), 1.0)
-    t193 = (t187 * t189 - t187 * t191) * t192
-    t194 = ops.select(t46, -t181, level_s_elbow_2)
-    t195 = t194 * t193
-    t196 = ops.select(t46, level_s_elbow_2, t181)
-    area_elbow = 2.0 * ops.sqrt(ops.select(t186, t189 * t191, 1.0))
-    t197 = 2.0 * (area_elbow / ops.select(t186, t38, 1.0))
-    s__elbow_1_over_ahead_front_2 = t192 * t197
-    t198 = t196 * s__elbow_1_over_ahead_front_2
-    t199 = t195 + t198
-    t200 = c_straight_2 * t193
-    t201 = s_straight_2 * s__elbow_1_over_ahead_front_2
-    t202 = t200 + t201
-    t203 = s_straight_2 * t193
-    t204 = c_straight_2 * s__elbow_1_over_ahead_front_2
-    t205 = t203 - t204
-    q__elbow_1_2 = ops.select(t46, a5 + a4 * t202 - d3 * t205, d3 * t202 - (d5 - a4 * t205))
+    t183 = a4 * s_straight_2 + d3 * c_straight_2
+    t184 = t183 * t183 + level_s_elbow_2 * level_s_elbow_2
+    t185 = ops.select(t176, ops.sqrt(ops.select(t176, t184, 1.0)), 1.0)
+    t186 = 1.0 / t185
+    t187 = ops.select(t33, 1.0, level_s_elbow_2 * t186)
+    t188 = t172 | t174 | t177 | t179
+    t189 = 1.0 / ops.select(t188, t40, 1.0)
+    upper_2 = ops.sqrt(ops.select(t188, t14, 1.0))
+    fore_2 = ops.sqrt(ops.select(t188, t15, 1.0))
+    t190 = upper_2 + fore_2
+    far_2 = ops.sqrt(ops.select(t188, t22, 1.0))
+    t191 = (t190 + far_2) * ops.max(t190 - far_2, 0.0)
+    t192 = upper_2 - fore_2
+    t193 = ops.max(t192 + far_2, 0.0) * ops.max(far_2 - t192, 0.0)
+    t194 = 1.0 / ops.select(t188, t189 * (t191 + t193), 1.0)
+    t195 = (t189 * t191 - t189 * t193) * t194
+    t196 = ops.select(t45, -t183, level_s_elbow_2)
+    t197 = t196 * t195
+    t198 = ops.select(t45, level_s_elbow_2, t183)
+    area_elbow = 2.0 * ops.sqrt(ops.select(t188, t191 * t193, 1.0))
+    t199 = 2.0 * (area_elbow / ops.select(t188, t38, 1.0))
+    s__elbow_1_over_ahead_front_2 = t194 * t199
+    t200 = t198 * s__elbow_1_over_ahead_front_2
+    t201 = t197 + t200
+    t202 = c_straight_2 * t195
+    t203 = s_straight_2 * s__elbow_1_over_ahead_front_2
+    t204 = t202 + t203
+    t205 = s_straight_2 * t195
+    t206 = c_straight_2 * s__elbow_1_over_ahead_front_2
+    t207 = t205 - t206
+    q__elbow_1_2 = ops.select(t45, a5 + a4 * t204 - d3 * t207, d3 * t204 - (d5 - a4 * t207))
     size__elbow_1_2 = ops.abs(q__elbow_1_2)
-    t206 = ops.opposite(free6)
-    t207 = (t166 & t206) | (t161 & t206)
-    t208 = t207 & tangent6_over_ahead_front
-    t209 = t116 & t206
-    t210 = t111 & t206
-    t211 = t207 | (t208 & ops.opposite(t148)) | t209 | t210
-    t212 = t209 | t210
-    t213 = t212 & tangent6
-    t214 = t211 | (t213 & ops.opposite(t91)) | ((t172 | t177) & ops.opposite(t46))
-    reach_2 = ops.sqrt(ops.select(t214, t21, 1.0))
-    t215 = t58 + ops.select(t46, size, reach_2)
-    t216 = size__elbow_1_2 - ops.max(t59, ops.min(size__elbow_1_2, t215))
-    t217 = t216 * t62
-    t218 = t196 * t193
-    t219 = t194 * s__elbow_1_over_ahead_front_2
-    t220 = t217 - 2.0 * (t218 - t219)
-    t221 = ops.select(t177 & ops.opposite(t67), ops.max(0.0, t199 * t199 - t217 * t220), 1.0)
-    t222 = ops.select(t67, t220, t199 - t68 * ops.sqrt(t221))
-    t223 = ops.select(t67, t199, t217) / ops.select(t177, t222, 1.0)
-    half__elbow_1_2 = ops.select(t72, 0.0, t223)
-    t224 = half__elbow_1_2 * half__elbow_1_2
-    t225 = 1.0 / ops.select(t176, 1.0 + t224, 1.0)
-    cosine__elbow_1_2 = ops.select(t77, t225 * (1.0 - t224), 1.0)
-    sine__elbow_1_2 = ops.select(t77, 2.0 * half__elbow_1_2 * t225, 0.0)
-    t226 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
-    t227 = ops.select(tangent_elbow, t193 * cosine__elbow_1_2 - t226, t193)
-    celbow_2 = ops.select(no_link_elbow, t185, -t227)
-    t228 = ops.select(t33, 0.0, t181 * t184)
-    t229 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
-    t230 = ops.select(tangent_elbow, t193 * sine__elbow_1_2 + t229, s__elbow_1_over_ahead_front_2)
-    selbow_2 = ops.select(no_link_elbow, t228, -t230)
-    t231 = c_straight_2 * celbow_2 + s_straight_2 * selbow_2
-    t232 = c_straight_2 * selbow_2 - s_straight_2 * celbow_2
-    v_x_2 = a5 - a4 * t231 - d3 * t232
-    t233 = ops.abs(v_x_2)
-    t234 = d5 - a4 * t232 + d3 * t231
-    below6_2 = ops.max(reach_2 + t234, 0.0)
-    above6_2 = ops.max(reach_2 - t234, 0.0)
-    t235 = below6_2 * above6_2
-    held6_2 = ops.select(t91, ops.max(0.0, -((t45 - t233) * (t45 + t233))), t235)
-    t236 = ops.select(t212 & ops.opposite(tangent6), t235, 1.0)
-    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t213, held6_2, 1.0)), ops.sqrt(t236))
-    t237 = below6_2 - above6_2
-    t238 = ops.select(t213, 4.0 * held6_2 + t237 * t237, 1.0)
-    span6_2 = ops.select(tangent6, ops.sqrt(t238), below6_2 + above6_2)
-    t239 = 1.0 / ops.select(t212, reach_2 * span6_2, 1.0)
-    t240 = t98 * kept6_2 * t239
-    t241 = t239 * (u_x * t237)
-    s6_2 = ops.select(free6, 0.0, t240 - t241)
-    t242 = t239 * (t95 * kept6_2)
-    t243 = t239 * (s_z * t237)
-    c6_2 = ops.select(free6, 1.0, t242 + t243)
+    t208 = ops.opposite(free6)
+    t209 = (t168 & t208) | (t163 & t208)
+    t210 = t209 & tangent6_over_ahead_front
+    t211 = t117 & t208
+    t212 = t112 & t208
+    t213 = t209 | (t210 & ops.opposite(t149)) | t211 | t212
+    t214 = t211 | t212
+    t215 = t214 & tangent6
+    t216 = t213 | (t215 & ops.opposite(t91)) | ((t174 | t179) & ops.opposite(t45))
+    reach_2 = ops.sqrt(ops.select(t216, t21, 1.0))
+    t217 = t57 + ops.select(t45, size, reach_2)
+    t218 = size__elbow_1_2 - ops.max(t58, ops.min(size__elbow_1_2, t217))
+    t219 = t218 * t61
+    t220 = t198 * t195
+    t221 = t196 * s__elbow_1_over_ahead_front_2
+    t222 = t219 - 2.0 * (t220 - t221)
+    t223 = ops.select(t179 & ops.opposite(t66), ops.max(0.0, t201 * t201 - t219 * t222), 1.0)
+    t224 = ops.select(t66, t222, t201 - t67 * ops.sqrt(t223))
+    t225 = ops.select(t66, t201, t219) / ops.select(t179, t224, 1.0)
+    half__elbow_1_2 = ops.select(t71, 0.0, t225)
+    t226 = half__elbow_1_2 * half__elbow_1_2
+    t227 = 1.0 / ops.select(t178, 1.0 + t226, 1.0)
+    cosine__elbow_1_2 = ops.select(t76, t227 * (1.0 - t226), 1.0)
+    sine__elbow_1_2 = ops.select(t76, 2.0 * half__elbow_1_2 * t227, 0.0)
+    t228 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
+    t229 = ops.select(tangent_elbow, t195 * cosine__elbow_1_2 - t228, t195)
+    celbow_2 = ops.select(no_link_elbow, t187, -t229)
+    t230 = ops.select(t33, 0.0, t183 * t186)
+    t231 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
+    t232 = ops.select(tangent_elbow, t195 * sine__elbow_1_2 + t231, s__elbow_1_over_ahead_front_2)
+    selbow_2 = ops.select(no_link_elbow, t230, -t232)
+    t233 = c_straight_2 * celbow_2 + s_straight_2 * selbow_2
+    t234 = c_straight_2 * selbow_2 - s_straight_2 * celbow_2
+    v_x_2 = a5 - a4 * t233 - d3 * t234
+    t235 = ops.abs(v_x_2)
+    t236 = ops.max(0.0, -((height6 - t235) * (height6 + t235)))
+    t237 = d5 - a4 * t234 + d3 * t233
+    below6_2 = ops.max(reach_2 + t237, 0.0)
+    above6_2 = ops.max(reach_2 - t237, 0.0)
+    t238 = below6_2 * above6_2
+    held6_2 = ops.select(t91, t236, t238)
+    t239 = ops.select(t214 & ops.opposite(tangent6), t238, 1.0)
+    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t215, held6_2, 1.0)), ops.sqrt(t239))
+    t240 = below6_2 - above6_2
+    t241 = ops.select(t215, 4.0 * held6_2 + t240 * t240, 1.0)
+    span6_2 = ops.select(tangent6, ops.sqrt(t241), below6_2 + above6_2)
+    t242 = 1.0 / ops.select(t214, reach_2 * span6_2, 1.0)
+    t243 = t99 * kept6_2 * t242
+    t244 = t242 * (u_x * t240)
+    s6_2 = ops.select(free6, 0.0, t243 - t244)
+    t245 = t242 * (t96 * kept6_2)
+    t246 = t242 * (s_z * t240)
+    c6_2 = ops.select(free6, 1.0, t245 + t246)
     R2_23 = R1_21 * s6_2 - T23 * c6_2
     dot_5_2 = v_x_2 * (u_x * c6_2 + s_z * s6_2)
-    t244 = t111 & ops.opposite(on_axis_5)
-    t245 = w_y * v_x_2
-    t246 = t245 * t245
-    t247 = ops.select(t244, t246 + dot_5_2 * dot_5_2, 1.0)
-    t248 = 1.0 / ops.select(t244, ops.sqrt(t247), 1.0)
-    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t248)
+    t247 = t112 & ops.opposite(on_axis_5)
+    t248 = w_y * v_x_2
+    t249 = t248 * t248
+    t250 = ops.select(t247, t249 + dot_5_2 * dot_5_2, 1.0)
+    t251 = 1.0 / ops.select(t247, ops.sqrt(t250), 1.0)
+    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t251)
     R2_21 = R1_21 * c6_2 + T23 * s6_2
-    t249 = ops.select(on_axis_5, 0.0, t245 * t248)
-    R3_21 = c5_2 * R2_21 - R1_23 * t249
-    R4_23_2 = t231 * R2_23 + t232 * R3_21
-    t250 = t111 & ops.opposite(aligned_wrist)
+    t252 = ops.select(on_axis_5, 0.0, t248 * t251)
+    R3_21 = c5_2 * R2_21 - R1_23 * t252
+    R4_23_2 = t233 * R2_23 + t234 * R3_21
+    t253 = t112 & ops.opposite(aligned_wrist)
     R2_13 = R1_11 * s6_2 - T13 * c6_2
     R2_11 = R1_11 * c6_2 + T13 * s6_2
-    R3_11 = c5_2 * R2_11 - R1_13 * t249
-    R4_13_2 = t231 * R2_13 + t232 * R3_11
-    t251 = ops.select(t250, R4_13_2 * R4_13_2, 1.0) + ops.select(t250, R4_23_2 * R4_23_2, 1.0)
-    t252 = ops.select(t250, ops.sqrt(ops.select(t250, t251, 1.0)), 1.0)
-    t253 = 1.0 / t252
-    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t253)
-    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t253)
-    t254 = ops.atan2(s_wrist, ops.select(t111, c_wrist, 1.0))
-    t255 = ops.select(failed, ops.nan, ops.wrap_cut(t254))
-    t256 = ops.select(t111, R4_13_2 * c_wrist, 1.0) + ops.select(t111, R4_23_2 * s_wrist, 1.0)
+    R3_11 = c5_2 * R2_11 - R1_13 * t252
+    R4_13_2 = t233 * R2_13 + t234 * R3_11
+    t254 = ops.select(t253, R4_13_2 * R4_13_2, 1.0) + ops.select(t253, R4_23_2 * R4_23_2, 1.0)
+    t255 = ops.select(t253, ops.sqrt(ops.select(t253, t254, 1.0)), 1.0)
+    t256 = 1.0 / t255
+    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t256)
+    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t256)
+    t257 = ops.atan2(s_wrist, ops.select(t112, c_wrist, 1.0))
+    t258 = ops.select(failed, ops.nan, ops.wrap_cut(t257))
+    t259 = ops.select(t112, R4_13_2 * c_wrist, 1.0) + ops.select(t112, R4_23_2 * s_wrist, 1.0)
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t249
-    R4_33 = t231 * (R1_31 * s6_2 - T33 * c6_2) + t232 * R3_31
-    t257 = ops.atan2(t256, ops.select(t111, R4_33, 1.0))
-    t258 = ops.select(failed, ops.nan, ops.wrap_cut(t257))
-    t259 = ops.select(t111, s_wrist * (t232 * R2_13 - t231 * R3_11), 1.0)
-    t260 = ops.select(t111, c_wrist * (t232 * R2_23 - t231 * R3_21), 1.0)
-    t261 = ops.select(t111, s_wrist * (R2_11 * t249 + R1_13 * c5_2), 1.0)
-    t262 = ops.select(t111, c_wrist * (t249 * R2_21 + R1_23 * c5_2), 1.0)
-    t263 = ops.atan2(t259 - t260, ops.select(t111, t261 - t262, 1.0))
-    t264 = ops.select(failed, ops.nan, ops.wrap_cut(t263))
-    t265 = ops.wrap_cut(ops.atan2(t232, ops.select(t117, t231, 1.0)))
-    t266 = ops.select(failed, ops.nan, t265)
-    t267 = ops.wrap_cut(-ops.atan2(t249, ops.select(t111, c5_2, 1.0)))
-    t268 = ops.select(failed, ops.nan, t267)
-    t269 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t111, c6_2, 1.0)))
-    t270 = ops.select(failed, ops.nan, t269)
-    t271 = ops.atan2(s_x_theta7, ops.select(t167, c_x_theta7, 1.0))
-    t272 = ops.wrap_cut(t271)
+    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t252
+    R4_33 = t233 * (R1_31 * s6_2 - T33 * c6_2) + t234 * R3_31
+    t260 = ops.atan2(t259, ops.select(t112, R4_33, 1.0))
+    t261 = ops.select(failed, ops.nan, ops.wrap_cut(t260))
+    t262 = ops.select(t112, s_wrist * (t234 * R2_13 - t233 * R3_11), 1.0)
+    t263 = ops.select(t112, c_wrist * (t234 * R2_23 - t233 * R3_21), 1.0)
+    t264 = ops.select(t112, s_wrist * (R2_11 * t252 + R1_13 * c5_2), 1.0)
+    t265 = ops.select(t112, c_wrist * (t252 * R2_21 + R1_23 * c5_2), 1.0)
+    t266 = ops.atan2(t262 - t263, ops.select(t112, t264 - t265, 1.0))
+    t267 = ops.select(failed, ops.nan, ops.wrap_cut(t266))
+    t268 = ops.wrap_cut(ops.atan2(t234, ops.select(t118, t233, 1.0)))
+    t269 = ops.select(failed, ops.nan, t268)
+    t270 = ops.wrap_cut(-ops.atan2(t252, ops.select(t112, c5_2, 1.0)))
+    t271 = ops.select(failed, ops.nan, t270)
+    t272 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t112, c6_2, 1.0)))
     t273 = ops.select(failed, ops.nan, t272)
+    t274 = ops.atan2(s_x_theta7, ops.select(t169, c_x_theta7, 1.0))
+    t275 = ops.wrap_cut(t274)
+    t276 = ops.select(failed, ops.nan, t275)
     flip_wrist = ops.select(aligned_wrist, 0.0, 3.141592653589793)
-    t274 = ops.select(failed, ops.nan, ops.wrap(t254 + flip_wrist))
-    t275 = ops.select(failed, ops.nan, ops.wrap_cut(-t257))
-    t276 = ops.select(failed, ops.nan, ops.wrap(t263 + flip_wrist))
-    t277 = t83 * (R1_11 * t112 + T13 * c6_bent_behind_front)
-    on_axis_5_bent_behind_front = ops.min(t102, t114) <= t39
+    t277 = ops.select(failed, ops.nan, ops.wrap(t257 + flip_wrist))
+    t278 = ops.select(failed, ops.nan, ops.wrap_cut(-t260))
+    t279 = ops.select(failed, ops.nan, ops.wrap(t266 + flip_wrist))
+    t280 = t82 * (R1_11 * t113 + T13 * c6_bent_behind_front)
+    on_axis_5_bent_behind_front = ops.min(t103, t115) <= t39
     dot_5_bent_behind_front = v_x * w_x_bent_behind_front
-    t278 = dot_5_bent_behind_front * dot_5_bent_behind_front
-    t279 = 1.0 / ops.sqrt(t105 + t278)
-    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t279)
-    t280 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t112)
-    t281 = ops.select(on_axis_5_bent_behind_front, 0.0, t104 * t279)
-    t282 = t277 - t82 * (t280 - R1_13 * t281)
-    t283 = t83 * (R1_21 * t112 + T23 * c6_bent_behind_front)
-    t284 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t112)
-    t285 = t283 - t82 * (t284 - R1_23 * t281)
-    aligned_wrist_bent_behind_front = ops.sqrt(t282 * t282 + t285 * t285) <= t110
-    t286 = ops.select(free6, 0.0, t240 + t241)
-    c6_bent_behind_front_2 = ops.select(free6, 1.0, t243 - t242)
-    t287 = R1_21 * t286 + T23 * c6_bent_behind_front_2
-    dot_5_bent_behind_front_2 = v_x_2 * (u_x * c6_bent_behind_front_2 - s_z * t286)
-    t288 = t116 & ops.opposite(on_axis_5_bent_behind_front)
-    t289 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
-    t290 = ops.select(t288, ops.sqrt(ops.select(t288, t246 + t289, 1.0)), 1.0)
-    t291 = 1.0 / t290
-    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t291)
-    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t286
-    t292 = c5_bent_behind_front_2 * R2_21_bent_behind_front
-    t293 = ops.select(on_axis_5_bent_behind_front, 0.0, t245 * t291)
-    R3_21_bent_behind_front = t292 - R1_23 * t293
-    t294 = t231 * t287 - t232 * R3_21_bent_behind_front
-    t295 = ops.opposite(aligned_wrist_bent_behind_front)
-    t296 = t116 & t295
-    t297 = R1_11 * t286 + T13 * c6_bent_behind_front_2
-    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t286
-    t298 = c5_bent_behind_front_2 * R2_11_bent_behind_front
-    R3_11_bent_behind_front = t298 - R1_13 * t293
-    t299 = t231 * t297 - t232 * R3_11_bent_behind_front
-    t300 = ops.select(t296, t299 * t299, 1.0) + ops.select(t296, t294 * t294, 1.0)
-    t301 = ops.select(t296, ops.sqrt(ops.select(t296, t300, 1.0)), 1.0)
-    t302 = 1.0 / t301
-    t303 = ops.select(aligned_wrist_bent_behind_front, 0.0, t294 * t302)
-    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t299 * t302))
-    t304 = ops.select(t116, c_wrist_bent_behind_front, 1.0)
-    t305 = ops.atan2(t303, t304)
-    t306 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t305))
-    t307 = ops.select(t116, t299 * c_wrist_bent_behind_front, 1.0)
-    t308 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t286)
-    t309 = t231 * (R1_31 * t286 + T33 * c6_bent_behind_front_2)
-    t310 = ops.select(t116, t232 * (t308 - R1_33 * t293) - t309, 1.0)
-    t311 = ops.atan2(t307 - ops.select(t116, t294 * t303, 1.0), t310)
-    t312 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t311))
-    t313 = t303 * (t232 * t297 + t231 * R3_11_bent_behind_front)
-    t314 = c_wrist_bent_behind_front * (t232 * t287 + t231 * R3_21_bent_behind_front)
-    t315 = ops.select(t116, t313, 1.0) + ops.select(t116, t314, 1.0)
-    R3_13_bent_behind_front = R2_11_bent_behind_front * t293 + R1_13 * c5_bent_behind_front_2
-    t316 = ops.select(t116, t303 * R3_13_bent_behind_front, 1.0)
-    R3_23_bent_behind_front = t293 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
-    t317 = c_wrist_bent_behind_front * R3_23_bent_behind_front
-    t318 = ops.select(t116, -(t316 + ops.select(t116, t317, 1.0)), 1.0)
-    t319 = ops.atan2(t315, t318)
-    t320 = ops.select(failed_2, ops.nan, ops.wrap_cut(t319))
-    t321 = ops.select(failed_2, ops.nan, t265)
-    t322 = ops.select(t116, c5_bent_behind_front_2, 1.0)
-    t323 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t293, t322)))
-    t324 = ops.select(t116, c6_bent_behind_front_2, 1.0)
-    t325 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t286, t324)))
-    t326 = ops.select(failed_2, ops.nan, t272)
+    t281 = dot_5_bent_behind_front * dot_5_bent_behind_front
+    t282 = 1.0 / ops.sqrt(t106 + t281)
+    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t282)
+    t283 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t113)
+    t284 = ops.select(on_axis_5_bent_behind_front, 0.0, t105 * t282)
+    t285 = t280 - t81 * (t283 - R1_13 * t284)
+    t286 = t82 * (R1_21 * t113 + T23 * c6_bent_behind_front)
+    t287 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t113)
+    t288 = t286 - t81 * (t287 - R1_23 * t284)
+    aligned_wrist_bent_behind_front = ops.sqrt(t285 * t285 + t288 * t288) <= t111
+    t289 = ops.select(free6, 0.0, t243 + t244)
+    c6_bent_behind_front_2 = ops.select(free6, 1.0, t246 - t245)
+    t290 = R1_21 * t289 + T23 * c6_bent_behind_front_2
+    dot_5_bent_behind_front_2 = v_x_2 * (u_x * c6_bent_behind_front_2 - s_z * t289)
+    t291 = t117 & ops.opposite(on_axis_5_bent_behind_front)
+    t292 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
+    t293 = ops.select(t291, ops.sqrt(ops.select(t291, t249 + t292, 1.0)), 1.0)
+    t294 = 1.0 / t293
+    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t294)
+    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t289
+    t295 = c5_bent_behind_front_2 * R2_21_bent_behind_front
+    t296 = ops.select(on_axis_5_bent_behind_front, 0.0, t248 * t294)
+    R3_21_bent_behind_front = t295 - R1_23 * t296
+    t297 = t233 * t290 - t234 * R3_21_bent_behind_front
+    t298 = ops.opposite(aligned_wrist_bent_behind_front)
+    t299 = t117 & t298
+    t300 = R1_11 * t289 + T13 * c6_bent_behind_front_2
+    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t289
+    t301 = c5_bent_behind_front_2 * R2_11_bent_behind_front
+    R3_11_bent_behind_front = t301 - R1_13 * t296
+    t302 = t233 * t300 - t234 * R3_11_bent_behind_front
+    t303 = ops.select(t299, t302 * t302, 1.0) + ops.select(t299, t297 * t297, 1.0)
+    t304 = ops.select(t299, ops.sqrt(ops.select(t299, t303, 1.0)), 1.0)
+    t305 = 1.0 / t304
+    t306 = ops.select(aligned_wrist_bent_behind_front, 0.0, t297 * t305)
+    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t302 * t305))
+    t307 = ops.select(t117, c_wrist_bent_behind_front, 1.0)
+    t308 = ops.atan2(t306, t307)
+    t309 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t308))
+    t310 = ops.select(t117, t302 * c_wrist_bent_behind_front, 1.0)
+    t311 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t289)
+    t312 = t233 * (R1_31 * t289 + T33 * c6_bent_behind_front_2)
+    t313 = ops.select(t117, t234 * (t311 - R1_33 * t296) - t312, 1.0)
+    t314 = ops.atan2(t310 - ops.select(t117, t297 * t306, 1.0), t313)
+    t315 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t314))
+    t316 = t306 * (t234 * t300 + t233 * R3_11_bent_behind_front)
+    t317 = c_wrist_bent_behind_front * (t234 * t290 + t233 * R3_21_bent_behind_front)
+    t318 = ops.select(t117, t316, 1.0) + ops.select(t117, t317, 1.0)
+    R3_13_bent_behind_front = R2_11_bent_behind_front * t296 + R1_13 * c5_bent_behind_front_2
+    t319 = ops.select(t117, t306 * R3_13_bent_behind_front, 1.0)
+    R3_23_bent_behind_front = t296 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
+    t320 = c_wrist_bent_behind_front * R3_23_bent_behind_front
+    t321 = ops.select(t117, -(t319 + ops.select(t117, t320, 1.0)), 1.0)
+    t322 = ops.atan2(t318, t321)
+    t323 = ops.select(failed_2, ops.nan, ops.wrap_cut(t322))
+    t324 = ops.select(failed_2, ops.nan, t268)
+    t325 = ops.select(t117, c5_bent_behind_front_2, 1.0)
+    t326 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t296, t325)))
+    t327 = ops.select(t117, c6_bent_behind_front_2, 1.0)
+    t328 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t289, t327)))
+    t329 = ops.select(failed_2, ops.nan, t275)
     flip_wrist_bent_behind_back = ops.select(aligned_wrist_bent_behind_front, 0.0, 3.141592653589793)
-    t327 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t305))
-    t328 = ops.select(failed_2, ops.nan, ops.wrap_cut(t311))
-    t329 = ops.select(failed_2, ops.nan, ops.wrap(t319 + flip_wrist_bent_behind_back))
+    t330 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t308))
+    t331 = ops.select(failed_2, ops.nan, ops.wrap_cut(t314))
+    t332 = ops.select(failed_2, ops.nan, ops.wrap(t322 + flip_wrist_bent_behind_back))
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
-    on_axis_5_over_ahead_front = ops.min(t159, t158) <= t39
+    on_axis_5_over_ahead_front = ops.min(t161, t160) <= t39
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
-    t330 = w_y * v_x_over_ahead_front
-    t331 = t330 * t330
-    t332 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t333 = 1.0 / ops.sqrt(t331 + t332)
-    c5_over_ahead_front = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t333)
+    t333 = w_y * v_x_over_ahead_front
+    t334 = t333 * t333
+    t335 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t336 = 1.0 / ops.sqrt(t334 + t335)
+    c5_over_ahead_front = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t336)
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    t334 = ops.select(on_axis_5_over_ahead_front, 0.0, t330 * t333)
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t334
-    R4_13_over_ahead_front = t142 * R2_13_over_ahead_front + t141 * R3_11_over_ahead_front
-    t335 = R4_13_over_ahead_front * R4_13_over_ahead_front
+    t337 = ops.select(on_axis_5_over_ahead_front, 0.0, t333 * t336)
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t337
+    R4_13_over_ahead_front = t143 * R2_13_over_ahead_front + t142 * R3_11_over_ahead_front
+    t338 = R4_13_over_ahead_front * R4_13_over_ahead_front
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t334
-    R4_23_over_ahead_front = t142 * R2_23_over_ahead_front + t141 * R3_21_over_ahead_front
-    t336 = R4_23_over_ahead_front * R4_23_over_ahead_front
-    aligned_wrist_over_ahead_front = ops.sqrt(t335 + t336) <= t110
-    t337 = t195 - t198
-    t338 = t200 - t201
-    t339 = t203 + t204
-    q__elbow_1_over_ahead_front_2 = ops.select(t46, a5 + a4 * t338 - d3 * t339, d3 * t338 - (d5 - a4 * t339))
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t337
+    R4_23_over_ahead_front = t143 * R2_23_over_ahead_front + t142 * R3_21_over_ahead_front
+    t339 = R4_23_over_ahead_front * R4_23_over_ahead_front
+    aligned_wrist_over_ahead_front = ops.sqrt(t338 + t339) <= t111
+    t340 = t197 - t200
+    t341 = t202 - t203
+    t342 = t205 + t206
+    q__elbow_1_over_ahead_front_2 = ops.select(t45, a5 + a4 * t341 - d3 * t342, d3 * t341 - (d5 - a4 * t342))
     size__elbow_1_over_ahead_front_2 = ops.abs(q__elbow_1_over_ahead_front_2)
-    t340 = ops.min(size__elbow_1_over_ahead_front_2, t215)
-    t341 = size__elbow_1_over_ahead_front_2 - ops.max(t59, t340)
-    t342 = t341 * t122
-    t343 = t342 - 2.0 * (t218 + t219)
-    t344 = ops.select(t172 & ops.opposite(t125), ops.max(0.0, t337 * t337 - t342 * t343), 1.0)
-    t345 = ops.select(t125, t343, t337 - t126 * ops.sqrt(t344))
-    t346 = ops.select(t125, t337, t342) / ops.select(t172, t345, 1.0)
-    half__elbow_1_over_ahead_front_2 = ops.select(t130, 0.0, t346)
-    t347 = half__elbow_1_over_ahead_front_2 * half__elbow_1_over_ahead_front_2
-    t348 = 1.0 / ops.select(t171, 1.0 + t347, 1.0)
-    cosine__elbow_1_over_ahead_front_2 = ops.select(t136, t348 * (1.0 - t347), 1.0)
-    by_s__elbow_1_over_ahead_front_2 = 2.0 * half__elbow_1_over_ahead_front_2 * t348
-    sine__elbow_1_over_ahead_front_2 = ops.select(t136, by_s__elbow_1_over_ahead_front_2, 0.0)
-    t349 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
-    t350 = t193 * cosine__elbow_1_over_ahead_front_2 + t349
-    celbow_over_ahead_front_2 = ops.select(no_link_elbow, t185, -ops.select(tangent_elbow, t350, t193))
-    t351 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
-    t352 = t351 - t193 * sine__elbow_1_over_ahead_front_2
-    t353 = ops.select(tangent_elbow, t352, s__elbow_1_over_ahead_front_2)
-    selbow_over_ahead_front_2 = ops.select(no_link_elbow, t228, t353)
-    t354 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
-    t355 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
-    v_x_over_ahead_front_2 = a5 - a4 * t354 - d3 * t355
-    t356 = ops.abs(v_x_over_ahead_front_2)
-    t357 = d5 - a4 * t355 + d3 * t354
-    below6_over_ahead_front_2 = ops.max(reach_2 + t357, 0.0)
-    above6_over_ahead_front_2 = ops.max(reach_2 - t357, 0.0)
-    t358 = below6_over_ahead_front_2 * above6_over_ahead_front_2
-    held6_over_ahead_front_2 = ops.select(t148, ops.max(0.0, -((t45 - t356) * (t45 + t356))), t358)
-    t359 = ops.select(t208, held6_over_ahead_front_2, 1.0)
-    t360 = t207 & ops.opposite(tangent6_over_ahead_front)
-    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t359), ops.sqrt(ops.select(t360, t358, 1.0)))
-    t361 = below6_over_ahead_front_2 - above6_over_ahead_front_2
-    t362 = ops.select(t208, 4.0 * held6_over_ahead_front_2 + t361 * t361, 1.0)
+    t343 = ops.min(size__elbow_1_over_ahead_front_2, t217)
+    t344 = size__elbow_1_over_ahead_front_2 - ops.max(t58, t343)
+    t345 = t344 * t123
+    t346 = t345 - 2.0 * (t220 + t221)
+    t347 = ops.select(t174 & ops.opposite(t126), ops.max(0.0, t340 * t340 - t345 * t346), 1.0)
+    t348 = ops.select(t126, t346, t340 - t127 * ops.sqrt(t347))
+    t349 = ops.select(t126, t340, t345) / ops.select(t174, t348, 1.0)
+    half__elbow_1_over_ahead_front_2 = ops.select(t131, 0.0, t349)
+    t350 = half__elbow_1_over_ahead_front_2 * half__elbow_1_over_ahead_front_2
+    t351 = 1.0 / ops.select(t173, 1.0 + t350, 1.0)
+    cosine__elbow_1_over_ahead_front_2 = ops.select(t137, t351 * (1.0 - t350), 1.0)
+    by_s__elbow_1_over_ahead_front_2 = 2.0 * half__elbow_1_over_ahead_front_2 * t351
+    sine__elbow_1_over_ahead_front_2 = ops.select(t137, by_s__elbow_1_over_ahead_front_2, 0.0)
+    t352 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
+    t353 = t195 * cosine__elbow_1_over_ahead_front_2 + t352
+    celbow_over_ahead_front_2 = ops.select(no_link_elbow, t187, -ops.select(tangent_elbow, t353, t195))
+    t354 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
+    t355 = t354 - t195 * sine__elbow_1_over_ahead_front_2
+    t356 = ops.select(tangent_elbow, t355, s__elbow_1_over_ahead_front_2)
+    selbow_over_ahead_front_2 = ops.select(no_link_elbow, t230, t356)
+    t357 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
+    t358 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
+    v_x_over_ahead_front_2 = a5 - a4 * t357 - d3 * t358
+    t359 = ops.abs(v_x_over_ahead_front_2)
+    t360 = ops.max(0.0, -((height6 - t359) * (height6 + t359)))
+    t361 = d5 - a4 * t358 + d3 * t357
+    below6_over_ahead_front_2 = ops.max(reach_2 + t361, 0.0)
+    above6_over_ahead_front_2 = ops.max(reach_2 - t361, 0.0)
+    t362 = below6_over_ahead_front_2 * above6_over_ahead_front_2
+    held6_over_ahead_front_2 = ops.select(t149, t360, t362)
+    t363 = ops.select(t210, held6_over_ahead_front_2, 1.0)
+    t364 = t209 & ops.opposite(tangent6_over_ahead_front)
+    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t363), ops.sqrt(ops.select(t364, t362, 1.0)))
+    t365 = below6_over_ahead_front_2 - above6_over_ahead_front_2
+    t366 = ops.select(t210, 4.0 * held6_over_ahead_front_2 + t365 * t365, 1.0)
     width6_over_ahead_front_2 = below6_over_ahead_front_2 + above6_over_ahead_front_2
-    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t362), width6_over_ahead_front_2)
-    t363 = ops.select(t207, reach_2 * span6_over_ahead_front_2, 1.0)
-    t364 = 1.0 / t363
-    t365 = t98 * kept6_over_ahead_front_2 * t364
-    t366 = t364 * (u_x * t361)
-    s6_over_ahead_front_2 = ops.select(free6, 0.0, t365 - t366)
-    t367 = t364 * (t95 * kept6_over_ahead_front_2)
-    t368 = t364 * (s_z * t361)
-    c6_over_ahead_front_2 = ops.select(free6, 1.0, t367 + t368)
+    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t366), width6_over_ahead_front_2)
+    t367 = ops.select(t209, reach_2 * span6_over_ahead_front_2, 1.0)
+    t368 = 1.0 / t367
+    t369 = t99 * kept6_over_ahead_front_2 * t368
+    t370 = t368 * (u_x * t365)
+    s6_over_ahead_front_2 = ops.select(free6, 0.0, t369 - t370)
+    t371 = t368 * (t96 * kept6_over_ahead_front_2)
+    t372 = t368 * (s_z * t365)
+    c6_over_ahead_front_2 = ops.select(free6, 1.0, t371 + t372)
     R2_23_over_ahead_front_2 = R1_21 * s6_over_ahead_front_2 - T23 * c6_over_ahead_front_2
     w_x_over_ahead_front_2 = u_x * c6_over_ahead_front_2 + s_z * s6_over_ahead_front_2
     dot_5_over_ahead_front_2 = v_x_over_ahead_front_2 * w_x_over_ahead_front_2
-    t369 = t161 & ops.opposite(on_axis_5_over_ahead_front)
-    t370 = w_y * v_x_over_ahead_front_2
-    t371 = t370 * t370
-    t372 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
-    t373 = ops.select(t369, ops.sqrt(ops.select(t369, t371 + t372, 1.0)), 1.0)
-    t374 = 1.0 / t373
-    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t374)
+    t373 = t163 & ops.opposite(on_axis_5_over_ahead_front)
+    t374 = w_y * v_x_over_ahead_front_2
+    t375 = t374 * t374
+    t376 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
+    t377 = ops.select(t373, ops.sqrt(ops.select(t373, t375 + t376, 1.0)), 1.0)
+    t378 = 1.0 / t377
+    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t378)
     R2_21_over_ahead_front_2 = R1_21 * c6_over_ahead_front_2 + T23 * s6_over_ahead_front_2
-    t375 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
-    t376 = ops.select(on_axis_5_over_ahead_front, 0.0, t370 * t374)
-    R3_21_over_ahead_front_2 = t375 - R1_23 * t376
-    R4_23_over_ahead_front_2 = t354 * R2_23_over_ahead_front_2 + t355 * R3_21_over_ahead_front_2
-    t377 = t161 & ops.opposite(aligned_wrist_over_ahead_front)
+    t379 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
+    t380 = ops.select(on_axis_5_over_ahead_front, 0.0, t374 * t378)
+    R3_21_over_ahead_front_2 = t379 - R1_23 * t380
+    R4_23_over_ahead_front_2 = t357 * R2_23_over_ahead_front_2 + t358 * R3_21_over_ahead_front_2
+    t381 = t163 & ops.opposite(aligned_wrist_over_ahead_front)
     R2_13_over_ahead_front_2 = R1_11 * s6_over_ahead_front_2 - T13 * c6_over_ahead_front_2
     R2_11_over_ahead_front_2 = R1_11 * c6_over_ahead_front_2 + T13 * s6_over_ahead_front_2
-    t378 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
-    R3_11_over_ahead_front_2 = t378 - R1_13 * t376
-    R4_13_over_ahead_front_2 = t354 * R2_13_over_ahead_front_2 + t355 * R3_11_over_ahead_front_2
-    t379 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
-    t380 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
-    t381 = ops.select(t377, t379, 1.0) + ops.select(t377, t380, 1.0)
-    t382 = ops.select(t377, ops.sqrt(ops.select(t377, t381, 1.0)), 1.0)
-    t383 = 1.0 / t382
-    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t383)
-    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t383)
-    t384 = ops.select(t161, c_wrist_over_ahead_front, 1.0)
-    t385 = ops.atan2(s_wrist_over_ahead_front, t384)
-    t386 = ops.select(failed_3, ops.nan, ops.wrap_cut(t385))
-    t387 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
-    t388 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
-    t389 = ops.select(t161, t387, 1.0) + ops.select(t161, t388, 1.0)
+    t382 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
+    R3_11_over_ahead_front_2 = t382 - R1_13 * t380
+    R4_13_over_ahead_front_2 = t357 * R2_13_over_ahead_front_2 + t358 * R3_11_over_ahead_front_2
+    t383 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
+    t384 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
+    t385 = ops.select(t381, t383, 1.0) + ops.select(t381, t384, 1.0)
+    t386 = ops.select(t381, ops.sqrt(ops.select(t381, t385, 1.0)), 1.0)
+    t387 = 1.0 / t386
+    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t387)
+    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t387)
+    t388 = ops.select(t163, c_wrist_over_ahead_front, 1.0)
+    t389 = ops.atan2(s_wrist_over_ahead_front, t388)
+    t390 = ops.select(failed_3, ops.nan, ops.wrap_cut(t389))
+    t391 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
+    t392 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
+    t393 = ops.select(t163, t391, 1.0) + ops.select(t163, t392, 1.0)
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front_2 - T33 * c6_over_ahead_front_2
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front_2 + T33 * s6_over_ahead_front_2
-    t390 = c5_over_ahead_front_2 * R2_31_over_ahead_front
-    R4_33_over_ahead_front = t354 * R2_33_over_ahead_front + t355 * (t390 - R1_33 * t376)
-    t391 = ops.select(t161, R4_33_over_ahead_front, 1.0)
-    t392 = ops.atan2(t389, t391)
-    t393 = ops.select(failed_3, ops.nan, ops.wrap_cut(t392))
-    t394 = t355 * R2_13_over_ahead_front_2 - t354 * R3_11_over_ahead_front_2
-    t395 = ops.select(t161, s_wrist_over_ahead_front * t394, 1.0)
-    t396 = t355 * R2_23_over_ahead_front_2 - t354 * R3_21_over_ahead_front_2
-    t397 = ops.select(t161, c_wrist_over_ahead_front * t396, 1.0)
-    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t376 + R1_13 * c5_over_ahead_front_2
-    t398 = s_wrist_over_ahead_front * R3_13_over_ahead_front
-    R3_23_over_ahead_front = t376 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
-    t399 = c_wrist_over_ahead_front * R3_23_over_ahead_front
-    t400 = ops.select(t161, t398, 1.0) - ops.select(t161, t399, 1.0)
-    t401 = ops.atan2(t395 - t397, ops.select(t161, t400, 1.0))
-    t402 = ops.select(failed_3, ops.nan, ops.wrap_cut(t401))
-    t403 = ops.wrap_cut(ops.atan2(t355, ops.select(t168, t354, 1.0)))
-    t404 = ops.select(failed_3, ops.nan, t403)
-    t405 = ops.atan2(t376, ops.select(t161, c5_over_ahead_front_2, 1.0))
-    t406 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t405))
-    t407 = ops.atan2(s6_over_ahead_front_2, ops.select(t161, c6_over_ahead_front_2, 1.0))
-    t408 = ops.select(failed_3, ops.nan, ops.wrap_cut(t407))
-    t409 = ops.select(failed_3, ops.nan, t272)
+    t394 = c5_over_ahead_front_2 * R2_31_over_ahead_front
+    R4_33_over_ahead_front = t357 * R2_33_over_ahead_front + t358 * (t394 - R1_33 * t380)
+    t395 = ops.select(t163, R4_33_over_ahead_front, 1.0)
+    t396 = ops.atan2(t393, t395)
+    t397 = ops.select(failed_3, ops.nan, ops.wrap_cut(t396))
+    t398 = t358 * R2_13_over_ahead_front_2 - t357 * R3_11_over_ahead_front_2
+    t399 = ops.select(t163, s_wrist_over_ahead_front * t398, 1.0)
+    t400 = t358 * R2_23_over_ahead_front_2 - t357 * R3_21_over_ahead_front_2
+    t401 = ops.select(t163, c_wrist_over_ahead_front * t400, 1.0)
+    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t380 + R1_13 * c5_over_ahead_front_2
+    t402 = s_wrist_over_ahead_front * R3_13_over_ahead_front
+    R3_23_over_ahead_front = t380 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
+    t403 = c_wrist_over_ahead_front * R3_23_over_ahead_front
+    t404 = ops.select(t163, t402, 1.0) - ops.select(t163, t403, 1.0)
+    t405 = ops.atan2(t399 - t401, ops.select(t163, t404, 1.0))
+    t406 = ops.select(failed_3, ops.nan, ops.wrap_cut(t405))
+    t407 = ops.wrap_cut(ops.atan2(t358, ops.select(t170, t357, 1.0)))
+    t408 = ops.select(failed_3, ops.nan, t407)
+    t409 = ops.atan2(t380, ops.select(t163, c5_over_ahead_front_2, 1.0))
+    t410 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t409))
+    t411 = ops.atan2(s6_over_ahead_front_2, ops.select(t163, c6_over_ahead_front_2, 1.0))
+    t412 = ops.select(failed_3, ops.nan, ops.wrap_cut(t411))
+    t413 = ops.select(failed_3, ops.nan, t275)
     flip_wrist_over_ahead_back = ops.select(aligned_wrist_over_ahead_front, 0.0, 3.141592653589793)
-    t410 = ops.select(failed_3, ops.nan, ops.wrap(t385 + flip_wrist_over_ahead_back))
-    t411 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t392))
-    t412 = ops.select(failed_3, ops.nan, ops.wrap(t401 + flip_wrist_over_ahead_back))
-    t413 = t142 * (R1_11 * t162 + T13 * c6_over_behind_front)
-    on_axis_5_over_behind_front = ops.min(t159, t164) <= t39
+    t414 = ops.select(failed_3, ops.nan, ops.wrap(t389 + flip_wrist_over_ahead_back))
+    t415 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t396))
+    t416 = ops.select(failed_3, ops.nan, ops.wrap(t405 + flip_wrist_over_ahead_back))
+    t417 = t143 * (R1_11 * t164 + T13 * c6_over_behind_front)
+    on_axis_5_over_behind_front = ops.min(t161, t166) <= t39
     dot_5_over_behind_front = v_x_over_ahead_front * w_x_over_behind_front
-    t414 = dot_5_over_behind_front * dot_5_over_behind_front
-    t415 = 1.0 / ops.sqrt(t331 + t414)
-    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t415)
-    t416 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t162)
-    t417 = ops.select(on_axis_5_over_behind_front, 0.0, t330 * t415)
-    t418 = t413 - t141 * (t416 - R1_13 * t417)
-    t419 = t142 * (R1_21 * t162 + T23 * c6_over_behind_front)
-    t420 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t162)
-    t421 = t419 - t141 * (t420 - R1_23 * t417)
-    aligned_wrist_over_behind_front = ops.sqrt(t418 * t418 + t421 * t421) <= t110
-    t422 = ops.select(free6, 0.0, t365 + t366)
-    c6_over_behind_front_2 = ops.select(free6, 1.0, t368 - t367)
-    t423 = R1_21 * t422 + T23 * c6_over_behind_front_2
-    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (u_x * c6_over_behind_front_2 - s_z * t422)
-    t424 = t166 & ops.opposite(on_axis_5_over_behind_front)
-    t425 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
-    t426 = ops.select(t424, ops.sqrt(ops.select(t424, t371 + t425, 1.0)), 1.0)
-    t427 = 1.0 / t426
-    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t427)
-    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t422
-    t428 = c5_over_behind_front_2 * R2_21_over_behind_front
-    t429 = ops.select(on_axis_5_over_behind_front, 0.0, t370 * t427)
-    R3_21_over_behind_front = t428 - R1_23 * t429
-    t430 = t354 * t423 - t355 * R3_21_over_behind_front
-    t431 = ops.opposite(aligned_wrist_over_behind_front)
-    t432 = t166 & t431
-    t433 = R1_11 * t422 + T13 * c6_over_behind_front_2
-    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t422
-    t434 = c5_over_behind_front_2 * R2_11_over_behind_front
-    R3_11_over_behind_front = t434 - R1_13 * t429
-    t435 = t354 * t433 - t355 * R3_11_over_behind_front
-    t436 = ops.select(t432, t435 * t435, 1.0) + ops.select(t432, t430 * t430, 1.0)
-    t437 = ops.select(t432, ops.sqrt(ops.select(t432, t436, 1.0)), 1.0)
-    t438 = 1.0 / t437
-    t439 = ops.select(aligned_wrist_over_behind_front, 0.0, t430 * t438)
-    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t435 * t438))
-    t440 = ops.select(t166, c_wrist_over_behind_front, 1.0)
-    t441 = ops.atan2(t439, t440)
-    t442 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t441))
-    t443 = ops.select(t166, t435 * c_wrist_over_behind_front, 1.0)
-    t444 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t422)
-    t445 = t354 * (R1_31 * t422 + T33 * c6_over_behind_front_2)
-    t446 = ops.select(t166, t355 * (t444 - R1_33 * t429) - t445, 1.0)
-    t447 = ops.atan2(t443 - ops.select(t166, t430 * t439, 1.0), t446)
-    t448 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t447))
-    t449 = t439 * (t355 * t433 + t354 * R3_11_over_behind_front)
-    t450 = c_wrist_over_behind_front * (t355 * t423 + t354 * R3_21_over_behind_front)
-    t451 = ops.select(t166, t449, 1.0) + ops.select(t166, t450, 1.0)
-    R3_13_over_behind_front = R2_11_over_behind_front * t429 + R1_13 * c5_over_behind_front_2
-    t452 = ops.select(t166, t439 * R3_13_over_behind_front, 1.0)
-    R3_23_over_behind_front = t429 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
-    t453 = c_wrist_over_behind_front * R3_23_over_behind_front
-    t454 = ops.select(t166, -(t452 + ops.select(t166, t453, 1.0)), 1.0)
-    t455 = ops.atan2(t451, t454)
-    t456 = ops.select(failed_4, ops.nan, ops.wrap_cut(t455))
-    t457 = ops.select(failed_4, ops.nan, t403)
-    t458 = ops.select(t166, c5_over_behind_front_2, 1.0)
-    t459 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t429, t458)))
-    t460 = ops.select(t166, c6_over_behind_front_2, 1.0)
-    t461 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t422, t460)))
-    t462 = ops.select(failed_4, ops.nan, t272)
+    t418 = dot_5_over_behind_front * dot_5_over_behind_front
+    t419 = 1.0 / ops.sqrt(t334 + t418)
+    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t419)
+    t420 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t164)
+    t421 = ops.select(on_axis_5_over_behind_front, 0.0, t333 * t419)
+    t422 = t417 - t142 * (t420 - R1_13 * t421)
+    t423 = t143 * (R1_21 * t164 + T23 * c6_over_behind_front)
+    t424 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t164)
+    t425 = t423 - t142 * (t424 - R1_23 * t421)
+    aligned_wrist_over_behind_front = ops.sqrt(t422 * t422 + t425 * t425) <= t111
+    t426 = ops.select(free6, 0.0, t369 + t370)
+    c6_over_behind_front_2 = ops.select(free6, 1.0, t372 - t371)
+    t427 = R1_21 * t426 + T23 * c6_over_behind_front_2
+    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (u_x * c6_over_behind_front_2 - s_z * t426)
+    t428 = t168 & ops.opposite(on_axis_5_over_behind_front)
+    t429 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
+    t430 = ops.select(t428, ops.sqrt(ops.select(t428, t375 + t429, 1.0)), 1.0)
+    t431 = 1.0 / t430
+    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t431)
+    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t426
+    t432 = c5_over_behind_front_2 * R2_21_over_behind_front
+    t433 = ops.select(on_axis_5_over_behind_front, 0.0, t374 * t431)
+    R3_21_over_behind_front = t432 - R1_23 * t433
+    t434 = t357 * t427 - t358 * R3_21_over_behind_front
+    t435 = ops.opposite(aligned_wrist_over_behind_front)
+    t436 = t168 & t435
+    t437 = R1_11 * t426 + T13 * c6_over_behind_front_2
+    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t426
+    t438 = c5_over_behind_front_2 * R2_11_over_behind_front
+    R3_11_over_behind_front = t438 - R1_13 * t433
+    t439 = t357 * t437 - t358 * R3_11_over_behind_front
+    t440 = ops.select(t436, t439 * t439, 1.0) + ops.select(t436, t434 * t434, 1.0)
+    t441 = ops.select(t436, ops.sqrt(ops.select(t436, t440, 1.0)), 1.0)
+    t442 = 1.0 / t441
+    t443 = ops.select(aligned_wrist_over_behind_front, 0.0, t434 * t442)
+    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t439 * t442))
+    t444 = ops.select(t168, c_wrist_over_behind_front, 1.0)
+    t445 = ops.atan2(t443, t444)
+    t446 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t445))
+    t447 = ops.select(t168, t439 * c_wrist_over_behind_front, 1.0)
+    t448 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t426)
+    t449 = t357 * (R1_31 * t426 + T33 * c6_over_behind_front_2)
+    t450 = ops.select(t168, t358 * (t448 - R1_33 * t433) - t449, 1.0)
+    t451 = ops.atan2(t447 - ops.select(t168, t434 * t443, 1.0), t450)
+    t452 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t451))
+    t453 = t443 * (t358 * t437 + t357 * R3_11_over_behind_front)
+    t454 = c_wrist_over_behind_front * (t358 * t427 + t357 * R3_21_over_behind_front)
+    t455 = ops.select(t168, t453, 1.0) + ops.select(t168, t454, 1.0)
+    R3_13_over_behind_front = R2_11_over_behind_front * t433 + R1_13 * c5_over_behind_front_2
+    t456 = ops.select(t168, t443 * R3_13_over_behind_front, 1.0)
+    R3_23_over_behind_front = t433 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
+    t457 = c_wrist_over_behind_front * R3_23_over_behind_front
+    t458 = ops.select(t168, -(t456 + ops.select(t168, t457, 1.0)), 1.0)
+    t459 = ops.atan2(t455, t458)
+    t460 = ops.select(failed_4, ops.nan, ops.wrap_cut(t459))
+    t461 = ops.select(failed_4, ops.nan, t407)
+    t462 = ops.select(t168, c5_over_behind_front_2, 1.0)
+    t463 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t433, t462)))
+    t464 = ops.select(t168, c6_over_behind_front_2, 1.0)
+    t465 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t426, t464)))
+    t466 = ops.select(failed_4, ops.nan, t275)
     flip_wrist_over_behind_back = ops.select(aligned_wrist_over_behind_front, 0.0, 3.141592653589793)
-    t463 = ops.select(failed_4, ops.nan, ops.wrap(flip_wrist_over_behind_back - t441))
-    t464 = ops.select(failed_4, ops.nan, ops.wrap_cut(t447))
-    t465 = ops.select(failed_4, ops.nan, ops.wrap(t455 + flip_wrist_over_behind_back))
-    t466 = no_link_elbow | free6
-    t467 = ops.status(invalid, unreachable, t466 | on_axis_5 | aligned_wrist)
-    t468 = t466 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
-    t469 = ops.status(invalid, unreachable_2, t468)
-    t470 = t466 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
-    t471 = ops.status(invalid, unreachable_3, t470)
-    t472 = t466 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
-    t473 = ops.status(invalid, unreachable_4, t472)
+    t467 = ops.select(failed_4, ops.nan, ops.wrap(flip_wrist_over_behind_back - t445))
+    t468 = ops.select(failed_4, ops.nan, ops.wrap_cut(t451))
+    t469 = ops.select(failed_4, ops.nan, ops.wrap(t459 + flip_wrist_over_behind_back))
+    t470 = no_link_elbow | free6
+    t471 = ops.status(invalid, unreachable, t470 | on_axis_5 | aligned_wrist)
+    t472 = t470 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
+    t473 = ops.status(invalid, unreachable_2, t472)
+    t474 = t470 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
+    t475 = ops.status(invalid, unreachable_3, t474)
+    t476 = t470 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
+    t477 = ops.status(invalid, unreachable_4, t476)
     return (
-        t255,
         t258,
-        t264,
-        t266,
-        t268,
-        t270,
+        t261,
+        t267,
+        t269,
+        t271,
         t273,
-        t274,
-        t275,
         t276,
-        t266,
-        t268,
-        t270,
+        t277,
+        t278,
+        t279,
+        t269,
+        t271,
         t273,
-        t306,
-        t312,
-        t320,
-        t321,
+        t276,
+        t309,
+        t315,
         t323,
-        t325,
+        t324,
         t326,
-        t327,
         t328,
         t329,
-        t321,
-        t323,
-        t325,
+        t330,
+        t331,
+        t332,
+        t324,
         t326,
-        t386,
-        t393,
-        t402,
-        t404,
+        t328,
+        t329,
+        t390,
+        t397,
         t406,
         t408,
-        t409,
         t410,
-        t411,
         t412,
-        t404,
-        t406,
+        t413,
+        t414,
+        t415,
+        t416,
         t408,
-        t409,
-        t442,
-        t448,
-        t456,
-        t457,
-        t459,
+        t410,
+        t412,
+        t413,
+        t446,
+        t452,
+        t460,
         t461,
-        t462,
         t463,
-        t464,
         t465,
-        t457,
-        t459,
+        t466,
+        t467,
+        t468,
+        t469,
         t461,
-        t462,
-        t467,
-        t467,
-        t469,
-        t469,
+        t463,
+        t465,
+        t466,
         t471,
         t471,
         t473,
         t473,
+        t475,
+        t475,
+        t477,
+        t477,
     )
 
 

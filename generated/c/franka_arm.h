@@ -12,9 +12,9 @@
  *   singularities: 5 add, 8 multiply, 3 sincos
  *   jacobian_space: 73 add, 155 multiply, 6 sincos
  *   jacobian_body: 83 add, 159 multiply, 6 sincos
- *   ik: 263 compare and select, 279 add, 23 atan2, 21 divide, 383 multiply, 1 sincos, 31 sqrt
- *   ik where nothing vanishes: 145 compare and select, 220 add, 23 atan2, 14 divide, 314 multiply,
- *     1 sincos, 24 sqrt
+ *   ik: 265 compare and select, 279 add, 23 atan2, 21 divide, 387 multiply, 1 sincos, 29 sqrt
+ *   ik where nothing vanishes: 147 compare and select, 220 add, 23 atan2, 14 divide, 319 multiply,
+ *     1 sincos, 22 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not

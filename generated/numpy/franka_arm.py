@@ -11,9 +11,9 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 263 compare and select, 279 add, 23 atan2, 21 divide, 383 multiply, 1 sincos, 31 sqrt
-#   ik where nothing vanishes: 145 compare and select, 220 add, 23 atan2, 14 divide, 314 multiply,
-#     1 sincos, 24 sqrt
+#   ik: 265 compare and select, 279 add, 23 atan2, 21 divide, 387 multiply, 1 sincos, 29 sqrt
+#   ik where nothing vanishes: 147 compare and select, 220 add, 23 atan2, 14 divide, 319 multiply,
+#     1 sincos, 22 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder.  The axis of theta4, the elbow, is
@@ -1111,98 +1111,101 @@ def _ik(
     t23 = 1.0 / span_elbow
     t24 = (t22 - t21 * t19) * t23
     del t19, t21
-    t25 = np.abs(w_y)
+    height6 = np.abs(w_y)
     reach = np.sqrt(t13)
     del t13
-    t26 = t25 < reach
-    t27 = _runtime.select(t26, -t5, level_s_elbow)
-    t28 = t27 * t24
-    t29 = _runtime.select(t26, level_s_elbow, t5)
+    t25 = height6 < reach
+    t26 = _runtime.select(t25, -t5, level_s_elbow)
+    t27 = t26 * t24
+    t28 = _runtime.select(t25, level_s_elbow, t5)
     del level_s_elbow
     s__elbow_1_over_ahead_front = t23 * (2.0 * lever_elbow)
     del t23
-    t30 = t29 * s__elbow_1_over_ahead_front
-    t31 = t28 + t30
-    t32 = c_straight * t24
-    t33 = s_straight * s__elbow_1_over_ahead_front
-    t34 = t32 + t33
-    t35 = s_straight * t24
-    t36 = c_straight * s__elbow_1_over_ahead_front
-    t37 = t35 - t36
-    q__elbow_1 = _runtime.select(t26, a5 + a4 * t34 - d3 * t37, d3 * t34 - (d5 - a4 * t37))
-    del t34, t37
+    t29 = t28 * s__elbow_1_over_ahead_front
+    t30 = t27 + t29
+    t31 = c_straight * t24
+    t32 = s_straight * s__elbow_1_over_ahead_front
+    t33 = t31 + t32
+    t34 = s_straight * t24
+    t35 = c_straight * s__elbow_1_over_ahead_front
+    t36 = t34 - t35
+    q__elbow_1 = _runtime.select(t25, a5 + a4 * t33 - d3 * t36, d3 * t33 - (d5 - a4 * t36))
+    del t33, t36
     size__elbow_1 = np.abs(q__elbow_1)
-    t38 = size * _runtime.ROUNDING
-    t39 = _runtime.select(t26, t25, 0.0) - t38
-    t40 = t38 + _runtime.select(t26, size, reach)
-    t41 = np.maximum(t39, np.minimum(size__elbow_1, t40))
-    t42 = (size__elbow_1 - t41) * _runtime.sign(q__elbow_1)
-    del q__elbow_1, size__elbow_1, t41
-    t43 = t29 * t24
-    del t29
-    t44 = t27 * s__elbow_1_over_ahead_front
-    del t27
-    t45 = t42 - 2.0 * (t43 - t44)
-    inner__elbow_1 = t31 * t31 - t42 * t45
-    t46 = inner__elbow_1 < 0.0
-    t47 = _runtime.sign(-t31) * np.sqrt(np.maximum(0.0, inner__elbow_1))
+    t37 = size * _runtime.ROUNDING
+    t38 = _runtime.select(t25, height6, 0.0) - t37
+    t39 = t37 + _runtime.select(t25, size, reach)
+    t40 = np.maximum(t38, np.minimum(size__elbow_1, t39))
+    t41 = (size__elbow_1 - t40) * _runtime.sign(q__elbow_1)
+    del q__elbow_1, size__elbow_1, t40
+    t42 = t28 * t24
+    del t28
+    t43 = t26 * s__elbow_1_over_ahead_front
+    del t26
+    t44 = t41 - 2.0 * (t42 - t43)
+    inner__elbow_1 = t30 * t30 - t41 * t44
+    t45 = inner__elbow_1 < 0.0
+    t46 = _runtime.sign(-t30) * np.sqrt(np.maximum(0.0, inner__elbow_1))
     del inner__elbow_1
-    t48 = _runtime.select(t46, t45, t31 - t47)
-    del t45, t47
-    t49 = _runtime.select(t46, t31, t42)
-    del t31, t42, t46
-    half__elbow_1 = _runtime.select(np.abs(t48) <= np.abs(t49), 0.0, t49 / t48)
-    del t48, t49
-    t50 = half__elbow_1 * half__elbow_1
-    t51 = 1.0 / (1.0 + t50)
-    by_s__elbow_1 = 2.0 * half__elbow_1 * t51
+    t47 = _runtime.select(t45, t44, t30 - t46)
+    del t44, t46
+    t48 = _runtime.select(t45, t30, t41)
+    del t30, t41, t45
+    half__elbow_1 = _runtime.select(np.abs(t47) <= np.abs(t48), 0.0, t48 / t47)
+    del t47, t48
+    t49 = half__elbow_1 * half__elbow_1
+    t50 = 1.0 / (1.0 + t49)
+    by_s__elbow_1 = 2.0 * half__elbow_1 * t50
     del half__elbow_1
-    t52 = np.abs(span_elbow * 0.5 - t22)
+    t51 = np.abs(span_elbow * 0.5 - t22)
     del span_elbow, t22
-    by_c__elbow_1 = t51 * (1.0 - t50)
-    del t50, t51
-    t53 = by_s__elbow_1 * by_s__elbow_1 / (1.0 + np.abs(by_c__elbow_1))
-    versine__elbow_1 = _runtime.select(0.0 < by_c__elbow_1, t53, 1.0 - by_c__elbow_1)
-    del t53
-    cost__elbow_1 = lever_elbow * np.abs(by_s__elbow_1) + t52 * versine__elbow_1
+    by_c__elbow_1 = t50 * (1.0 - t49)
+    del t49, t50
+    t52 = by_s__elbow_1 * by_s__elbow_1 / (1.0 + np.abs(by_c__elbow_1))
+    versine__elbow_1 = _runtime.select(0.0 < by_c__elbow_1, t52, 1.0 - by_c__elbow_1)
+    del t52
+    cost__elbow_1 = lever_elbow * np.abs(by_s__elbow_1) + t51 * versine__elbow_1
     del versine__elbow_1
-    whole__elbow_1 = _runtime.ROUNDING * (t38 + far)
-    del far, t38
-    t54 = cost__elbow_1 <= whole__elbow_1
+    whole__elbow_1 = _runtime.ROUNDING * (t37 + far)
+    del far
+    t53 = cost__elbow_1 <= whole__elbow_1
     del cost__elbow_1
-    cosine__elbow_1 = _runtime.select(t54, by_c__elbow_1, 1.0)
+    cosine__elbow_1 = _runtime.select(t53, by_c__elbow_1, 1.0)
     del by_c__elbow_1
-    sine__elbow_1 = _runtime.select(t54, by_s__elbow_1, 0.0)
-    del by_s__elbow_1, t54
-    t55 = t24 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
-    celbow = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t55, t24))
-    del t55
-    t56 = _runtime.select(t6, 0.0, t5 * t7)
+    sine__elbow_1 = _runtime.select(t53, by_s__elbow_1, 0.0)
+    del by_s__elbow_1, t53
+    t54 = t24 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
+    celbow = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t54, t24))
+    del t54
+    t55 = _runtime.select(t6, 0.0, t5 * t7)
     del t5, t6, t7
-    t57 = s__elbow_1_over_ahead_front * cosine__elbow_1
+    t56 = s__elbow_1_over_ahead_front * cosine__elbow_1
     del cosine__elbow_1
-    t58 = _runtime.select(tangent_elbow, t24 * sine__elbow_1 + t57, s__elbow_1_over_ahead_front)
-    del sine__elbow_1, t57
-    selbow = _runtime.select(no_link_elbow, t56, -t58)
-    del t58
-    t59 = c_straight * celbow + s_straight * selbow
+    t57 = _runtime.select(tangent_elbow, t24 * sine__elbow_1 + t56, s__elbow_1_over_ahead_front)
+    del sine__elbow_1, t56
+    selbow = _runtime.select(no_link_elbow, t55, -t57)
+    del t57
+    t58 = c_straight * celbow + s_straight * selbow
     R1_11 = T11 * c_x_theta7 - T12 * s_x_theta7
     free6 = reach <= t20
-    t60 = s_z * 2.0
-    t61 = c_straight * selbow - s_straight * celbow
+    t59 = s_z * 2.0
+    t60 = c_straight * selbow - s_straight * celbow
     del celbow, selbow
-    t62 = d5 - a4 * t61 + d3 * t59
-    t63 = reach + t62
-    t64 = reach - t62
-    del t62
-    t65 = reach * 0.00390625
-    t66 = reach * _runtime.VANISHING
-    tangent6 = np.sqrt(np.abs(t63 * t64)) - t65 <= t66
-    v_x = a5 - a4 * t59 - d3 * t61
+    t61 = d5 - a4 * t60 + d3 * t58
+    t62 = reach + t61
+    t63 = reach - t61
+    del t61
+    t64 = np.maximum(reach * 1.52587890625e-05, np.minimum(reach * 0.25, t37 * 8.0))
+    del t37
+    t65 = reach * t64
+    del t64
+    t66 = _runtime.VANISHING * _runtime.VANISHING * (reach * reach)
+    tangent6 = np.abs(t62 * t63) - t65 <= t66
+    v_x = a5 - a4 * t58 - d3 * t60
     t67 = np.abs(v_x)
-    t68 = np.maximum(0.0, -((t25 - t67) * (t25 + t67)))
-    below6 = np.maximum(t63, 0.0)
-    above6 = np.maximum(t64, 0.0)
+    t68 = np.maximum(0.0, -((height6 - t67) * (height6 + t67)))
+    below6 = np.maximum(t62, 0.0)
+    above6 = np.maximum(t63, 0.0)
     t69 = below6 * above6
     held6 = _runtime.select(t67 < reach, t68, t69)
     del t67, t68
@@ -1213,7 +1216,7 @@ def _ik(
     del above6, below6, held6
     t71 = 1.0 / (reach * span6)
     del span6
-    t72 = t60 * kept6 * t71
+    t72 = t59 * kept6 * t71
     t73 = t71 * (u_x * t70)
     s6 = _runtime.select(free6, 0.0, t72 - t73)
     t74 = u_x * 2.0
@@ -1239,13 +1242,13 @@ def _ik(
     t82 = _runtime.select(on_axis_5, 0.0, t79 * t81)
     del t81
     R3_11 = c5 * R2_11 - R1_13 * t82
-    R4_13 = t59 * R2_13 + t61 * R3_11
+    R4_13 = t58 * R2_13 + t60 * R3_11
     R1_21 = T21 * c_x_theta7 - T22 * s_x_theta7
     R2_23 = R1_21 * s6 - T23 * c6
     R2_21 = R1_21 * c6 + T23 * s6
     R1_23 = T21 * s_x_theta7 + T22 * c_x_theta7
     R3_21 = c5 * R2_21 - R1_23 * t82
-    R4_23 = t59 * R2_23 + t61 * R3_21
+    R4_23 = t58 * R2_23 + t60 * R3_21
     h_wrist = np.sqrt(R4_13 * R4_13 + R4_23 * R4_23)
     t83 = _runtime.VANISHING * 16.0
     aligned_wrist = h_wrist <= t83
@@ -1279,8 +1282,8 @@ def _ik(
     del size
     t100 = (-t99 <= t14) & (-t99 <= t17) & (-t99 <= t18)
     del t14, t17, t18
-    t101 = t100 & (-t99 <= t63) & (-t99 <= t64)
-    del t63, t64
+    t101 = t100 & (-t99 <= t62) & (-t99 <= t63)
+    del t62, t63
     t102 = np.abs(_runtime.select(tangent6, t78 - t77, 0.0))
     del t78
     unreachable = np.logical_not(t101 & (t102 <= t99))
@@ -1288,16 +1291,16 @@ def _ik(
     t103 = _runtime.poison(invalid | unreachable)
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    t104 = t61 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t82)
-    t105 = np.arctan2(R4_13 * c_wrist + R4_23 * s_wrist, t59 * (R1_31 * s6 - T33 * c6) + t104)
+    t104 = t60 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t82)
+    t105 = np.arctan2(R4_13 * c_wrist + R4_23 * s_wrist, t58 * (R1_31 * s6 - T33 * c6) + t104)
     del R4_13, R4_23, t104
-    t106 = s_wrist * (t61 * R2_13 - t59 * R3_11) - c_wrist * (t61 * R2_23 - t59 * R3_21)
+    t106 = s_wrist * (t60 * R2_13 - t58 * R3_11) - c_wrist * (t60 * R2_23 - t58 * R3_21)
     del R2_13, R2_23, R3_11, R3_21
     t107 = s_wrist * (R2_11 * t82 + R1_13 * c5) - c_wrist * (t82 * R2_21 + R1_23 * c5)
     del R2_11, R2_21, c_wrist, s_wrist
     t108 = np.arctan2(t106, t107)
     del t106, t107
-    t109 = _runtime.wrap_cut(np.arctan2(t61, t59))
+    t109 = _runtime.wrap_cut(np.arctan2(t60, t58))
     t110 = t109 + t103
     t111 = _runtime.wrap_cut(-np.arctan2(t82, c5)) + t103
     del c5, t82
@@ -1330,13 +1333,13 @@ def _ik(
     del t120, t79
     R3_11_bent_behind_front = t121 - R1_13 * t122
     del t121
-    t123 = t59 * t116 - t61 * R3_11_bent_behind_front
+    t123 = t58 * t116 - t60 * R3_11_bent_behind_front
     t124 = R1_21 * t115 + T23 * c6_bent_behind_front
     R2_21_bent_behind_front = R1_21 * c6_bent_behind_front - T23 * t115
     t125 = c5_bent_behind_front * R2_21_bent_behind_front
     R3_21_bent_behind_front = t125 - R1_23 * t122
     del t125
-    t126 = t59 * t124 - t61 * R3_21_bent_behind_front
+    t126 = t58 * t124 - t60 * R3_21_bent_behind_front
     h_wrist_bent_behind_front = np.sqrt(t123 * t123 + t126 * t126)
     aligned_wrist_bent_behind_front = h_wrist_bent_behind_front <= t83
     t127 = 1.0 / h_wrist_bent_behind_front
@@ -1353,13 +1356,13 @@ def _ik(
     t132 = t123 * c_wrist_bent_behind_front - t126 * t128
     del t123, t126
     t133 = c5_bent_behind_front * (R1_31 * c6_bent_behind_front - T33 * t115)
-    t134 = t59 * (R1_31 * t115 + T33 * c6_bent_behind_front)
-    t135 = np.arctan2(t132, t61 * (t133 - R1_33 * t122) - t134)
+    t134 = t58 * (R1_31 * t115 + T33 * c6_bent_behind_front)
+    t135 = np.arctan2(t132, t60 * (t133 - R1_33 * t122) - t134)
     del t132, t133, t134
-    t136 = t128 * (t61 * t116 + t59 * R3_11_bent_behind_front)
+    t136 = t128 * (t60 * t116 + t58 * R3_11_bent_behind_front)
     del R3_11_bent_behind_front, t116
-    t137 = c_wrist_bent_behind_front * (t61 * t124 + t59 * R3_21_bent_behind_front)
-    del R3_21_bent_behind_front, t124, t59, t61
+    t137 = c_wrist_bent_behind_front * (t60 * t124 + t58 * R3_21_bent_behind_front)
+    del R3_21_bent_behind_front, t124, t58, t60
     R3_13_bent_behind_front = R2_11_bent_behind_front * t122 + R1_13 * c5_bent_behind_front
     del R2_11_bent_behind_front
     R3_23_bent_behind_front = t122 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front
@@ -1383,23 +1386,23 @@ def _ik(
     t146 = _runtime.wrap(flip_wrist_bent_behind_back - t129)
     t147 = _runtime.wrap(t139 + flip_wrist_bent_behind_back)
     del flip_wrist_bent_behind_back
-    t148 = t28 - t30
-    del t28, t30
-    t149 = t32 - t33
-    del t32, t33
-    t150 = t35 + t36
-    del t35, t36
-    q__elbow_1_over_ahead_front = _runtime.select(t26, a5 + a4 * t149 - d3 * t150, d3 * t149 - (d5 - a4 * t150))
-    del t149, t150, t26
+    t148 = t27 - t29
+    del t27, t29
+    t149 = t31 - t32
+    del t31, t32
+    t150 = t34 + t35
+    del t34, t35
+    q__elbow_1_over_ahead_front = _runtime.select(t25, a5 + a4 * t149 - d3 * t150, d3 * t149 - (d5 - a4 * t150))
+    del t149, t150, t25
     size__elbow_1_over_ahead_front = np.abs(q__elbow_1_over_ahead_front)
-    t151 = np.minimum(size__elbow_1_over_ahead_front, t40)
-    del t40
-    t152 = size__elbow_1_over_ahead_front - np.maximum(t39, t151)
-    del size__elbow_1_over_ahead_front, t151, t39
+    t151 = np.minimum(size__elbow_1_over_ahead_front, t39)
+    del t39
+    t152 = size__elbow_1_over_ahead_front - np.maximum(t38, t151)
+    del size__elbow_1_over_ahead_front, t151, t38
     t153 = t152 * _runtime.sign(q__elbow_1_over_ahead_front)
     del q__elbow_1_over_ahead_front, t152
-    t154 = t153 - 2.0 * (t43 + t44)
-    del t43, t44
+    t154 = t153 - 2.0 * (t42 + t43)
+    del t42, t43
     inner__elbow_1_over_ahead_front = t148 * t148 - t153 * t154
     t155 = inner__elbow_1_over_ahead_front < 0.0
     t156 = np.maximum(0.0, inner__elbow_1_over_ahead_front)
@@ -1423,8 +1426,8 @@ def _ik(
     del t162
     versine__elbow_1_over_ahead_front = _runtime.select(0.0 < by_c__elbow_1_over_ahead_front, t163, 1.0 - by_c__elbow_1_over_ahead_front)
     del t163
-    cost__elbow_1_over_ahead_front = t161 + t52 * versine__elbow_1_over_ahead_front
-    del t161, t52, versine__elbow_1_over_ahead_front
+    cost__elbow_1_over_ahead_front = t161 + t51 * versine__elbow_1_over_ahead_front
+    del t161, t51, versine__elbow_1_over_ahead_front
     t164 = cost__elbow_1_over_ahead_front <= whole__elbow_1
     del cost__elbow_1_over_ahead_front, whole__elbow_1
     cosine__elbow_1_over_ahead_front = _runtime.select(t164, by_c__elbow_1_over_ahead_front, 1.0)
@@ -1440,8 +1443,8 @@ def _ik(
     del cosine__elbow_1_over_ahead_front
     t168 = _runtime.select(tangent_elbow, t167 - t24 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
     del s__elbow_1_over_ahead_front, sine__elbow_1_over_ahead_front, t167, t24, tangent_elbow
-    selbow_over_ahead_front = _runtime.select(no_link_elbow, t56, t168)
-    del t168, t56
+    selbow_over_ahead_front = _runtime.select(no_link_elbow, t55, t168)
+    del t168, t55
     t169 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
     t170 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
     del c_straight, celbow_over_ahead_front, s_straight, selbow_over_ahead_front
@@ -1449,12 +1452,12 @@ def _ik(
     t172 = reach + t171
     t173 = reach - t171
     del t171
-    tangent6_over_ahead_front = np.sqrt(np.abs(t172 * t173)) - t65 <= t66
+    tangent6_over_ahead_front = np.abs(t172 * t173) - t65 <= t66
     del t65, t66
     v_x_over_ahead_front = a5 - a4 * t169 - d3 * t170
     t174 = np.abs(v_x_over_ahead_front)
-    t175 = np.maximum(0.0, -((t25 - t174) * (t25 + t174)))
-    del t25
+    t175 = np.maximum(0.0, -((height6 - t174) * (height6 + t174)))
+    del height6
     below6_over_ahead_front = np.maximum(t172, 0.0)
     above6_over_ahead_front = np.maximum(t173, 0.0)
     t176 = below6_over_ahead_front * above6_over_ahead_front
@@ -1471,8 +1474,8 @@ def _ik(
     del t178, width6_over_ahead_front
     t179 = 1.0 / (reach * span6_over_ahead_front)
     del reach, span6_over_ahead_front
-    t180 = t60 * kept6_over_ahead_front * t179
-    del t60
+    t180 = t59 * kept6_over_ahead_front * t179
+    del t59
     t181 = t179 * (u_x * t177)
     s6_over_ahead_front = _runtime.select(free6, 0.0, t180 - t181)
     t182 = t179 * (t74 * kept6_over_ahead_front)
@@ -2073,24 +2076,25 @@ def _ik_common(
     no_link_elbow = upper * fore <= _runtime.VANISHING * (t5 * t5)
     del fore, t5, upper
     t163 = (lever_elbow - size * 0.00390625 <= t162) | no_link_elbow
-    del lever_elbow, no_link_elbow, size
-    t164 = reach * 0.00390625
-    t165 = reach * _runtime.VANISHING
-    t166 = t163 | (np.sqrt(np.abs(t27 * t28)) - t164 <= t165)
-    del t163, t27, t28
-    t167 = np.sqrt(v_x * v_x)
+    del lever_elbow, no_link_elbow
+    t164 = np.minimum(reach * 0.25, size * _runtime.ROUNDING * 8.0)
+    del size
+    t165 = reach * np.maximum(reach * 1.52587890625e-05, t164)
+    del t164
+    t166 = _runtime.VANISHING * _runtime.VANISHING * (reach * reach)
+    t167 = t163 | (np.abs(t27 * t28) - t165 <= t166) | (reach <= t162)
+    del reach, t163, t27, t28
+    t168 = np.sqrt(v_x * v_x)
     del v_x
-    on_axis_5 = np.minimum(t167, np.sqrt(t9 + w_x * w_x)) <= t162
+    on_axis_5 = np.minimum(t168, np.sqrt(t9 + w_x * w_x)) <= t162
     del w_x
-    t168 = _runtime.VANISHING * 16.0
-    t169 = t166 | (reach <= t162) | on_axis_5 | (h_wrist <= t168)
-    del h_wrist, on_axis_5, reach, t166
-    on_axis_5_bent_behind_front = np.minimum(t167, np.sqrt(t9 + t76 * t76)) <= t162
-    del t167, t76
-    t170 = t169 | on_axis_5_bent_behind_front | (h_wrist_bent_behind_front <= t168)
-    del h_wrist_bent_behind_front, on_axis_5_bent_behind_front, t169
-    t171 = t170 | (np.sqrt(np.abs(t100 * t101)) - t164 <= t165)
-    del t100, t101, t164, t165, t170
+    t169 = _runtime.VANISHING * 16.0
+    on_axis_5_bent_behind_front = np.minimum(t168, np.sqrt(t9 + t76 * t76)) <= t162
+    del t168, t76
+    t170 = t167 | on_axis_5 | (h_wrist <= t169) | on_axis_5_bent_behind_front
+    del h_wrist, on_axis_5, on_axis_5_bent_behind_front, t167
+    t171 = t170 | (h_wrist_bent_behind_front <= t169) | (np.abs(t100 * t101) - t165 <= t166)
+    del h_wrist_bent_behind_front, t100, t101, t165, t166, t170
     t172 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
     del v_x_over_ahead_front
     t173 = t9 + w_x_over_ahead_front * w_x_over_ahead_front
@@ -2099,7 +2103,7 @@ def _ik_common(
     del t171, t173
     on_axis_5_over_behind_front = np.minimum(t172, np.sqrt(t9 + t137 * t137)) <= t162
     del t137, t162, t172, t9
-    t175 = t174 | (h_wrist_over_ahead_front <= t168) | on_axis_5_over_behind_front
+    t175 = t174 | (h_wrist_over_ahead_front <= t169) | on_axis_5_over_behind_front
     del h_wrist_over_ahead_front, on_axis_5_over_behind_front, t174
     return (
         _runtime.wrap_cut(-t42) + t59,
@@ -2166,7 +2170,7 @@ def _ik_common(
         t161,
         t161,
         t161,
-        t175 | (h_wrist_over_behind_front <= t168),
+        t175 | (h_wrist_over_behind_front <= t169),
     )
 
 

@@ -208,7 +208,7 @@ def _head(name: str, table: Table, origin: str, negative: Sequence[str]) -> list
         "d = Derivation(",
         f'    "{name}",',
         f'    "{title}",',
-        f'    Paper("{name}", "{title}", ("the maker of the arm",)),',
+        f'    Paper("{name}", "{title}", ("the file {origin}",)),',
         '    "Say here how the mechanism is built, where its zero is and which way it turns.",',
         ")",
     ]

@@ -435,7 +435,7 @@ def _head(name: str, loop: Loop, way: _Way, origin: str) -> list[str]:
         "d = Derivation(",
         f'    "{name}",',
         f'    "{title}",',
-        f'    Paper("{name}", "{title}", ("the maker of the mechanism",)),',
+        f'    Paper("{name}", "{title}", ("the file {origin}",)),',
         *wrapped_literal("  ".join([way.words, *loop.said])),
         *([f"    task=[{', '.join(literal(x) for x in task)}],"] if task else []),
         ")",

@@ -150,7 +150,8 @@ class Printer(LatexPrinter):  # type: ignore[misc]
             if q == 1:
                 return sign + self._product(p, over, over_root)
             if small := _small(p, q):
-                return sign + self._joined([small, self._product(1, over, over_root)])
+                rest = [self._product(1, over, over_root)] if over or over_root else []
+                return sign + self._joined([small, *rest])
             if over or over_root:
                 return sign + self._fractional(p, q, over, over_root)
         top = self._product(p, over, over_root, alone=True)

@@ -146,6 +146,8 @@ def test_evidence_stands_in_a_line(evidence: str, text: str) -> None:
         ("irb260", "where ik has a branch", r"where \texttt{ik} has a branch"),
         ("puma560", "and [p]_× the matrix", r"and $[p]_\times$ the matrix"),
         ("slider_crank", "reaches the point B1 with", "point $B_{1}$ with"),
+        ("three_prs", "at a point, a is free", "at a point, $a$ is free"),
+        ("three_prs", "a line of length a.", "a line of length $a$."),
     ],
 )
 def test_code_and_points_in_a_sentence(robot: str, text: str, latex: str) -> None:

@@ -69,9 +69,9 @@ def _arm(found: Legs, hinge: Joint, ball: Joint, place: sp.Matrix) -> LoopLeg:
     if hinge.kind == "prismatic":
         words = f"{hinge.name} moves a slider, which a ball joins to the hand"
     elif hinge.driven:
-        words = f"{hinge.name} turns the arm {body}, which ends in a ball on the hand"
+        words = f"{hinge.name} turns {body}, an arm that ends in a ball on the hand"
     else:
-        words = f"the arm {body} turns freely about the ground and ends in a ball on the hand"
+        words = f"the body {body} is an arm that turns freely and ends in a ball on the hand"
     return LoopLeg(hinge, call, words, place)
 
 

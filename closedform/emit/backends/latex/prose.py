@@ -75,6 +75,8 @@ WORD = r"\\mathrm\{[A-Za-z]{2,}\}(?:_\{(?:[^{}]|\{[^{}]*\})*\})?"
 """A symbol that is a word; as a factor it needs a space."""
 ARTICLE = re.compile(r"\s+(?!(?:of|is|and|has|to|vanishes)\b)[a-z]")
 """What follows an article at the start of a sentence, and not the matrix A."""
+LETTER = re.compile(r"\s+(?:of|is|are|and|or|at|has|to|for|turns|moves|vanishes)\b|[,.;:)]|$")
+"""What follows the symbol a, and not the article."""
 STATUS = re.compile(r"\b(?:OK|UNREACHABLE|SINGULAR|INVALID|BRANCHES)\b")
 INDEXED = re.compile(
     r"(?<![A-Za-z0-9_\\])(\d?[A-Za-zα-ωϕ]|\([a-z](?:, [a-z])+\))_(\{\^?\w+\}|\d+|[a-z])"
@@ -362,6 +364,8 @@ class Prose:
                 parts[i] = STATUS.sub(_status, escape(part))
             elif part == "A" and not (starts(parts[:i]) and ARTICLE.match("".join(parts[i + 1 :]))):
                 parts[i] = "$A$"
+            elif part == "a" and part in self.names and LETTER.match("".join(parts[i + 1 :])):
+                parts[i] = "$a$"
             else:
                 parts[i] = self._part(part)
         return PRODUCT.sub(r"\\,", "".join(parts))

@@ -357,7 +357,7 @@ class Legs:
             raise loop.error(f"the end of {body} is on the axis of {name}, so it does not move")
         along = self.direction(arm, crank)
         across = (
-            joint.axis.cross(along)
+            joint.axis.cross(along).applyfunc(sp.simplify)
             if joint.axis is not None and loop.dimensions == 3
             else sp.Matrix([-along[1], along[0]])
         )

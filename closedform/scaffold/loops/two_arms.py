@@ -92,9 +92,10 @@ def _moved(found: Legs, joint: Joint, end: sp.Matrix, rod: str, place: sp.Matrix
     if length == 0:
         raise loop.error(f"the end of {body} is on the axis of {name}, so it does not move")
     along = found.direction(arm, length)
+    across = joint.axis.cross(along).applyfunc(sp.simplify)
     return (
         f"Crank({name}, {source(length)}, {rod}, {found.at(base)}, {found.at(along)}, "
-        f"{found.at(joint.axis.cross(along))}, on_hand={on_hand})"
+        f"{found.at(across)}, on_hand={on_hand})"
     )
 
 

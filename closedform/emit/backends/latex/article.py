@@ -11,6 +11,7 @@ import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from itertools import starmap
 from typing import Any
 
 import sympy as sp
@@ -30,7 +31,7 @@ from closedform.emit.backends.latex.equations import (
     reference,
     runs,
 )
-from closedform.emit.backends.latex.formulas import flat
+from closedform.emit.backends.latex.formulas import FITS, flat, measure
 from closedform.emit.backends.latex.inverse import Told
 from closedform.emit.backends.latex.listing import Line, lines_kept
 from closedform.emit.backends.latex.names import is_word
@@ -46,7 +47,7 @@ from closedform.emit.backends.latex.prose import (
 from closedform.emit.backends.latex.sheet import UNPRINTED, Sheet, blocks
 from closedform.emit.backends.latex.subject import Subject
 from closedform.emit.backends.latex.vectors import in_vectors
-from closedform.emit.backends.latex.wide import Equation, with_sums_of_angles
+from closedform.emit.backends.latex.wide import Equation, moduli_cancelled, with_sums_of_angles
 from closedform.model.alike import INDEX
 from closedform.model.derivation import Derivation, Joint
 from closedform.model.functions import Function, real
@@ -208,7 +209,8 @@ class Page(Sheet):
         counted = f"{n} {'identity' if n == 1 else 'identities'}" if n and proved else ""
         if counted and step.nonnegative:
             counted += ", where " + ", ".join(rf"${self.math(e)} \ge 0$" for e in step.nonnegative)
-        room = room_of(2 * len(step.rows) + 3)
+        rows, upright_vectors = self.table(step.rows)
+        room = room_of((4 if upright_vectors else 2) * len(rows) + 3)
         return {
             "title": escape(step.title),
             "index": indexed(step.title),
@@ -218,7 +220,7 @@ class Page(Sheet):
             "again": "" if fresh else reference(again),
             "blocks": blocks(new),
             "columns": "".join(map(column, zip(*step.rows, strict=True))),
-            "rows": [[self.cell(cell) for cell in row] for row in step.rows],
+            "rows": rows,
             "room": room,
             "heading_room": room + HEADING,
             "published": [(escape(n), self.claims.judged(n)) for n in step.published],
@@ -241,14 +243,28 @@ class Page(Sheet):
         seen = defined_in(by_equation(found), found.values()) if found else ""
         return f"{told} Here {seen}.".lstrip() if seen else told
 
-    def cell(self, value: Any) -> str:
-        """A cell of a table: a sentence, an expression or an increasing chain of them."""
+    def table(self, rows: Sequence[Sequence[Any]]) -> tuple[list[list[str]], bool]:
+        """The cells of a table, and whether its vectors stand upright because it is too wide."""
+        cells = [[self.cell(cell) for cell in row] for row in rows]
+        columns = [zip(*part, strict=True) for part in (rows, cells)]
+        if sum(starmap(width_of, zip(*columns, strict=True))) <= FITS:
+            return cells, False
+        return [[self.cell(cell, upright=True) for cell in row] for row in rows], True
+
+    def cell(self, value: Any, *, upright: bool = False) -> str:
+        """A cell of a table: a sentence, an expression or an increasing chain of them.
+
+        Vectors that lie in their row stand ``upright`` if that is asked for.
+        """
         if isinstance(value, str):  # after \\ a star or a bracket would be an argument
             return "{}" * value.startswith(("*", "[")) + self.prose(value)
         chain = value if isinstance(value, tuple) else (value,)
         sums = [
-            e.replace(lambda part: part.is_Add, with_sums_of_angles) for e in map(sp.sympify, chain)
+            moduli_cancelled(e).replace(lambda part: part.is_Add, with_sums_of_angles)
+            for e in map(sp.sympify, chain)
         ]
+        if upright:
+            sums = [e.T if isinstance(e, sp.MatrixBase) and e.rows == 1 else e for e in sums]
         text = r" \le ".join(map(self.math, sums))
         text = text if "(" in text else flat(text)  # 1/2 (a + b) would be misread
         return rf"$\displaystyle {text}$"
@@ -441,6 +457,12 @@ def column(cells: Sequence[Any]) -> str:
     """The type of a column of a table: long sentences are broken into lines."""
     longest = max(len(c) for c in (*cells, "") if isinstance(c, str))
     return r"L{0.5\linewidth}" if longest > SENTENCE else "l"
+
+
+def width_of(values: Sequence[Any], cells: Sequence[str]) -> float:
+    """The width of a column of a table from its values and what is printed of them."""
+    spoken = column(values) != "l"
+    return FITS / 2 if spoken else max(map(measure, cells))
 
 
 def indexed(title: str) -> str:

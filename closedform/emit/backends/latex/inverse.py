@@ -31,6 +31,9 @@ from closedform.model.inverse import Combination, Degenerate, Inverse
 from closedform.model.names import listed
 from closedform.proof.inverse import InverseResult
 
+MANY = 16
+"""The most branches of which each tells its signs in a line of its own."""
+
 
 class Told:
     """The text of one function that has a status for each branch."""
@@ -62,14 +65,25 @@ class Told:
             "lines_kept": lines_kept(lines),
             "cases": cases.told(),
             "roundings": cases.roundings(),
-            "branches": [
-                (escape(label), ",\\ ".join(f"{page.math(s)} = {v:+d}" for s, v in signs.items()))
-                for label, signs in self.whole.cases()
-                if signs
-            ],
+            **self.branches(),
             "reached": self.reached(),
             "continua": [self.continuum(inverse, c) for c in inverse.degenerate if c.free]
             if inverse
+            else [],
+        }
+
+    def branches(self) -> dict[str, Any]:
+        """The branches with their signs, which stand in columns if there are many."""
+        cases = [(escape(label), signs) for label, signs in self.whole.cases() if signs]
+        signs = [self.page.math(s) for s in cases[0][1]] if cases else []
+        named = [
+            (a, [f"{s} = {v:+d}" for s, v in zip(signs, e.values(), strict=True)]) for a, e in cases
+        ]
+        return {
+            "signs": signs,
+            "branches": [(label, ",\\ ".join(told)) for label, told in named],
+            "columns": [(label, [f"{v:+d}" for v in given.values()]) for label, given in cases]
+            if len(cases) > MANY
             else [],
         }
 

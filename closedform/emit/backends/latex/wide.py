@@ -113,7 +113,7 @@ class Lines:
             return self._broken(left, value, available)
         if (parts := self._polynomial(value)) is not None:
             return self._with_coefficients(left, *parts)
-        if inner := self._nested(value):
+        if inner := self._nested(value) or self._widest_argument(value):
             return self._with_part(left, value, inner)
         return self._broken(left, value, available)
 
@@ -215,6 +215,11 @@ class Lines:
         sides += [a for _, c in value.args for r in c.atoms(sp.core.relational.Rel) for a in r.args]
         wide = [e for e in sides if self.width(e) > NAMED and not e.is_Atom]
         return max(wide, key=lambda e: (self.width(e), str(e)), default=None)
+
+    def _widest_argument(self, value: sp.Expr) -> sp.Basic | None:
+        """The widest of those of which the largest or the smallest is taken."""
+        inner = {a for e in value.atoms(sp.Max, sp.Min) for a in e.args if not a.is_Atom}
+        return max(inner, key=lambda e: (self.width(e), str(e)), default=None)
 
     def _nested(self, value: sp.Expr) -> sp.Basic | None:
         """The sum inside products whose name saves most."""
@@ -364,6 +369,15 @@ def _angles_in(term: sp.Expr) -> list[sp.Symbol]:
     return sorted({f.args[0] for f in factors if f.args[0].is_Symbol}, key=str)
 
 
+def moduli_cancelled(value: Any) -> Any:
+    """An expression or a matrix, multiplied out where it divides by a modulus that cancels then."""
+    if isinstance(value, sp.MatrixBase):
+        return value.applyfunc(moduli_cancelled)
+    divides = any(p.exp.is_negative and p.base.has(sp.Abs) for p in value.atoms(sp.Pow))
+    whole = sp.expand(value) if divides else value
+    return whole if len(whole.atoms(sp.Abs)) < len(value.atoms(sp.Abs)) else value
+
+
 def unit_circles(value: sp.Expr) -> Iterator[sp.Expr]:
     """A sum where the squares of the sine and the cosine of an angle add to 1, if they do."""
     angles = sorted(
@@ -373,15 +387,20 @@ def unit_circles(value: sp.Expr) -> Iterator[sp.Expr]:
         return
     whole = sp.expand(value)
     for angle in angles:
-        squares = {sp.cos(angle) ** 2: 1 - sp.sin(angle) ** 2}
-        if {sp.sin(angle) ** 2, *squares} <= whole.atoms(sp.Pow):
+        powers = {p for p in whole.atoms(sp.Pow) if p.exp.is_Integer and p.exp > 1}
+        squares = {
+            p: (1 - sp.sin(angle) ** 2) ** (p.exp // 2) * p.base ** (p.exp % 2)
+            for p in powers
+            if p.base == sp.cos(angle)
+        }
+        if squares and any(p.base == sp.sin(angle) for p in powers):
             shorter = sp.expand(whole.xreplace(squares))
             if len(sp.Add.make_args(shorter)) < len(sp.Add.make_args(whole)):
                 yield shorter
                 yield from (sp.collect(shorter, s) for s in sorted(shorter.free_symbols, key=str))
 
 
-__all__ = ["Equation", "Lines", "unit_circles", "with_sums_of_angles"]
+__all__ = ["Equation", "Lines", "moduli_cancelled", "unit_circles", "with_sums_of_angles"]
 
 
 def _degrees(value: sp.Expr) -> dict[sp.Symbol, float]:

@@ -196,6 +196,7 @@ def test_the_algorithm_computes_what_the_function_computes(name: str) -> None:
         (2**43 * a, "2^{43} a"),
         (a / 2000000, r"5 \cdot 10^{-7} a"),
         (a**2 + sp.Rational(1, 10**4), r"a^{2} + 10^{-4}"),
+        (sp.Mul(b, 1 / a, 1 / a, evaluate=False), r"\frac{b}{a^{2}}"),
         (sp.pi * (a - b) * sp.cos(x) / 18, r"\frac{\pi}{18} (a - b) \cos x"),
         (sp.atan(a), r"\arctan(a)"),
         ((a / sp.cos(x) - b) / y, r"\frac{a - b \cos x}{y \cos x}"),

@@ -8,6 +8,7 @@ not write ``\\left(``, because TeX never breaks inside it.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache, lru_cache
@@ -374,7 +375,8 @@ def _sides(
     """
     over, under = list[sp.Expr](), list[sp.Expr]()
     radicands = list[sp.Expr](), list[sp.Expr]()
-    for factor in factors:
+    for repeated, times in Counter(factors).items():
+        factor = repeated**times
         base, power = factor.as_base_exp()
         if factor.is_Add and all(map(_negative, factor.args)):
             number, factor, base = -number, -factor, -factor

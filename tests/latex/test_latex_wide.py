@@ -12,6 +12,7 @@ from closedform.emit.backends.latex.formulas import FITS, Printer, measure
 from closedform.emit.backends.latex.inverse import Told
 from closedform.emit.backends.latex.wide import Lines, moduli_cancelled, unit_circles
 from closedform.emit.render import render
+from closedform.model.derivation import Derivation
 from closedform.model.functions import real
 from closedform.proof.prove import Proof
 
@@ -67,3 +68,41 @@ def test_many_branches_have_their_signs_in_columns_over_pages(signs: int, many: 
     assert ("longtable" in text) == many
     assert ("= +1" in text) != many
     assert text.count(r"\texttt{") == 2**signs
+
+
+@pytest.mark.parametrize(
+    ("joints", "written"),
+    [
+        (("left_joint1", "left_joint2"), [r"\theta_{1}", r"\theta_{2}"]),
+        (("shoulder_pan_joint", "elbow_joint"), [r"\theta_{1}", r"\theta_{2}"]),
+        (("rho1", "theta2"), [r"\rho_{1}", r"\theta_{2}"]),
+        (("q1", "q2"), ["q_{1}", "q_{2}"]),
+        (("joint1", "elbow"), [r"\mathrm{joint}_{1}", r"\mathrm{elbow}"]),
+    ],
+)
+def test_joints_that_are_called_by_words_have_short_letters(
+    joints: tuple[str, ...], written: list[str]
+) -> None:
+    d = Derivation("arm", "Arm", scara.d.paper, "An arm.")
+    symbols = [d.joint(name) for name in joints]
+    page = Page(d, Proof("arm", "", (), 0, ()))
+    assert [page.math(s) for s in symbols] == written
+    assert [page.written(name) for name in joints] == written
+
+
+def test_what_a_lemma_finds_of_a_joint_has_its_number() -> None:
+    d = Derivation("arm", "Arm", scara.d.paper, "An arm.")
+    first, last = d.joint("arm_joint1"), d.joint("arm_joint12")
+    page = Page(d, Proof("arm", "", (), 0, ()))
+    assert page.math(real("sigma_arm_joint1")) == r"\sigma_{1}"
+    assert page.math(real("square_arm_joint12")) == r"\mathrm{square}_{2}"
+    assert page.math(real("c_arm_joint1")) == r"c_{\theta_{1}}"
+    assert page.math(sp.cos(first + last)) == r"\mathrm{c}_{12}"
+    assert page.prose("arm_joint1 is free") == r"$\theta_{1}$ is free"
+
+
+def test_a_length_of_that_name_keeps_it() -> None:
+    d = Derivation("arm", "Arm", scara.d.paper, "An arm.")
+    d.parameter("theta1", value=sp.Integer(1), unit="rad", meaning="twist", source="example")
+    joint = d.joint("arm_joint1")
+    assert Page(d, Proof("arm", "", (), 0, ())).math(joint) != r"\theta_{1}"

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache, lru_cache
 from itertools import chain
@@ -18,6 +18,7 @@ from typing import Any
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
+from closedform.emit.backends.latex.called import as_it_is
 from closedform.emit.backends.latex.prose import GREEK, loosen, spaced, symbol_name
 from closedform.emit.backends.latex.vectors import is_vector
 
@@ -46,6 +47,8 @@ class Printer(LatexPrinter):  # type: ignore[misc]
         """Names of parameters: a length ``c1`` is not the cosine of ``theta1``."""
         self.written: dict[str, str] = {}
         """What the derivation says of how symbols are written, by their names."""
+        self.called: Callable[[str], str] = as_it_is
+        """How names are spelled in which joints occur that are called by words."""
         self._texts: dict[sp.Basic, str] = {}
         self._printed = set[sp.Symbol]()
         """The symbols in the texts that are kept."""
@@ -83,13 +86,13 @@ class Printer(LatexPrinter):  # type: ignore[misc]
         self._printed.add(expr)
         if known := self.written.get(expr.name) or self.names.get(expr):
             return known
-        pair = (
-            None if expr.name in self.parameters else re.fullmatch(r"([cs])(\d)(?:_0)?", expr.name)
-        )
-        joint = next((j for j in self.joints if pair and j.name == f"theta{pair[2]}"), None)
+        name = self.called(expr.name)
+        pair = None if name in self.parameters else re.fullmatch(r"([cs])(\d)(?:_0)?", name)
+        named = (j for j in self.joints if pair and self.called(j.name) == f"theta{pair[2]}")
+        joint = next(named, None)
         if pair and joint is not None:  # the cosine or the sine of a joint that was solved
             return str(self._print(sp.cos(joint) if pair[1] == "c" else sp.sin(joint)))
-        return symbol_name(expr.name)
+        return symbol_name(name)
 
     def _print_Integer(self, expr: sp.Integer) -> str:
         return integer(int(expr))
@@ -245,7 +248,7 @@ class Printer(LatexPrinter):  # type: ignore[misc]
     def _circular(self, function: str, angle: sp.Expr, exp: str | None) -> str:
         power = f"^{{{exp}}}" if exp else ""
         numbers = [
-            (JOINT.fullmatch(str(term)) if term in self.joints else None)
+            (JOINT.fullmatch(self.called(str(term))) if term in self.joints else None)
             for term in _ordered_terms(angle, None)
         ]
         over, under = _over_under(angle)

@@ -7,6 +7,7 @@ import re
 import sympy as sp
 from sympy.core.alphabets import greeks
 
+from closedform.emit.backends.latex.called import called
 from closedform.emit.text import BOLD_LETTERS
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Let
@@ -130,7 +131,9 @@ def symbol_name(name: str) -> str:
 def written_name(derivation: Derivation, name: str) -> str:
     """The LaTeX of a symbol in a derivation, which may have said how to write it."""
     written = derivation.written.get(name)
-    return written.latex if written and written.latex else symbol_name(name)
+    if written and written.latex:
+        return written.latex
+    return symbol_name(called(derivation)(name))
 
 
 def _subscript(text: str) -> str:

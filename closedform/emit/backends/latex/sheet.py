@@ -8,6 +8,7 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.emit.backends.latex.called import called
 from closedform.emit.backends.latex.equations import Numbered, Numbers
 from closedform.emit.backends.latex.formulas import FITS, Printer, measure
 from closedform.emit.backends.latex.names import (
@@ -37,6 +38,7 @@ class Sheet:
         self.numbers = Numbers(derivation.name)
         self.printer = Printer({j.symbol for j in derivation.joints})
         self.printer.written |= {n: w.latex for n, w in derivation.written.items() if w.latex}
+        self.printer.called = called(derivation)
         self.printer.parameters = frozenset(p.name for p in derivation.parameters)
         self.math, self.prose = self.printer.math, Prose(derivation)
         self.lines = Lines(self.printer, self.prose.known)

@@ -17,6 +17,7 @@ from closedform.lemmas.arm_plane import arm_angle as arm_angle
 from closedform.lemmas.arm_plane import arm_plane as arm_plane
 from closedform.lemmas.chain import Chain as Chain
 from closedform.lemmas.circles import circle_intersection as circle_intersection
+from closedform.lemmas.extended import Extended as Extended
 from closedform.lemmas.in_reach import within_links as within_links
 from closedform.lemmas.law_of_cosines import law_of_cosines as law_of_cosines
 from closedform.lemmas.leeway import Carrying as Carrying
@@ -87,6 +88,7 @@ from closedform.loops.on_pins import Sleeve as Sleeve
 from closedform.loops.on_pins import on_pins as on_pins
 from closedform.loops.on_rod import on_rod as on_rod
 from closedform.loops.parallel import parallel as parallel
+from closedform.loops.parallel_axes import ParallelAxes as ParallelAxes
 from closedform.loops.platform import platform as platform
 from closedform.loops.platform_legs import Half as Half
 from closedform.loops.sliding import Sliding as Sliding

@@ -21,6 +21,7 @@ from typing import Any, Protocol
 
 import sympy as sp
 
+from closedform.lemmas.extended import Extended
 from closedform.lemmas.registry import theorem
 from closedform.lemmas.triangle import Triangle, indexed
 from closedform.lemmas.universal import Universal
@@ -209,7 +210,8 @@ class Crank:
             r = chain.let("r", r, nonnegative=True)
         u, v = vector(self.along), vector(self.across)
         a, b = chain.let("wu", w.dot(u)), chain.let("wv", w.dot(v))
-        aside = chain.let("aside", w.dot(u.cross(v))) if len(w) == 3 else sp.S.Zero
+        normal = u.cross(v) if len(w) == 3 else sp.Matrix()
+        aside = chain.let("aside", w.dot(normal)) if len(w) == 3 else sp.S.Zero
         start = len(p.body)
         s: sp.Expr = r
         scale = chain.size * chain.share
@@ -221,6 +223,14 @@ class Crank:
             least = chain.size * HALF_DIGITS
             lost = chain.let("lost", sp.Max(1, r / (s + least)), positive=True)
             scale = scale * lost
+        fore, beside, plainly = s, aside, {}
+        if aside != 0:
+            plainly[s] = sp.sqrt(r**2 - aside**2)
+        if isinstance(self.rod, Extended):  # in the plane it is a rod, which is longer by the links
+            links = sp.Add(*self.rod.links)
+            s = r = chain.let("reach", links + fore, nonnegative=True)
+            plainly[r], aside = links + plainly.pop(fore), sp.S.Zero
+            start = len(p.body)
         R = chain.let("R", sp.sqrt(a**2 + b**2), nonnegative=True)
         triangle = Triangle.from_reach(p, (l, s), R, sigma, scale=scale, suffix=chain.tag)
         met = chain.vanishes("met", R, "the rod ends on the axis of the crank", q)
@@ -251,7 +261,7 @@ class Crank:
             letters=triangle.letters
             | {ahead: indexed("X", chain.tag), beyond: indexed("Y", chain.tag)}
             | ({s: indexed("s", chain.tag)} if aside != 0 else {}),
-            plainly={s: sp.sqrt(r**2 - aside**2)} if aside != 0 else {},
+            plainly=plainly,
         )
         root = sp.sqrt(r - aside) * sp.sqrt(r + aside)
         cases = (
@@ -262,7 +272,11 @@ class Crank:
         )
         link = Link((q,), lemma.equations, {}, lemma, tuple(p.body[start:]), degenerate=cases)
         missed -= sp.Min(0, l + s - R, R + l - s, R - l + s) / lost
-        return Solution(link, lemma[q], w - away, chain.let("missed", missed))
+        rod = w - away
+        if isinstance(self.rod, Extended):
+            part = chain.let("part", fore / s, nonnegative=True)
+            rod = part * (rod - beside * normal) + beside * normal
+        return Solution(link, lemma[q], rod, chain.let("missed", missed))
 
 
 class Slider:

@@ -16,6 +16,7 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.lemmas.extended import Extended
 from closedform.lemmas.legs import Leg, vector
 from closedform.loops.guided_hand import COUNTS, Guided, Holder
 from closedform.loops.guides import LENGTH, TURNS, Ball, Cross, Gimbal, Guide
@@ -24,6 +25,7 @@ from closedform.loops.hinged_pose import motions, state_pose
 from closedform.loops.hinges import Hinged, Hinges
 from closedform.loops.leg_by_leg import MISSED, LegByLeg, named_in, signs_of_modes
 from closedform.loops.letters import bold, letters
+from closedform.loops.parallel_axes import ParallelAxes, moved_by, state_axes
 from closedform.loops.skeleton import Drawing, points_of
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
@@ -62,9 +64,13 @@ def guided(d: Derivation, guide: Holder, legs: Sequence[Leg | Hinged]) -> None:
         d.singularities = (*numbered, "all legs", *guide.own)
     if isinstance(guide, Hinges):
         placed: Step | None = state_pose(d, guide, m.places, m.posture)
+    elif isinstance(guide, Guide | Gimbal):
+        placed = _place(m, guide)
     else:
-        placed = None if isinstance(guide, Ball) else _place(m, guide)
+        placed = None
     loop = _close(m, placed)
+    if isinstance(guide, ParallelAxes):
+        state_axes(d, m.legs, loop)
     _velocity(m, loop)
     _draw(m)
     _inverse(m, loop)
@@ -163,12 +169,17 @@ def _close(m: Guided, placed: Step | None) -> Step:
         (str(k), leg.end().T, place.T, sp.sympify(leg.rod, strict=True))
         for (k, leg), place in zip(m.numbered, m.places, strict=True)
     )
+    said = (
+        "The joint of leg i determines the near end b of its rod.  The far end is e in the frame "
+        "of the hand, seen from its point p.  The rod keeps the distance of its ends: |p + R*e - "
+        "b| is its length."
+    )
+    if isinstance(m.guide, ParallelAxes):
+        said = m.guide.legs_close
     m.d.loop = loop = m.d.step(
         "The loop",
-        f"{m.guide.holds}The joint of leg i determines the near end b of its rod.  The far "
-        "end is e in the frame of the hand, seen from its point p.  The rod keeps the distance of "
-        "its ends: |p + R*e - b| is its length.",
-        {},
+        f"{m.guide.holds}{said}",
+        m.guide.shown(m.d) if isinstance(m.guide, ParallelAxes) else {},
         rows=[("i", "b", "e", "length of the rod"), *rows],
         uses=[placed] if placed else [],
     )
@@ -191,6 +202,8 @@ def _velocity(m: Guided, loop: Step) -> None:
     for (k, leg), arm in zip(m.numbered, placed.arms, strict=True):
         near = [named_in(p, f"b_{k}{i}", e) for i, e in enumerate(leg.end(), 1)]
         rod = m.pivot + arm - sp.Matrix(near)
+        if isinstance(leg.rod, Extended):
+            rod = leg.rod.named_along(p, f"_{k}", rod)
         rods.append(sp.Matrix([named_in(p, f"r_{k}{i}", e) for i, e in enumerate(rod, 1)]))
     rows = m.rows(p, placed, rods)
     stretched = [placed.row(k, rod) for k, rod in enumerate(rods)]
@@ -278,8 +291,7 @@ def _rates(row: sp.Matrix, stretched: sp.Matrix, driven: sp.Expr) -> sp.Matrix:
 def _state_velocity(m: Guided, loop: Step) -> None:
     """The step on the velocity and the singular sets."""
     d, at = m.d, m.posture
-    rods = [m.pivot + arm - leg.end() for leg, arm in zip(m.legs, at.arms, strict=True)]
-    closed = m.closed(at.arms)
+    spans = [m.pivot + arm - leg.end() for leg, arm in zip(m.legs, at.arms, strict=True)]
     r, f, w = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in ("r", "f", "omega"))
     d.explain(
         {
@@ -297,12 +309,12 @@ def _state_velocity(m: Guided, loop: Step) -> None:
         d.explain({shift: "from the pivot to the point of the hand"})
     first, second, along, rate = bold(d, "avuw")
     entry = rf"{first}^T(\mathbf e_i\times\mathbf r_i) + {rate}^T\mathbf r_i"
+    row = rf"\begin{{bmatrix}}{first}^T{moment} & {second}^T{about}\end{{bmatrix}}"
+    alone = {Ball: rf"{moment}^T", ParallelAxes: r"\mathbf r_i^T"}
     shown: dict[str, Any] = {
         ("A_{ik}" if hinges else r"\mathbf a_i"): entry
         if hinges
-        else rf"{moment}^T"
-        if isinstance(m.guide, Ball)
-        else rf"\begin{{bmatrix}}{first}^T{moment} & {second}^T{about}\end{{bmatrix}}",
+        else alone.get(type(m.guide), row),
         "B_{ii}": r"\mathbf r_i^T\,\frac{\partial\mathbf b_i}{\partial q_i}",
     }
     equal: list[tuple[Any, Any]] = [(r.dot(w.cross(f)), w.dot(f.cross(r)))]
@@ -321,6 +333,9 @@ def _state_velocity(m: Guided, loop: Step) -> None:
         equal += motions(m.guide, at)
         proves += "  The derivatives of the position and of each e_i with respect to the target "
         proves += "are those motions."
+    elif isinstance(m.guide, ParallelAxes):
+        shown = {**m.guide.rods, **shown}
+        proves = m.guide.proves
     elif not isinstance(m.guide, Ball):
         d.explain({first: "first axis"})
         proves += "  The derivative of each f_i with respect to a joint that holds the hand is "
@@ -329,10 +344,8 @@ def _state_velocity(m: Guided, loop: Step) -> None:
         for joint, axis in m.joints:
             turned = axis.cross(arm if joint == TURNS[0] else lever)
             equal.append((arm.diff(joint), axis if joint == LENGTH else turned))
-    equal += [
-        (e.diff(leg.joint), -2 * rate_of(leg, rod))
-        for leg, rod, e in zip(m.legs, rods, closed, strict=True)
-    ]
+    for leg, span in zip(m.legs, spans, strict=True):
+        equal += moved_by(leg, span, m.guide.moved if isinstance(m.guide, ParallelAxes) else ())
     if at.slide:
         d.explain(
             {
@@ -402,7 +415,10 @@ def _draw(m: Guided) -> None:
         drawn.links["cross"] = ("O", "P")
         drawn.lengths["O", "P"] = sp.sqrt(sp.factor(square(vector(m.guide.offset))))
     for (k, leg), place, far, equation in zip(m.numbered, m.places, m.far, loop, strict=True):
-        drawn.add_leg(k, leg, far, equation)
+        if isinstance(leg.rod, Extended):
+            drawn.add_extended(k, leg, far, equation, m.pivot + exact.arms[k - 1] - leg.end())
+        else:
+            drawn.add_leg(k, leg, far, equation)
         if far != "P":
             drawn.links[f"hand{k}"] = ("P", far)
             drawn.lengths["P", far] = sp.sqrt(sp.factor(sp.trigsimp(square(place))))
@@ -448,7 +464,7 @@ def _inverse(m: Guided, loop: Step) -> None:
         spread = sp.factor(sp.Add(*map(square, m.places)) / len(m.legs))
     if isinstance(guide, Cross):
         spread += sp.factor(square(vector(guide.offset)))
-    lever = spread if guide.turning == 2 else spread ** sp.Rational(3, 2)
+    lever = {0: sp.S.One, 2: spread}.get(guide.turning, spread ** sp.Rational(3, 2))
     least = g.let("least", solved.lengths(m.legs) * lever, nonnegative=True)
     meet = "the rods do not hold the hand"
     matrix, loose = "D" if placed.slide else "A", bool(placed.fixed)
@@ -462,14 +478,19 @@ def _inverse(m: Guided, loop: Step) -> None:
         size=solved.size,
     )
     power = "mean square" if guide.turning == 2 else "third power of the root mean square"
+    of_ends = (
+        f" and the {power} distance of their far ends from the "
+        f"{'point of the hand' if isinstance(guide, Hinges | Cross) else 'pivot'}"
+        + ", with the square of the length of the cross"
+        * isinstance(guide, Cross)
+    )
     d.step(
         "Inverse: leg by leg",
         f"The target gives the pose of the hand, and each leg is solved alone.  {solved.on_modes}"
         "Near a parallel singularity rounded joints do not determine the hand.  The status is "
         f"SINGULAR if the determinant of {matrix} is less than 2^-10 of Lambda, the product of the "
-        f"lengths of the rods and the {power} distance of their far ends from the "
-        f"{'point of the hand' if isinstance(guide, Hinges | Cross) else 'pivot'}"
-        + ", with the square of the length of the cross" * isinstance(guide, Cross)
+        "lengths of the rods"
+        + of_ends * bool(guide.turning)
         + "."
         + (guide.too if isinstance(guide, Hinges) and loose else "")
         + f"  {MISSED}",
@@ -493,7 +514,11 @@ def _inverse(m: Guided, loop: Step) -> None:
                 if placed.slide
                 else []
             ),
-            *([guide.left_out] if isinstance(guide, Hinges) and guide.left_out else []),
+            *(
+                [guide.left_out]
+                if isinstance(guide, Hinges | ParallelAxes) and guide.left_out
+                else []
+            ),
             *(["INVALID: the matrix is not a proper rotation."] if guide.turning == 3 else []),
             f"fk is not derived: the forward problem is an equation of degree {guide.degree}.",
         ],

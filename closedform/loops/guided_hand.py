@@ -10,16 +10,18 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.extended import excess_of
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, vector
 from closedform.loops.guides import LENGTH, TURNS, Ball, Gimbal, Guide, Placed
-from closedform.loops.hand import check_order, check_plain, square
+from closedform.loops.hand import check_order, check_plain
 from closedform.loops.hinges import Hinges, InPlane
 from closedform.loops.leg_by_leg import named_in, size_of
+from closedform.loops.parallel_axes import ParallelAxes
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Program
 
 COUNTS = {2: "two", 3: "three", 4: "four"}
-Holder = Guide | Gimbal | Ball | Hinges
+Holder = Guide | Gimbal | Ball | Hinges | ParallelAxes
 """What rules the motion of a hand."""
 
 
@@ -47,7 +49,10 @@ class Guided:
                 f"{name}: the axes of {self.guide.what} must be two unit vectors at right angles"
             )
         check_order(self.d, self.legs)
-        check_plain(self.d, self.legs)
+        if isinstance(self.guide, ParallelAxes):
+            self.guide.check(name, self.legs)
+        else:
+            check_plain(self.d, self.legs)
         if list(self.d.task) not in ([], list(self.guide.task)):
             raise ShapeError(f"{name}: the task of this hand must be {', '.join(self.guide.task)}")
         self.d.task = list(self.guide.task)
@@ -82,7 +87,7 @@ class Guided:
     def joints(self) -> list[tuple[sp.Symbol, sp.Matrix]]:
         """The joints that hold the hand, each with the axis or the direction of its motion."""
         at = self.posture
-        if isinstance(self.guide, Ball | Hinges):
+        if isinstance(self.guide, Ball | Hinges | ParallelAxes):
             return []
         slide = [(LENGTH, at.slide.ahead)] if at.slide else []
         return [*zip(TURNS, at.turns, strict=True), *slide]
@@ -109,7 +114,7 @@ class Guided:
     def closed(self, arms: Sequence[sp.Matrix]) -> tuple[sp.Expr, ...]:
         """The equations of the loop, for far ends of the legs as seen from the pivot."""
         return tuple(
-            square(self.pivot + arm - leg.end()) - sp.sympify(leg.rod, strict=True) ** 2
+            excess_of(leg.rod, self.pivot + arm - leg.end())
             for leg, arm in zip(self.legs, arms, strict=True)
         )
 

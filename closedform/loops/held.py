@@ -9,6 +9,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.extended import Extended
 from closedform.lemmas.legs import Crank, Leg, cross_in_plane, vector
 from closedform.lemmas.parallelogram import Parallelogram, Prism, parallelogram
 from closedform.lemmas.universal import Universal
@@ -63,6 +64,7 @@ def bars_of(k: int, leg: Leg, far: str) -> list[Bars]:
         found.append(Bars(crank, f"A{k}", f"B{k}", "cd"))
     if isinstance(rod, Parallelogram):
         near = f"B{k}" if hasattr(leg, "joint") else f"A{k}"
+        near, far = (f"D{k}", f"E{k}") if isinstance(rod, Extended) else (near, far)
         found.append(Bars(rod, near, far, "ab"))
     return found
 
@@ -99,6 +101,10 @@ def check_held(m: Hand) -> None:
 
 def check_directions(name: str, n: int, legs: Sequence[Leg]) -> None:
     """Refuse bars and axes that are not unit vectors, or that a crank turns."""
+    if any(isinstance(leg.rod, Extended) for leg in legs):
+        raise ShapeError(
+            f"{name}: a parallelogram between two links holds a hand with ParallelAxes, in guided"
+        )
     for bars in (bars for leg in legs for bars in bars_of(1, leg, "P")):
         if len(bars.given.bar) != n or sp.simplify(square(bars.given.direction) - 1) != 0:
             raise ShapeError(
@@ -160,7 +166,7 @@ def state_held(m: Hand, loop: Step) -> None:
     if _with(m, Universal):
         _by_axes(m, loop)
     if m.planes:
-        _by_parallel_axes(m, loop)
+        parallel_axes(m.d, [leg.normal for leg in m.planes], loop)
 
 
 def left_out(m: Hand) -> tuple[str, ...]:
@@ -360,16 +366,15 @@ def _unit_and_still(held: Sequence[tuple[int, Leg]]) -> list[tuple[sp.Expr, sp.E
     ]
 
 
-def _by_parallel_axes(m: Hand, loop: Step) -> None:
-    """The step on legs whose joints all turn the hand about one direction."""
+def parallel_axes(d: Derivation, normals: Sequence[sp.Matrix], loop: Step) -> None:
+    """The step on legs each of which turns the hand about one direction alone."""
     a, b = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in "ab")
     across = a.cross(b)
-    normals = [leg.normal for leg in m.planes]
-    one, two = letters(m.d, "es")
+    one, two = letters(d, "es")
     cross = rf"\mathbf {one}\times\mathbf {two}"
-    m.d.explain({rf"\mathbf {one}": "direction of the axes of a leg", "R": "rotation of the hand"})
-    m.d.explain({rf"\mathbf {two}": "direction of the axes of another leg"})
-    m.d.step(
+    d.explain({rf"\mathbf {one}": "direction of the axes of a leg", "R": "rotation of the hand"})
+    d.explain({rf"\mathbf {two}": "direction of the axes of another leg"})
+    d.step(
         "The axes",
         "All joints of a leg that turn have the same direction, so the leg turns the hand about it "
         f"alone: its rotation R keeps this direction.  It keeps those of two legs, {one} and "
@@ -488,6 +493,7 @@ __all__ = [
     "check_held",
     "constraint",
     "left_out",
+    "parallel_axes",
     "state_held",
     "state_parallelograms",
     "state_universals",

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
+from closedform.lemmas.extended import Extended
 from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch, Strut
 from closedform.lemmas.parallelogram import Parallelogram, Prism
 from closedform.lemmas.planes import Plane
@@ -37,6 +38,22 @@ class Drawing:
         self._add_driven(k, leg)
         for pair in bars_of(k, leg, far):
             self._add_bars(k, pair, equation if pair.far == far else None)
+
+    def add_extended(self, k: int, leg: Leg, far: str, equation: sp.Expr, span: sp.Matrix) -> None:
+        """A leg with its equation, whose parallelogram is between two links."""
+        self._add_driven(k, leg)
+        extended: Extended = leg.rod
+        _, across = extended.split(span)
+        away, reach = sp.sqrt(across.dot(across)), extended.reach(span)
+        closed = equation * (away - sum(extended.links) + extended.fore(span)) / (away + reach)
+        ends = (f"B{k}", f"D{k}"), (f"E{k}", far)
+        for name, pair, length in zip(("link", "last"), ends, extended.links, strict=True):
+            self.links[f"{name}{k}"] = pair
+            self.lengths[pair] = length
+        self.lengths[f"D{k}", f"E{k}"] = sp.sympify(extended, strict=True)
+        self.closing[f"D{k}", f"E{k}"] = closed
+        for bars in bars_of(k, leg, far):
+            self._add_bars(k, bars, closed)
 
     def _add_rod(self, k: int, leg: Leg, far: str, equation: sp.Expr) -> None:
         """The rod; of a leg that stretches it is the driven joint."""
@@ -194,6 +211,11 @@ def points_of(k: int, leg: Leg, far: str, place: sp.Matrix) -> dict[str, Sequenc
         at[f"B{k}"] = leg.end()
     if far != "P":
         at[far] = place
+    if isinstance(leg.rod, Extended):
+        _, across = leg.rod.split(place - at[f"B{k}"])
+        along = across / sp.sqrt(across.dot(across))
+        near, last = leg.rod.links
+        at |= {f"D{k}": at[f"B{k}"] + near * along, f"E{k}": place - last * along}
     points: dict[str, Sequence[sp.Expr]] = {name: in_space(e) for name, e in at.items()}
     for pair in bars_of(k, leg, far):
         for middle in (pair.near, pair.far):

@@ -183,29 +183,6 @@ r1 = {between = ["cart1", "tube1"], at = "A1", axis = [0, 1, 0]}
 q1 = {between = ["tube1", "rod1"], at = "A1", kind = "prismatic", driven = true}
 c1 = {between = ["rod1", "hand"], at = "C1", kind = "spherical"}
 """
-TSAI = """
-hand = "P"
-copies = 3
-[parameters]
-a = {value = "0.06", meaning = "crank"}
-b = {value = "0.1025", meaning = "long sides of the parallelogram"}
-r = {value = "0.0366", meaning = "from the centre to the axis of a crank"}
-c = {value = "0.0144", meaning = "from the hand to a leg"}
-e = {value = "0.01125", meaning = "from the axes to the parallelogram"}
-[bodies]
-ground = {A1 = ["r", 0, 0]}
-crank1 = {A1 = ["r", 0, 0], B1 = ["r + a", 0, 0]}
-upper1 = {B1 = [0, 0, 0], D1 = ["e", 0, 0]}
-rod1 = {length = "b", parallelogram = [0, "e", 0]}
-lower1 = {E1 = [0, 0, 0], C1 = ["e", 0, 0]}
-hand = {P = [0, 0, 0], C1 = ["c", 0, 0]}
-[joints]
-q1 = {between = ["ground", "crank1"], at = "A1", axis = [0, 1, 0], driven = true}
-b1 = {between = ["crank1", "upper1"], at = "B1", axis = [0, 1, 0]}
-d1 = {between = ["upper1", "rod1"], at = "D1"}
-e1 = {between = ["rod1", "lower1"], at = "E1"}
-c1 = {between = ["lower1", "hand"], at = "C1", axis = [0, 1, 0]}
-"""
 WITH_TOOL = """
 hand = "P"
 [parameters]
@@ -241,7 +218,6 @@ w = {between = ["plate", "tool"], at = "N", axis = [0, 0, 1], driven = true}
     [
         (TWO_MOTORS, "two motors, as in a 3-PRPS mechanism.*3-RPS mechanism for the pose, of deg"),
         (TWO_MOTORS.replace("axis = [0, 1, 0]}", "axis = [0, 0, 1]}"), "hold one of both motors"),
-        (TSAI, "upper1 is between a driven body and the parallelogram rod1.*a Delta robot"),
         (WITH_TOOL, "Nothing else holds tool, so w is in no loop.*take a point of plate"),
     ],
 )

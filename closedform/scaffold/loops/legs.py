@@ -15,7 +15,7 @@ import sympy as sp
 from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 from closedform.scaffold.loops.halves import halves
-from closedform.scaffold.loops.refused import carried, short_links, two_motors
+from closedform.scaffold.loops.refused import carried, two_motors
 from closedform.scaffold.loops.rods import several_told
 from closedform.scaffold.source import source
 
@@ -341,33 +341,45 @@ class Legs:
 
     def crank(self, joint: Joint, near: Joint, rod: str) -> LoopLeg:
         """A driven crank with a rod, which is ``near`` where the crank carries it."""
-        loop, name, body = self.loop, joint.name, joint.other(GROUND)
         place = self.place_on_hand(rod, near)
-        end = self.point(body, near)
-        length, tail = self.rod(rod, near), self.tail(place)
-        start = self.pivot(joint)
-        arm = end - start
-        if loop.dimensions == 3:
+        arm, _ = self.arm_of(joint, near)
+        return LoopLeg(
+            joint,
+            self.cranked(joint, near, self.rod(rod, near), place),
+            f"{joint.name} turns a crank of length {self.loop.length(arm)}, which a rod of length "
+            f"{self.loop.rods[rod]} joins to {self.end}",
+            place,
+        )
+
+    def arm_of(self, joint: Joint, near: Joint) -> tuple[sp.Matrix, sp.Matrix]:
+        """A crank at the angle 0 as a vector at right angles to its axis, and where it starts."""
+        body, start = joint.other(GROUND), self.pivot(joint)
+        arm = self.point(body, near) - start
+        if self.loop.dimensions == 3:
             if joint.axis is None:
-                raise loop.error(f"{name} turns in space; say about which axis")
+                raise self.loop.error(f"{joint.name} turns in space; say about which axis")
             along_axis = joint.axis * sp.simplify(arm.dot(joint.axis))
             start, arm = start + along_axis, (arm - along_axis).applyfunc(sp.simplify)
-        crank = self.loop.length(arm)
+        return arm, start
+
+    def cranked(self, joint: Joint, near: Joint, rod: str, place: sp.Matrix) -> str:
+        """A driven crank as it is written, with the rod that it carries at ``near``."""
+        loop, body = self.loop, joint.other(GROUND)
+        arm, start = self.arm_of(joint, near)
+        crank = loop.length(arm)
         if crank == 0:
-            raise loop.error(f"the end of {body} is on the axis of {name}, so it does not move")
+            raise loop.error(
+                f"the end of {body} is on the axis of {joint.name}, so it does not move"
+            )
         along = self.direction(arm, crank)
         across = (
             joint.axis.cross(along).applyfunc(sp.simplify)
             if joint.axis is not None and loop.dimensions == 3
             else sp.Matrix([-along[1], along[0]])
         )
-        return LoopLeg(
-            joint,
-            f"Crank({name}, {self.bar(body, crank)}, {length}, {self.at(start)}, "
-            f"{self.at(along)}, {self.at(across)}{tail})",
-            f"{name} turns a crank of length {crank}, which a rod of length {loop.rods[rod]} "
-            f"joins to {self.end}",
-            place,
+        return (
+            f"Crank({joint.name}, {self.bar(body, crank)}, {rod}, {self.at(start)}, "
+            f"{self.at(along)}, {self.at(across)}{self.tail(place)})"
         )
 
     def rail(self, joint: Joint, body: str, slide: Joint) -> LoopLeg:
@@ -485,7 +497,7 @@ class Legs:
             raise loop.error(
                 f"{far.name} leads to {other}, not to a body with the point {loop.hand}, which is "
                 f"{self.end}; a leg has one rod, and the hand is one body"
-                f"{self.lever(far) or short_links(loop, rod, far)}"
+                f"{self.lever(far)}"
             )
         if far.at not in loop.bodies[body]:
             raise loop.error(f"{body} has no point {far.at}, where {far.name} is")

@@ -38,21 +38,6 @@ def _parallel(one: Joint, other: Joint) -> bool:
     return one.axis is not None and other.axis is not None and not any(one.axis.cross(other.axis))
 
 
-def short_links(loop: Loop, link: str, far: Joint) -> str:
-    """What is said of a link between a crank and a parallelogram, as in Tsai's manipulator."""
-    rod = far.other(link) if link in far.between else ""
-    if loop.dimensions == 2 or rod not in loop.parallelograms:
-        return ""
-    return (
-        f".  {link} is between a driven body and the parallelogram {rod}, as in Tsai's manipulator "
-        f"or a Falcon.  If the axes of the parallelogram meet those at both ends of the leg, leave "
-        f"{link} out: this is a Delta robot.  Otherwise the end of the leg is on a torus, three "
-        f"tori lead to an equation of a high degree, and this is not supported.  The inverse is a "
-        f"triangle of the crank and both links with sqrt(r^2 - y^2), where r is the length of "
-        f"{rod} and y how far the end is along the axis; write it in Python"
-    )
-
-
 def carried(loop: Loop, joint: Joint) -> str:
     """What is said of a driven joint that turns a body which nothing else holds."""
     alone = [body for body in joint.between if loop.of(body) == [joint]]
@@ -66,4 +51,4 @@ def carried(loop: Loop, joint: Joint) -> str:
     )
 
 
-__all__ = ["carried", "short_links", "two_motors"]
+__all__ = ["carried", "two_motors"]

@@ -13,6 +13,7 @@ import sympy as sp
 from closedform.algebra.formulas import number
 from closedform.model.names import listed
 from closedform.scaffold.inputs.tables import Table, TableError, add_joint
+from closedform.scaffold.loops.between_links import between_links
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 from closedform.scaffold.loops.guides import GuideLine, guide
 from closedform.scaffold.loops.hinges import hinged
@@ -130,7 +131,11 @@ def _first_way(loop: Loop) -> _Way:
 
 def _on_legs(found: Legs) -> _Way:
     """A hand that legs carry."""
-    loop, driven, struts = found.loop, found.legs(), found.struts()
+    loop = found.loop
+    if extended := between_links(found):
+        found.check_all_used()
+        return _Way(extended[0], [], guide=extended[1])
+    driven, struts = found.legs(), found.struts()
     passive = None if loop.parallelograms else guide(found)
     found.check_all_used()
     held = bool(passive or struts or loop.parallelograms or loop.dimensions == 2)

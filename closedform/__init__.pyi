@@ -15,6 +15,8 @@ from closedform.algebra.solutions import rotation_parametrisation as rotation_pa
 from closedform.lemmas.applied import Applied as Applied
 from closedform.lemmas.arm_plane import arm_angle as arm_angle
 from closedform.lemmas.arm_plane import arm_plane as arm_plane
+from closedform.lemmas.axial import Across as Across
+from closedform.lemmas.axial import Along as Along
 from closedform.lemmas.chain import Chain as Chain
 from closedform.lemmas.circles import circle_intersection as circle_intersection
 from closedform.lemmas.extended import Extended as Extended

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.axial import Across, Along, Axial
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut, sign_of_leg, vector
 from closedform.lemmas.parallelogram import Parallelogram
 from closedform.lemmas.planes import Flat, Plane
@@ -253,7 +254,9 @@ class Hand:
 
 def rate_of(leg: Leg, rod: sp.Matrix) -> sp.Expr:
     """The entry of B of a leg, from the vector along its rod."""
-    return leg.joint if isinstance(leg, Stretch) else rod.dot(leg.rate)
+    if isinstance(leg, Along):
+        return sp.S.One
+    return leg.joint if isinstance(leg, Stretch | Across) else rod.dot(leg.rate)
 
 
 def singular_everywhere(A: sp.Matrix, at: Mapping[sp.Basic, sp.Expr] | None = None) -> bool:
@@ -273,8 +276,13 @@ def in_space(place: sp.Matrix) -> list[sp.Expr]:
     return [*place, *[sp.S.Zero] * (3 - len(place))]
 
 
-def check_order(d: Derivation, driven: Sequence[Leg]) -> None:
-    """Refuse legs that are not in the order of the joints."""
+def check_order(d: Derivation, driven: Sequence[Leg], *, axial: bool = False) -> None:
+    """Refuse legs that are not in the order of the joints, and such that only some hands have."""
+    if not axial and any(isinstance(leg, Axial) for leg in driven):
+        raise ShapeError(
+            f"{d.name}: legs Along and Across an axis carry a hand that turns in space, on three "
+            f"pairs of them, in platform"
+        )
     joints = tuple(leg.joint for leg in driven)
     if joints != d.actuated:
         raise ShapeError(

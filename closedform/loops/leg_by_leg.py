@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 import sympy as sp
 
+from closedform.lemmas.axial import Across
 from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, sign_of_leg
 from closedform.lemmas.named import named, named_in
 from closedform.lemmas.planes import Flat
@@ -57,7 +58,9 @@ class LegByLeg:
         """The lengths of the rods, as they are in the answer."""
         stretched = {s.link.unknowns[0]: s.value for s in self.found}
         return [
-            stretched[leg.joint] if isinstance(leg, Stretch) else sp.sympify(leg.rod, strict=True)
+            stretched[leg.joint]
+            if isinstance(leg, Stretch | Across)
+            else sp.sympify(leg.rod, strict=True)
             for leg in legs
         ]
 

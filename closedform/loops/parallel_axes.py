@@ -57,7 +57,7 @@ class ParallelAxes:
     proves: ClassVar[str] = (
         "Let F be the square of the left side of the equation of a leg, minus that of the right "
         "side.  Its derivative with respect to the target is the row of A, and that with respect "
-        "to the joint is minus the entry of B, both times 2*(c + s)/s."
+        "to the joint is minus the entry of B, both times 2*(c_i + s_i)/s_i."
     )
     motion: ClassVar[str] = (
         "A motion of the hand keeps a leg closed if the velocity of its far end, less that of its "

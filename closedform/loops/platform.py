@@ -18,6 +18,7 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.lemmas.axial import Along
 from closedform.lemmas.legs import Leg, Slide
 from closedform.lemmas.planes import Plane
 from closedform.lemmas.rails import Rail
@@ -27,6 +28,7 @@ from closedform.loops.leg_by_leg import (
     MISSED,
     LegByLeg,
     known_sides,
+    named,
     named_in,
     size_of,
 )
@@ -44,6 +46,7 @@ from closedform.loops.platform_legs import (
     counted_degree,
     jacobians,
     matrices,
+    pull_of,
 )
 from closedform.loops.skeleton import Drawing, points_of
 from closedform.loops.three_points import ThreePoints
@@ -56,6 +59,8 @@ from closedform.model.names import listed
 from closedform.model.step import Step
 
 AXES = "xyz"
+DEGREE_OF_CIRCLES = 16
+"""Of three points of a body that are on given circles."""
 DEGREE_IN_SPACE = 40
 """Of six points of a body that are at given distances from six points of the ground."""
 TASK_IN_PLANE = 3
@@ -111,7 +116,7 @@ def platform(d: Derivation, legs: Sequence[Leg | Half], *, bars: int = 2) -> Non
     check_holds(m)
     if not d.singularities:
         d.singularities = (*(f"leg {k}" for k, _ in m.numbered), "all legs")
-    m.d.loop = loop = _close(m)
+    m.d.loop = loop = _close_on_axes(m) if m.axial else _close(m)
     if upright:
         state_upright(m, loop)
     if solved := Meet.of(m) or ThreePoints.of(m):
@@ -165,9 +170,38 @@ def _close(m: Platform) -> Step:
     )
 
 
+def _close_on_axes(m: Platform) -> Step:
+    """The same for points that are held by axes."""
+    (e,) = letters(m.d, "e")
+    rows = [
+        (str(k), str(leg.joint), leg.base.T, leg.rate.T, place.T)
+        for k, (leg, place) in enumerate(zip(m.legs[::2], m.places[::2], strict=True), 1)
+    ]
+    return m.d.step(
+        "The loop",
+        "Three points of the hand are held by axes of the ground.  Its pose is the position p of "
+        "one of its points, and R, by which it is turned.  A slider moves along the axis k, which "
+        "passes a_k and has the direction u_k, and carries a leg that turns about the axis and "
+        "stretches at right angles to it.  The leg ends at a ball joint, which is "
+        f"{e} in the frame of the hand.  So the coordinate of p + R*{e} along the axis is the "
+        "joint of the slider, and its distance from the axis is the length of the leg.",
+        {},
+        rows=[("k", "slider", "a", "u", e), *rows],
+    )
+
+
 def _forward(m: Platform, loop: Step) -> str:
     """The degree of the forward problem, for which no formula is derived."""
-    if m.pairs:
+    if m.axial:
+        degree = f"{DEGREE_OF_CIRCLES}"
+        found = (
+            "The joints leave each point a circle about its axis, and three points on such circles "
+            "have to keep their distances, as those of a 3-RPS mechanism.  These are three "
+            "equations in the tangents of half of the angles on the circles, each of degree two in "
+            "two of them, so they have at most 16 solutions; for points in general position "
+            "it is not less."
+        )
+    elif m.pairs:
         degree = f"{degree_of_pairs(m.pairs)}"
         found = (
             "Two legs leave the point in which they meet a circle, and three points on such "
@@ -226,20 +260,31 @@ def _velocity(m: Platform, loop: Step) -> None:
         along = sp.Matrix([_component(d, "r", str(k), i) for i in axes])
         shown[f"B_{{{k}{k}}}"] = rate_of(leg, along)
     e, s = letters(d, "es")
+    halved, twice = "of the loop equations, halved,", "is twice the"
+    row = (
+        f"the vector r along rod i, which is p + R*{e}{f' + {s}' * bool(m.halves)} - b, and its "
+        f"moment about {'p' if m.tilts or m.dimensions == 2 else 'the vertical through p'}"
+    )
+    serial = "the joint moves the near end of a rod at right angles to it (serial: the joint moves"
+    if m.axial:
+        halved = "of the equations of the loop, those of the distances halved,"
+        twice = "is, for a distance twice, the"
+        row = (
+            "a vector r and its moment about p: for a slider the direction of its axis, and for a "
+            "leg the vector from the axis to its end"
+        )
+        serial = "a leg has the length 0 (serial: it turns"
     d.step(
         "Velocity and singular sets",
-        "The derivatives of the loop equations, halved, give A*t = B*dq for the twist t of the "
-        "hand: the velocity of its point p and its angular velocity.  Row i of A is the vector r "
-        f"along rod i, which is p + R*{e}{f' + {s}' * bool(m.halves)} - b, and its moment about "
-        f"{'p' if m.tilts or m.dimensions == 2 else 'the vertical through p'}, at the end of the "
-        f"arm h, which is R*{e}.  B is diagonal, because each leg depends on its own joint alone.  "
-        "B is singular if the joint moves the near end of a rod at right angles to it (serial: the "
-        "joint moves and the hand stands still).  A is singular if "
+        f"The derivatives {halved} give A*t = B*dq for the twist t of the "
+        f"hand: the velocity of its point p and its angular velocity.  Row i of A is {row}, at the "
+        f"end of the arm h, which is R*{e}.  B is diagonal, because each leg depends on its own "
+        f"joint alone.  B is singular if {serial} and the hand stands still).  A is singular if "
         f"{m.meet} (parallel: the hand can move while the joints stand still).",
         shown,
-        proves="The derivative of each loop equation along a twist and a joint rate is twice the "
-        "row of A times the twist, minus twice the entry of B times the rate.  The "
-        "formula for the determinant holds for any "
+        proves=f"The derivative of each loop equation along a twist and a joint rate {twice} "
+        f"row of A times the twist, minus {'that' if m.axial else 'twice the'} entry of B times "
+        "the rate.  The formula for the determinant holds for any "
         f"matrix{'' if m.tilts else ', and the adjugate gives J with A*J = B'}.",
         equal=[
             *_of_any_matrix(len(m.legs), adjugate=not m.tilts),
@@ -248,7 +293,10 @@ def _velocity(m: Platform, loop: Step) -> None:
                 for leg, rod, row, rate, by, e in zip(
                     m.legs, m.rods, m.rows, rates, moved, m.loop, strict=True
                 )
-                for pair in ((rod.dot(by), (row * twist)[0]), (e.diff(leg.joint), -2 * rate))
+                for pair in (
+                    (rod.dot(by), (row * twist)[0]),
+                    (e.diff(leg.joint), -rate * (1 if isinstance(leg, Along) else 2)),
+                )
             ),
         ],
         uses=[loop],
@@ -272,10 +320,14 @@ def _export(m: Platform) -> None:
     ]
     volume = p.let("Delta", determinant(p, placed))
     A = sp.Matrix.vstack(*placed)
+    shares = [row / b for row, b in zip(placed, driven, strict=True)]
+    if m.axial:  # the quotient first: a product of small lengths may be too small for the type
+        ways = [named(p, f"r_{k}", share[0, :3].T) for k, share in enumerate(shares, 1)]
+        shares = [way.col_join(m.moment(arm, way)).T for way, arm in zip(ways, arms, strict=True)]
     inverse = (
         "jacobian_inverse",
         "B^-1*A: joint rates per velocity and angular velocity of the hand.",
-        {"K": sp.Matrix.vstack(*(row / b for row, b in zip(placed, driven, strict=True)))},
+        {"K": sp.Matrix.vstack(*shares)},
         ("Not finite at a serial singularity.",),
     )
     *both, singular = matrices(m, A, driven, volume)
@@ -328,8 +380,9 @@ def _named_rows(
     A rod is a span and an arm, and the arm has no moment, so the moment is that of the span.
     """
     found = []
-    for k, (arm, span) in enumerate(zip(arms, spans, strict=True), 1):
-        entries = enumerate([*(span + arm), *m.moment(arm, span)], 1)
+    for (k, leg), arm, span in zip(m.numbered, arms, spans, strict=True):
+        rod = pull_of(leg, span + arm)
+        entries = enumerate([*rod, *m.moment(arm, rod if m.axial else span)], 1)
         found.append(sp.Matrix([[named_in(p, f"A_{k}{i}", e) for i, e in entries]]))
     return found
 
@@ -423,7 +476,7 @@ def _inverse(m: Platform, loop: Step, degree: str = "", points: ThreePoints | No
     d, g = m.d, m.d.program()
     if m.tilts:
         require_pose(g, m.pose)
-    slides = any(isinstance(leg, Slide) for leg in m.legs)
+    slides = any(isinstance(leg, Slide | Along) for leg in m.legs)
     moved = tuple(m.position) if slides else ()
     solved = LegByLeg(d, g, g.let("size", size_of(d, m.whole, moved)))
     arms = _named_arms(m, g)

@@ -13,6 +13,7 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.algebra.solutions import count_solutions
+from closedform.lemmas.axial import Across, Along, Axial
 from closedform.lemmas.legs import Leg, Strut, cross_in_plane, vector
 from closedform.lemmas.rails import Rail
 from closedform.loops.hand import (
@@ -71,7 +72,8 @@ class Platform:
         for leg in self.legs:
             if isinstance(leg, Strut):
                 raise ShapeError(f"{name}: a strut cannot carry a hand that turns")
-        check_order(self.d, self.legs)
+        check_order(self.d, self.legs, axial=self.dimensions == 3 and self.tilts)
+        self.check_axial()
         if self.bars not in (1, 2):
             raise ShapeError(f"{name}: one bar joins the halves of a hand, or two")
         if self.halves and n != UPRIGHT:
@@ -90,6 +92,30 @@ class Platform:
                 f"{name}: a rail cannot carry a hand that turns; the forward problem is of degree "
                 f"{counted_degree(self)}, and no formula is derived for it"
             )
+
+    def check_axial(self) -> None:
+        """Refuse legs along and across axes that are not three pairs."""
+        if not self.axial:
+            return
+        pairs = zip(self.legs[::2], self.legs[1::2], strict=False)
+        for first, second in pairs:
+            if not (isinstance(first, Along) and isinstance(second, Across)):
+                raise ShapeError(
+                    f"{self.d.name}: legs Along and Across an axis are three pairs, in this order"
+                )
+            same = vector(first.direction).cross(vector(second.axis))
+            same = same.col_join((first.base - second.base).cross(first.rate))
+            on_hand = vector(first.on_hand or (0, 0, 0)) - vector(second.on_hand or (0, 0, 0))
+            if any(map(sp.simplify, [*same, *on_hand])):
+                raise ShapeError(
+                    f"{self.d.name}: {first.joint} and {second.joint} have to have the same axis "
+                    f"and the same point on_hand"
+                )
+
+    @property
+    def axial(self) -> bool:
+        """Whether legs hold points of the hand by axes."""
+        return any(isinstance(leg, Axial) for leg in self.legs)
 
     @cached_property
     def legs(self) -> tuple[Leg, ...]:
@@ -111,6 +137,8 @@ class Platform:
     @property
     def meet(self) -> str:
         """What the rods do where A is singular."""
+        if self.axial:
+            return "the legs do not hold the hand"
         if self.tilts:
             return "the lines of the rods belong to one linear complex"
         if self.dimensions == 3:
@@ -185,7 +213,7 @@ class Platform:
         legs meet otherwise.
         """
         for near, far in permutations((self.groups_on_ground, self.groups)):
-            if self.tilts and [len(group) for group in far] == [2, 2, 2]:
+            if self.tilts and not self.axial and [len(group) for group in far] == [2, 2, 2]:
                 start = {k: i for i, group in enumerate(near) for k in group}
                 return [(start[a], start[b]) for a, b in far]
         return []
@@ -214,14 +242,20 @@ class Platform:
     @cached_property
     def rods(self) -> list[sp.Matrix]:
         """The vectors along the rods, from their near ends to the hand."""
-        return [span + arm for span, arm in zip(self.spans, self.arms, strict=True)]
+        return [
+            pull_of(leg, span + arm)
+            for leg, span, arm in zip(self.legs, self.spans, self.arms, strict=True)
+        ]
 
     @cached_property
     def loop(self) -> tuple[sp.Expr, ...]:
         """The equations of the loop: each rod keeps its length."""
+        ends = zip(self.legs, self.spans, self.arms, strict=True)
         return tuple(
-            square(rod) - sp.sympify(leg.rod, strict=True) ** 2
-            for leg, rod in zip(self.legs, self.rods, strict=True)
+            leg.excess(span + arm)
+            if isinstance(leg, Axial)
+            else square(span + arm) - sp.sympify(leg.rod, strict=True) ** 2
+            for leg, span, arm in ends
         )
 
     @property
@@ -292,6 +326,11 @@ def certify_forward(m: Platform, links: Sequence[Link], equations: Sequence[sp.E
             passive=passive,
         )
     )
+
+
+def pull_of(leg: Leg, span: sp.Matrix) -> sp.Matrix:
+    """The vector of the row of A of a leg, along its rod if it has one."""
+    return leg.pull(span) if isinstance(leg, Axial) else span
 
 
 def _together(points: Sequence[sp.Matrix]) -> list[list[int]]:
@@ -392,4 +431,5 @@ __all__ = [
     "counted_degree",
     "jacobians",
     "matrices",
+    "pull_of",
 ]

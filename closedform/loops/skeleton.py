@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
+from closedform.lemmas.axial import Across, Along, Axial
 from closedform.lemmas.extended import Extended
 from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch, Strut
 from closedform.lemmas.parallelogram import Parallelogram, Prism
@@ -34,6 +35,9 @@ class Drawing:
 
     def add_leg(self, k: int, leg: Leg, far: str, equation: sp.Expr) -> None:
         """A leg with its equation, whose rod ends at the point ``far``."""
+        if isinstance(leg, Axial):
+            self._add_axial(k, leg, far, equation)
+            return
         self._add_rod(k, leg, far, equation)
         self._add_driven(k, leg)
         for pair in bars_of(k, leg, far):
@@ -54,6 +58,14 @@ class Drawing:
         self.closing[f"D{k}", f"E{k}"] = closed
         for bars in bars_of(k, leg, far):
             self._add_bars(k, bars, closed)
+
+    def _add_axial(self, k: int, leg: Axial, far: str, equation: sp.Expr) -> None:
+        """A slider along an axis, or a leg that starts at a foot on an axis."""
+        pair = (f"A{k}", f"B{k}") if isinstance(leg, Along) else (f"B{k}", far)
+        self.joints[leg.joint] = pair
+        self.lengths[pair] = leg.joint
+        if isinstance(leg, Across):
+            self.closing[pair] = equation
 
     def _add_rod(self, k: int, leg: Leg, far: str, equation: sp.Expr) -> None:
         """The rod; of a leg that stretches it is the driven joint."""
@@ -208,7 +220,8 @@ def points_of(k: int, leg: Leg, far: str, place: sp.Matrix) -> dict[str, Sequenc
     """The base A and the near end B of a leg, its far end, and the ends of its bars."""
     at = {f"A{k}": leg.base}
     if not isinstance(leg, Stretch | Strut):
-        at[f"B{k}"] = leg.end()
+        foot = leg.foot(place - leg.base) if isinstance(leg, Across) else sp.zeros(len(place), 1)
+        at[f"B{k}"] = leg.end() + foot
     if far != "P":
         at[far] = place
     if isinstance(leg.rod, Extended):

@@ -216,7 +216,6 @@ w = {between = ["plate", "tool"], at = "N", axis = [0, 0, 1], driven = true}
 @pytest.mark.parametrize(
     ("file", "told"),
     [
-        (TWO_MOTORS, "two motors, as in a 3-PRPS mechanism.*3-RPS mechanism for the pose, of deg"),
         (TWO_MOTORS.replace("axis = [0, 1, 0]}", "axis = [0, 0, 1]}"), "hold one of both motors"),
         (WITH_TOOL, "Nothing else holds tool, so w is in no loop.*take a point of plate"),
     ],

@@ -55,6 +55,8 @@ USED |= {"slotted", "guided", "sliding_linkage", "on_pins"}
 USED |= {
     "Derivation",
     "Paper",
+    "Across",
+    "Along",
     "Ball",
     "Body",
     "Crank",
@@ -240,13 +242,13 @@ def _on_slider(loop: Loop, name: str, given: Mapping[str, Any], where: str) -> M
     """The slide of a cylindrical joint on the ground, beside a new body and its turning joint."""
     if "axis" not in given or "at" not in given:
         raise TableError(f"{where}: a cylindrical joint needs its axis, and at which point it is")
-    at, slider = given["at"], f"{name}_slider"
+    at, slider = given["at"], f"slider_{name}"
     (body,) = (b for b in given["between"] if b != GROUND)
     if slider in loop.bodies or at not in loop.bodies[GROUND]:
         raise TableError(f"{where}: {GROUND} has no point {at}, or {slider} is a body already")
     loop.bodies[slider] = {at: loop.bodies[GROUND][at]}
     axis = _axis(loop, given["axis"], where, "axis")
-    turn = f"{name}_turn"
+    turn = f"turn_{name}"
     loop.joints[turn] = Joint(
         name=turn, kind="revolute", between=(slider, body), at=at, axis=axis, driven=False
     )

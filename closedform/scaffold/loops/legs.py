@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from closedform.model.names import listed
+from closedform.scaffold.loops.axial import TwoMotors, in_pairs, leg_on_axis, told
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 from closedform.scaffold.loops.halves import halves
 from closedform.scaffold.loops.refused import carried, two_motors
@@ -43,6 +44,8 @@ class LoopLeg:
     """Where it ends, as seen from the point that is the hand."""
     passive: str = ""
     """The passive slide of a rail."""
+    on_axis: bool = False
+    """Whether it is one of both motors of a leg that turns about the axis of its slider."""
 
 
 class Legs:
@@ -143,7 +146,7 @@ class Legs:
             bars = {joint.name for half in self.halves for joint in loop.of(half)}
             self.used |= {name for name in bars if loop.joints[name].kind == "revolute"}
             return [self.on_half(j) for j in driven]
-        return [self.leg(j) for j in driven]
+        return [self.leg(j) for j in in_pairs(loop, driven)]
 
     def check_place(self, joint: Joint) -> None:
         """Refuse a drive between two bodies that both move, unless it slides them."""
@@ -210,6 +213,8 @@ class Legs:
 
     def leg(self, joint: Joint) -> LoopLeg:
         loop = self.loop
+        if on_axis := leg_on_axis(loop, joint):
+            return self.on_axis(on_axis, joint)
         if GROUND not in joint.between:
             return self.stretch(joint)
         body = joint.other(GROUND)
@@ -245,6 +250,18 @@ class Legs:
         if joint.kind == "revolute":
             return self.crank(joint, *rods[0])
         raise loop.error(f"{joint.name} is driven, so it must be revolute or prismatic")
+
+    def on_axis(self, leg: TwoMotors, joint: Joint) -> LoopLeg:
+        """One of both motors of a leg that turns about the axis of its slider."""
+        parts = (leg.slider, leg.hinge, leg.stretch, leg.ball)
+        self.used |= {j.name for j in parts}
+        place = self.place_of(leg.ball)
+        assert leg.slider.axis is not None
+        start = self.at(self.point(leg.slider.other(GROUND), leg.hinge))
+        name = "Along" if joint is leg.slider else "Across"
+        call = f"{name}({joint.name}, {start}, {self.at(leg.slider.axis)}{self.tail(place)})"
+        words = told(leg) if joint is leg.slider else f"{joint.name} is the length of such a leg"
+        return LoopLeg(joint, call, words, place, on_axis=True)
 
     def arcs_told(self) -> str:
         """What is said of a mechanism all of whose axes meet."""

@@ -6,9 +6,6 @@ from collections.abc import Sequence
 
 from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
 
-DEGREE_OF_TRIPOD = 16
-"""Of the forward problem of three legs that are hinged on the ground and end in balls."""
-
 
 def two_motors(loop: Loop, joint: Joint, onward: Sequence[Joint]) -> str:
     """What is said of a driven slider that carries a leg that stretches, as in a 3-PRPS."""
@@ -19,23 +16,12 @@ def two_motors(loop: Loop, joint: Joint, onward: Sequence[Joint]) -> str:
     second = next((j for j in loop.of(tube) if j.driven and j.kind == "prismatic"), None)
     if second is None:
         return ""
-    along = ""
-    if hinge.kind == "revolute" and _parallel(joint, hinge):
-        along = (
-            f"  Its inverse is short: {joint.name} is the coordinate of the end of the leg along "
-            f"the axis, and {second.name} the distance from there.  Three such legs lead to the "
-            f"equation of a 3-RPS mechanism for the pose, of degree {DEGREE_OF_TRIPOD}."
-        )
     return (
         f".  {second.name} stretches the same leg, so it has two motors, as in a 3-PRPS mechanism; "
-        f"this is not supported.{along}  Write the equations in Python, or hold one of both motors "
-        f"and describe what is left"
+        f"this is supported if {hinge.name} is revolute and its axis is that of {joint.name}.  "
+        f"Otherwise write the equations in Python, or hold one of both motors and describe what is "
+        f"left"
     )
-
-
-def _parallel(one: Joint, other: Joint) -> bool:
-    """Whether both axes are given and parallel."""
-    return one.axis is not None and other.axis is not None and not any(one.axis.cross(other.axis))
 
 
 def carried(loop: Loop, joint: Joint) -> str:

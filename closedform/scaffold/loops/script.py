@@ -139,6 +139,7 @@ def _on_legs(found: Legs) -> _Way:
     passive = None if loop.parallelograms else guide(found)
     found.check_all_used()
     held = bool(passive or struts or loop.parallelograms or loop.dimensions == 2)
+    held |= any(leg.on_axis for leg in driven)
     if found.turning and not held and (on_hinges := hinged(found, driven)):
         return _Way(on_hinges[0], [], guide=on_hinges[1])
     _check_ends(found, passive.held if passive else ())

@@ -69,6 +69,14 @@ class Rail(Slider):
         """The direction of the rail, turned by a right angle to the left."""
         return sp.Matrix([-self.way[1], self.way[0]])
 
+    def pull(self, span: sp.Matrix) -> sp.Matrix:
+        """The vector whose product with the velocity of the point is its row of A."""
+        return self.normal
+
+    def excess(self, span: sp.Matrix) -> sp.Expr:
+        """What vanishes if the point is on the rail, from the vector to it from the slider."""
+        return self.normal.dot(span)
+
     def solve(self, chain: Naming, w: sp.Matrix, sigma: sp.Symbol) -> Solution:
         q, cross = self.joint, sp.simplify(cross_in_plane(self.rate, self.way))
         off = chain.let("off", cross_in_plane(w, self.way))

@@ -53,7 +53,7 @@ class Meet:
     def of(cls, m: Platform) -> Meet | None:
         """The same of a hand, if it is of this kind."""
         groups = sorted(m.groups, key=len, reverse=True)
-        if m.dimensions != 2 or [*map(len, groups)] != [LEGS - 1, 1]:
+        if m.dimensions != 2 or m.rails or [*map(len, groups)] != [LEGS - 1, 1]:
             return None
         (first, second), (third,) = groups
         return cls(m, (first, second), third)

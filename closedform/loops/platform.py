@@ -143,12 +143,13 @@ def _close(m: Platform) -> Step:
             leg.end().T,
             place.T,
             *[offset.T] * bool(m.halves),
-            sp.sympify(leg.rod, strict=True),
+            leg.normal.T if isinstance(leg, Rail) else sp.sympify(leg.rod, strict=True),
         )
         for (k, leg), place, offset in ends
     ]
     e, s = letters(m.d, "es")
-    columns = ("i", "b", e, *[s] * bool(m.halves), "length of the rod")
+    last = "length of the rod" + ", or normal of the rail" * m.rails
+    columns = ("i", "b", e, *[s] * bool(m.halves), last)
     joined = "a bar joins them" if m.bars == 1 else "two bars join them"
     far = (
         f"The halves of the hand do not turn, and {joined}, which R turns.  The pin of the "
@@ -159,6 +160,11 @@ def _close(m: Platform) -> Step:
         else f"The far end is {e} in the frame of the hand.  The rod keeps the distance of its "
         f"ends: |p + R*{e} - b| is its length."
     )
+    if m.rails:
+        far += (
+            f"  A leg with a rail has no rod: b is on the rail, whose normal is n, and the far end "
+            f"is on it too, so n^T*(p + R*{e} - b) is zero."
+        )
     turned = "R, by which it is turned" if m.tilts or m.dimensions == 2 else "R, a turn about z"
     count = {3: "Three", 4: "Four", 6: "Six"}[len(m.legs)]
     return m.d.step(
@@ -261,11 +267,17 @@ def _velocity(m: Platform, loop: Step) -> None:
         shown[f"B_{{{k}{k}}}"] = rate_of(leg, along)
     e, s = letters(d, "es")
     halved, twice = "of the loop equations, halved,", "is twice the"
+    times = "that" if m.axial or m.rails else "twice the"
     row = (
         f"the vector r along rod i, which is p + R*{e}{f' + {s}' * bool(m.halves)} - b, and its "
         f"moment about {'p' if m.tilts or m.dimensions == 2 else 'the vertical through p'}"
     )
     serial = "the joint moves the near end of a rod at right angles to it (serial: the joint moves"
+    if m.rails:
+        halved = "of the equations of the loop, those of the rods halved,"
+        twice = "is, for a rod twice, the"
+        row = "the vector r, along rod i or at right angles to its rail, and its moment about p"
+        serial = "the joint moves the near end of a rod at right angles to it (serial: it moves"
     if m.axial:
         halved = "of the equations of the loop, those of the distances halved,"
         twice = "is, for a distance twice, the"
@@ -283,8 +295,7 @@ def _velocity(m: Platform, loop: Step) -> None:
         f"{m.meet} (parallel: the hand can move while the joints stand still).",
         shown,
         proves=f"The derivative of each loop equation along a twist and a joint rate {twice} "
-        f"row of A times the twist, minus {'that' if m.axial else 'twice the'} entry of B times "
-        "the rate.  The formula for the determinant holds for any "
+        f"row of A times the twist, minus {times} entry of B times the rate.  The formula for the determinant holds for any "
         f"matrix{'' if m.tilts else ', and the adjugate gives J with A*J = B'}.",
         equal=[
             *_of_any_matrix(len(m.legs), adjugate=not m.tilts),
@@ -295,7 +306,7 @@ def _velocity(m: Platform, loop: Step) -> None:
                 )
                 for pair in (
                     (rod.dot(by), (row * twist)[0]),
-                    (e.diff(leg.joint), -rate * (1 if isinstance(leg, Along) else 2)),
+                    (e.diff(leg.joint), -rate * (1 if isinstance(leg, Along | Rail) else 2)),
                 )
             ),
         ],
@@ -382,7 +393,7 @@ def _named_rows(
     found = []
     for (k, leg), arm, span in zip(m.numbered, arms, spans, strict=True):
         rod = pull_of(leg, span + arm)
-        entries = enumerate([*rod, *m.moment(arm, rod if m.axial else span)], 1)
+        entries = enumerate([*rod, *m.moment(arm, rod if m.axial or m.rails else span)], 1)
         found.append(sp.Matrix([[named_in(p, f"A_{k}{i}", e) for i, e in entries]]))
     return found
 
@@ -436,7 +447,11 @@ def _draw(m: Platform, at: Posture | None = None) -> None:
     drawn = Drawing()
     for (k, leg), pin, offset, equation in zip(m.numbered, pins, m.offsets, m.loop, strict=True):
         end = f"C{k}" if m.halves else pin
-        drawn.add_leg(k, leg, end, equation)
+        if isinstance(leg, Rail):
+            span = m.spans[k - 1] + m.arms[k - 1]
+            drawn.add_rail(k, leg, end, leg.way.dot(span), equation)
+        else:
+            drawn.add_leg(k, leg, end, equation)
         if end != pin:
             drawn.links[f"half{k}"] = (pin, end)
             drawn.lengths[pin, end] = sp.sqrt(sp.factor(sp.trigsimp(square(offset))))
@@ -476,7 +491,7 @@ def _inverse(m: Platform, loop: Step, degree: str = "", points: ThreePoints | No
     d, g = m.d, m.d.program()
     if m.tilts:
         require_pose(g, m.pose)
-    slides = any(isinstance(leg, Slide | Along) for leg in m.legs)
+    slides = any(isinstance(leg, Slide | Along | Rail) for leg in m.legs)
     moved = tuple(m.position) if slides else ()
     solved = LegByLeg(d, g, g.let("size", size_of(d, m.whole, moved)))
     arms = _named_arms(m, g)

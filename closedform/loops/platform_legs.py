@@ -87,11 +87,6 @@ class Platform:
         if self.spread == 0:
             same = "above each other on" if n == UPRIGHT else "in the same point of"
             raise ShapeError(f"{name}: all legs end {same} the hand; it turns freely")
-        if any(isinstance(leg, Rail) for leg in self.legs):
-            raise ShapeError(
-                f"{name}: a rail cannot carry a hand that turns; the forward problem is of degree "
-                f"{counted_degree(self)}, and no formula is derived for it"
-            )
 
     def check_axial(self) -> None:
         """Refuse legs along and across axes that are not three pairs."""
@@ -111,6 +106,11 @@ class Platform:
                     f"{self.d.name}: {first.joint} and {second.joint} have to have the same axis "
                     f"and the same point on_hand"
                 )
+
+    @property
+    def rails(self) -> bool:
+        """Whether legs hold points of the hand on rails."""
+        return any(isinstance(leg, Rail) for leg in self.legs)
 
     @property
     def axial(self) -> bool:
@@ -143,6 +143,11 @@ class Platform:
             return "the lines of the rods belong to one linear complex"
         if self.dimensions == 3:
             return "the rods do not hold the hand"
+        if self.rails:
+            return (
+                "the lines of the rods, and those at right angles to the rails, pass through one "
+                "point or are parallel"
+            )
         return "the rods pass through one point or are parallel"
 
     @property
@@ -253,7 +258,7 @@ class Platform:
         ends = zip(self.legs, self.spans, self.arms, strict=True)
         return tuple(
             leg.excess(span + arm)
-            if isinstance(leg, Axial)
+            if isinstance(leg, Axial | Rail)
             else square(span + arm) - sp.sympify(leg.rod, strict=True) ** 2
             for leg, span, arm in ends
         )
@@ -330,7 +335,7 @@ def certify_forward(m: Platform, links: Sequence[Link], equations: Sequence[sp.E
 
 def pull_of(leg: Leg, span: sp.Matrix) -> sp.Matrix:
     """The vector of the row of A of a leg, along its rod if it has one."""
-    return leg.pull(span) if isinstance(leg, Axial) else span
+    return leg.pull(span) if isinstance(leg, Axial | Rail) else span
 
 
 def _together(points: Sequence[sp.Matrix]) -> list[list[int]]:
@@ -393,6 +398,10 @@ def jacobians(
     shares = [p.let(f"share_{k}", b / volume) for k, b in enumerate(driven, 1)]
     J = A.adjugate() * sp.diag(*shares)
     det = sp.Mul(*driven) / volume
+    if m.rails:  # the same in this order, because a product of small lengths may be too small
+        det = shares[0]
+        for k, b in enumerate(driven[1:], 2):
+            det = p.let(f"part_{k}", det * b)
     return [
         ("jacobian", f"Derivative of {task} with respect to q: A^-1*B.", {"J": J}, pole),
         ("determinant", "Determinant of the Jacobian.", {"det": det}, pole),

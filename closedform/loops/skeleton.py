@@ -59,6 +59,13 @@ class Drawing:
         for bars in bars_of(k, leg, far):
             self._add_bars(k, bars, closed)
 
+    def add_rail(self, k: int, leg: Rail, far: str, slid: sp.Expr, equation: sp.Expr) -> None:
+        """A slider with a rail, along which the end of the leg has slid."""
+        base, end = f"A{k}", f"B{k}"
+        self.joints |= {leg.joint: (base, end), leg.slide: (end, far)}
+        self.lengths |= {(base, end): leg.joint, (end, far): slid}
+        self.closing[end, far] = equation**2
+
     def _add_axial(self, k: int, leg: Axial, far: str, equation: sp.Expr) -> None:
         """A slider along an axis, or a leg that starts at a foot on an axis."""
         pair = (f"A{k}", f"B{k}") if isinstance(leg, Along) else (f"B{k}", far)
@@ -139,17 +146,11 @@ class _OnHand(Drawing):
             self.lengths["P", far] = sp.sqrt(sp.factor(sp.trigsimp(square(place))))
         if isinstance(leg, Rail):
             span = m.hand - m.centres[k - 1]
-            self._add_rail(k, leg, far, leg.way.dot(span), equation)
+            self.add_rail(k, leg, far, leg.way.dot(span), equation)
         elif isinstance(leg, Plane):
             self.add_plane(k, leg, far)
         else:
             self.add_leg(k, leg, far, equation)
-
-    def _add_rail(self, k: int, leg: Rail, far: str, slid: sp.Expr, equation: sp.Expr) -> None:
-        base, end = f"A{k}", f"B{k}"
-        self.joints |= {leg.joint: (base, end), leg.slide: (end, far)}
-        self.lengths |= {(base, end): leg.joint, (end, far): slid}
-        self.closing[end, far] = equation**2
 
 
 def near_of(k: int, leg: Leg) -> str:

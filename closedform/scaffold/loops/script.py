@@ -32,8 +32,6 @@ from closedform.scaffold.loops.uprights import HINGED, uprights
 from closedform.scaffold.source import file_name, literal
 
 UNSAID = "say what it measures"
-DEGREES = {1: 6, 2: 4}
-"""Of the forward problem of a hand that turns in a plane, if some of its three legs are rails."""
 BY_HAND = (
     "For another mechanism write its equations in Python; velocity_matrices and lemmas such as "
     "three_spheres take them."
@@ -236,11 +234,10 @@ def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLe
     """Refuse a hand that may turn with too few driven joints, or too many."""
     loop, body = found.loop, found.turning
     rails = sum(bool(leg.passive) for leg in legs)
-    if rails and not rails == len(legs) == TURNING[2]:
-        degree = DEGREES.get(rails) if len(legs) == TURNING[2] else None
+    if rails and len(legs) != TURNING[2]:
         raise loop.error(
-            f"{body} may turn; this is not supported for a hand on a rail"
-            + f", and leads to an equation of degree {degree}" * (degree is not None)
+            f"{body} may turn; a hand on a rail needs {TURNING[2]} driven joints then, and there "
+            f"are {len(legs)}"
         )
     if loop.parallelograms:
         these = "one" if loop.dimensions == 2 else "all"

@@ -267,6 +267,7 @@ def _velocity(m: Platform, loop: Step) -> None:
         shown[f"B_{{{k}{k}}}"] = rate_of(leg, along)
     e, s = letters(d, "es")
     halved, twice = "of the loop equations, halved,", "is twice the"
+    adjugate = ", and the adjugate gives J with A*J = B" * (not m.tilts)
     times = "that" if m.axial or m.rails else "twice the"
     row = (
         f"the vector r along rod i, which is p + R*{e}{f' + {s}' * bool(m.halves)} - b, and its "
@@ -295,8 +296,8 @@ def _velocity(m: Platform, loop: Step) -> None:
         f"{m.meet} (parallel: the hand can move while the joints stand still).",
         shown,
         proves=f"The derivative of each loop equation along a twist and a joint rate {twice} "
-        f"row of A times the twist, minus {times} entry of B times the rate.  The formula for the determinant holds for any "
-        f"matrix{'' if m.tilts else ', and the adjugate gives J with A*J = B'}.",
+        f"row of A times the twist, minus {times} entry of B times the rate.  The formula for the "
+        f"determinant holds for any matrix{adjugate}.",
         equal=[
             *_of_any_matrix(len(m.legs), adjugate=not m.tilts),
             *(

@@ -77,6 +77,9 @@ C5 = [0, 0, 5]
 """
 PENTAPOD += "".join(LEG.format(k=k) for k in range(1, 6))
 PENTAPOD += "[joints]" + "".join(LEGS.format(k=k) for k in range(1, 6))
+SIX_BARS = (TESTS / "held_out_loops" / "stephenson_three.toml").read_text("utf-8")
+OTHER_WAY = SIX_BARS.replace('"A", driven = true', '"A"').replace("\nq =", "\ntheta =")
+OTHER_WAY = OTHER_WAY.replace('"G"}', '"G", driven = true}').replace('"psi"', '"theta"')
 CRR = (TESTS / "held_out_loops" / "crr.toml").read_text("utf-8")
 
 
@@ -86,6 +89,10 @@ CRR = (TESTS / "held_out_loops" / "crr.toml").read_text("utf-8")
         (KNEE, "degree 6; it can be solved if a or b is driven instead of q, whose length follows"),
         (JACK, "it can be solved if a1 or a2 or v is driven instead of q, whose length follows"),
         (KNEE.replace("rear = {", "bar = {length = 1}\nrear = {") + BAR, "q drives this linkage"),
+        (
+            OTHER_WAY,
+            'driven.  Driven by theta, with hand = "psi", its fk is the inverse of this one',
+        ),
         (PENTAPOD, "there are 5 driven joints; they leave it one freedom, such as a turn"),
         (CRR.replace("driven = true", "driven = false"), "is supported on the ground, with"),
         (CRR.replace('at = "O", kind', "kind"), "needs its axis, and at which point it is"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
@@ -163,6 +163,7 @@ def _ordered(
         and not order(without, [GROUND, j.other(GROUND)]).left
     ]
     instead = other_drive(others, [j.name for j in cylinders.values()])
+    instead += reverse(loop, others, turning.values())
     raise loop.error(
         f"this is a planar linkage, but no two of the bodies {listed(found.left)} are a dyad (two "
         f"bodies with a common pin, each with one more point that is known); they are a group of "
@@ -176,6 +177,17 @@ def other_drive(others: Sequence[str], cylinders: Sequence[str]) -> str:
         return ""
     beside = f" instead of {listed(cylinders)}, whose length follows from the posture"
     return f"; it can be solved if {' or '.join(others)} is driven{beside * bool(cylinders)}"
+
+
+def reverse(loop: Loop, others: Sequence[str], driven: Iterable[Joint]) -> str:
+    """That the inverse is the forward problem of the same linkage, if its hand may drive it."""
+    if loop.hand not in others:
+        return ""
+    (joint,) = driven
+    return (
+        f'.  Driven by {loop.hand}, with hand = "{joint.name}", its fk is the inverse of this one, '
+        f"and its jacobian is the reciprocal"
+    )
 
 
 def check_apart(loop: Loop, bodies: Sequence[str], near: Sequence[str], pin: str) -> None:
@@ -218,5 +230,6 @@ __all__ = [
     "linkage",
     "no_point",
     "other_drive",
+    "reverse",
     "safe",
 ]

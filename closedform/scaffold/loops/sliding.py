@@ -24,6 +24,7 @@ from closedform.scaffold.loops.linkages import (
     line_of,
     no_point,
     other_drive,
+    reverse,
     safe,
 )
 from closedform.scaffold.source import literal, source
@@ -314,6 +315,8 @@ def _ordered(found: Found) -> SlidingOrder:
             and not sliding_order(without, found.pairs, [GROUND, j.other(GROUND)]).left
         ]
         instead = other_drive(others, [j.name for j in found.cylinders.values()])
+        if not found.cylinders:
+            instead += reverse(loop, others, driven)
         raise loop.error(f"this is a planar linkage with slides, but {order.undone}{instead}")
     return order
 

@@ -97,6 +97,7 @@ from closedform.loops.sliding import Sliding as Sliding
 from closedform.loops.sliding_forward import sliding_linkage as sliding_linkage
 from closedform.loops.slotted import Lever as Lever
 from closedform.loops.slotted import slotted as slotted
+from closedform.loops.spindle import Spindle as Spindle
 from closedform.loops.three_hinges import ThreeHinges as ThreeHinges
 from closedform.loops.tripod import tripod as tripod
 from closedform.loops.tripod_legs import Upright as Upright

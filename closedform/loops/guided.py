@@ -26,12 +26,16 @@ from closedform.loops.hinges import Hinged, Hinges
 from closedform.loops.leg_by_leg import MISSED, LegByLeg, named_in, signs_of_modes
 from closedform.loops.letters import bold, letters
 from closedform.loops.parallel_axes import ParallelAxes, moved_by, state_axes
+from closedform.loops.platform import determinant, of_any_matrix
 from closedform.loops.skeleton import Drawing, points_of
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
-from closedform.model.functions import real
+from closedform.model.functions import Program, real
 from closedform.model.step import Step
 
+FEW = 4
+"""So many legs have a Jacobian that is printed; the adjugate of more rows is long."""
+LONG = ("jacobian", "determinant")
 TOGETHER = "The target and the joints have to belong together, as ik gives them."
 
 
@@ -52,7 +56,7 @@ def guided(d: Derivation, guide: Holder, legs: Sequence[Leg | Hinged]) -> None:
         If it has no ``singularities``, they are named after the legs
     guide
         what holds the hand: a :class:`Guide` with three legs, a :class:`Gimbal` or a
-        :class:`Cross` with two, or a :class:`Ball` with three
+        :class:`Cross` with two, a :class:`Ball` with three, a :class:`Spindle` with five
     legs
         cranks, slides or legs that stretch; ``on_hand`` is seen from the point of the hand, where
         the hand is not turned
@@ -212,9 +216,10 @@ def _velocity(m: Guided, loop: Step) -> None:
         for (k, leg), rod in zip(m.numbered, rods, strict=True)
     ]
     D = sp.Matrix.vstack(*rows)
-    volume = p.let("Delta", D.det())
+    volume = p.let("Delta", _volume(p, rows))
     _state_velocity(m, loop)
-    J = D.adjugate() * sp.diag(*driven) / volume
+    few = len(rows) <= FEW
+    J = D.adjugate() * sp.diag(*driven) / volume if few else sp.zeros(0)
     det = sp.Mul(*driven) / volume
     own = [*placed.fixed]
     if slide := placed.slide:
@@ -267,6 +272,8 @@ def _velocity(m: Guided, loop: Step) -> None:
             (),
         ),
     ]
+    if not few:
+        exported = [entry for entry in exported if entry[0] not in LONG]
     for name, summary, outputs, notes in exported:
         d.function(
             name,
@@ -276,6 +283,11 @@ def _velocity(m: Guided, loop: Step) -> None:
             program=p,
             notes=(TOGETHER, *notes),
         )
+
+
+def _volume(p: Program, rows: Sequence[sp.Matrix]) -> sp.Expr:
+    """The determinant of some rows, by minors of two parts if they are many."""
+    return sp.Matrix.vstack(*rows).det() if len(rows) <= FEW else determinant(p, rows)
 
 
 def _rates(row: sp.Matrix, stretched: sp.Matrix, driven: sp.Expr) -> sp.Matrix:
@@ -370,6 +382,9 @@ def _state_velocity(m: Guided, loop: Step) -> None:
             "  G is the derivative of the position with respect to these joints; its inverse and "
             "its determinant are correct."
         )
+    if len(m.legs) > FEW:
+        equal += of_any_matrix(len(m.legs), adjugate=False)
+        proves += "  The formula for the determinant holds for any matrix."
     d.step(
         "Velocity and singular sets",
         "The derivatives of the loop equations, halved, give A*dx = B*dq for the "
@@ -458,7 +473,7 @@ def _inverse(m: Guided, loop: Step) -> None:
     for (k, leg), arm in zip(m.numbered, placed.arms, strict=True):
         solved.solve(k, leg, m.pivot + arm - leg.base)
     rows = m.rows(g, placed, [s.rod for s in solved.found])
-    volume = g.let("Delta", sp.Matrix.vstack(*rows).det())
+    volume = g.let("Delta", _volume(g, rows))
     spread = sp.Add(*(square(arm) for arm in placed.arms)) / len(m.legs)
     if placed.slide is None:  # the ends of the legs keep their distances from the pivot
         spread = sp.factor(sp.Add(*map(square, m.places)) / len(m.legs))

@@ -17,10 +17,11 @@ from closedform.loops.hand import check_order, check_plain
 from closedform.loops.hinges import Hinges, InPlane
 from closedform.loops.leg_by_leg import named_in, size_of
 from closedform.loops.parallel_axes import ParallelAxes
+from closedform.loops.spindle import Spindle
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Program
 
-COUNTS = {2: "two", 3: "three", 4: "four"}
+COUNTS = {2: "two", 3: "three", 4: "four", 5: "five"}
 Holder = Guide | Gimbal | Ball | Hinges | ParallelAxes
 """What rules the motion of a hand."""
 
@@ -44,7 +45,7 @@ class Guided:
                 f"{name}: a driven leg beside {self.guide.what} must be a crank, a slide or a "
                 f"leg that stretches"
             )
-        if isinstance(self.guide, Guide | Gimbal | InPlane) and self.guide.joint.faulty:
+        if isinstance(self.guide, Guide | Gimbal | InPlane | Spindle) and self.guide.joint.faulty:
             raise ShapeError(
                 f"{name}: the axes of {self.guide.what} must be two unit vectors at right angles"
             )

@@ -11,6 +11,7 @@ from closedform.lemmas.legs import vector
 from closedform.loops.guides import Placed
 from closedform.loops.hinges import TILTED, Hinges, InPlane, StandingPlane, TurningPlane
 from closedform.loops.letters import letters
+from closedform.loops.spindle import Spindle
 from closedform.loops.three_hinges import PSI, ThreeHinges
 from closedform.loops.tripod_legs import sum_of_cosines
 from closedform.mechanics.frames import homogeneous
@@ -33,6 +34,11 @@ ON_AXIS = (
 TILTS = (
     "The hand is twisted about its own z axis, then turned by tilt_x about the x axis of the base "
     "and by tilt_y about the y axis.  This is its rotation R.  "
+)
+LINE = (
+    "The hand is an axis, on which all legs end.  It is turned by turn_1 about an axis that is "
+    "fixed to the ground, and by turn_2 about an axis that the first turn moves.  This is R, the "
+    "rotation of the hand, up to the turn about its own axis, which moves no leg.  "
 )
 HINGED = (
     "A hinge keeps leg k in a plane, whose normal m is an axis of the ground, or of the hand.  "
@@ -82,7 +88,7 @@ def state_pose(d: Derivation, guide: Hinges, places: Sequence[sp.Matrix], at: Pl
         proves += "The hinged legs are in their planes.  "
     step = d.step(
         "Pose of the hand",
-        {TurningPlane: IN_PLANE, StandingPlane: ON_AXIS}.get(type(guide), TILTS)
+        {TurningPlane: IN_PLANE, StandingPlane: ON_AXIS, Spindle: LINE}.get(type(guide), TILTS)
         + HINGED.format(them=them) * bool(guide.hinged),
         shown,
         proves=proves.rstrip(),

@@ -299,7 +299,7 @@ def _velocity(m: Platform, loop: Step) -> None:
         f"row of A times the twist, minus {times} entry of B times the rate.  The formula for the "
         f"determinant holds for any matrix{adjugate}.",
         equal=[
-            *_of_any_matrix(len(m.legs), adjugate=not m.tilts),
+            *of_any_matrix(len(m.legs), adjugate=not m.tilts),
             *(
                 pair
                 for leg, rod, row, rate, by, e in zip(
@@ -359,7 +359,7 @@ def _export(m: Platform) -> None:
         )
 
 
-def _of_any_matrix(n: int, *, adjugate: bool) -> list[tuple[Any, Any]]:
+def of_any_matrix(n: int, *, adjugate: bool) -> list[tuple[Any, Any]]:
     """That the determinant is correct, and the adjugate if it is used."""
     a = sp.Matrix(n, n, lambda i, j: real(f"a{i + 1}{j + 1}"))
     p = Program()
@@ -566,4 +566,4 @@ def _scale(m: Platform, g: Program, solved: LegByLeg, *, turns: bool) -> tuple[s
     return rods * lever, rf"\lambda {product}", f"2^-10 {of} {spread}"
 
 
-__all__ = ["platform"]
+__all__ = ["determinant", "of_any_matrix", "platform"]

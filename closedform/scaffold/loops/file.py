@@ -75,6 +75,7 @@ USED |= {
     "Sleeve",
     "Slide",
     "Sliding",
+    "Spindle",
     "StandingPlane",
     "Stretch",
     "Strut",

@@ -27,6 +27,7 @@ from closedform.scaffold.loops.rods import read_pairs, read_rods
 from closedform.scaffold.loops.sliding import sliding
 from closedform.scaffold.loops.slotted import slotted
 from closedform.scaffold.loops.spherical import with_arcs
+from closedform.scaffold.loops.spindle import NEEDED, spindle
 from closedform.scaffold.loops.two_arms import two_arms
 from closedform.scaffold.loops.uprights import HINGED, uprights
 from closedform.scaffold.source import file_name, literal
@@ -152,11 +153,7 @@ def _on_legs(found: Legs) -> _Way:
         return _Way(driven, [], guide=passive)
     legs = [*struts, *driven]
     if found.turning and not _keeps(loop):
-        upright = [] if struts or loop.parallelograms else uprights(found)
-        if not upright:
-            _check_turning(found, driven, struts)
-        _check_ends(found, fixed=True)
-        return _Way(upright or legs, [])
+        return _turning(found, driven, struts)
     kept = bool(found.halves) or not (struts or loop.parallelograms)
     if loop.dimensions == 3 and len(legs) == UPRIGHT and kept:
         return _Way(legs, [], bars=found.bars)
@@ -179,6 +176,17 @@ def _on_legs(found: Legs) -> _Way:
             + IN_PLANE * (loop.dimensions == 3 and len(legs) == 2)
         )
     return _Way(legs, list(AXES[: loop.dimensions]))
+
+
+def _turning(found: Legs, driven: Sequence[LoopLeg], struts: Sequence[LoopLeg]) -> _Way:
+    """A hand that turns, on legs alone."""
+    plain = not struts and not found.loop.parallelograms
+    line = spindle(found, driven) if plain else None
+    upright = uprights(found) if plain and not line else []
+    if not line and not upright:
+        _check_turning(found, driven, struts)
+    _check_ends(found, fixed=True)
+    return _Way(upright or [*struts, *driven], [], guide=line)
 
 
 def _keeps(loop: Loop) -> bool:
@@ -254,8 +262,8 @@ def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLe
     if loop.dimensions == 3 and len(legs) == TURNING[3] - 1 and not struts:
         raise loop.error(
             f"{body} may turn, and there are {len(legs)} driven joints; they leave it one freedom, "
-            f"such as a turn about its tool, which is not supported.  A hand that turns in space "
-            f"needs {TURNING[3]}"
+            f"such as a turn about its tool.  {NEEDED}.  Another hand that turns in space needs "
+            f"{TURNING[3]}"
         )
     needed, where = TURNING[loop.dimensions], "a plane" if loop.dimensions == 2 else "space"
     if struts or len(legs) != needed:

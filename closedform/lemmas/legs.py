@@ -319,6 +319,17 @@ class Slide(Slider):
     def solve(self, chain: Naming, w: sp.Matrix, sigma: sp.Symbol) -> Solution:
         p, q, s = chain.program, self.joint, self.rate
         r = chain.coefficient("r", self.rod, nonnegative=True)
+        given, missed = w, sp.S.Zero
+        if isinstance(self.rod, Extended):  # across the axes it is a rod, longer by the links
+            n = self.rod.direction
+            beside = chain.let("beside", w.dot(n))
+            pair = replace(chain, tag=f"_pair{chain.tag}")
+            fore = pair.half_chord("fore", r, beside, "the rods reach across the axes")
+            least = chain.size * HALF_DIGITS  # as for a crank
+            lost = chain.let("lost", sp.Max(1, r / (fore + least)), positive=True)
+            missed = sp.Max(0, sp.Abs(beside) - r)
+            r = chain.let("reach", sp.Add(*self.rod.links) + fore, nonnegative=True)
+            w, chain = w - beside * n, replace(chain, size=chain.size * lost)
         m = chain.let("m", w.dot(s))
         off = w.cross(s) if len(w) == 3 else sp.Matrix([cross_in_plane(w, s)])
         parts = [e for e in off if e != 0]
@@ -339,7 +350,11 @@ class Slide(Slider):
             plainly={q: m - sigma * sp.sqrt(r**2 - aside**2)},
         )
         link = Link((q,), lemma.equations, {}, lemma, tuple(p.body[start:]))
-        return Solution(link, value, w - value * s, sp.Max(0, sp.Abs(aside) - r))
+        rod, missed = w - value * s, missed + sp.Max(0, sp.Abs(aside) - r)
+        if isinstance(self.rod, Extended):
+            part = chain.let("part", fore / r, nonnegative=True)
+            rod = part * rod + (given - w)
+        return Solution(link, value, rod, missed)
 
 
 @dataclass(frozen=True)

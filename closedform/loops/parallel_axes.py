@@ -13,7 +13,7 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.extended import Extended, excess_of, rod_of, stretched_by
-from closedform.lemmas.legs import Crank, Leg, vector
+from closedform.lemmas.legs import Crank, Leg, Slide, vector
 from closedform.loops.guides import Placed, arms_at
 from closedform.loops.hand import rate_of
 from closedform.loops.held import parallel_axes
@@ -27,7 +27,8 @@ class ParallelAxes:
     """What holds a hand that does not turn: the axes of each of its three legs are parallel.
 
     Each leg is a :class:`~closedform.lemmas.legs.Crank` whose rod is
-    :class:`~closedform.lemmas.extended.Extended`.
+    :class:`~closedform.lemmas.extended.Extended`, or such a
+    :class:`~closedform.lemmas.legs.Slide` at right angles to the axes.
     """
 
     legs: ClassVar[int] = 3
@@ -94,13 +95,22 @@ class ParallelAxes:
 
     def check(self, name: str, legs: Sequence[Leg]) -> None:
         """Refuse legs that would turn the hand, or let it turn."""
-        if not all(isinstance(leg, Crank) and isinstance(leg.rod, Extended) for leg in legs):
+        if not all(isinstance(leg, Crank | Slide) for leg in legs) or not all(
+            isinstance(leg.rod, Extended) for leg in legs
+        ):
             raise ShapeError(
-                f"{name}: each leg with parallel axes is a Crank whose rod is Extended; without "
-                f"links at its ends it is a Parallelogram, in parallel"
+                f"{name}: each leg with parallel axes is a Crank or a Slide whose rod is Extended; "
+                f"without links at its ends it is a Parallelogram, in parallel"
             )
         bars = [leg.rod.direction for leg in legs]
         for leg, bar in zip(legs, bars, strict=True):
+            if isinstance(leg, Slide):
+                if sp.simplify(leg.rate.dot(bar)) != 0:
+                    raise ShapeError(
+                        f"{name}: {leg.joint} slides along the bars; it has to slide at right "
+                        f"angles to them"
+                    )
+                continue
             axis = vector(leg.along).cross(vector(leg.across))  # type: ignore[attr-defined]
             if any(map(sp.simplify, axis.cross(bar))) or sp.simplify(bar.dot(bar) - 1) != 0:
                 raise ShapeError(

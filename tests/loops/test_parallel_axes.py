@@ -35,6 +35,41 @@ def end(v, k: int, angles: np.ndarray) -> np.ndarray:
     return (v.r - v.c) * OUT[k] + v.a * crank + 2 * v.e * way + rod
 
 
+LINEAR = (
+    TEXT.replace('crank1 = {A1 = ["r", 0, 0], B1 = ["r + a", 0, 0]}', 'cart1 = {B1 = ["r", 0, 0]}')
+    .replace('"crank1"], at = "A1", axis = [0, 1, 0]', '"cart1"], at = "A1", SLIDE')
+    .replace("SLIDE", 'kind = "prismatic", axis = [0.6, 0, 0.8]')
+    .replace('"crank1"', '"cart1"')
+)
+
+
+def test_sliders_may_drive_such_legs(tmp_path: Path) -> None:
+    linear = derived("linear", script_of("linear", LINEAR, tmp_path), tmp_path, crosscheck=True)
+    rng, v, found = np.random.default_rng(1), linear.Parameters(), 0
+
+    def end_at(k: int, at: np.ndarray) -> np.ndarray:
+        q, link, pair = at
+        way = np.cos(link) * OUT[k] + np.sin(link) * DOWN
+        rod = v.b * (np.cos(pair) * way + np.sin(pair) * AXES[k])
+        return (v.r - v.c) * OUT[k] + q * (0.6 * OUT[k] - 0.8 * DOWN) + 2 * v.e * way + rod
+
+    step = np.array([1e-6, -2e-6, 1e-6])
+    for x in rng.uniform(-0.02, 0.02, (10, 3)):
+        answers, status = linear.ik(x)
+        assert not status.any()
+        for k in range(3):
+            for start in rng.uniform((-0.1, -3, -1), (0.1, 3, 1), (20, 3)):
+                at = newton(lambda t: end_at(k, t) - x, start)  # noqa: B023
+                if at is not None and np.cos(at[2]) > 0:
+                    assert np.abs(answers[:, k] - at[0]).min() < 1e-9
+                    found += 1
+        for q, moved in zip(answers, linear.ik(x + step).q, strict=True):
+            assert np.allclose(moved - q, linear.jacobian_inverse(x, q) @ step, atol=1e-9)
+    assert found > 60
+    far = np.array([0.3, 0, 0])
+    assert (linear.ik(far).status == UNREACHABLE).all()
+
+
 def targets(rows: int) -> np.ndarray:
     return np.random.default_rng(2).uniform((-0.03, -0.03, -0.13), (0.03, 0.03, -0.08), (rows, 3))
 
@@ -110,7 +145,7 @@ def of(rods: list, axes=((0, 1, 0), (1, 0, 0), (0, 1, 0))) -> Derivation:
 
 def test_legs_that_do_not_keep_the_hand_are_refused() -> None:
     y, x = (Extended(3, axis, 1, (1, 1)) for axis in ((0, 1, 0), (1, 0, 0)))
-    with pytest.raises(ShapeError, match="a Crank whose rod is Extended"):
+    with pytest.raises(ShapeError, match="a Slide whose rod is Extended"):
         of([3, x, y])
     with pytest.raises(ShapeError, match="along the axis of its crank"):
         of([x, x, y])
@@ -130,6 +165,11 @@ def test_legs_that_do_not_keep_the_hand_are_refused() -> None:
     [
         ('"B1", axis = [0, 1, 0]', '"B1"', "so b1 is revolute and has an axis"),
         ('"C1", axis = [0, 1, 0]', '"C1", axis = [0, 0, 1]', "of c1 has to be parallel to the"),
+        (
+            '"A1", axis = [0, 1, 0]',
+            '"A1", kind = "prismatic", axis = [0, 1, 0]',
+            "axis of q1 has to be",
+        ),
         ("copies = 3", "copies = 4", "such a hand has three legs, and there are 4"),
     ],
 )

@@ -41,12 +41,12 @@ def between_links(found: Legs) -> tuple[list[LoopLeg], GuideLine] | None:
     ways = [_leg(loop, joint) for joint in driven]
     if not any(way and any(way.links) for way in ways):
         return None
-    whole = [(j, way) for j, way in zip(driven, ways, strict=True) if way and j.kind == "revolute"]
+    whole = [(j, way) for j, way in zip(driven, ways, strict=True) if way]
     found_for = [j.name for j, _ in whole]
     if others := [j.name for j in driven if j.name not in found_for]:
         raise loop.error(
-            f"a leg has a link beside its parallelogram; then each leg is a driven crank and a "
-            f"parallelogram, which that of {listed(others)} is not"
+            f"a leg has a link beside its parallelogram; then each leg is a driven crank or slider "
+            f"and a parallelogram, which that of {listed(others)} is not"
         )
     if len(driven) != len(AXES):
         raise loop.error(
@@ -92,7 +92,13 @@ def _written(found: Legs, leg: _Leg) -> LoopLeg:
     loop, name = found.loop, leg.driven.name
     found.used |= {j.name for j in (leg.driven, leg.near, leg.far, *leg.inner)}
     side = loop.parallelograms[leg.rod]
-    for joint in (leg.driven, leg.near, leg.far):
+    slides = leg.driven.kind == "prismatic"
+    if slides and (leg.driven.axis is None or sp.simplify(leg.driven.axis.dot(side)) != 0):
+        raise loop.error(
+            f"the axis of {name} has to be at right angles to the short sides of {leg.rod}; only "
+            f"then the far end of its leg is at a known distance from its line"
+        )
+    for joint in (*[leg.driven] * (not slides), leg.near, leg.far):
         if joint.axis is None or joint.kind != "revolute":
             raise loop.error(
                 f"the leg of {name} has a parallelogram between links, so {joint.name} is revolute "
@@ -109,10 +115,16 @@ def _written(found: Legs, leg: _Leg) -> LoopLeg:
     length = loop.rods[leg.rod]
     rod = f"Extended({source(length)}, {way}, {source(width)}, ({source(near)}, {source(far)}))"
     place = found.place_of(leg.far, held=True)
+    if slides:
+        start = found.at(found.point(leg.driven.other(GROUND), leg.near))
+        moved = "moves a slider"
+        call = f"Slide({name}, {rod}, {start}, {found.at(leg.driven.axis)}{found.tail(place)})"
+    else:
+        moved, call = "turns a crank", found.cranked(leg.driven, leg.near, rod, place)
     return LoopLeg(
         leg.driven,
-        found.cranked(leg.driven, leg.near, rod, place),
-        f"{name} turns a crank, which a parallelogram with rods of length {length}, between "
+        call,
+        f"{name} {moved}, which a parallelogram with rods of length {length}, between "
         f"links of length {near} and {far}, joins to the hand",
         place,
     )

@@ -39,6 +39,12 @@ def solar_tracker(v, q: np.ndarray, T: np.ndarray) -> np.ndarray:
     return np.linalg.norm(ends - feet, axis=1) - q
 
 
+def humanoid_wrist(v, q: np.ndarray, T: np.ndarray) -> np.ndarray:
+    sides = np.array([[0.03, 0.02, 0], [-0.03, 0.02, 0]])
+    carts = sides + np.stack([0 * q, 0 * q, q - 0.1], axis=1)
+    return np.linalg.norm(sides @ T[:3, :3].T - carts, axis=1) - 0.1
+
+
 def rotopod(v, q: np.ndarray, T: np.ndarray) -> np.ndarray:
     ends = [about(2, a) @ [v.c, side * v.g, 0] for a in THIRDS for side in (1, -1)]
     turned = np.repeat(THIRDS, 2) + q
@@ -77,6 +83,7 @@ def tilted(rng: np.random.Generator) -> np.ndarray:
 
 
 Target = Callable[[np.random.Generator], np.ndarray]
+SLIDING = ("solar_tracker", "humanoid_wrist")
 MECHANISMS: dict[str, tuple[Callable, Callable, Target]] = {
     "ball_balancer": (
         ball_balancer,
@@ -84,6 +91,7 @@ MECHANISMS: dict[str, tuple[Callable, Callable, Target]] = {
         lambda rng: rng.uniform((0.07, -0.2, -0.2), (0.1, 0.2, 0.2)),
     ),
     "solar_tracker": (solar_tracker, by_hand_pose, lambda rng: rng.uniform(-0.6, 0.6, 2)),
+    "humanoid_wrist": (humanoid_wrist, by_hand_pose, lambda rng: rng.uniform(-0.6, 0.6, 2)),
     "rotopod": (rotopod, by_pose, tilted),
     "four_ruu": (
         four_ruu,
@@ -105,7 +113,7 @@ def test_newton_finds_no_joints_that_the_closed_form_lacks(name: str, tmp_path: 
         exist = q[status == OK]
         assert len(exist)
         assert all(np.abs(missed(v, row, T)).max() < 1e-12 for row in exist)
-        turns = np.full(q.shape[1], name != "solar_tracker")
+        turns = np.full(q.shape[1], name not in SLIDING)
         for start in rng.uniform(0.1, 3, (STARTS, q.shape[1])):
             at = newton(lambda q: missed(v, q, T), start)  # noqa: B023
             if at is not None:

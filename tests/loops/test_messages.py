@@ -191,6 +191,14 @@ r1 = {between = ["cart1", "tube1"], at = "A1", axis = [0, 1, 0]}
 q1 = {between = ["tube1", "rod1"], at = "A1", kind = "prismatic", driven = true}
 c1 = {between = ["rod1", "hand"], at = "C1", kind = "spherical"}
 """
+TURRET = TWO_MOTORS.replace(
+    'kind = "prismatic", axis = [0, 1, 0], driven', "axis = [0, 0, 1], driven"
+)
+BOTH_TURN = TURRET.replace("q1 =", "s1 =").replace('kind = "prismatic", driven = true', "SLIDE")
+BOTH_TURN = BOTH_TURN.replace("r1 =", "q1 =").replace(
+    '1", axis = [0, 1, 0]', '1", axis = [0, 1, 0], driven = true'
+)
+BOTH_TURN = BOTH_TURN.replace("SLIDE", "axis = [0, 1, 0]")
 WITH_TOOL = """
 hand = "P"
 [parameters]
@@ -225,6 +233,8 @@ w = {between = ["plate", "tool"], at = "N", axis = [0, 0, 1], driven = true}
     ("file", "told"),
     [
         (TWO_MOTORS.replace("axis = [0, 1, 0]}", "axis = [0, 0, 1]}"), "hold one of both motors"),
+        (TURRET, "p1 and q1 drive one leg, so it has two motors"),
+        (BOTH_TURN, "p1 and q1 drive one leg, so it has two motors"),
         (WITH_TOOL, "Nothing else holds tool, so w is in no loop.*take a point of plate"),
     ],
 )

@@ -131,5 +131,5 @@ def test_a_cylindrical_joint_is_copied_with_its_slider(tmp_path: Path) -> None:
 
 def test_other_axes_are_told_of(tmp_path: Path) -> None:
     text = TEXT.replace("axis = [0, 1, 0]}", "axis = [0, 0, 1]}")
-    with pytest.raises(TableError, match="if r1 is revolute and its axis is that of p1"):
+    with pytest.raises(TableError, match="on which a leg turns about the same axis"):
         script_of("prps", text, tmp_path)

@@ -155,7 +155,7 @@ class Legs:
             raise self.loop.error(
                 f"{joint.name} is driven, so it must be between the ground and a body, or slide "
                 f"the two halves of a leg; it is between {listed(joint.between)}"
-                + (carried(self.loop, joint) or ON_ARM * in_plane)
+                + (carried(self.loop, joint) or two_motors(self.loop, joint) or ON_ARM * in_plane)
             )
 
     def on_half(self, joint: Joint) -> LoopLeg:
@@ -227,7 +227,7 @@ class Legs:
         if second := next((j for j in onward if j.driven), None):
             raise loop.error(
                 f"{second.name} is driven, on {body}, which {joint.name} moves; a leg has one "
-                f"driven joint, and the others are passive"
+                f"driven joint, and the others are passive" + two_motors(loop, joint)
             )
         if joint.kind == "revolute" and slides and not rods:
             raise loop.error(
@@ -241,7 +241,7 @@ class Legs:
                 f"length or two points, or to one body by a passive slide; it is joined to "
                 f"{carried}"
                 + self.ball_on_hand(onward)
-                + two_motors(loop, joint, onward)
+                + two_motors(loop, joint)
                 + self.arcs_told()
                 + several_told(loop, body)
             )

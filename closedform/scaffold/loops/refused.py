@@ -2,26 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 
-from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
+PAIR = 2
+"""The motors of a leg of which one may be held."""
 
 
-def two_motors(loop: Loop, joint: Joint, onward: Sequence[Joint]) -> str:
-    """What is said of a driven slider that carries a leg that stretches, as in a 3-PRPS."""
-    if len(onward) != 1 or joint.kind != "prismatic":
-        return ""
-    (hinge,) = onward
-    tube = hinge.other(joint.other(GROUND))
-    second = next((j for j in loop.of(tube) if j.driven and j.kind == "prismatic"), None)
-    if second is None:
+def two_motors(loop: Loop, joint: Joint) -> str:
+    """What is said of a driven joint of a leg in space that another one drives too.
+
+    The leg is followed from the ground to the hand, as long as no body has a branch.
+    """
+    ways = [_way(loop, start) for start in loop.of(GROUND)]
+    motors = next((m for m in ([j for j in way if j.driven] for way in ways) if joint in m), [])
+    if len(motors) != PAIR or loop.dimensions != len(AXES):
         return ""
     return (
-        f".  {second.name} stretches the same leg, so it has two motors, as in a 3-PRPS mechanism; "
-        f"this is supported if {hinge.name} is revolute and its axis is that of {joint.name}.  "
-        f"Otherwise write the equations in Python, or hold one of both motors and describe what is "
-        f"left"
+        f".  {motors[0].name} and {motors[1].name} drive one leg, so it has two motors.  This is "
+        f"supported if the first one is a slider, on which a leg turns about the same axis, and "
+        f"the second one stretches this leg, as in a 3-PRPS mechanism.  Otherwise write the "
+        f"equations in Python, or hold one of both motors and describe what is left"
     )
+
+
+def _way(loop: Loop, joint: Joint) -> list[Joint]:
+    """The joints of a leg from one on the ground on."""
+    body, found = joint.other(GROUND), [joint]
+    while loop.hand not in loop.bodies[body]:
+        onward = [j for j in loop.of(body) if j not in found]
+        if len(onward) != 1:
+            break
+        found.append(onward[0])
+        body = onward[0].other(body)
+    return found
 
 
 def carried(loop: Loop, joint: Joint) -> str:

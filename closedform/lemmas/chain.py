@@ -416,13 +416,16 @@ class Chain:
 
     def by_angles(self, total: sp.Expr, *, solved: bool = False) -> sp.Expr:
         """A sum in which auxiliary angles replace their joints, also those that are ``solved``."""
-        found = {}
-        for symbol, value in self.defined.items():
+        found: dict[sp.Symbol, sp.Expr] = {}
+        known = [(symbol, value) for symbol, value in self.defined.items() if symbol in self.values]
+        for symbol, value in [*known, *known]:  # twice: some contain joints that others give
             held = [j for j in self.joints if value.has(j)]
-            if symbol in self.values and len(held) == 1 and (solved or held[0] not in self.values):
-                sense, rest = value.diff(held[0]), value.xreplace({held[0]: sp.S.Zero})
+            alone = solved and len(held) == 1
+            left = [j for j in held if j not in found and (alone or j not in self.values)]
+            if len(left) == 1:
+                sense, rest = value.diff(left[0]), value.xreplace({left[0]: sp.S.Zero})
                 if abs(sense) == 1:
-                    found[held[0]] = sense * (symbol - rest)
+                    found[left[0]] = sense * (symbol - rest.xreplace(found))
         return sp.expand(total.xreplace(found))
 
     # The end

@@ -6,7 +6,7 @@ The wrist also has to tilt as far as the target requires.  See :mod:`closedform.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -22,6 +22,9 @@ from closedform.model.tolerances import ROUNDING, VANISHING
 
 STEPS = 3
 """The number of steps that improve a turn; the error after a step is of the order of its square."""
+
+ALIGNED = sp.Rational(1, 2**20)
+"""The square of how far aside an axis may be for its direction to change faster than its offset."""
 
 
 @dataclass(frozen=True)
@@ -392,11 +395,11 @@ class LinksPastTurn(Links):
     """Two links that reach q minus an ``offset``, after the middle turn of such a wrist.
 
     The turn moves ``last``, which the first turn of the wrist brings to the direction ``axis``;
-    the latter two and q depend on no pair.
+    the latter and q depend on no pair.  The offset is linear in the pair, or constant.
     """
 
     axis: sp.Matrix
-    offset: sp.Matrix
+    offset: Callable[[Pair], sp.Matrix]
     last: Callable[[Pair], sp.Matrix]
 
     def nearest(self, turn: Turn) -> Pair:
@@ -441,8 +444,8 @@ class LinksPastTurn(Links):
         us = let("us", (self.axis[1] * x - self.axis[0] * y) / both)
         uc = let("uc", (self.axis[0] * x + self.axis[1] * y) / both)
         spin = let("spin", (y * dx - x * dy) / there)
-        ox, oy, *_ = self.offset
-        ex, ey = let("ex", uc * ox - us * oy), let("ey", us * ox + uc * oy)
+        (ox, oy), rate = turn.linear("off", self.offset)
+        ex, ey = (let(n, v) for n, v in zip(("ex", "ey"), _turned(us, uc, (ox, oy)), strict=True))
         r, e = let("r", sp.sqrt(qx**2 + qy**2)), let("e", sp.sqrt(ox**2 + oy**2))
         here = let("here", sp.sqrt((qx - ex) ** 2 + (qy - ey) ** 2))
         wanted = let("goal", sp.Min(sp.Max(here, sp.Abs(self.l1 - self.l2)), self.l1 + self.l2))
@@ -450,13 +453,39 @@ class LinksPastTurn(Links):
         v, _ = Offset((qx, qy), r, e).leaving(chain, wanted, side, f"past_{turn.name}")
         vs, vc = let("vs", v.s), let("vc", v.c)
         sine, cosine = let("dots", vs * ex - vc * ey), let("dotc", e + vc * ex + vs * ey)
-        found = turn.by_half(let("half", sine / sp.Max(cosine, VANISHING * e) / spin))
-        still = sp.Or(sp.Eq(wanted, here), sp.Eq(e, 0), sp.Eq(spin, 0))
+        half = let("half", sine / sp.Max(cosine, VANISHING * e) / spin)
+        still = sp.Or(sp.Eq(e, 0), sp.Eq(spin, 0))
+        if rate != (0, 0):
+            ahead = [let(n, v) for n, v in zip("fg", _turned(us, uc, rate), strict=True)]
+            moved = turn.renamed(turn.pair, f"{turn.name}_by_rate")
+            by_rate = moved.half_to(self._within((qx, qy), (ex, ey), spin, ahead))
+            aside = there > ALIGNED
+            half = let("half_of", sp.Piecewise((by_rate, aside), (half, True)))
+            still = sp.And(still, sp.Not(aside))
+        found = turn.by_half(half)
+        still = sp.Or(sp.Eq(wanted, here), still)
         s, c = (
             sp.Piecewise((now, still), (then, True))
             for now, then in zip(_both(turn.pair), _both(found), strict=True)
         )
         return Pair(s, c)
+
+    def _within(
+        self,
+        q: tuple[sp.Expr, sp.Expr],
+        e: tuple[sp.Expr, sp.Expr],
+        spin: sp.Expr,
+        ahead: Sequence[sp.Expr],
+    ) -> Within:
+        """Where the links reach, if the offset is e and both turns move it: by spin, and ahead."""
+        x, y = q[0] - e[0], q[1] - e[1]
+        dx, dy = spin * e[1] - ahead[0], -spin * e[0] - ahead[1]
+        bend = dx**2 + dy**2 + spin**2 * (x * e[0] + y * e[1])
+        return Within((x, y), (dx, dy), bend, sp.Abs(self.l1 - self.l2), self.l1 + self.l2)
+
+
+def _turned(s: sp.Expr, c: sp.Expr, v: tuple[sp.Expr, sp.Expr]) -> tuple[sp.Expr, sp.Expr]:
+    return c * v[0] - s * v[1], s * v[0] + c * v[1]
 
 
 def _both(pair: Pair) -> tuple[sp.Expr, sp.Expr]:

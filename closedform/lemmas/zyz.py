@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
 
@@ -208,7 +208,7 @@ class Reaching:
         """The middle of those distances within reach that turning the offset allows."""
         p, r, (least, most) = self.chain.program, self._r, self._reach
         nearest = p.let("nearest", sp.Max(least, sp.Abs(r - self.offset)))
-        farthest = p.let("farthest", sp.Min(most, r + self.offset))
+        farthest = p.let("most_reach", sp.Min(most, r + self.offset))
         return self._at(p.let("mid_reach", (nearest + farthest) / 2), sp.S.One, "mid")
 
     def moved(self, u: Pair, gain: sp.Expr) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol, Pair]:
@@ -242,7 +242,7 @@ def zyz(
     unknowns: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
     choice: Choice,
     *,
-    reaching: Reaching | None = None,
+    reaching: Reaching | Callable[[Pair], Reaching] | None = None,
     name: str = "wrist",
 ) -> Applied:
     """``Rz(first) Ry(middle) Rz(last) = R``: two solutions, by the sign of sin(middle).
@@ -263,7 +263,8 @@ def zyz(
     choice
         the names of the two solutions, by the sign of sin(middle)
     reaching
-        what the rest of the arm has to reach, if the first angle decides on it
+        what the rest of the arm has to reach, if the first angle decides on it; if the middle one
+        does too, a function of its pair
     name
         the name of the sign, and what other names end in
     """
@@ -287,6 +288,8 @@ def zyz(
         aligned = p.vanishes(
             f"aligned_{name}", h, ALIGNED, "the first and the last axis are parallel", (free,)
         )
+        if not isinstance(reaching, Reaching):
+            reaching = reaching(Pair(p.let(f"s_{middle}", sigma * h), R[2, 2]))
         u = sigma * R[0, 2] / h, sigma * R[1, 2] / h
         found, near, unit = within_reach(reaching, u, h, first, aligned)
         pair, means = named(chain, first, found)

@@ -38,6 +38,16 @@ def slid(single: Single) -> sp.Expr:
     return single.sense * single.joint if single.slides else sp.S.Zero
 
 
+def plain(joint: Single) -> Single:
+    """A slide without a constant turn, and without its variable in the shift."""
+    if not joint.slides:
+        return joint
+    R = rotation("z", joint.turn)
+    shift = R * (joint.shift - slid(joint) * Z)
+    shift, end = (sp.Matrix(v).applyfunc(sp.simplify) for v in (shift, R * joint.end))
+    return replace(joint, shift=shift, end=end)
+
+
 @dataclass(frozen=True)
 class Singles:
     """``lead``, the joints one by one; the tool is at ``last`` in the frame after the last one.
@@ -237,4 +247,4 @@ def _simplified(motion: sp.Matrix) -> sp.Matrix:
     return motion.applyfunc(lambda e: sp.trigsimp(sp.expand(e)) if e.has(sp.sin, sp.cos) else e)
 
 
-__all__ = ["Single", "Singles", "parallel", "singles", "slid"]
+__all__ = ["Single", "Singles", "parallel", "plain", "singles", "slid"]

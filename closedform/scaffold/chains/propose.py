@@ -19,6 +19,7 @@ from closedform.scaffold.chains.decoupled import DecoupledMaker
 from closedform.scaffold.chains.degree import Solutions, is_regular, solutions, solutions_of_few
 from closedform.scaffold.chains.known import KnownMaker
 from closedform.scaffold.chains.maker import Maker
+from closedform.scaffold.chains.one_direction import COUNTED, OneDirectionMaker
 from closedform.scaffold.chains.proposal import NoChainError, Proposal, Tried
 from closedform.scaffold.chains.six import SixMaker
 from closedform.scaffold.chains.subproblems import SubproblemMaker
@@ -112,6 +113,7 @@ def _refusal(
     return error.after(tried)
 
 
+ONE_WAY = " that turn about one direction"
 NUMERIC = "Use ssik for a numeric inverse."
 NEITHER = (
     "none of its seven joints, if it is given, leaves a spherical wrist or shoulder, and two "
@@ -254,10 +256,12 @@ def _fewer_than_six(arm: Serial, whole: Singles) -> Iterator[_Candidate]:
         maker = SubproblemMaker(arm)
         write = partial(maker.solved_in_plane, _met(whole, ((3, 2),)))
         yield _Candidate("three parallel joints", maker, write)
+    if n == 5:
         for view, seen in ((whole, ""), (whole.reversed(), ", from the tool")):
-            six = SixMaker(arm)
-            write = partial(six.parallel_first_of_five, view)
-            yield _Candidate(f"three parallel axes at the end{seen}", six, write)
+            for count in (3, 4):
+                way = OneDirectionMaker(arm)
+                write = partial(way.in_one_direction, view, count)
+                yield _Candidate(f"{COUNTED[count]} joints{ONE_WAY}{seen}", way, write)
 
 
 def _met(whole: Singles, pairs: Sequence[tuple[int, int]]) -> Singles:
@@ -304,15 +308,21 @@ def _six(arm: Serial, whole: Singles, given: Single | None = None) -> Iterator[_
         moved = _moved(order, left)
         for view, wrist in ((order, "spherical wrist"), (order.reversed(), "spherical shoulder")):
             yield candidate(f"{wrist}{moved}", SubproblemMaker(arm), _with_wrist, view)
-    if any(joint.slides for joint in left.joints):
-        return
-    for name, solve in (
-        ("three parallel axes in the middle", SixMaker.parallel_middle),
-        ("three parallel axes at the end", SixMaker.parallel_first),
-        ("three axes in the middle that meet", SixMaker.meeting_middle),
-    ):
+    for name, solve in WITH_SLIDES if any(joint.slides for joint in left.joints) else TURNING:
         for view, seen in ((left, ""), (left.reversed(), ", from the tool")):
-            yield candidate(f"{name}{seen}", SixMaker(arm), solve, view)
+            yield candidate(f"{name}{seen}", OneDirectionMaker(arm), solve, view)
+
+
+TURNING: tuple[tuple[str, _Solve], ...] = (
+    ("three parallel axes in the middle", SixMaker.parallel_middle),
+    ("three parallel axes at the end", SixMaker.parallel_first),
+    ("three axes in the middle that meet", SixMaker.meeting_middle),
+)
+WITH_SLIDES: tuple[tuple[str, _Solve], ...] = (
+    (f"four joints{ONE_WAY}", partial(OneDirectionMaker.in_one_direction, count=4)),
+    (f"three joints in the middle{ONE_WAY}", OneDirectionMaker.in_one_direction_between),
+)
+"""Chains of six joints that have no wrist and no shoulder, from the base and from the tool."""
 
 
 def _with_wrist(maker: SubproblemMaker, whole: Singles) -> str:

@@ -36,25 +36,21 @@ from closedform.scaffold.source import source
 
 @dataclass(frozen=True)
 class TurnGoal:
-    """What a turn has to leave within reach of two ``links``: a wrist, and what it turns.
+    """What a turn has to leave within reach of two links: a wrist, and what it turns.
 
-    That is, as it is written with ``{}`` for the pair of the turn, the ``point`` that the wrist
-    carries, the direction ``axis`` of its last axis, the rotation ``onward`` from its first joint
-    to its second, and the ``offset`` from the end of the links to the point, which is ``constant``
-    or follows from the turn.
+    That is the ``lengths`` of the links and, as it is written with ``{}`` for the pair of the turn,
+    the ``point`` that the wrist carries, the direction ``axis`` of its last axis, the rotation
+    ``onward`` from its first joint to its second, and the ``offset`` from the end of the links to
+    the point, which is ``constant`` or follows from the turn.
     """
 
     wrist: Sequence[Single]
-    links: tuple[sp.Matrix, sp.Matrix]
+    lengths: Sequence[str]
     point: str
     axis: str
     offset: str = ""
     onward: str = ""
     constant: sp.Matrix | None = None
-
-    @property
-    def lengths(self) -> tuple[str, ...]:
-        return tuple(source(norm(x[:2, 0])) for x in self.links)
 
     @property
     def is_normal(self) -> bool:
@@ -98,7 +94,7 @@ class SixMaker(AroundParallelMaker):
         place = times(one.end.T, f"(turned({{}}).T * p - {source(one.shift)})")
         goal = TurnGoal(
             [lift, five, six],
-            (two.shift, three.shift),
+            _lengths(two, three),
             place,
             self.last_axis(arm, left),
             constant=w,
@@ -141,7 +137,7 @@ class SixMaker(AroundParallelMaker):
             offset = f"{source(three.shift)} + {{}} * {source(s)}"
             goal = TurnGoal(
                 wrist=[lift, five, six],
-                links=(one.shift, two.shift),
+                lengths=_lengths(one, two),
                 point="p",
                 axis=f"({M})[:, 2]",
                 offset=offset.format(before),
@@ -161,7 +157,7 @@ class SixMaker(AroundParallelMaker):
             place = f"p - M * turned({{}}).T * {source(t)}"
             goal = TurnGoal(
                 [lift, four, five],
-                (one.shift, two.shift),
+                _lengths(one, two),
                 place,
                 f"M * turned({{}}).T * {source(five.end.T * Z)}",
                 constant=three.shift,
@@ -178,36 +174,6 @@ class SixMaker(AroundParallelMaker):
         self.two_links([one.turn, two.turn], [u[:2, 0], v[:2, 0]], "q[0]", "q[1]")
         meeting = (five, six) if at_end is not None else (four, five)
         names = [j.number for j in (one, two, three, *meeting)]
-        return "axes {}, {} and {} parallel, {} and {} meet".format(*names)
-
-    def parallel_first_of_five(self, arm: Singles) -> str:
-        """Axes 1, 2 and 3 of five are parallel, and axes 4 and 5 meet: the turns are a wrist."""
-        self._require_parallel(arm, 0)
-        three, four, five = arm.joints[2:]
-        self.require(
-            not parallel(three) and not parallel(four),
-            f"axes {four.number} and {three.number} or {five.number} are parallel",
-            "Besides three parallel axes, the others must have other directions.",
-        )
-        found = arm.met(3, 2)
-        if found is None:
-            raise NoChainError(
-                f"axes {four.number} and {five.number} do not meet",
-                "Beside three parallel axes of five, the other two have to meet.",
-            )
-        one, two, three, four, five = found.joints
-        lift = replace(three, turn=one.turn + two.turn + three.turn)
-        R = self.centre(found)
-        M = self.without_tool(found.tool[:3, :3], times(found.lead[:3, :3].T, R))
-        self.add(f"M = ik.matrix('M', {M})")
-        links, w = (one.shift, two.shift), three.shift
-        goal = TurnGoal([lift, four, five], links, "p", "M[:, 2]", constant=w)
-        self._reach(goal, "p", "ik.size")
-        self.orientation([lift, four, five], "M")
-        self.vector("q", f"p - turned({self.lifted}) * {source(w)}")
-        self.two_links([one.turn, two.turn], [u[:2, 0] for u in links], "q[0]", "q[1]")
-        self.add(f"ik.reached(Matrix([{source(sp.Symbol('q[2]') - one.shift[2] - two.shift[2])}]))")
-        names = [joint.number for joint in found.joints]
         return "axes {}, {} and {} parallel, {} and {} meet".format(*names)
 
     def meeting_middle(self, arm: Singles) -> str:
@@ -381,4 +347,8 @@ class SixMaker(AroundParallelMaker):
         )
 
 
-__all__ = ["SixMaker"]
+def _lengths(*links: Single) -> list[str]:
+    return [source(norm(link.shift[:2, 0])) for link in links]
+
+
+__all__ = ["SixMaker", "TurnGoal"]

@@ -11,8 +11,7 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.mechanics.frames import rotation
-from closedform.scaffold.chains.chainlinks import Single, parallel, slid
+from closedform.scaffold.chains.chainlinks import Single, parallel, plain
 from closedform.scaffold.chains.maker import Maker, Solved, Z, point, times, turning
 from closedform.scaffold.chains.proposal import NoChainError
 from closedform.scaffold.source import source
@@ -34,7 +33,7 @@ class Slides:
         """``by_axis`` solves a joint by the last axis of the arm too, and returns its pair."""
         self.maker, self.angle, self.by_axis = maker, angle, by_axis
         self.sense = {j.number: j.sense for j in joints}
-        self.joints = [_plain(j) for j in joints]
+        self.joints = [plain(j) for j in joints]
 
     def solved(self) -> Solved:
         kinds = "".join("P" if j.slides else "R" for j in self.joints)
@@ -313,15 +312,6 @@ class Slides:
             found,
             f"Joint {joint.number} must move the point across its slides.",
         )
-
-
-def _plain(joint: Single) -> Single:
-    """A slide without a constant turn, and without its variable in the shift."""
-    if not joint.slides:
-        return joint
-    R = rotation("z", joint.turn)
-    shift = _simple(R * (joint.shift - slid(joint) * Z))
-    return replace(joint, shift=shift, end=_simple(R * joint.end))
 
 
 def _simple(value: sp.Matrix) -> sp.Matrix:

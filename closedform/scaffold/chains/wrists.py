@@ -27,14 +27,19 @@ ELBOW = "{+1: 'up', -1: 'down'}"
 class Carried:
     """Two links of some ``lengths`` reach a ``point`` less an ``offset``, which a wrist turns.
 
-    They are as they are written.
+    They are as they are written.  The offset may contain ``{}``, for the pair of the middle joint.
     """
 
     point: str
     offset: str
     lengths: Sequence[str]
     offset_at: sp.Matrix
-    """The entries of the offset."""
+    """The entries of the offset; those of ``to_end`` if it depends on a pair."""
+
+    @property
+    def moves(self) -> bool:
+        """Whether the offset depends on the middle joint."""
+        return "{}" in self.offset
 
 
 @dataclass
@@ -177,6 +182,8 @@ class WristMaker(Maker):
             a, b = (sp.expand(e) for e in turning(w, g))
             c = sp.Symbol("M[2, 2]") - sp.expand(g[2] * w[2])
             pair = self._turn(middle, (a, b, c), past, scale="1", choice=FLIP)
+        if self.carried and self.carried.moves:
+            self.vector("to_end", self.carried.offset.format(pair))
         of = "" if sense > 0 else "-"
         self.around((first, middle, last), between, pair, lambda e: f"{x}: {of}{e}")
         if onward:  # the outer axes may be nearly in line, where a cosine says little of the tilt
@@ -218,7 +225,8 @@ class WristMaker(Maker):
         if self.carried is None:
             return self.before_middle
         pair = self.untilted(middle, "pair")
-        moved = f"offset={self.carried.offset}, last=lambda pair: {last.format(pair)}"
+        offset = self.carried.offset.format(pair) if self.carried.moves else self.carried.offset
+        moved = f"offset=lambda pair: {offset}, last=lambda pair: {last.format(pair)}"
         point, lengths = self.carried.point, ", ".join(self.carried.lengths)
         self.add(f"past = LinksPastTurn(lambda _: {point}, {lengths}, axis=M[:, 2], {moved})")
         return "past"

@@ -74,7 +74,7 @@ LINES = {
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
     "play", "radius_to_target", "radius_to_end", "lever", "past", "seen_across",
     "missed_by", "pair_at", "aimed", "off_axis", "below_one", "carried", "squares",
-    "less", "more", "less_behind", "more_behind", "behind",
+    "less", "more", "less_behind", "more_behind", "behind", "far", "tilt", "offset", "at_end",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

@@ -1,0 +1,188 @@
+"""Joints that turn about one direction or slide, and others beside them: SCARA arms, jib cranes."""
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy as sp
+from arms import OK, SINGULAR, UNREACHABLE, misses, newton
+from chains import arm, printed, solved
+from sympy import pi
+from test_decoupled import forward
+
+from closedform.proof.prove import prove
+from closedform.scaffold.chains.propose import NoChainError, propose
+
+A, B, C, D = (sp.Rational(n, 100) for n in (5, 40, 35, 11))
+LINKS = "three joints that turn about one direction, a slide and "
+JIB = "two joints that turn about one direction, 2 slides and "
+BOOM = "a turn, two joints that turn about one direction, a slide and 2 more"
+LIFT, RADIAL = (0, -pi / 2, None, 0), (0, pi / 2, None, 0)
+ARMS = {
+    "SCARA with an offset wrist": (
+        [(B, 0, D), (C, 0, 0), (0, 0, None, 0), (A, pi / 2, D), (A, -pi / 2, D), (0, 0, D)],
+        LINKS + "2 more", 4,
+    ),
+    "SCARA with an oblique wrist": (
+        [(B, 0, D), (C, 0, 0), (0, 0, None, 0), (A, pi / 3, D), (A, -pi / 3, A), (0, 0, D)],
+        LINKS + "2 more", 4,
+    ),
+    "SCARA with a wrist, seen from the tool": (
+        [(0, pi / 2, D), (A, -pi / 2, D), (B, 0, 0), (C, 0, D), (0, 0, 0), (A, pi / 2, None, 0)],
+        LINKS + "2 more", 4,
+    ),
+    "SCARA on a lift that leans": (
+        [(0, pi / 6, None, pi / 2), (B, 0, D), (C, 0, 0), (A, pi / 2, D), (A, pi / 3, A)],
+        LINKS + "one more", 2,
+    ),
+    "jib with an offset wrist": (
+        [(0, 0, D), LIFT, RADIAL, (A, pi / 2, D), (A, -pi / 2, D), (0, 0, D)], JIB + "2 more", 4,
+    ),
+    "jib beside its column": (
+        [(A, 0, D), (A, -pi / 2, None, 0), RADIAL, (A, pi / 2, D), (A, -pi / 2, A), (0, 0, D)],
+        JIB + "2 more", 4,
+    ),
+    "jib beside its column with an oblique wrist": (
+        [(A, 0, D), (A, -pi / 2, None, 0), RADIAL, (A, pi / 3, D), (A, pi / 4, A), (0, 0, D)],
+        JIB + "2 more", 4,
+    ),
+    "gantry that tilts, with two links": (
+        [(0, pi / 2, None, pi / 2), (0, 0, None, 0), (B, 0, D), (A, pi / 2, A), (A, 0, D)],
+        JIB + "one more", 2,
+    ),
+    "gantry that tilts, seen from the tool": (
+        [(A, pi / 2, D), (B, 0, D), (0, 0, None, 0), (A, pi / 2, A), (0, 0, None, 0)],
+        JIB + "one more", 2,
+    ),
+    "jib with two axes that meet": (
+        [(0, pi / 2, D), (A, -pi / 2, None, 0), (A, pi / 2, D), (0, pi / 3, 0), (A, 0, A)],
+        "two joints that turn about one direction, a slide and 2 more", 4,
+    ),
+    "telehandler": (
+        [(A, pi / 2, D), (0, pi / 2, 0), (0, -pi / 2, None, 0), (C, pi / 2, A), (0, pi / 2, D),
+         (0, 0, D)],
+        BOOM, 8,
+    ),
+    "telehandler whose boom is offset": (
+        [(A, pi / 2, D), (D, pi / 2, 0), (0, -pi / 2, None, 0), (C, pi / 2, A), (0, pi / 2, D),
+         (0, 0, D)],
+        BOOM, 8,
+    ),
+    "telehandler with an oblique wrist": (
+        [(A, pi / 2, D), (D, pi / 2, 0), (0, -pi / 2, None, 0), (C, pi / 3, A), (0, pi / 4, D),
+         (0, 0, D)],
+        BOOM, 8,
+    ),
+    "telehandler from the tool": (
+        [(0, pi / 3, D), (A, pi / 2, D), (0, pi / 2, C), (A, -pi / 2, None, 0), (D, pi / 2, A),
+         (0, 0, D)],
+        BOOM, 8,
+    ),
+    "SCARA that tilts": (
+        [(B, 0, D), (C, 0, 0), (0, 0, None, 0), (A, pi / 2, D), (A, pi / 3, A)],
+        LINKS + "one more", 2,
+    ),
+    "jib that tilts": (
+        [(0, 0, D), LIFT, RADIAL, (A, pi / 2, D), (A, 0, A)], JIB + "one more", 2,
+    ),
+    "five joints, the last two pass each other": (
+        [(B, 0, D), (C, 0, 0), (A, pi / 2, A), (A, pi / 2, A), (0, 0, D)],
+        "axes 1, 2 and 3 parallel, 4 and 5 skew", 2,
+    ),
+    "five joints with an oblique pair": (
+        [(B, 0, D), (C, 0, 0), (A, pi / 3, A), (A, pi / 4, A), (0, 0, D)],
+        "axes 1, 2 and 3 parallel, 4 and 5 skew", 2,
+    ),
+    "five joints from the tool": (
+        [(0, pi / 2, D), (A, pi / 2, D), (B, 0, 0), (C, 0, A), (0, 0, 0)],
+        "axes 5, 4 and 3 parallel, 2 and 1 meet", 4,
+    ),
+}  # fmt: skip
+
+
+def names(rows: list) -> str:
+    return " ".join(f"{'d' if len(row) == 4 else 't'}{k}" for k, row in enumerate(rows, 1))
+
+
+@cache
+def made(name: str, folder: Path) -> Any:
+    rows, structure, branches = ARMS[name]
+    d, serial = arm(rows, names(rows))
+    found = propose(serial)
+    assert found.structure == structure
+    solved(d, serial, found.source)
+    assert prove(d).inverses[0].branches == found.branches == branches
+    serial.export(d)
+    return printed(d, folder)
+
+
+def pose(name: str, q: np.ndarray) -> np.ndarray:
+    rows = [[None if e is None else float(e) for e in row] for row in ARMS[name][0]]
+    return forward(rows, q)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("one_direction")
+
+
+def gaps(name: str, answers: np.ndarray, q: np.ndarray) -> np.ndarray:
+    turns = np.array([len(row) == 3 for row in ARMS[name][0]])
+    off = np.where(turns, np.angle(np.exp(1j * (answers - q))), answers - q)
+    return np.abs(off).max(axis=-1)
+
+
+def postures(name: str, rng: np.random.Generator) -> np.ndarray:
+    """Random ones, and others with joints near and at multiples of a quarter or a sixth turn."""
+    rows = ARMS[name][0]
+    q = rng.uniform(-3, 3, (3000, len(rows)))
+    near = rng.choice([0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3], q.shape)
+    special = rng.integers(-6, 7, q.shape) * np.pi / rng.choice([2, 6], q.shape) + near
+    return np.where((rng.random(q.shape) < 0.5) & (np.arange(3000) > 500)[:, None], special, q)
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_every_pose_of_the_arm_is_reached(name: str, folder: Path) -> None:
+    q = postures(name, np.random.default_rng(1))
+    T = pose(name, q)
+    answers, status = made(name, folder).ik(T)
+    reached = pose(name, answers.reshape(-1, q.shape[1])).reshape(*answers.shape[:2], 4, 4)
+    assert max(misses(reached, T, status)) < 4e-12
+    assert np.isin(status, (OK, SINGULAR)).any(axis=1).all()
+    assert np.nanmin(gaps(name, answers, q[:, None])[:500], axis=1).max() < 1e-8
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_newton_finds_no_other_posture(name: str, folder: Path) -> None:
+    rng = np.random.default_rng(2)
+    for T in pose(name, rng.uniform(-1, 1, (4, len(ARMS[name][0])))):
+        answers, status = made(name, folder).ik(T[None])
+        there = answers[0][np.isin(status[0], (OK, SINGULAR))]
+        starts = rng.uniform(-np.pi, np.pi, (200, there.shape[1]))
+        found = newton(lambda q: pose(name, q), T, starts)
+        assert len(found) > 20
+        away = gaps(name, found[:, None], there[None])
+        assert away.min(axis=1).max() < 1e-6 and away.min(axis=0).max() < 1e-6
+
+
+@pytest.mark.parametrize("name", [name for name in ARMS if len(ARMS[name][0]) == 5])
+def test_other_poses_are_out_of_reach(name: str, folder: Path) -> None:
+    rng = np.random.default_rng(3)
+    T = pose(name, rng.uniform(-3, 3, (50, 5)))
+    turned = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0], [0.48, 0.64, 0.6]])
+    if "one more" in ARMS[name][1]:  # its slides reach any position
+        T[:, :3, :3] = T[:, :3, :3] @ turned
+    else:
+        T[:, :3, 3] += 1e-6 * (T[:, :3, 2] if "tool" in name else np.array([0, 0, 1]))
+    assert (made(name, folder).ik(T).status == UNREACHABLE).all()
+
+
+def test_a_slide_that_reaches_only_in_some_postures_is_named() -> None:
+    """Where the last two axes of the wrist are parallel, the slide along x needs a turn of both."""
+    rows, *_ = ARMS["gantry that tilts, with two links"]
+    rows = [*rows[:3], (C, pi / 2, A), (A, pi / 2, 0), (0, 0, D)]
+    with pytest.raises(NoChainError) as caught:
+        propose(arm(rows, names(rows))[1])
+    assert any("only in some postures" in str(tried.error) for tried in caught.value.tried)

@@ -12,6 +12,7 @@ from closedform.algebra.normal_form import normal as normal
 from closedform.algebra.normal_form import positive_form as positive_form
 from closedform.algebra.solutions import count_solutions as count_solutions
 from closedform.algebra.solutions import rotation_parametrisation as rotation_parametrisation
+from closedform.lemmas.across import LinkAcross as LinkAcross
 from closedform.lemmas.applied import Applied as Applied
 from closedform.lemmas.arm_plane import arm_angle as arm_angle
 from closedform.lemmas.arm_plane import arm_plane as arm_plane

@@ -32,7 +32,7 @@ from closedform.scaffold.chains.slides import Slides
 from closedform.scaffold.chains.wrists import Carried, is_normal
 from closedform.scaffold.source import source
 
-COUNTED = {2: "two", 3: "three", 4: "four"}
+COUNTED = {1: "one", 2: "two", 3: "three", 4: "four"}
 NEEDED = (
     "Joints that turn about one direction or slide are solved if two or three of them turn, and "
     "their slides move the tool in independent directions."
@@ -162,20 +162,11 @@ class OneDirectionMaker(SixMaker):
                 "Beside a joint before joints that turn about one direction, the axes of the two "
                 "joints after them have to meet.",
             )
-        one, *_, five, six = found.joints
+        *_, five, six = found.joints
         block = self._block(found.joints[1:4])
         self._require_turning(block, (five, six))
-        end = _simple(one.end * block.lead)
-        one = replace(one, shift=_simple(one.shift + end * block.levels[0].shift), end=end)
-        axis = (end * Z).applyfunc(sp.simplify)
-        self.require(
-            not one.slides
-            and not axis[:2, 0].is_zero_matrix
-            and all(direction[2] == 0 for *_, direction in block.slides),
-            f"joint {one.number} does not turn the others in another direction",
-            "The joint before them has to turn about another direction, and their slide has to be "
-            "normal to theirs.",
-        )
+        one = self._one_before(found, block)
+        end = one.end
         R = self.centre(found)
         lengths = self._lengths_to_reach(block, one.shift)
         left = times(end.T, f"(turned({{}}).T * {times(found.lead[:3, :3].T, R)})")
@@ -196,6 +187,77 @@ class OneDirectionMaker(SixMaker):
         self._one_link(block)
         return f"a turn, {self._told(found, block, (five, six))}"
 
+    def in_one_direction_of_five(self, arm: Singles) -> str:
+        """The same with one joint after them: where its axis is free, it points the first joint."""
+        last = arm.joints[-1]
+        block = self._block(arm.joints[1:4], (1, 2))
+        self._require_turning(block, (last,))
+        one = self._one_before(arm, block)
+        R = self.centre(arm)
+        self._see_the_last_axis(arm, R)
+        beside = sum((level.shift[2] for level in block.levels[1:]), sp.S.Zero)
+        rotation = times(arm.lead[:3, :3].T, R)
+        links = self._reach_across(arm, block, one, rotation) if len(block.turns) == 2 else ""
+        q, pair = self._seen_in_plane(one, beside, links)
+        M = times(one.end.T, f"(turned({pair}).T * {rotation})")
+        self._name_rotation(arm, M)
+        self.orientation([block.lift, last], "M")
+        self.lifted = f"pair{block.lift.number}"
+        self.vector("q", f"{q} - turned({self.lifted}) * {source(block.lift.shift)}", "q_end")
+        if len(block.turns) == 2:
+            self._one_link(block)
+        else:
+            self._slides_alone(block)
+        self.add("ik.reached()")
+        return f"a turn, {self._told(arm, block, (last,))}"
+
+    def _reach_across(self, arm: Singles, block: Block, one: Single, R: str) -> str:
+        """Name what a link reaches across a slide, if the first joint is nearly tangent.
+
+        The direction of the last axis, across the one of the turns, turns with their sum.
+        """
+        ((level, *_), *_), n, w = block.across, block.normal, block.lift.shift
+        (least,), length = block.reach, source(norm(block.levels[1].shift[:2, 0]))
+        if level == 1 and least == 0:
+            return ""
+        self.vector("aimed", self.last_axis(arm, R), "aimed_tool")
+        x, y, _ = block.end * Z
+        v, (a, b) = (n if level == 2 else w), sp.symbols("seen[0] seen[1]")
+        along, aside = (sp.simplify(e / (x**2 + y**2)) for e in turning((x, y), v)[::-1])
+        turned = sp.Matrix([along * a - aside * b, aside * a + along * b, 0])
+        self.lines += [
+            "def carried(pair):",
+            f"    seen = {times(one.end.T, '(turned(pair).T * aimed)')}",
+            f"    return {source(turned)}",
+        ]
+        place = times(one.end.T, f"(turned(pair).T * p - {source(one.shift)})")
+        if level == 2:
+            beside = source(sp.simplify(n.dot(w)))
+            goal = f"LinkAcross(lambda pair: {place}, carried, {length}, {beside})"
+        elif level == 0:
+            goal = (
+                f"LinkAcross(lambda pair: {place} - carried(pair), lambda _: {source(n)}, {length})"
+            )
+        else:
+            lengths = ", ".join(self._lengths_to_reach(block, one.shift))
+            goal = f"Links(lambda pair: {place} - carried(pair), {lengths})"
+        self.add(f"links = {goal}")
+        return "links"
+
+    def _one_before(self, arm: Singles, block: Block) -> Single:
+        """The first joint, which turns the others; its motion ends in the frame of the block."""
+        one = arm.joints[0]
+        end = _simple(one.end * block.lead)
+        self.require(
+            not one.slides
+            and not (end * Z)[:2, 0].is_zero_matrix
+            and all(direction[2] == 0 for *_, direction in block.slides),
+            f"joint {one.number} does not turn the others in another direction",
+            "The joint before them has to turn about another direction, and their slides have to "
+            "be normal to theirs.",
+        )
+        return replace(one, shift=_simple(one.shift + end * block.levels[0].shift), end=end)
+
     def _name_rotation(self, arm: Singles, M: str) -> None:
         """Name the rotation that the target leaves to the joints that turn."""
         self.add(f"M = ik.matrix('M', {M})")
@@ -203,7 +265,8 @@ class OneDirectionMaker(SixMaker):
         if left != "M":
             self.add(f"M = {left}")
 
-    def _block(self, joints: Sequence[Single]) -> Block:
+    def _block(self, joints: Sequence[Single], count: Sequence[int] = (2, 3)) -> Block:
+        """Joints that turn about one direction, of which as many as one ``count`` turn."""
         block = Block.of(joints)
         first, last = joints[0].number, joints[-1].number
         self.require(
@@ -212,8 +275,8 @@ class OneDirectionMaker(SixMaker):
             "Of joints that turn about one direction, some may slide.",
         )
         assert block is not None
-        turns, slides, across = len(block.turns), block.slides, block.across
-        levels = {k for k, *_ in across}
+        turns, slides = len(block.turns), block.slides
+        levels = {k for k, *_ in block.across}
         if turns == 3:
             links = [level.shift[:2, 0].is_zero_matrix for level in block.levels[1:-1]]
             independent = not any(links) and all(
@@ -221,15 +284,18 @@ class OneDirectionMaker(SixMaker):
             )
             independent = independent and all(axis[2] != 0 for *_, axis in slides)
         else:
-            independent = turns == 2 and len(levels) == 1 and 0 < len(slides) < 3
-            independent = independent and not block.normal[:2, 0].is_zero_matrix
+            independent = len(levels) == 1 and len(slides) in ((2,) if turns == 1 else (1, 2))
+            across = block.normal[:2, 0] if turns == 2 else block.normal[2:, 0]
+            independent = independent and not _simple(across).is_zero_matrix
         self.require(
-            independent, f"joints {first} to {last} are not links and slides of this kind", NEEDED
+            turns in count and independent,
+            f"joints {first} to {last} are not links and slides of this kind",
+            NEEDED,
         )
         (level,) = levels or {1}
         link = block.levels[1].shift
         self.require(
-            turns == 3 or level == 1 or not link[:2, 0].is_zero_matrix,
+            turns != 2 or level == 1 or not link[:2, 0].is_zero_matrix,
             f"joint {block.lift.number} does not move the point across its slides",
             "A link beside its axis is needed there.",
         )
@@ -404,6 +470,14 @@ class OneDirectionMaker(SixMaker):
         ]
         return " - ".join([left, *slid])
 
+    def _slides_alone(self, block: Block) -> None:
+        """Solve two slides before the joint that turns with them, or after it."""
+        ((level, *_), *_) = block.slides
+        if level:
+            self.vector("q", f"turned({self.lifted}).T * q", "q2")
+        along = [(slide, axis) for _, slide, axis in block.slides]
+        Slides(self, block.joints, self.unknown).linear("q", sp.zeros(3, 1), along)
+
     def _told(self, arm: Singles, block: Block, others: Sequence[Single]) -> str:
         if not block.slides:
             numbers = [joint.number for joint in arm.joints]
@@ -411,6 +485,8 @@ class OneDirectionMaker(SixMaker):
             text = "axes {}, {} and {} parallel, {} and {} " + meets
             return text.format(*numbers)
         turns = f"{COUNTED[len(block.turns)]} joints that turn about one direction"
+        if len(block.turns) == 1:
+            turns = "one joint that turns"
         slides = f"{len(block.slides)} slides" if len(block.slides) > 1 else "a slide"
         more = f"{len(others)} more" if len(others) > 1 else "one more"
         return f"{turns}, {slides} and {more}"

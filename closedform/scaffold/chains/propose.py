@@ -262,6 +262,9 @@ def _fewer_than_six(arm: Serial, whole: Singles) -> Iterator[_Candidate]:
                 way = OneDirectionMaker(arm)
                 write = partial(way.in_one_direction, view, count)
                 yield _Candidate(f"{COUNTED[count]} joints{ONE_WAY}{seen}", way, write)
+            way = OneDirectionMaker(arm)
+            write = partial(way.in_one_direction_of_five, view)
+            yield _Candidate(f"three joints in the middle{ONE_WAY}{seen}", way, write)
 
 
 def _met(whole: Singles, pairs: Sequence[tuple[int, int]]) -> Singles:

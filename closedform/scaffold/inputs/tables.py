@@ -51,9 +51,9 @@ CHAIN = (
     *chain_lemmas(),
 )  # fmt: skip
 LINKED = (
-    "CoordinateWithin", "LinkAtHeight", "Links", "LinksAndObliqueWrist", "LinksAndWrist",
-    "LinksAround", "LinksAtHeight", "LinksPastParallel", "LinksPastTurn", "OnCircle", "Pair",
-    "TwoTurns",
+    "CoordinateWithin", "LinkAcross", "LinkAtHeight", "Links", "LinksAndObliqueWrist",
+    "LinksAndWrist", "LinksAround", "LinksAtHeight", "LinksPastParallel", "LinksPastTurn",
+    "OnCircle", "Pair", "TwoTurns",
 )  # fmt: skip
 AUTHOR = (
     "Chain",
@@ -74,7 +74,8 @@ LINES = {
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
     "play", "radius_to_target", "radius_to_end", "lever", "past", "seen_across",
     "missed_by", "pair_at", "aimed", "off_axis", "below_one", "carried", "squares",
-    "less", "more", "less_behind", "more_behind", "behind", "far", "tilt", "offset", "at_end",
+    "less", "more", "less_behind", "more_behind", "behind", "far", "tilt", "offset",
+    "at_end", "seen",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

@@ -96,6 +96,10 @@ ARMS = {
         [(0, pi / 3, D), (0, pi / 2, None, 0), (A, 0, D), (B, pi / 2, A), (0, 0, D)],
         BOOM[:-6] + "one more", 4,
     ),
+    "arm on a column that turns, with a roll": (
+        [(0, 0, None, 0), (A, pi / 2, D), (B, 0, 0), (C, pi / 2, 0), (0, 0, D)],
+        BOOM[:-6] + "one more", 4,
+    ),
     "cylindrical arm with pitch and roll": (
         [(0, 0, D), LIFT, (0, pi / 2, None, pi / 2), (A, pi / 2, A), (0, 0, D)],
         "a turn, one joint that turns, 2 slides and one more", 2,
@@ -213,3 +217,20 @@ def test_a_slide_that_reaches_only_in_some_postures_is_named() -> None:
     with pytest.raises(NoChainError) as caught:
         propose(arm(rows, names(rows))[1])
     assert any("only in some postures" in str(tried.error) for tried in caught.value.tried)
+
+
+@pytest.mark.parametrize(
+    ("rows", "free", "held"),
+    [
+        ([(0, pi / 2, None, pi / 2), (0, 0, D), (B, 0, 0), (0, pi / 2, A), (0, 0, D)],
+         "joints t2 and t3", "'# t2 = 0.1 rad: held'"),
+        ([(0, 0, None, 0), (1, 0, 0), (0, pi / 2, None, 0), (0, pi / 2, A), (A, pi / 2, 0),
+          (0, 0, D)], "joints d1 and d3", "'# d1 = 0.1 m: held'"),
+    ],
+)  # fmt: skip
+def test_joints_that_move_while_the_tool_stands_still_are_named(
+    rows: list, free: str, held: str
+) -> None:
+    with pytest.raises(NoChainError, match=f"at every posture its {free} can move") as caught:
+        propose(arm(rows, names(rows))[1])
+    assert held in caught.value.needed

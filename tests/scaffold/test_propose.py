@@ -191,7 +191,7 @@ def test_a_modified_table_and_screws_are_recognised_alike() -> None:
                 *((b, pi / 2, 0, x) for x in T[3:4]),
                 *((b, 0, 0, x) for x in T[4:]),
             ],
-            "axes 5 and 6 are parallel",
+            "at every posture its joints t1, t2, t3 and t4 can move while the tool stands still",
         ),
         (
             "t1 t2 t3 t4 t5",

@@ -265,9 +265,11 @@ def test_a_given_joint_is_an_input(franka: tuple[Derivation, Serial]) -> None:
     assert d.inverses[0].targets[-1].name == "x_t7"
 
 
-def test_two_axes_beside_three_parallel_ones_have_to_meet() -> None:
-    """An arm for a drone: its wrist has two axes that pass each other."""
+def test_two_axes_beside_three_parallel_ones_may_pass_each_other() -> None:
+    """An arm for a drone; if a joint of the three slides, they have to meet."""
     rows = [(2, 0, 0), (1, 0, 0), (0, pi / 2, 0), (1, pi / 2, 1), (0, 0, 1)]
+    assert propose(arm(rows)[1]).structure == "axes 1, 2 and 3 parallel, 4 and 5 skew"
+    rows[:2] = [(2, pi / 2, 0), (0, -pi / 2, None, 0)]
     with pytest.raises(NoChainError) as e:
-        propose(arm(rows)[1])
+        propose(arm(rows, "t1 d2 t3 t4 t5")[1])
     assert "axes 4 and 5 do not meet" in [t.error.found for t in e.value.tried]

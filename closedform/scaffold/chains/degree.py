@@ -18,7 +18,7 @@ import numpy as np
 import sympy as sp
 from sympy.combinatorics import Permutation, PermutationGroup
 
-from closedform.scaffold.chains.chainlinks import Singles
+from closedform.scaffold.chains.chainlinks import Single, Singles
 
 SEEDS = (20, 21, 22)
 LOOPS, ROUNDS, ENOUGH = 6, 6, 5
@@ -313,10 +313,19 @@ def _agreed(once: Callable[[int], Count | None]) -> Count | None:
 
 def is_regular(arm: Singles) -> bool:
     """Whether six joints move the tool in six ways at some posture, with parameters at random."""
+    return not free_joints(arm)
+
+
+def free_joints(arm: Singles) -> list[Single]:
+    """The joints that can move while the tool does not, at every posture; up to six are asked."""
     rng = np.random.default_rng(SEEDS[0])
-    numeric = Numeric.of(arm, rng)
+    few = len(arm.joints)
+    numeric = Numeric.of(arm, rng).with_more(6 - few, rng)
     _, twists = numeric.pose(rng.normal(size=(4, 6)) + 0j)
-    return bool((np.linalg.cond(twists) <= SINGULAR).any())
+    if (np.linalg.cond(twists) <= SINGULAR).any():
+        return []
+    least = np.linalg.svd(twists[0])[2][-1][:few]
+    return [j for j, e in zip(arm.joints, np.abs(least), strict=True) if e > 1e-6]
 
 
 def counted_once(arm: Singles, seed: int) -> Solutions | None:

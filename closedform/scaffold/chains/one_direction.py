@@ -285,8 +285,9 @@ class OneDirectionMaker(SixMaker):
             independent = independent and all(axis[2] != 0 for *_, axis in slides)
         else:
             independent = len(levels) == 1 and len(slides) in ((2,) if turns == 1 else (1, 2))
-            across = block.normal[:2, 0] if turns == 2 else block.normal[2:, 0]
-            independent = independent and not _simple(across).is_zero_matrix
+            if independent:
+                across = block.normal[:2, 0] if turns == 2 else block.normal[2:, 0]
+                independent = not _simple(across).is_zero_matrix
         self.require(
             turns in count and independent,
             f"joints {first} to {last} are not links and slides of this kind",

@@ -16,10 +16,16 @@ from closedform.scaffold.chains.arm_angle import NAME as ARM_ANGLE
 from closedform.scaffold.chains.arm_angle import ArmAngleMaker
 from closedform.scaffold.chains.chainlinks import Single, Singles, parallel, singles
 from closedform.scaffold.chains.decoupled import DecoupledMaker
-from closedform.scaffold.chains.degree import Solutions, is_regular, solutions, solutions_of_few
+from closedform.scaffold.chains.degree import (
+    Solutions,
+    free_joints,
+    is_regular,
+    solutions,
+    solutions_of_few,
+)
 from closedform.scaffold.chains.known import KnownMaker
 from closedform.scaffold.chains.maker import Maker
-from closedform.scaffold.chains.one_direction import COUNTED, OneDirectionMaker
+from closedform.scaffold.chains.one_direction import OneDirectionMaker
 from closedform.scaffold.chains.proposal import NoChainError, Proposal, Tried
 from closedform.scaffold.chains.six import SixMaker
 from closedform.scaffold.chains.subproblems import SubproblemMaker
@@ -77,13 +83,11 @@ def _require_few(arm: Serial) -> None:
     """Refuse an arm whose pose leaves more than one joint free."""
     names = [joint.name for joint in arm.joints]
     if (more := len(names) - 6) > 1:
-        unit = "m" if singles(arm).joints[0].slides else "rad"
         raise NoChainError(
             f"it has {len(names)} joints, and a pose determines six; up to seven are solved, with "
             f"one of them given",
-            f"Give values to {more - 1} of them, or to {more}: in a DH table, a line such as "
-            f"'# {names[0]} = 0.1 {unit}: held' makes a joint a parameter, an input of all printed "
-            f"functions.  Of a URDF file take the part between two links, with --base and --tool.  "
+            f"Give values to {more - 1} of them, or to {more}: {_held(singles(arm).joints[0])}  "
+            f"Of a URDF file take the part between two links, with --base and --tool.  "
             f"Otherwise use a numeric inverse, such as that of Pinocchio.",
         )
 
@@ -93,6 +97,8 @@ def _refusal(
 ) -> NoChainError:
     """Why no chain is known, with the degree of what is left if that is known or can be counted."""
     n, whole = len(arm.joints), singles(arm)
+    if n <= 6 and (free := free_joints(whole)):
+        return _redundant(free).after(tried)
     error = next((t.error for t in tried if t.error.degree), tried[0].error)
     if n == 7 and given != ARM_ANGLE:
         single, *others = _to_give(whole, given)
@@ -111,6 +117,24 @@ def _refusal(
         progress("counting the solutions")
         error = _counted_few(error, solutions_of_few(whole))
     return error.after(tried)
+
+
+def _redundant(free: Sequence[Single]) -> NoChainError:
+    """Why an arm has no inverse whose ``free`` joints can move while the tool stands still."""
+    *others, last = (joint.joint.name for joint in free)
+    names = f"joints {', '.join(others)} and {last}" if others else f"joint {last}"
+    return NoChainError(
+        f"at every posture its {names} can move while the tool stands still",
+        f"Give a value to one of them: {_held(free[0])}",
+    )
+
+
+def _held(single: Single) -> str:
+    """How to give a value to a joint."""
+    return (
+        f"in a DH table, a line such as '# {single.joint} = 0.1 {'m' if single.slides else 'rad'}: "
+        f"held' makes a joint a parameter, an input of all printed functions."
+    )
 
 
 ONE_WAY = " that turn about one direction"
@@ -257,14 +281,18 @@ def _fewer_than_six(arm: Serial, whole: Singles) -> Iterator[_Candidate]:
         write = partial(maker.solved_in_plane, _met(whole, ((3, 2),)))
         yield _Candidate("three parallel joints", maker, write)
     if n == 5:
-        for view, seen in ((whole, ""), (whole.reversed(), ", from the tool")):
-            for count in (3, 4):
-                way = OneDirectionMaker(arm)
-                write = partial(way.in_one_direction, view, count)
-                yield _Candidate(f"{COUNTED[count]} joints{ONE_WAY}{seen}", way, write)
-            way = OneDirectionMaker(arm)
-            write = partial(way.in_one_direction_of_five, view)
-            yield _Candidate(f"three joints in the middle{ONE_WAY}{seen}", way, write)
+        yield from _five_in_one_direction(arm, whole)
+
+
+def _five_in_one_direction(arm: Serial, whole: Singles) -> Iterator[_Candidate]:
+    for order in whole.orders():
+        moved = _moved(order, whole)
+        for view, seen in ((order, ""), (order.reversed(), ", from the tool")):
+            for which, solve in OF_FIVE:
+                maker = OneDirectionMaker(arm)
+                yield _Candidate(
+                    f"{which}{ONE_WAY}{seen}{moved}", maker, partial(solve, maker, view)
+                )
 
 
 def _met(whole: Singles, pairs: Sequence[tuple[int, int]]) -> Singles:
@@ -312,14 +340,21 @@ def _six(arm: Serial, whole: Singles, given: Single | None = None) -> Iterator[_
         for view, wrist in ((order, "spherical wrist"), (order.reversed(), "spherical shoulder")):
             yield candidate(f"{wrist}{moved}", SubproblemMaker(arm), _with_wrist, view)
     for name, solve in WITH_SLIDES if any(joint.slides for joint in left.joints) else TURNING:
-        for view, seen in ((left, ""), (left.reversed(), ", from the tool")):
-            yield candidate(f"{name}{seen}", OneDirectionMaker(arm), solve, view)
+        for order in left.orders():
+            for view, seen in ((order, ""), (order.reversed(), ", from the tool")):
+                shown = f"{name}{seen}{_moved(order, left)}"
+                yield candidate(shown, OneDirectionMaker(arm), solve, view)
 
 
 TURNING: tuple[tuple[str, _Solve], ...] = (
     ("three parallel axes in the middle", SixMaker.parallel_middle),
     ("three parallel axes at the end", SixMaker.parallel_first),
     ("three axes in the middle that meet", SixMaker.meeting_middle),
+)
+OF_FIVE: tuple[tuple[str, _Solve], ...] = (
+    ("three joints", partial(OneDirectionMaker.in_one_direction, count=3)),
+    ("four joints", partial(OneDirectionMaker.in_one_direction, count=4)),
+    ("three joints in the middle", OneDirectionMaker.in_one_direction_of_five),
 )
 WITH_SLIDES: tuple[tuple[str, _Solve], ...] = (
     (f"four joints{ONE_WAY}", partial(OneDirectionMaker.in_one_direction, count=4)),

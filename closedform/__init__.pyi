@@ -72,6 +72,7 @@ from closedform.lemmas.universal import Universal as Universal
 from closedform.lemmas.wrist import spin as spin
 from closedform.lemmas.wrist import tilt as tilt
 from closedform.lemmas.zyz import Reaching as Reaching
+from closedform.lemmas.zyz import ReachingAcross as ReachingAcross
 from closedform.lemmas.zyz import zyz as zyz
 from closedform.lemmas.zyz import zyz_angles as zyz_angles
 from closedform.loops.coupled import coupled as coupled

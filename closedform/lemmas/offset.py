@@ -38,15 +38,26 @@ class Offset:
         It follows from the law of cosines in half angles, to one ``side`` of the point; the
         intermediate results are returned too.
         """
-        p, r, e, (x, y) = chain.program, self.r, self.offset, self.point
+        p, r, e = chain.program, self.r, self.offset
         cc = p.let(f"k_{name}", sp.Max(0, (r + e - reach) * (r + e + reach)), nonnegative=True)
         ss = p.let(f"d_{name}", sp.Max(0, (reach - r + e) * (reach + r - e)), nonnegative=True)
+        return self.turned(chain, (cc, ss, side), chain.size * (r + e), name)
+
+    def turned(
+        self, chain: Chain, halves: tuple[sp.Expr, sp.Expr, sp.Expr], scale: sp.Expr, name: str
+    ) -> tuple[Pair, tuple[sp.Expr, ...]]:
+        """The direction of the point, turned by an angle; returns the ``halves`` too.
+
+        They are the squares of the cosine and of the sine of half of the angle, times the same
+        number, and the side to which it turns.
+        """
+        p, r, (x, y), (cc, ss, side) = chain.program, self.r, self.point, halves
         total = p.let(f"n_{name}", cc + ss, nonnegative=True)
-        any_turn = self.vanishes(f"any_{name}", total, chain.size * (r + e))
+        any_turn = self.vanishes(f"any_{name}", total, scale)
         cosine = p.let(f"uc_{name}", choose(any_turn, 1, (cc - ss) / total))
         across = 2 * side * sp.sqrt(cc) * sp.sqrt(ss) / total
         sine = p.let(f"us_{name}", choose(any_turn, 0, across))
         at_hub = self.vanishes(f"hub_{name}", r, chain.size)
         s = p.let(f"s_{name}", choose(at_hub, 0, (y * cosine + x * sine) / r))
         c = p.let(f"c_{name}", choose(at_hub, 1, (x * cosine - y * sine) / r))
-        return Pair(s, c), (cc, ss, side)
+        return Pair(s, c), halves

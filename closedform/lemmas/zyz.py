@@ -188,10 +188,16 @@ class Reaching:
         def vanishes(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Symbol:
             return self.chain.program.vanishes(name, value, scale, "the turn has no effect")
 
-        past = Offset(self.target, self._r, self.offset, vanishes)
-        pair, unit = past.leaving(self.chain, reach, side, name)
+        pair, unit = self._leaving(
+            Offset(self.target, self._r, self.offset, vanishes), reach, side, name
+        )
         self.chain.units.append((pair.s, pair.c, unit))
         return pair
+
+    def _leaving(
+        self, past: Offset, reach: sp.Expr, side: sp.Expr, name: str
+    ) -> tuple[Pair, tuple[sp.Expr, ...]]:
+        return past.leaving(self.chain, reach, side, name)
 
     @cached_property
     def _r(self) -> sp.Expr:
@@ -204,11 +210,22 @@ class Reaching:
         l1, l2 = self.lengths
         return sp.Abs(l1 - l2), l1 + l2
 
+    @property
+    def _turned(self) -> tuple[sp.Expr, sp.Expr]:
+        """The least and the greatest distance to which the angle can turn the offset."""
+        return sp.Abs(self._r - self.offset), self._r + self.offset
+
+    def _here(self, u: Pair) -> sp.Expr:
+        """The distance at a direction."""
+        (x, y) = self.target
+        return sp.sqrt((x - self.offset * u.c) ** 2 + (y - self.offset * u.s) ** 2)
+
     def middle(self) -> Pair:
         """The middle of those distances within reach that turning the offset allows."""
-        p, r, (least, most) = self.chain.program, self._r, self._reach
-        nearest = p.let("nearest", sp.Max(least, sp.Abs(r - self.offset)))
-        farthest = p.let("most_reach", sp.Min(most, r + self.offset))
+        p, (least, most) = self.chain.program, self._reach
+        low, high = self._turned
+        nearest = p.let("nearest", sp.Max(least, low))
+        farthest = p.let("most_reach", sp.Min(most, high))
         return self._at(p.let("mid_reach", (nearest + farthest) / 2), sp.S.One, "mid")
 
     def moved(self, u: Pair, gain: sp.Expr) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol, Pair]:
@@ -221,8 +238,7 @@ class Reaching:
         close = p.vanishes(
             "close", gain * self.lever - size / 2**11, size, "its direction may be inaccurate"
         )
-        ex, ey = x - self.offset * u.c, y - self.offset * u.s
-        there = p.let("here", sp.sqrt(ex**2 + ey**2))
+        there = p.let("here", self._here(u))
         reach = p.let("in_reach", sp.Min(sp.Max(there, least), most))
         cross = p.let("cross", x * u.s - y * u.c)
         flat = p.vanishes("flat", sp.Abs(cross), size, "the offset is in line")
@@ -233,6 +249,51 @@ class Reaching:
         doubt = gain * change - 4 * ROUNDING
         near = p.vanishes("within_rounding", doubt, 4, "the turn is free up to rounding")
         return close, near, inside, v
+
+
+@dataclass(frozen=True)
+class ReachingAcross(Reaching):
+    """The same of one link, of which a slide leaves what is across it.
+
+    What the link has to reach there is ``beside + x u.c + y u.s``; x and y are the target.
+    """
+
+    beside: sp.Expr
+
+    @classmethod
+    def by_slide(
+        cls,
+        chain: Chain,
+        target: tuple[sp.Expr, sp.Expr],
+        beside: sp.Expr,
+        length: sp.Expr,
+        *,
+        lever: sp.Expr,
+    ) -> ReachingAcross:
+        """For a link of this length."""
+        none, lengths = Pair(sp.S.Zero, sp.S.One), (sp.sympify(length), sp.S.Zero)
+        return cls(chain, target, lengths, offset=sp.S.Zero, ahead=none, lever=lever, beside=beside)
+
+    @property
+    def _reach(self) -> tuple[sp.Expr, sp.Expr]:
+        length, _ = self.lengths
+        return -length - self.beside, length - self.beside
+
+    @property
+    def _turned(self) -> tuple[sp.Expr, sp.Expr]:
+        return -self._r, self._r
+
+    def _here(self, u: Pair) -> sp.Expr:
+        x, y = self.target
+        return x * u.c + y * u.s
+
+    def _leaving(
+        self, past: Offset, reach: sp.Expr, side: sp.Expr, name: str
+    ) -> tuple[Pair, tuple[sp.Expr, ...]]:
+        let = self.chain.program.let
+        cc = let(f"k_{name}", sp.Max(0, self._r + reach), nonnegative=True)
+        ss = let(f"d_{name}", sp.Max(0, self._r - reach), nonnegative=True)
+        return past.turned(self.chain, (cc, ss, side), self.chain.size, name)
 
 
 @chain_lemma("Rz(x1) Ry(x2) Rz(x3) = R", "the pair of x1")
@@ -288,7 +349,7 @@ def zyz(
         aligned = p.vanishes(
             f"aligned_{name}", h, ALIGNED, "the first and the last axis are parallel", (free,)
         )
-        if not isinstance(reaching, Reaching):
+        if callable(reaching):
             reaching = reaching(Pair(p.let(f"s_{middle}", sigma * h), R[2, 2]))
         u = sigma * R[0, 2] / h, sigma * R[1, 2] / h
         found, near, unit = within_reach(reaching, u, h, first, aligned)
@@ -357,4 +418,13 @@ def _aligned(psi: sp.Symbol) -> tuple[sp.Matrix, sp.Matrix]:
     )
 
 
-__all__ = ["ALIGNED", "Reaching", "Zyz", "within_reach", "zyz", "zyz_angles", "zyz_lemma"]
+__all__ = [
+    "ALIGNED",
+    "Reaching",
+    "ReachingAcross",
+    "Zyz",
+    "within_reach",
+    "zyz",
+    "zyz_angles",
+    "zyz_lemma",
+]

@@ -108,6 +108,21 @@ ARMS = {
         [(A, 0, D), LIFT, (A, pi / 2, None, pi / 2), (A, pi / 3, A), (0, 0, D)],
         "a turn, one joint that turns, 2 slides and one more", 2,
     ),
+    "gantry with two links and an offset wrist": (
+        [(0, pi / 2, None, pi / 2), (0, 0, None, 0), (B, 0, D), (C, pi / 2, A), (A, pi / 2, A),
+         (0, 0, D)],
+        JIB + "2 more", 4,
+    ),
+    "gantry with two links and an offset wrist, from the tool": (
+        [(0, pi / 2, D), (A, pi / 2, A), (C, 0, A), (B, 0, D), (0, pi / 2, None, pi / 2),
+         (0, 0, None, 0)],
+        JIB + "2 more", 4,
+    ),
+    "slides that turn, with an offset wrist": (
+        [(B, 0, D), (C, 0, A), (0, pi / 2, None, pi / 2), (0, pi / 2, None, pi / 2),
+         (A, pi / 2, A), (0, 0, D)],
+        JIB + "2 more", 4,
+    ),
     "SCARA that tilts": (
         [(B, 0, D), (C, 0, 0), (0, 0, None, 0), (A, pi / 2, D), (A, pi / 3, A)],
         LINKS + "one more", 2,
@@ -211,9 +226,8 @@ def test_other_poses_are_out_of_reach(name: str, folder: Path) -> None:
 
 
 def test_a_slide_that_reaches_only_in_some_postures_is_named() -> None:
-    """Where the last two axes of the wrist are parallel, the slide along x needs a turn of both."""
-    rows, *_ = ARMS["gantry that tilts, with two links"]
-    rows = [*rows[:3], (C, pi / 2, A), (A, pi / 2, 0), (0, 0, D)]
+    """A log loader: where two axes of its wrist are parallel, its jib reaches in some postures."""
+    rows = [(A, pi / 2, D), (B, 0, 0), (A, pi / 2, A), (0, 0, None, 0), (0, pi / 2, A), (0, 0, D)]
     with pytest.raises(NoChainError) as caught:
         propose(arm(rows, names(rows))[1])
     assert any("only in some postures" in str(tried.error) for tried in caught.value.tried)

@@ -168,7 +168,7 @@ class OneDirectionMaker(SixMaker):
         one = self._one_before(found, block)
         end = one.end
         R = self.centre(found)
-        lengths = self._lengths_to_reach(block, one.shift)
+        lengths = self._lengths_to_reach(block, one.shift, between=True)
         left = times(end.T, f"(turned({{}}).T * {times(found.lead[:3, :3].T, R)})")
         goal = TurnGoal(
             [block.lift, five, six],
@@ -322,6 +322,11 @@ class OneDirectionMaker(SixMaker):
         to_end = f"{source(shift)} + {after}" if moves else source(shift)
         lengths = self._lengths_to_reach(block, five.shift)
         if not is_normal([lift, five]):
+            self.require(
+                len(lengths) != 1,
+                "its wrist is oblique, and its slides are not between two joints about one axis",
+                "The known chain needs right angles there.",
+            )
             if lengths:
                 entries = point("to_end") if moves else shift
                 self.carried = Carried("p", to_end, lengths, entries)
@@ -350,9 +355,7 @@ class OneDirectionMaker(SixMaker):
         self.lines += [
             "def reaching(tilt):",
             f"    carried = {carried}",
-            "    offset = carried[0], carried[1]",
-            f"    links = {', '.join(lengths)}",
-            "    return Reaching.turning(ik, (p[0], p[1]), links, offset, lever=ik.size)",
+            *self._within(block, lengths, ahead),
         ]
         self.more = ", reaching=reaching"
 
@@ -391,6 +394,21 @@ class OneDirectionMaker(SixMaker):
         self.add("R_rest = ik.matrix('R_rest', R_last.T * M)")
         self._rotate(last, "(1, 0)", "R_rest[:, 0]", scale="1")
 
+    def _within(self, block: Block, lengths: Sequence[str], ahead: sp.Matrix) -> list[str]:
+        """The last lines of a function that says what is reached."""
+        if len(lengths) == 2:
+            return [
+                "    offset = carried[0], carried[1]",
+                f"    links = {', '.join(lengths)}",
+                "    return Reaching.turning(ik, (p[0], p[1]), links, offset, lever=ik.size)",
+            ]
+        ((level, *_), *_), n = block.across, block.normal / norm(block.normal[:2, 0])
+        moved, p, carried = _simple(ahead.T * n), point("p"), point("carried")
+        sine, cosine = turning(moved, p) if level else (-e for e in turning(carried, n))
+        beside = -moved.dot(carried) if level else n.dot(p)
+        target = f"({source(cosine)}, {source(sine)}), {source(beside)}, {lengths[0]}"
+        return [f"    return ReachingAcross.by_slide(ik, {target}, lever=ik.size)"]
+
     def _by_axis(self, block: Block, five: Single, aimed: sp.Matrix) -> str:
         """What the joints carry, by where the axis after the next joint points, normal to it."""
         w, s = five.end * Z, five.shift
@@ -399,11 +417,14 @@ class OneDirectionMaker(SixMaker):
         moved = sp.Matrix([along * x - aside * y, along * y + aside * x, s[2]])
         return source((block.levels[-1].shift + block.end * moved).applyfunc(sp.expand))
 
-    def _lengths_to_reach(self, block: Block, beside: sp.Matrix) -> list[str]:
+    def _lengths_to_reach(
+        self, block: Block, beside: sp.Matrix, between: bool = False
+    ) -> list[str]:
         """Those of two links that have to reach the point; none if any point is reached.
 
         One link with a slide across it reaches each point but near ones.  A vector ``beside`` the
-        joints is between their end and the point ``p``.
+        joints is between their end and the point ``p``; they may be ``between`` others.  One length
+        is that of a link across the slides.
         """
         if len(block.turns) == 3:
             self.require(
@@ -413,13 +434,16 @@ class OneDirectionMaker(SixMaker):
                 "those axes.",
             )
             return [source(length) for length in block.reach]
+        ((level, *_), *_) = block.across
         self.require(
-            block.across[0][0] == 1 and block.normal[2] == 0,
+            block.normal[2] == 0 and (level == 1 or not between),
             "where two axes of its wrist are parallel, its slides reach the tool only in some "
             "postures",
-            "The known chain has a slide between two joints that turn about one direction, and "
-            "another one along it or across it, or three such joints.",
+            "After a turret the known chain has a slide between two joints that turn about one "
+            "direction, or three such joints; other slides are along these axes or across them.",
         )
+        if level != 1:
+            return [source(norm(block.levels[1].shift[:2, 0]))]
         (least,) = block.reach
         if least == 0:
             return []

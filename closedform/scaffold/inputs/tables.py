@@ -46,8 +46,8 @@ IMPORTED = (
     "Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Max", "Piecewise", "Rational", "atan", "atan2",
 )  # fmt: skip
 CHAIN = (
-    "Carrying", "Reaching", "arm_angle", "rotation", "sign_of", "turned", "within_links",
-    "within_tilt",
+    "Carrying", "Reaching", "ReachingAcross", "arm_angle", "rotation", "sign_of", "turned",
+    "within_links", "within_tilt",
     *chain_lemmas(),
 )  # fmt: skip
 LINKED = (

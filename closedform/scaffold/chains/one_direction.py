@@ -407,7 +407,10 @@ class OneDirectionMaker(SixMaker):
         sine, cosine = turning(moved, p) if level else (-e for e in turning(carried, n))
         beside = -moved.dot(carried) if level else n.dot(p)
         target = f"({source(cosine)}, {source(sine)}), {source(beside)}, {lengths[0]}"
-        return [f"    return ReachingAcross.by_slide(ik, {target}, lever=ik.size)"]
+        return [
+            "    lever = ik.size**2/(ik.size + sqrt(p[0]**2 + p[1]**2))",
+            f"    return ReachingAcross.by_slide(ik, {target}, lever=lever)",
+        ]
 
     def _by_axis(self, block: Block, five: Single, aimed: sp.Matrix) -> str:
         """What the joints carry, by where the axis after the next joint points, normal to it."""

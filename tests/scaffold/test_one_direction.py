@@ -17,36 +17,36 @@ from closedform.scaffold.chains.propose import NoChainError, propose
 
 A, B, C, D = (sp.Rational(n, 100) for n in (5, 40, 35, 11))
 LINKS = "three joints that turn about one direction, a slide and "
-JIB = "two joints that turn about one direction, 2 slides and "
-BOOM = "a turn, two joints that turn about one direction, a slide and 2 more"
+JIB = "two joints that turn about one direction, two slides and "
+BOOM = "a turn, two joints that turn about one direction, a slide and two more"
 LIFT, RADIAL = (0, -pi / 2, None, 0), (0, pi / 2, None, 0)
 ARMS = {
     "SCARA with an offset wrist": (
         [(B, 0, D), (C, 0, 0), (0, 0, None, 0), (A, pi / 2, D), (A, -pi / 2, D), (0, 0, D)],
-        LINKS + "2 more", 4,
+        LINKS + "two more", 4,
     ),
     "SCARA with an oblique wrist": (
         [(B, 0, D), (C, 0, 0), (0, 0, None, 0), (A, pi / 3, D), (A, -pi / 3, A), (0, 0, D)],
-        LINKS + "2 more", 4,
+        LINKS + "two more", 4,
     ),
     "SCARA with a wrist, seen from the tool": (
         [(0, pi / 2, D), (A, -pi / 2, D), (B, 0, 0), (C, 0, D), (0, 0, 0), (A, pi / 2, None, 0)],
-        LINKS + "2 more", 4,
+        LINKS + "two more", 4,
     ),
     "SCARA on a lift that leans": (
         [(0, pi / 6, None, pi / 2), (B, 0, D), (C, 0, 0), (A, pi / 2, D), (A, pi / 3, A)],
         LINKS + "one more", 2,
     ),
     "jib with an offset wrist": (
-        [(0, 0, D), LIFT, RADIAL, (A, pi / 2, D), (A, -pi / 2, D), (0, 0, D)], JIB + "2 more", 4,
+        [(0, 0, D), LIFT, RADIAL, (A, pi / 2, D), (A, -pi / 2, D), (0, 0, D)], JIB + "two more", 4,
     ),
     "jib beside its column": (
         [(A, 0, D), (A, -pi / 2, None, 0), RADIAL, (A, pi / 2, D), (A, -pi / 2, A), (0, 0, D)],
-        JIB + "2 more", 4,
+        JIB + "two more", 4,
     ),
     "jib beside its column with an oblique wrist": (
         [(A, 0, D), (A, -pi / 2, None, 0), RADIAL, (A, pi / 3, D), (A, pi / 4, A), (0, 0, D)],
-        JIB + "2 more", 4,
+        JIB + "two more", 4,
     ),
     "gantry that tilts, with two links": (
         [(0, pi / 2, None, pi / 2), (0, 0, None, 0), (B, 0, D), (A, pi / 2, A), (A, 0, D)],
@@ -58,7 +58,7 @@ ARMS = {
     ),
     "jib with two axes that meet": (
         [(0, pi / 2, D), (A, -pi / 2, None, 0), (A, pi / 2, D), (0, pi / 3, 0), (A, 0, A)],
-        "two joints that turn about one direction, a slide and 2 more", 4,
+        "two joints that turn about one direction, a slide and two more", 4,
     ),
     "telehandler": (
         [(A, pi / 2, D), (0, pi / 2, 0), (0, -pi / 2, None, 0), (C, pi / 2, A), (0, pi / 2, D),
@@ -82,46 +82,46 @@ ARMS = {
     ),
     "telehandler of five joints": (
         [(A, pi / 2, D), (D, pi / 2, 0), (0, -pi / 2, None, 0), (C, pi / 2, A), (0, 0, D)],
-        BOOM[:-6] + "one more", 4,
+        BOOM[:-8] + "one more", 4,
     ),
     "crane with a telescopic jib": (
         [(A, pi / 2, D), (B, 0, 0), (A, pi / 2, A), (0, 0, None, 0), (0, 0, D)],
-        BOOM[:-6] + "one more", 4,
+        BOOM[:-8] + "one more", 4,
     ),
     "crane with a telescopic jib that tilts": (
         [(A, pi / 2, D), (B, 0, 0), (A, pi / 2, A), (0, -pi / 3, None, pi / 2), (A, 0, D)],
-        BOOM[:-6] + "one more", 4,
+        BOOM[:-8] + "one more", 4,
     ),
     "crane with a telescopic jib, from the tool": (
         [(0, pi / 3, D), (0, pi / 2, None, 0), (A, 0, D), (B, pi / 2, A), (0, 0, D)],
-        BOOM[:-6] + "one more", 4,
+        BOOM[:-8] + "one more", 4,
     ),
     "arm on a column that turns, with a roll": (
         [(0, 0, None, 0), (A, pi / 2, D), (B, 0, 0), (C, pi / 2, 0), (0, 0, D)],
-        BOOM[:-6] + "one more", 4,
+        BOOM[:-8] + "one more", 4,
     ),
     "cylindrical arm with pitch and roll": (
         [(0, 0, D), LIFT, (0, pi / 2, None, pi / 2), (A, pi / 2, A), (0, 0, D)],
-        "a turn, one joint that turns, 2 slides and one more", 2,
+        "a turn, one joint that turns, two slides and one more", 2,
     ),
     "cylindrical arm with pitch and an oblique roll": (
         [(A, 0, D), LIFT, (A, pi / 2, None, pi / 2), (A, pi / 3, A), (0, 0, D)],
-        "a turn, one joint that turns, 2 slides and one more", 2,
+        "a turn, one joint that turns, two slides and one more", 2,
     ),
     "gantry with two links and an offset wrist": (
         [(0, pi / 2, None, pi / 2), (0, 0, None, 0), (B, 0, D), (C, pi / 2, A), (A, pi / 2, A),
          (0, 0, D)],
-        JIB + "2 more", 4,
+        JIB + "two more", 4,
     ),
     "gantry with two links and an offset wrist, from the tool": (
         [(0, pi / 2, D), (A, pi / 2, A), (C, 0, A), (B, 0, D), (0, pi / 2, None, pi / 2),
          (0, 0, None, 0)],
-        JIB + "2 more", 4,
+        JIB + "two more", 4,
     ),
     "slides that turn, with an offset wrist": (
         [(B, 0, D), (C, 0, A), (0, pi / 2, None, pi / 2), (0, pi / 2, None, pi / 2),
          (A, pi / 2, A), (0, 0, D)],
-        JIB + "2 more", 4,
+        JIB + "two more", 4,
     ),
     "SCARA that tilts": (
         [(B, 0, D), (C, 0, 0), (0, 0, None, 0), (A, pi / 2, D), (A, pi / 3, A)],
@@ -228,9 +228,8 @@ def test_other_poses_are_out_of_reach(name: str, folder: Path) -> None:
 def test_a_slide_that_reaches_only_in_some_postures_is_named() -> None:
     """A log loader: where two axes of its wrist are parallel, its jib reaches in some postures."""
     rows = [(A, pi / 2, D), (B, 0, 0), (A, pi / 2, A), (0, 0, None, 0), (0, pi / 2, A), (0, 0, D)]
-    with pytest.raises(NoChainError) as caught:
+    with pytest.raises(NoChainError, match="its slides reach the tool only in some postures"):
         propose(arm(rows, names(rows))[1])
-    assert any("only in some postures" in str(tried.error) for tried in caught.value.tried)
 
 
 @pytest.mark.parametrize(

@@ -268,10 +268,11 @@ class OneDirectionMaker(SixMaker):
     def _block(self, joints: Sequence[Single], count: Sequence[int] = (2, 3)) -> Block:
         """Joints that turn about one direction, of which as many as one ``count`` turn."""
         block = Block.of(joints)
-        first, last = joints[0].number, joints[-1].number
+        *numbers, last = (joint.number for joint in joints)
+        named = f"joints {', '.join(map(str, numbers))} and {last}"
         self.require(
             block is not None,
-            f"joints {first} to {last} do not turn about one direction",
+            f"{named} do not turn about one direction",
             "Of joints that turn about one direction, some may slide.",
         )
         assert block is not None
@@ -290,7 +291,7 @@ class OneDirectionMaker(SixMaker):
                 independent = not _simple(across).is_zero_matrix
         self.require(
             turns in count and independent,
-            f"joints {first} to {last} are not links and slides of this kind",
+            f"{named} are not links and slides of this kind",
             NEEDED,
         )
         (level,) = levels or {1}
@@ -438,13 +439,15 @@ class OneDirectionMaker(SixMaker):
             )
             return [source(length) for length in block.reach]
         ((level, *_), *_) = block.across
-        self.require(
-            block.normal[2] == 0 and (level == 1 or not between),
-            "where two axes of its wrist are parallel, its slides reach the tool only in some "
-            "postures",
-            "After a turret the known chain has a slide between two joints that turn about one "
-            "direction, or three such joints; other slides are along these axes or across them.",
-        )
+        if block.normal[2] != 0 or (level != 1 and between):
+            raise NoChainError(
+                "where two axes of its wrist are parallel, its slides reach the tool only in some "
+                "postures",
+                "After a turret the known chain has a slide between two joints that turn about one "
+                "direction, or three such joints; other slides are along these axes or across "
+                "them.  Otherwise use a numeric inverse, such as that of Pinocchio.",
+                degree=2,
+            )
         if level != 1:
             return [source(norm(block.levels[1].shift[:2, 0]))]
         (least,) = block.reach
@@ -515,8 +518,8 @@ class OneDirectionMaker(SixMaker):
         turns = f"{COUNTED[len(block.turns)]} joints that turn about one direction"
         if len(block.turns) == 1:
             turns = "one joint that turns"
-        slides = f"{len(block.slides)} slides" if len(block.slides) > 1 else "a slide"
-        more = f"{len(others)} more" if len(others) > 1 else "one more"
+        slides = "two slides" if len(block.slides) > 1 else "a slide"
+        more = "two more" if len(others) > 1 else "one more"
         return f"{turns}, {slides} and {more}"
 
 

@@ -153,7 +153,9 @@ def test_legs_that_do_not_keep_the_hand_are_refused() -> None:
         of([y, y, y], [(0, 1, 0)] * 3)
     d = Derivation("t", "T", Paper("t", "T", ("A",)), "T", task=["x", "y", "z"])
     legs = [
-        Crank(d.joint(f"q{k}"), 1, y, (k, 0, 0), (1, 0, 0), (0, 0, -1), on_hand=(0, 0, 0))
+        Crank(
+            d.joint(f"q{k}"), 1, y, (k, 0, 0), along=(1, 0, 0), across=(0, 0, -1), on_hand=(0, 0, 0)
+        )
         for k in (1, 2, 3)
     ]
     with pytest.raises(ShapeError, match="with ParallelAxes, in guided"):

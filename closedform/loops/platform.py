@@ -373,7 +373,8 @@ def _component(d: Derivation, letter: str, leg: str, axis: int) -> sp.Symbol:
     name = f"{letter}{leg}_{axis}"
     if name not in d.written:
         vector = "vector along rod" if letter == "r" else "arm of rod"
-        d.write(name, f"{letter}_{{{leg}{axis}}}", f"component {axis} of the {vector} {leg}")
+        meaning = f"component {axis} of the {vector} i" if leg == "i" else ""
+        d.write(name, f"{letter}_{{{leg}{axis}}}", meaning)
     return real(name)
 
 

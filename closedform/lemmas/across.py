@@ -42,7 +42,7 @@ class LinkAcross(Nearest):
 
         def value(pair: Pair) -> sp.Expr:
             both = q.dot(self.normal(pair)) + n.dot(self.point(pair))
-            return sp.sympify(both - q.dot(n) - self.beside)
+            return sp.sympify(both - q.dot(n) - self.beside, strict=True)
 
         return value
 

@@ -271,7 +271,7 @@ class ReachingAcross(Reaching):
         lever: sp.Expr,
     ) -> ReachingAcross:
         """For a link of this length."""
-        none, lengths = Pair(sp.S.Zero, sp.S.One), (sp.sympify(length), sp.S.Zero)
+        none, lengths = Pair(sp.S.Zero, sp.S.One), (sp.sympify(length, strict=True), sp.S.Zero)
         return cls(chain, target, lengths, offset=sp.S.Zero, ahead=none, lever=lever, beside=beside)
 
     @property

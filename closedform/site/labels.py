@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 import unicodedata
 
+from closedform.emit.backends.latex.called import GREEK
 from closedform.emit.backends.latex.names import coordinate_name
-from closedform.emit.backends.latex.prose import GREEK, written_name
+from closedform.emit.backends.latex.prose import written_name
 from closedform.model.derivation import Derivation
 
 DIGITS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")

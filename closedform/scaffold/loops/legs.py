@@ -375,28 +375,29 @@ class Legs:
         if self.loop.dimensions == 3:
             if joint.axis is None:
                 raise self.loop.error(f"{joint.name} turns in space; say about which axis")
-            along_axis = joint.axis * sp.simplify(arm.dot(joint.axis))
-            start, arm = start + along_axis, (arm - along_axis).applyfunc(sp.simplify)
+            arm, start = across_axis(joint.axis, arm, start)
         return arm, start
+
+    def directions(self, joint: Joint, arm: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
+        """Where a crank points at the angle 0, and the direction in which it turns there."""
+        length = self.loop.length(arm)
+        if length == 0:
+            raise self.loop.error(
+                f"the end of {joint.other(GROUND)} is on the axis of {joint.name}, so it does not "
+                f"move"
+            )
+        along = self.direction(arm, length)
+        if joint.axis is None or self.loop.dimensions == 2:
+            return along, sp.Matrix([-along[1], along[0]])
+        return along, joint.axis.cross(along).applyfunc(sp.simplify)
 
     def cranked(self, joint: Joint, near: Joint, rod: str, place: sp.Matrix) -> str:
         """A driven crank as it is written, with the rod that it carries at ``near``."""
-        loop, body = self.loop, joint.other(GROUND)
         arm, start = self.arm_of(joint, near)
-        crank = loop.length(arm)
-        if crank == 0:
-            raise loop.error(
-                f"the end of {body} is on the axis of {joint.name}, so it does not move"
-            )
-        along = self.direction(arm, crank)
-        across = (
-            joint.axis.cross(along).applyfunc(sp.simplify)
-            if joint.axis is not None and loop.dimensions == 3
-            else sp.Matrix([-along[1], along[0]])
-        )
+        along, across = self.directions(joint, arm)
         return (
-            f"Crank({joint.name}, {self.bar(body, crank)}, {rod}, {self.at(start)}, "
-            f"{self.at(along)}, {self.at(across)}{self.tail(place)})"
+            f"Crank({joint.name}, {self.bar(joint.other(GROUND), self.loop.length(arm))}, {rod}, "
+            f"{self.at(start)}, {self.at(along)}, {self.at(across)}{self.tail(place)})"
         )
 
     def rail(self, joint: Joint, body: str, slide: Joint) -> LoopLeg:
@@ -554,8 +555,14 @@ class Legs:
         return pin.on_bar - hand
 
 
+def across_axis(axis: sp.Matrix, arm: sp.Matrix, start: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
+    """An arm that turns about an axis, less what is along it, and where the rest starts."""
+    along = axis * sp.simplify(arm.dot(axis))
+    return (arm - along).applyfunc(sp.simplify), start + along
+
+
 def _tuple(v: sp.Matrix) -> str:
     return f"({', '.join(map(source, v))})"
 
 
-__all__ = ["TURNING", "UPRIGHT", "Legs", "LoopLeg"]
+__all__ = ["TURNING", "UPRIGHT", "Legs", "LoopLeg", "across_axis"]

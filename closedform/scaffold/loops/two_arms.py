@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
-from closedform.scaffold.loops.legs import Legs, LoopLeg
+from closedform.scaffold.loops.legs import Legs, LoopLeg, across_axis
 from closedform.scaffold.source import source
 
 BALLS = ("spherical", "universal")
@@ -86,15 +86,10 @@ def _moved(found: Legs, joint: Joint, end: sp.Matrix, rod: str, place: sp.Matrix
         return f"Slide({name}, {rod}, {found.at(end)}, {found.at(joint.axis)}, on_hand={on_hand})"
     base, body = found.point(GROUND, joint), joint.other(GROUND)
     arm = end - (found.pivot(joint) if joint.driven else found.point(body, joint))
-    along_axis = joint.axis * sp.simplify(arm.dot(joint.axis))
-    base, arm = base + along_axis, (arm - along_axis).applyfunc(sp.simplify)
-    length = loop.length(arm)
-    if length == 0:
-        raise loop.error(f"the end of {body} is on the axis of {name}, so it does not move")
-    along = found.direction(arm, length)
-    across = joint.axis.cross(along).applyfunc(sp.simplify)
+    arm, base = across_axis(joint.axis, arm, base)
+    along, across = found.directions(joint, arm)
     return (
-        f"Crank({name}, {source(length)}, {rod}, {found.at(base)}, {found.at(along)}, "
+        f"Crank({name}, {source(loop.length(arm))}, {rod}, {found.at(base)}, {found.at(along)}, "
         f"{found.at(across)}, on_hand={on_hand})"
     )
 

@@ -12,7 +12,8 @@ from sympy.core.alphabets import greeks
 
 from closedform.model.derivation import Derivation
 
-LETTERS = "|".join((*greeks, "lambda", "varphi"))
+GREEK = {*greeks, *(g.capitalize() for g in greeks), "lambda", "varphi"}
+LETTERS = "|".join(sorted(GREEK))
 WORDS = re.compile(rf"(?=.*[\d_])(?!(?:{LETTERS})(?![a-z]))[A-Za-z_]*[A-Za-z]{{3}}\w*")
 """The name of a joint that is a word and a number, or more than a word, and no Greek letter."""
 
@@ -49,4 +50,4 @@ def called(derivation: Derivation) -> Callable[[str], str]:
     return spelled
 
 
-__all__ = ["as_it_is", "called"]
+__all__ = ["GREEK", "as_it_is", "called"]

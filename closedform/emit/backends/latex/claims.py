@@ -9,9 +9,10 @@ from functools import cached_property
 from typing import Any
 
 from closedform.emit import terminal
+from closedform.emit.backends.latex.called import GREEK
 from closedform.emit.backends.latex.equations import reference
 from closedform.emit.backends.latex.formulas import flat
-from closedform.emit.backends.latex.prose import GREEK, Prose, escape, mixed, quoted
+from closedform.emit.backends.latex.prose import Prose, escape, mixed, quoted
 from closedform.emit.errata import Entry, gathered, part
 from closedform.model.claims import HOLDS, PROVED_UNDER
 from closedform.model.derivation import Derivation

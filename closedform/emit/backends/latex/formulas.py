@@ -18,8 +18,8 @@ from typing import Any
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
-from closedform.emit.backends.latex.called import as_it_is
-from closedform.emit.backends.latex.prose import GREEK, loosen, spaced, symbol_name
+from closedform.emit.backends.latex.called import GREEK, as_it_is
+from closedform.emit.backends.latex.prose import loosen, spaced, symbol_name
 from closedform.emit.backends.latex.vectors import is_vector
 
 FITS = 76.0

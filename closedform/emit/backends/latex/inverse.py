@@ -75,13 +75,13 @@ class Told:
     def branches(self) -> dict[str, Any]:
         """The branches with their signs, which stand in columns if there are many."""
         cases = [(escape(label), signs) for label, signs in self.whole.cases() if signs]
-        signs = [self.page.math(s) for s in cases[0][1]] if cases else []
-        named = [
-            (a, [f"{s} = {v:+d}" for s, v in zip(signs, e.values(), strict=True)]) for a, e in cases
-        ]
+        math = self.page.math
         return {
-            "signs": signs,
-            "branches": [(label, ",\\ ".join(told)) for label, told in named],
+            "signs": [math(s) for s in cases[0][1]] if cases else [],
+            "branches": [
+                (label, ",\\ ".join(f"{math(s)} = {v:+d}" for s, v in given.items()))
+                for label, given in cases
+            ],
             "columns": [(label, [f"{v:+d}" for v in given.values()]) for label, given in cases]
             if len(cases) > MANY
             else [],

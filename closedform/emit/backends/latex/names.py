@@ -10,9 +10,10 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.operations import operations
+from closedform.emit.backends.latex.called import GREEK
 from closedform.emit.backends.latex.formulas import Printer, measure
 from closedform.emit.backends.latex.grouping import joint_by_joint
-from closedform.emit.backends.latex.prose import GREEK, symbol_name, written_name
+from closedform.emit.backends.latex.prose import symbol_name, written_name
 from closedform.model.derivation import Derivation
 from closedform.model.functions import real
 

@@ -5,15 +5,13 @@ from __future__ import annotations
 import re
 
 import sympy as sp
-from sympy.core.alphabets import greeks
 
-from closedform.emit.backends.latex.called import called
+from closedform.emit.backends.latex.called import GREEK, called
 from closedform.emit.text import BOLD_LETTERS
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Let
 from closedform.model.step import Step
 
-GREEK = {*greeks, *(g.capitalize() for g in greeks), "lambda", "varphi"}
 SYMBOL_NAMES = {"det": r"\det", "lamda": r"\lambda", "loff": r"l_{\mathrm{off}}"}
 """Symbols that the rule of :func:`symbol_name` would misread."""
 

@@ -59,6 +59,8 @@ class Amplitude:
         """
         a, b, c = coefficients
         h = program.let(f"h{suffix}", sp.sqrt(a**2 + b**2), nonnegative=True)
+        if c == 0:  # both solutions exist for every h
+            return cls(x, a, b, c, sigma, h, h, h)
         size = scale(h)
         below = program.bound(f"below{suffix}", h - c, size, "the amplitude is not smaller than c")
         above = program.bound(f"above{suffix}", h + c, size, "the amplitude is not smaller than -c")
@@ -76,6 +78,8 @@ class Amplitude:
 
     def pair(self, root: sp.Expr, width: sp.Expr) -> Pair:
         """The pair of x, from names for the root and for ``2 h``."""
+        if self.c == 0:
+            return Pair(self.b * self.sigma / self.h, -self.a * self.sigma / self.h)
         away = Pair(2 * self.sigma * root / width, (self.above - self.below) / width)
         return Pair(self.a / self.h, self.b / self.h) + away
 

@@ -3,7 +3,8 @@
 Each lemma uses a part of the target.  Near a singularity of the joints that it solves for, a
 rounding error turns them far.  With fewer than six joints, the other joints cannot compensate for
 it: the rest of the target is missed, although it determines the joints well.  Then all joints are
-moved together by one Gauss-Newton step of least squares.  In exact arithmetic nothing is missed.
+moved together by one Gauss-Newton step of least squares.  In exact arithmetic nothing is missed by
+a target within reach; if more is missed than such a step can mend, the target is out of reach.
 """
 
 from __future__ import annotations
@@ -16,12 +17,15 @@ from sympy import atan2
 
 from closedform.model.functions import Program, choose
 from closedform.model.pair import Pair
-from closedform.model.tolerances import ROUNDING
+from closedform.model.tolerances import HALF_DIGITS, ROUNDING
 
 LOOSE = ROUNDING / 4
 """How much of the target may be missed before it counts as more than rounding of the answer."""
-FAR = sp.Rational(1, 2**7)
-"""The largest step; the error that remains is of the order of its square, and is compared."""
+FAR = 64 * HALF_DIGITS
+"""The largest step.  The error that remains is of the order of its square, and is compared.
+
+Where rounding turns a joint far, it does so by the root of a rounding error.
+"""
 DAMPING = sp.Rational(1, 2**50)
 """Added to the squares of least squares, of the order of their rounding in double precision.
 
@@ -69,7 +73,8 @@ class Correction:
         meaning = (
             "the joints are moved together to reach the part of the target that the lemmas miss"
         )
-        loose = self.program.vanishes("loose", LOOSE - most, sp.S.One, meaning)
+        within = sp.Max(LOOSE - most, most - self._farthest())
+        loose = self.program.vanishes("loose", within, sp.S.One, meaning)
         step = self._step(relative, let("damping", most**2 + DAMPING))
         pairs = {
             total: pair + _turned(sum(total.diff(j) * step[j] for j in self.joints))
@@ -90,6 +95,11 @@ class Correction:
         step = {j: sp.Piecewise((e, nearer), (0, True)) for j, e in step.items()}
         turns = {j: atan2(e * (1 + e**2 / 3), sp.S.One) for j, e in step.items() if j not in slides}
         return Corrected(loose, left, {**step, **turns})
+
+    def _farthest(self) -> sp.Expr:
+        """More than the largest steps of all joints together can correct."""
+        levers = 1 + sp.Add(*map(sp.Abs, self.slides.values())) / self.size
+        return FAR * (len(self.joints) + 1) * levers
 
     def _known(
         self, pairs: Mapping[sp.Expr, Pair], slides: Mapping[sp.Symbol, sp.Expr]

@@ -12,7 +12,7 @@
 #   jacobian_body: 29 add, 64 multiply, 5 sincos
 #   joints_from_motors: 1 add
 #   motors_from_joints: 1 add
-#   ik: 301 compare and select, 184 add, 22 atan2, 20 divide, 271 multiply, 22 sqrt
+#   ik: 295 compare and select, 182 add, 22 atan2, 20 divide, 261 multiply, 20 sqrt
 """Six-axis arm on a parallelogram (IRB 2400).
 
 theta1 turns about the vertical.  The axes of theta2 and theta3 are horizontal and parallel, and
@@ -953,473 +953,462 @@ def _ik(
     t12 = a2 + d4 + ops.abs(a1) + ops.abs(a3) + ops.abs(d1)
     size = t12 + ops.abs(d6)
     t13 = -(ops.feasibility * (size * 0.5))
+    t14 = a3 * a3 + d4 * d4
+    f = ops.sqrt(t14)
+    t15 = a2 + f
     w_x = T14 - T13 * d6
     w_y = T24 - T23 * d6
-    t14 = w_x * w_x + w_y * w_y
-    h1 = ops.sqrt(t14)
-    t15 = t13 <= h1
-    t16 = a3 * a3 + d4 * d4
-    f = ops.sqrt(t16)
-    t17 = a2 + f
+    t16 = w_x * w_x + w_y * w_y
+    h1 = ops.sqrt(t16)
+    t17 = a1 - h1
     y_elbow = d1 - (T34 - T33 * d6)
     t18 = y_elbow * y_elbow
-    below1 = ops.max(h1, 0.0)
-    root1 = ops.sqrt(below1 * below1)
-    t19 = a1 - root1
-    r_elbow = ops.sqrt(t18 + t19 * t19)
-    t20 = t17 - r_elbow
-    t21 = a2 - f
-    t22 = r_elbow + t21
-    t23 = r_elbow - t21
-    t24 = t15 & (t13 <= t20) & (t13 <= t22) & (t13 <= t23)
-    unreachable = ops.opposite(t24)
+    r_elbow = ops.sqrt(t17 * t17 + t18)
+    t19 = t15 - r_elbow
+    t20 = a2 - f
+    t21 = r_elbow + t20
+    t22 = r_elbow - t20
+    unreachable = ops.opposite((t13 <= t19) & (t13 <= t21) & (t13 <= t22))
     failed = invalid | unreachable
-    t25 = size * ops.vanishing
-    free1 = h1 <= t25
-    t26 = a1 + root1
-    r_elbow_backward_up_noflip = ops.sqrt(t18 + t26 * t26)
-    t27 = t17 - r_elbow_backward_up_noflip
-    t28 = r_elbow_backward_up_noflip + t21
-    t29 = r_elbow_backward_up_noflip - t21
-    t30 = t15 & (t13 <= t27) & (t13 <= t28) & (t13 <= t29)
-    unreachable_2 = ops.opposite(t30)
+    t23 = size * ops.vanishing
+    free1 = h1 <= t23
+    t24 = a1 + h1
+    r_elbow_backward_up_noflip = ops.sqrt(t18 + t24 * t24)
+    t25 = t15 - r_elbow_backward_up_noflip
+    t26 = r_elbow_backward_up_noflip + t20
+    t27 = r_elbow_backward_up_noflip - t20
+    unreachable_2 = ops.opposite((t13 <= t25) & (t13 <= t26) & (t13 <= t27))
     failed_2 = invalid | unreachable_2
-    t31 = ops.opposite(failed_2)
-    t32 = ops.opposite(free1)
-    t33 = t31 & t32
-    t34 = ops.opposite(failed)
-    t35 = t34 & t32
-    t36 = t34 | t31
-    t37 = t36 & t32
-    no_link_elbow = a2 * f <= ops.vanishing * (t17 * t17)
-    t38 = ops.opposite(no_link_elbow)
-    t39 = t31 & t38
-    folded_elbow_backward_up_noflip = r_elbow_backward_up_noflip <= t25
-    t40 = ops.opposite(folded_elbow_backward_up_noflip)
-    t41 = t31 & t40
-    t42 = folded_elbow_backward_up_noflip | no_link_elbow
-    t43 = t31 & ops.opposite(t42)
-    folded_elbow = r_elbow <= t25
-    t44 = t34 & ops.opposite(folded_elbow)
-    t45 = t34 & t38
-    t46 = folded_elbow | no_link_elbow
-    t47 = t34 & ops.opposite(t46)
-    t48 = t33 | t39 | t41 | t43 | t35 | t44 | t45 | t47
-    t49 = t48 | t37
-    h1_2 = ops.sqrt(ops.select(t49, t14, 1.0))
-    below1_2 = ops.max(h1_2, 0.0)
-    t50 = ops.select(t33 | t35 | t37, h1_2 * (below1_2 + below1_2), 1.0)
-    t51 = 1.0 / t50
-    root1_2 = ops.sqrt(ops.select(t49, below1_2 * below1_2, 1.0))
-    t52 = 2.0 * root1_2
-    s1 = ops.select(free1, 0.0, t51 * (w_y * t52))
-    t53 = t51 * (w_x * t52)
-    c1 = ops.select(free1, 1.0, t53)
-    t54 = ops.wrap_cut(ops.atan2(s1, ops.select(t34, c1, 1.0)))
-    t55 = ops.select(failed, ops.nan, t54)
-    t56 = a1 - root1_2
-    t57 = ops.select(t44 | t45 | t47, t18 + t56 * t56, 1.0)
-    r_elbow_2 = ops.sqrt(t57)
-    t58 = 1.0 / ops.select(t44, r_elbow_2, 1.0)
-    t59 = ops.select(folded_elbow, 1.0, -(t56 * t58))
-    t60 = t39 | t43
+    t28 = ops.opposite(failed_2)
+    t29 = ops.opposite(free1)
+    t30 = t28 & t29
+    t31 = ops.opposite(failed)
+    t32 = t31 & t29
+    t33 = t31 | t28
+    t34 = t33 & t29
+    no_link_elbow = a2 * f <= ops.vanishing * (t15 * t15)
+    t35 = ops.opposite(no_link_elbow)
+    t36 = t28 & t35
+    folded_elbow_backward_up_noflip = r_elbow_backward_up_noflip <= t23
+    t37 = ops.opposite(folded_elbow_backward_up_noflip)
+    t38 = t28 & t37
+    t39 = folded_elbow_backward_up_noflip | no_link_elbow
+    t40 = t28 & ops.opposite(t39)
+    folded_elbow = r_elbow <= t23
+    t41 = t31 & ops.opposite(folded_elbow)
+    t42 = t31 & t35
+    t43 = folded_elbow | no_link_elbow
+    t44 = t31 & ops.opposite(t43)
+    t45 = t30 | t36 | t38 | t40 | t32 | t41 | t42 | t44
+    h1_2 = ops.sqrt(ops.select(t45 | t34, t16, 1.0))
+    t46 = 1.0 / ops.select(t30 | t32 | t34, h1_2, 1.0)
+    s1 = ops.select(free1, 0.0, w_y * t46)
+    t47 = w_x * t46
+    c1 = ops.select(free1, 1.0, t47)
+    t48 = ops.wrap_cut(ops.atan2(s1, ops.select(t31, c1, 1.0)))
+    t49 = ops.select(failed, ops.nan, t48)
+    t50 = a1 - h1_2
+    t51 = ops.select(t41 | t42 | t44, t50 * t50 + t18, 1.0)
+    r_elbow_2 = ops.sqrt(t51)
+    t52 = 1.0 / ops.select(t41, r_elbow_2, 1.0)
+    t53 = ops.select(folded_elbow, 1.0, -(t50 * t52))
+    t54 = t36 | t40
     no_forearm = f <= 0.0
-    t61 = t36 & ops.opposite(no_forearm)
-    f_2 = ops.sqrt(ops.select(t60 | t45 | t47 | t61, t16, 1.0))
-    t62 = a2 + f_2
-    A_elbow = ops.max(t62 - r_elbow_2, 0.0)
-    t63 = a2 - f_2
-    C_elbow = ops.max(r_elbow_2 - t63, 0.0)
-    t64 = A_elbow * C_elbow
-    S_elbow = t62 + r_elbow_2
-    B_elbow = ops.max(r_elbow_2 + t63, 0.0)
-    t65 = S_elbow * B_elbow
-    t66 = 1.0 / ops.select(t47, t64 + t65, 1.0)
-    c_base_elbow = ops.select(t46, 1.0, -((t64 - t65) * t66))
-    t67 = t59 * c_base_elbow
-    t68 = ops.select(folded_elbow, 0.0, y_elbow * t58)
-    t69 = ops.sqrt(ops.select(t45 | t47, t64 * t65, 1.0))
-    area_elbow = 2.0 * t69
-    s_base_elbow = ops.select(t46, 0.0, t66 * area_elbow)
-    t70 = t68 * s_base_elbow
-    clower = t67 + t70
-    t71 = t68 * c_base_elbow
-    t72 = t59 * s_base_elbow
-    slower = t71 - t72
-    t73 = ops.atan2(clower, ops.select(t34, -slower, 1.0))
-    t74 = ops.select(failed, ops.nan, ops.wrap_cut(t73))
-    t75 = 1.0 / ops.select(t61, f_2, 1.0)
-    s_forearm = ops.select(no_forearm, 0.0, d4 * t75)
-    t76 = A_elbow * S_elbow
-    t77 = C_elbow * B_elbow
-    t78 = 1.0 / ops.select(t45, t76 + t77, 1.0)
-    celbow = ops.select(no_link_elbow, 1.0, -((t76 - t77) * t78))
-    t79 = s_forearm * celbow
-    c_forearm = ops.select(no_forearm, 1.0, a3 * t75)
-    selbow = ops.select(no_link_elbow, 0.0, area_elbow * t78)
-    t80 = c_forearm * selbow
-    t81 = t79 - t80
-    t82 = c_forearm * celbow
-    t83 = s_forearm * selbow
-    c3 = t82 + t83
-    t84 = ops.wrap_cut(ops.atan2(-t81, ops.select(t34, c3, 1.0)))
-    t85 = ops.select(failed, ops.nan, t84)
-    t86 = 1.0 / (h1 * (below1 + below1))
-    t87 = 2.0 * root1
-    s1_2 = ops.select(free1, 0.0, t86 * (w_y * t87))
-    t88 = T13 * s1_2
-    t89 = t86 * (w_x * t87)
-    c1_2 = ops.select(free1, 1.0, t89)
-    R2_23 = t88 - T23 * c1_2
-    t90 = R2_23 * R2_23
-    t91 = T23 * s1_2
-    R1_13 = T13 * c1_2 + t91
-    t92 = 1.0 / r_elbow
-    t93 = ops.select(folded_elbow, 1.0, -(t19 * t92))
-    A_elbow_2 = ops.max(t20, 0.0)
-    C_elbow_2 = ops.max(t23, 0.0)
-    t94 = A_elbow_2 * C_elbow_2
-    S_elbow_2 = t17 + r_elbow
-    B_elbow_2 = ops.max(t22, 0.0)
-    t95 = S_elbow_2 * B_elbow_2
-    t96 = 1.0 / (t94 + t95)
-    c_base_elbow_2 = ops.select(t46, 1.0, -((t94 - t95) * t96))
-    t97 = t93 * c_base_elbow_2
-    t98 = ops.select(folded_elbow, 0.0, y_elbow * t92)
-    area_elbow_2 = 2.0 * ops.sqrt(t94 * t95)
-    s_base_elbow_2 = ops.select(t46, 0.0, t96 * area_elbow_2)
-    t99 = t98 * s_base_elbow_2
-    clower_2 = t97 + t99
-    t100 = 1.0 / f
-    c_forearm_2 = ops.select(no_forearm, 1.0, a3 * t100)
-    t101 = A_elbow_2 * S_elbow_2
-    t102 = C_elbow_2 * B_elbow_2
-    t103 = 1.0 / (t101 + t102)
-    celbow_2 = ops.select(no_link_elbow, 1.0, -((t101 - t102) * t103))
-    t104 = c_forearm_2 * celbow_2
-    s_forearm_2 = ops.select(no_forearm, 0.0, d4 * t100)
-    selbow_2 = ops.select(no_link_elbow, 0.0, area_elbow_2 * t103)
-    t105 = s_forearm_2 * selbow_2
-    c3_2 = t104 + t105
-    t106 = t98 * c_base_elbow_2
-    t107 = t93 * s_base_elbow_2
-    slower_2 = t106 - t107
-    t108 = s_forearm_2 * celbow_2
-    t109 = c_forearm_2 * selbow_2
-    t110 = t108 - t109
-    R2_13 = R1_13 * (clower_2 * c3_2 + slower_2 * t110) - T33 * (slower_2 * c3_2 - clower_2 * t110)
-    t111 = ops.vanishing * 16.0
-    aligned_wrist = ops.sqrt(t90 + R2_13 * R2_13) <= t111
+    t55 = t33 & ops.opposite(no_forearm)
+    f_2 = ops.sqrt(ops.select(t54 | t42 | t44 | t55, t14, 1.0))
+    t56 = a2 + f_2
+    A_elbow = ops.max(t56 - r_elbow_2, 0.0)
+    t57 = a2 - f_2
+    C_elbow = ops.max(r_elbow_2 - t57, 0.0)
+    t58 = A_elbow * C_elbow
+    S_elbow = r_elbow_2 + t56
+    B_elbow = ops.max(r_elbow_2 + t57, 0.0)
+    t59 = S_elbow * B_elbow
+    t60 = 1.0 / ops.select(t44, t58 + t59, 1.0)
+    c_base_elbow = ops.select(t43, 1.0, -((t58 - t59) * t60))
+    t61 = t53 * c_base_elbow
+    t62 = ops.select(folded_elbow, 0.0, y_elbow * t52)
+    t63 = A_elbow * S_elbow
+    t64 = C_elbow * B_elbow
+    t65 = ops.sqrt(ops.select(t42 | t44, t63 * t64, 1.0))
+    area_elbow = 2.0 * t65
+    s_base_elbow = ops.select(t43, 0.0, t60 * area_elbow)
+    t66 = t62 * s_base_elbow
+    clower = t61 + t66
+    t67 = t62 * c_base_elbow
+    t68 = t53 * s_base_elbow
+    slower = t67 - t68
+    t69 = ops.atan2(clower, ops.select(t31, -slower, 1.0))
+    t70 = ops.select(failed, ops.nan, ops.wrap_cut(t69))
+    t71 = 1.0 / ops.select(t55, f_2, 1.0)
+    s_forearm = ops.select(no_forearm, 0.0, d4 * t71)
+    t72 = 1.0 / ops.select(t42, t63 + t64, 1.0)
+    celbow = ops.select(no_link_elbow, 1.0, -((t63 - t64) * t72))
+    t73 = s_forearm * celbow
+    c_forearm = ops.select(no_forearm, 1.0, a3 * t71)
+    selbow = ops.select(no_link_elbow, 0.0, area_elbow * t72)
+    t74 = c_forearm * selbow
+    t75 = t73 - t74
+    t76 = c_forearm * celbow
+    t77 = s_forearm * selbow
+    c3 = t76 + t77
+    t78 = ops.wrap_cut(ops.atan2(-t75, ops.select(t31, c3, 1.0)))
+    t79 = ops.select(failed, ops.nan, t78)
+    t80 = 1.0 / h1
+    s1_2 = ops.select(free1, 0.0, w_y * t80)
+    t81 = T13 * s1_2
+    t82 = w_x * t80
+    c1_2 = ops.select(free1, 1.0, t82)
+    R2_23 = t81 - T23 * c1_2
+    t83 = R2_23 * R2_23
+    t84 = T23 * s1_2
+    R1_13 = T13 * c1_2 + t84
+    t85 = 1.0 / r_elbow
+    t86 = ops.select(folded_elbow, 1.0, -(t17 * t85))
+    A_elbow_2 = ops.max(t19, 0.0)
+    C_elbow_2 = ops.max(t22, 0.0)
+    t87 = A_elbow_2 * C_elbow_2
+    S_elbow_2 = r_elbow + t15
+    B_elbow_2 = ops.max(t21, 0.0)
+    t88 = S_elbow_2 * B_elbow_2
+    t89 = 1.0 / (t87 + t88)
+    c_base_elbow_2 = ops.select(t43, 1.0, -((t87 - t88) * t89))
+    t90 = t86 * c_base_elbow_2
+    t91 = ops.select(folded_elbow, 0.0, y_elbow * t85)
+    t92 = A_elbow_2 * S_elbow_2
+    t93 = C_elbow_2 * B_elbow_2
+    area_elbow_2 = 2.0 * ops.sqrt(t92 * t93)
+    s_base_elbow_2 = ops.select(t43, 0.0, t89 * area_elbow_2)
+    t94 = t91 * s_base_elbow_2
+    clower_2 = t90 + t94
+    t95 = 1.0 / f
+    c_forearm_2 = ops.select(no_forearm, 1.0, a3 * t95)
+    t96 = 1.0 / (t92 + t93)
+    celbow_2 = ops.select(no_link_elbow, 1.0, -((t92 - t93) * t96))
+    t97 = c_forearm_2 * celbow_2
+    s_forearm_2 = ops.select(no_forearm, 0.0, d4 * t95)
+    selbow_2 = ops.select(no_link_elbow, 0.0, area_elbow_2 * t96)
+    t98 = s_forearm_2 * selbow_2
+    c3_2 = t97 + t98
+    t99 = t91 * c_base_elbow_2
+    t100 = t86 * s_base_elbow_2
+    slower_2 = t99 - t100
+    t101 = s_forearm_2 * celbow_2
+    t102 = c_forearm_2 * selbow_2
+    t103 = t101 - t102
+    R2_13 = R1_13 * (clower_2 * c3_2 + slower_2 * t103) - T33 * (slower_2 * c3_2 - clower_2 * t103)
+    t104 = ops.vanishing * 16.0
+    aligned_wrist = ops.sqrt(t83 + R2_13 * R2_13) <= t104
     flip_wrist = ops.select(aligned_wrist, 0.0, 3.141592653589793)
-    t112 = T13 * s1
-    R2_23_2 = t112 - T23 * c1
-    t113 = t34 & ops.opposite(aligned_wrist)
-    t114 = R2_23_2 * R2_23_2
-    t115 = T23 * s1
-    R1_13_2 = T13 * c1 + t115
-    t116 = clower * c3 + slower * t81
-    t117 = slower * c3 - clower * t81
-    R2_13_2 = R1_13_2 * t116 - T33 * t117
-    t118 = ops.select(t113, t114 + R2_13_2 * R2_13_2, 1.0)
-    t119 = 1.0 / ops.select(t113, ops.sqrt(t118), 1.0)
-    s_wrist = ops.select(aligned_wrist, 0.0, R2_23_2 * t119)
-    c_wrist = ops.select(aligned_wrist, 1.0, R2_13_2 * t119)
-    t120 = ops.atan2(s_wrist, ops.select(t34, c_wrist, 1.0))
-    t121 = ops.select(failed, ops.nan, ops.wrap(flip_wrist + t120))
-    t122 = ops.select(t34, -(R1_13_2 * t117 + T33 * t116), 1.0)
-    t123 = ops.atan2(R2_13_2 * c_wrist + R2_23_2 * s_wrist, t122)
-    t124 = ops.select(failed, ops.nan, ops.wrap_cut(t123))
-    t125 = T21 * s1
-    R1_11 = T11 * c1 + t125
-    t126 = T11 * s1
-    R2_21 = t126 - T21 * c1
-    t127 = s_wrist * (R1_11 * t116 - T31 * t117) - R2_21 * c_wrist
-    t128 = T12 * s1
-    R2_22 = t128 - T22 * c1
-    t129 = T22 * s1
-    R1_12 = T12 * c1 + t129
-    t130 = R2_22 * c_wrist - s_wrist * (R1_12 * t116 - T32 * t117)
-    t131 = ops.atan2(t127, ops.select(t34, t130, 1.0))
-    t132 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t131))
-    t133 = ops.select(failed, ops.nan, ops.wrap_cut(t120))
-    t134 = ops.select(failed, ops.nan, ops.wrap_cut(-t123))
-    t135 = ops.select(failed, ops.nan, ops.wrap_cut(-t131))
-    clower_facing_down_noflip = t67 - t70
-    slower_facing_down_noflip = t71 + t72
-    t136 = ops.select(t34, -slower_facing_down_noflip, 1.0)
-    t137 = ops.wrap_cut(ops.atan2(clower_facing_down_noflip, t136))
-    t138 = ops.select(failed, ops.nan, t137)
-    t139 = t79 + t80
-    c3_facing_down_noflip = t82 - t83
-    t140 = ops.atan2(t139, ops.select(t34, c3_facing_down_noflip, 1.0))
-    t141 = ops.select(failed, ops.nan, ops.wrap_cut(-t140))
-    clower_facing_down_noflip_2 = t97 - t99
-    c3_facing_down_noflip_2 = t104 - t105
-    t142 = clower_facing_down_noflip_2 * c3_facing_down_noflip_2
-    slower_facing_down_noflip_2 = t106 + t107
-    t143 = t108 + t109
-    t144 = R1_13 * (t142 + slower_facing_down_noflip_2 * t143)
-    t145 = slower_facing_down_noflip_2 * c3_facing_down_noflip_2
-    t146 = T33 * (t145 - clower_facing_down_noflip_2 * t143)
-    R2_13_facing_down_noflip = t144 - t146
-    t147 = R2_13_facing_down_noflip * R2_13_facing_down_noflip
-    aligned_wrist_facing_down_noflip = ops.sqrt(t90 + t147) <= t111
+    t105 = T13 * s1
+    R2_23_2 = t105 - T23 * c1
+    t106 = t31 & ops.opposite(aligned_wrist)
+    t107 = R2_23_2 * R2_23_2
+    t108 = T23 * s1
+    R1_13_2 = T13 * c1 + t108
+    t109 = clower * c3 + slower * t75
+    t110 = slower * c3 - clower * t75
+    R2_13_2 = R1_13_2 * t109 - T33 * t110
+    t111 = ops.select(t106, t107 + R2_13_2 * R2_13_2, 1.0)
+    t112 = 1.0 / ops.select(t106, ops.sqrt(t111), 1.0)
+    s_wrist = ops.select(aligned_wrist, 0.0, R2_23_2 * t112)
+    c_wrist = ops.select(aligned_wrist, 1.0, R2_13_2 * t112)
+    t113 = ops.atan2(s_wrist, ops.select(t31, c_wrist, 1.0))
+    t114 = ops.select(failed, ops.nan, ops.wrap(flip_wrist + t113))
+    t115 = ops.select(t31, -(R1_13_2 * t110 + T33 * t109), 1.0)
+    t116 = ops.atan2(R2_13_2 * c_wrist + R2_23_2 * s_wrist, t115)
+    t117 = ops.select(failed, ops.nan, ops.wrap_cut(t116))
+    t118 = T21 * s1
+    R1_11 = T11 * c1 + t118
+    t119 = T11 * s1
+    R2_21 = t119 - T21 * c1
+    t120 = s_wrist * (R1_11 * t109 - T31 * t110) - R2_21 * c_wrist
+    t121 = T12 * s1
+    R2_22 = t121 - T22 * c1
+    t122 = T22 * s1
+    R1_12 = T12 * c1 + t122
+    t123 = R2_22 * c_wrist - s_wrist * (R1_12 * t109 - T32 * t110)
+    t124 = ops.atan2(t120, ops.select(t31, t123, 1.0))
+    t125 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t124))
+    t126 = ops.select(failed, ops.nan, ops.wrap_cut(t113))
+    t127 = ops.select(failed, ops.nan, ops.wrap_cut(-t116))
+    t128 = ops.select(failed, ops.nan, ops.wrap_cut(-t124))
+    clower_facing_down_noflip = t61 - t66
+    slower_facing_down_noflip = t67 + t68
+    t129 = ops.select(t31, -slower_facing_down_noflip, 1.0)
+    t130 = ops.wrap_cut(ops.atan2(clower_facing_down_noflip, t129))
+    t131 = ops.select(failed, ops.nan, t130)
+    t132 = t73 + t74
+    c3_facing_down_noflip = t76 - t77
+    t133 = ops.atan2(t132, ops.select(t31, c3_facing_down_noflip, 1.0))
+    t134 = ops.select(failed, ops.nan, ops.wrap_cut(-t133))
+    clower_facing_down_noflip_2 = t90 - t94
+    c3_facing_down_noflip_2 = t97 - t98
+    t135 = clower_facing_down_noflip_2 * c3_facing_down_noflip_2
+    slower_facing_down_noflip_2 = t99 + t100
+    t136 = t101 + t102
+    t137 = R1_13 * (t135 + slower_facing_down_noflip_2 * t136)
+    t138 = slower_facing_down_noflip_2 * c3_facing_down_noflip_2
+    t139 = T33 * (t138 - clower_facing_down_noflip_2 * t136)
+    R2_13_facing_down_noflip = t137 - t139
+    t140 = R2_13_facing_down_noflip * R2_13_facing_down_noflip
+    aligned_wrist_facing_down_noflip = ops.sqrt(t83 + t140) <= t104
     flip_wrist_facing_down_noflip = ops.select(aligned_wrist_facing_down_noflip, 0.0, 3.141592653589793)
-    t148 = ops.opposite(aligned_wrist_facing_down_noflip)
-    t149 = t34 & t148
-    t150 = clower_facing_down_noflip * c3_facing_down_noflip
-    t151 = t150 + slower_facing_down_noflip * t139
-    t152 = slower_facing_down_noflip * c3_facing_down_noflip
-    t153 = t152 - clower_facing_down_noflip * t139
-    R2_13_facing_down_noflip_2 = R1_13_2 * t151 - T33 * t153
-    t154 = R2_13_facing_down_noflip_2 * R2_13_facing_down_noflip_2
-    t155 = ops.select(t149, ops.sqrt(ops.select(t149, t114 + t154, 1.0)), 1.0)
-    t156 = 1.0 / t155
-    s_wrist_facing_down_noflip = ops.select(aligned_wrist_facing_down_noflip, 0.0, R2_23_2 * t156)
-    c_wrist_facing_down_noflip = ops.select(aligned_wrist_facing_down_noflip, 1.0, R2_13_facing_down_noflip_2 * t156)
-    t157 = ops.select(t34, c_wrist_facing_down_noflip, 1.0)
-    t158 = ops.atan2(s_wrist_facing_down_noflip, t157)
-    t159 = ops.wrap(flip_wrist_facing_down_noflip + t158)
-    t160 = R2_13_facing_down_noflip_2 * c_wrist_facing_down_noflip
-    t161 = ops.select(t34, -(R1_13_2 * t153 + T33 * t151), 1.0)
-    t162 = ops.atan2(t160 + R2_23_2 * s_wrist_facing_down_noflip, t161)
-    t163 = ops.select(failed, ops.nan, ops.wrap_cut(t162))
-    t164 = s_wrist_facing_down_noflip * (R1_11 * t151 - T31 * t153)
-    t165 = s_wrist_facing_down_noflip * (R1_12 * t151 - T32 * t153)
-    t166 = ops.select(t34, R2_22 * c_wrist_facing_down_noflip - t165, 1.0)
-    t167 = ops.atan2(t164 - R2_21 * c_wrist_facing_down_noflip, t166)
-    t168 = ops.wrap(flip_wrist_facing_down_noflip - t167)
-    t169 = ops.select(failed, ops.nan, ops.wrap_cut(t158))
-    t170 = ops.select(failed, ops.nan, ops.wrap_cut(-t162))
-    t171 = ops.select(failed, ops.nan, ops.wrap_cut(-t167))
-    c1_backward_up_noflip = ops.select(free1, 1.0, -t53)
-    t172 = ops.atan2(s1, ops.select(t31, c1_backward_up_noflip, 1.0))
-    t173 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t172))
-    t174 = a1 + root1_2
-    t175 = ops.select(t39 | t41 | t43, t18 + t174 * t174, 1.0)
-    r_elbow_backward_up_noflip_2 = ops.sqrt(t175)
-    t176 = ops.select(t41, r_elbow_backward_up_noflip_2, 1.0)
-    t177 = 1.0 / t176
-    t178 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t174 * t177))
-    A_elbow_backward_up_noflip = ops.max(t62 - r_elbow_backward_up_noflip_2, 0.0)
-    C_elbow_backward_up_noflip = ops.max(r_elbow_backward_up_noflip_2 - t63, 0.0)
-    t179 = A_elbow_backward_up_noflip * C_elbow_backward_up_noflip
-    S_elbow_backward_up_noflip = t62 + r_elbow_backward_up_noflip_2
-    B_elbow_backward_up_noflip = ops.max(r_elbow_backward_up_noflip_2 + t63, 0.0)
-    t180 = S_elbow_backward_up_noflip * B_elbow_backward_up_noflip
-    t181 = 1.0 / ops.select(t43, t179 + t180, 1.0)
-    c_base_elbow_backward_up_noflip = ops.select(t42, 1.0, -((t179 - t180) * t181))
-    t182 = t178 * c_base_elbow_backward_up_noflip
-    t183 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t177)
-    area_elbow_backward_up_noflip = 2.0 * ops.sqrt(ops.select(t60, t179 * t180, 1.0))
-    s_base_elbow_backward_down_noflip = ops.select(t42, 0.0, t181 * area_elbow_backward_up_noflip)
-    t184 = t183 * s_base_elbow_backward_down_noflip
-    clower_backward_up_noflip = t182 - t184
-    t185 = t183 * c_base_elbow_backward_up_noflip
-    t186 = t178 * s_base_elbow_backward_down_noflip
-    slower_backward_up_noflip = t185 + t186
-    t187 = ops.select(t31, -slower_backward_up_noflip, 1.0)
-    t188 = ops.wrap_cut(ops.atan2(clower_backward_up_noflip, t187))
-    t189 = ops.select(failed_2, ops.nan, t188)
-    t190 = A_elbow_backward_up_noflip * S_elbow_backward_up_noflip
-    t191 = C_elbow_backward_up_noflip * B_elbow_backward_up_noflip
-    t192 = 1.0 / ops.select(t39, t190 + t191, 1.0)
-    celbow_backward_up_noflip = ops.select(no_link_elbow, 1.0, -((t190 - t191) * t192))
-    t193 = s_forearm * celbow_backward_up_noflip
-    selbow_backward_down_noflip = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip * t192)
-    t194 = c_forearm * selbow_backward_down_noflip
-    t195 = t193 + t194
-    t196 = c_forearm * celbow_backward_up_noflip
-    t197 = s_forearm * selbow_backward_down_noflip
-    c3_backward_up_noflip = t196 - t197
-    t198 = ops.atan2(t195, ops.select(t31, c3_backward_up_noflip, 1.0))
-    t199 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t198))
-    c1_backward_up_noflip_2 = ops.select(free1, 1.0, -t89)
-    R1_33_backward_up_noflip = t88 + T23 * c1_backward_up_noflip_2
-    t200 = R1_33_backward_up_noflip * R1_33_backward_up_noflip
-    t201 = t91 - T13 * c1_backward_up_noflip_2
-    t202 = 1.0 / r_elbow_backward_up_noflip
-    t203 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t26 * t202))
-    A_elbow_backward_up_noflip_2 = ops.max(t27, 0.0)
-    C_elbow_backward_up_noflip_2 = ops.max(t29, 0.0)
-    t204 = A_elbow_backward_up_noflip_2 * C_elbow_backward_up_noflip_2
-    S_elbow_backward_up_noflip_2 = t17 + r_elbow_backward_up_noflip
-    B_elbow_backward_up_noflip_2 = ops.max(t28, 0.0)
-    t205 = S_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
-    t206 = 1.0 / (t204 + t205)
-    c_base_elbow_backward_up_noflip_2 = ops.select(t42, 1.0, -((t204 - t205) * t206))
-    t207 = t203 * c_base_elbow_backward_up_noflip_2
-    t208 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t202)
-    area_elbow_backward_up_noflip_2 = 2.0 * ops.sqrt(t204 * t205)
-    s_base_elbow_backward_down_noflip_2 = ops.select(t42, 0.0, t206 * area_elbow_backward_up_noflip_2)
-    t209 = t208 * s_base_elbow_backward_down_noflip_2
-    clower_backward_up_noflip_2 = t207 - t209
-    t210 = A_elbow_backward_up_noflip_2 * S_elbow_backward_up_noflip_2
-    t211 = C_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
-    t212 = 1.0 / (t210 + t211)
-    celbow_backward_up_noflip_2 = ops.select(no_link_elbow, 1.0, -((t210 - t211) * t212))
-    t213 = c_forearm_2 * celbow_backward_up_noflip_2
-    selbow_backward_down_noflip_2 = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip_2 * t212)
-    t214 = s_forearm_2 * selbow_backward_down_noflip_2
-    c3_backward_up_noflip_2 = t213 - t214
-    t215 = clower_backward_up_noflip_2 * c3_backward_up_noflip_2
-    t216 = t208 * c_base_elbow_backward_up_noflip_2
-    t217 = t203 * s_base_elbow_backward_down_noflip_2
-    slower_backward_up_noflip_2 = t216 + t217
-    t218 = s_forearm_2 * celbow_backward_up_noflip_2
-    t219 = c_forearm_2 * selbow_backward_down_noflip_2
-    t220 = t218 + t219
-    t221 = t201 * (t215 + slower_backward_up_noflip_2 * t220)
-    t222 = slower_backward_up_noflip_2 * c3_backward_up_noflip_2
-    t223 = T33 * (t222 - clower_backward_up_noflip_2 * t220)
-    t224 = t221 + t223
-    aligned_wrist_backward_up_noflip = ops.sqrt(t200 + t224 * t224) <= t111
+    t141 = ops.opposite(aligned_wrist_facing_down_noflip)
+    t142 = t31 & t141
+    t143 = clower_facing_down_noflip * c3_facing_down_noflip
+    t144 = t143 + slower_facing_down_noflip * t132
+    t145 = slower_facing_down_noflip * c3_facing_down_noflip
+    t146 = t145 - clower_facing_down_noflip * t132
+    R2_13_facing_down_noflip_2 = R1_13_2 * t144 - T33 * t146
+    t147 = R2_13_facing_down_noflip_2 * R2_13_facing_down_noflip_2
+    t148 = ops.select(t142, ops.sqrt(ops.select(t142, t107 + t147, 1.0)), 1.0)
+    t149 = 1.0 / t148
+    s_wrist_facing_down_noflip = ops.select(aligned_wrist_facing_down_noflip, 0.0, R2_23_2 * t149)
+    c_wrist_facing_down_noflip = ops.select(aligned_wrist_facing_down_noflip, 1.0, R2_13_facing_down_noflip_2 * t149)
+    t150 = ops.select(t31, c_wrist_facing_down_noflip, 1.0)
+    t151 = ops.atan2(s_wrist_facing_down_noflip, t150)
+    t152 = ops.wrap(flip_wrist_facing_down_noflip + t151)
+    t153 = R2_13_facing_down_noflip_2 * c_wrist_facing_down_noflip
+    t154 = ops.select(t31, -(R1_13_2 * t146 + T33 * t144), 1.0)
+    t155 = ops.atan2(t153 + R2_23_2 * s_wrist_facing_down_noflip, t154)
+    t156 = ops.select(failed, ops.nan, ops.wrap_cut(t155))
+    t157 = s_wrist_facing_down_noflip * (R1_11 * t144 - T31 * t146)
+    t158 = s_wrist_facing_down_noflip * (R1_12 * t144 - T32 * t146)
+    t159 = ops.select(t31, R2_22 * c_wrist_facing_down_noflip - t158, 1.0)
+    t160 = ops.atan2(t157 - R2_21 * c_wrist_facing_down_noflip, t159)
+    t161 = ops.wrap(flip_wrist_facing_down_noflip - t160)
+    t162 = ops.select(failed, ops.nan, ops.wrap_cut(t151))
+    t163 = ops.select(failed, ops.nan, ops.wrap_cut(-t155))
+    t164 = ops.select(failed, ops.nan, ops.wrap_cut(-t160))
+    c1_backward_up_noflip = ops.select(free1, 1.0, -t47)
+    t165 = ops.atan2(s1, ops.select(t28, c1_backward_up_noflip, 1.0))
+    t166 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t165))
+    t167 = a1 + h1_2
+    t168 = ops.select(t36 | t38 | t40, t18 + t167 * t167, 1.0)
+    r_elbow_backward_up_noflip_2 = ops.sqrt(t168)
+    t169 = ops.select(t38, r_elbow_backward_up_noflip_2, 1.0)
+    t170 = 1.0 / t169
+    t171 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t167 * t170))
+    A_elbow_backward_up_noflip = ops.max(t56 - r_elbow_backward_up_noflip_2, 0.0)
+    C_elbow_backward_up_noflip = ops.max(r_elbow_backward_up_noflip_2 - t57, 0.0)
+    t172 = A_elbow_backward_up_noflip * C_elbow_backward_up_noflip
+    S_elbow_backward_up_noflip = t56 + r_elbow_backward_up_noflip_2
+    B_elbow_backward_up_noflip = ops.max(r_elbow_backward_up_noflip_2 + t57, 0.0)
+    t173 = S_elbow_backward_up_noflip * B_elbow_backward_up_noflip
+    t174 = 1.0 / ops.select(t40, t172 + t173, 1.0)
+    c_base_elbow_backward_up_noflip = ops.select(t39, 1.0, -((t172 - t173) * t174))
+    t175 = t171 * c_base_elbow_backward_up_noflip
+    t176 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t170)
+    t177 = A_elbow_backward_up_noflip * S_elbow_backward_up_noflip
+    t178 = C_elbow_backward_up_noflip * B_elbow_backward_up_noflip
+    area_elbow_backward_up_noflip = 2.0 * ops.sqrt(ops.select(t54, t177 * t178, 1.0))
+    s_base_elbow_backward_down_noflip = ops.select(t39, 0.0, t174 * area_elbow_backward_up_noflip)
+    t179 = t176 * s_base_elbow_backward_down_noflip
+    clower_backward_up_noflip = t175 - t179
+    t180 = t176 * c_base_elbow_backward_up_noflip
+    t181 = t171 * s_base_elbow_backward_down_noflip
+    slower_backward_up_noflip = t180 + t181
+    t182 = ops.select(t28, -slower_backward_up_noflip, 1.0)
+    t183 = ops.wrap_cut(ops.atan2(clower_backward_up_noflip, t182))
+    t184 = ops.select(failed_2, ops.nan, t183)
+    t185 = 1.0 / ops.select(t36, t177 + t178, 1.0)
+    celbow_backward_up_noflip = ops.select(no_link_elbow, 1.0, -((t177 - t178) * t185))
+    t186 = s_forearm * celbow_backward_up_noflip
+    selbow_backward_down_noflip = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip * t185)
+    t187 = c_forearm * selbow_backward_down_noflip
+    t188 = t186 + t187
+    t189 = c_forearm * celbow_backward_up_noflip
+    t190 = s_forearm * selbow_backward_down_noflip
+    c3_backward_up_noflip = t189 - t190
+    t191 = ops.atan2(t188, ops.select(t28, c3_backward_up_noflip, 1.0))
+    t192 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t191))
+    c1_backward_up_noflip_2 = ops.select(free1, 1.0, -t82)
+    R1_33_backward_up_noflip = t81 + T23 * c1_backward_up_noflip_2
+    t193 = R1_33_backward_up_noflip * R1_33_backward_up_noflip
+    t194 = t84 - T13 * c1_backward_up_noflip_2
+    t195 = 1.0 / r_elbow_backward_up_noflip
+    t196 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t24 * t195))
+    A_elbow_backward_up_noflip_2 = ops.max(t25, 0.0)
+    C_elbow_backward_up_noflip_2 = ops.max(t27, 0.0)
+    t197 = A_elbow_backward_up_noflip_2 * C_elbow_backward_up_noflip_2
+    S_elbow_backward_up_noflip_2 = t15 + r_elbow_backward_up_noflip
+    B_elbow_backward_up_noflip_2 = ops.max(t26, 0.0)
+    t198 = S_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
+    t199 = 1.0 / (t197 + t198)
+    c_base_elbow_backward_up_noflip_2 = ops.select(t39, 1.0, -((t197 - t198) * t199))
+    t200 = t196 * c_base_elbow_backward_up_noflip_2
+    t201 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t195)
+    t202 = A_elbow_backward_up_noflip_2 * S_elbow_backward_up_noflip_2
+    t203 = C_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
+    area_elbow_backward_up_noflip_2 = 2.0 * ops.sqrt(t202 * t203)
+    s_base_elbow_backward_down_noflip_2 = ops.select(t39, 0.0, t199 * area_elbow_backward_up_noflip_2)
+    t204 = t201 * s_base_elbow_backward_down_noflip_2
+    clower_backward_up_noflip_2 = t200 - t204
+    t205 = 1.0 / (t202 + t203)
+    celbow_backward_up_noflip_2 = ops.select(no_link_elbow, 1.0, -((t202 - t203) * t205))
+    t206 = c_forearm_2 * celbow_backward_up_noflip_2
+    selbow_backward_down_noflip_2 = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip_2 * t205)
+    t207 = s_forearm_2 * selbow_backward_down_noflip_2
+    c3_backward_up_noflip_2 = t206 - t207
+    t208 = clower_backward_up_noflip_2 * c3_backward_up_noflip_2
+    t209 = t201 * c_base_elbow_backward_up_noflip_2
+    t210 = t196 * s_base_elbow_backward_down_noflip_2
+    slower_backward_up_noflip_2 = t209 + t210
+    t211 = s_forearm_2 * celbow_backward_up_noflip_2
+    t212 = c_forearm_2 * selbow_backward_down_noflip_2
+    t213 = t211 + t212
+    t214 = t194 * (t208 + slower_backward_up_noflip_2 * t213)
+    t215 = slower_backward_up_noflip_2 * c3_backward_up_noflip_2
+    t216 = T33 * (t215 - clower_backward_up_noflip_2 * t213)
+    t217 = t214 + t216
+    aligned_wrist_backward_up_noflip = ops.sqrt(t193 + t217 * t217) <= t104
     flip_wrist_backward_up_noflip = ops.select(aligned_wrist_backward_up_noflip, 0.0, 3.141592653589793)
-    R1_33_backward_up_noflip_2 = t112 + T23 * c1_backward_up_noflip
-    t225 = ops.opposite(aligned_wrist_backward_up_noflip)
-    t226 = t31 & t225
-    t227 = R1_33_backward_up_noflip_2 * R1_33_backward_up_noflip_2
-    t228 = t115 - T13 * c1_backward_up_noflip
-    t229 = clower_backward_up_noflip * c3_backward_up_noflip
-    t230 = t229 + slower_backward_up_noflip * t195
-    t231 = slower_backward_up_noflip * c3_backward_up_noflip
-    t232 = t231 - clower_backward_up_noflip * t195
-    t233 = t228 * t230 + T33 * t232
-    h_wrist_backward_up_noflip = ops.sqrt(ops.select(t226, t227 + t233 * t233, 1.0))
-    t234 = ops.select(t226, h_wrist_backward_up_noflip, 1.0)
-    t235 = 1.0 / t234
-    t236 = ops.select(aligned_wrist_backward_up_noflip, 0.0, R1_33_backward_up_noflip_2 * t235)
-    c_wrist_backward_up_noflip = ops.select(aligned_wrist_backward_up_noflip, 1.0, -(t233 * t235))
-    t237 = ops.select(t31, c_wrist_backward_up_noflip, 1.0)
-    t238 = ops.atan2(t236, t237)
-    t239 = ops.wrap(flip_wrist_backward_up_noflip - t238)
-    t240 = t233 * c_wrist_backward_up_noflip - R1_33_backward_up_noflip_2 * t236
-    t241 = ops.select(t31, t228 * t232 - T33 * t230, 1.0)
-    t242 = ops.atan2(t240, t241)
-    t243 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t242))
-    t244 = t125 - T11 * c1_backward_up_noflip
-    R1_31_backward_up_noflip = t126 + T21 * c1_backward_up_noflip
-    t245 = R1_31_backward_up_noflip * c_wrist_backward_up_noflip
-    t246 = t129 - T12 * c1_backward_up_noflip
-    R1_32_backward_up_noflip = t128 + T22 * c1_backward_up_noflip
-    t247 = R1_32_backward_up_noflip * c_wrist_backward_up_noflip
-    t248 = ops.select(t31, -(t236 * (t246 * t230 + T32 * t232) + t247), 1.0)
-    t249 = ops.atan2(t236 * (t244 * t230 + T31 * t232) + t245, t248)
-    t250 = ops.wrap(flip_wrist_backward_up_noflip - t249)
-    t251 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t238))
-    t252 = ops.select(failed_2, ops.nan, ops.wrap_cut(t242))
-    t253 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t249))
-    clower_backward_down_noflip = t182 + t184
-    slower_backward_down_noflip = t185 - t186
-    t254 = ops.select(t31, -slower_backward_down_noflip, 1.0)
-    t255 = ops.wrap_cut(ops.atan2(clower_backward_down_noflip, t254))
-    t256 = ops.select(failed_2, ops.nan, t255)
-    t257 = t193 - t194
-    c3_backward_down_noflip = t196 + t197
-    t258 = ops.select(t31, c3_backward_down_noflip, 1.0)
-    t259 = ops.select(failed_2, ops.nan, ops.wrap_cut(ops.atan2(-t257, t258)))
-    clower_backward_down_noflip_2 = t207 + t209
-    c3_backward_down_noflip_2 = t213 + t214
-    t260 = clower_backward_down_noflip_2 * c3_backward_down_noflip_2
-    slower_backward_down_noflip_2 = t216 - t217
-    t261 = t218 - t219
-    t262 = t201 * (t260 + slower_backward_down_noflip_2 * t261)
-    t263 = slower_backward_down_noflip_2 * c3_backward_down_noflip_2
-    t264 = T33 * (t263 - clower_backward_down_noflip_2 * t261)
-    t265 = t262 + t264
-    aligned_wrist_backward_down_noflip = ops.sqrt(t200 + t265 * t265) <= t111
+    R1_33_backward_up_noflip_2 = t105 + T23 * c1_backward_up_noflip
+    t218 = ops.opposite(aligned_wrist_backward_up_noflip)
+    t219 = t28 & t218
+    t220 = R1_33_backward_up_noflip_2 * R1_33_backward_up_noflip_2
+    t221 = t108 - T13 * c1_backward_up_noflip
+    t222 = clower_backward_up_noflip * c3_backward_up_noflip
+    t223 = t222 + slower_backward_up_noflip * t188
+    t224 = slower_backward_up_noflip * c3_backward_up_noflip
+    t225 = t224 - clower_backward_up_noflip * t188
+    t226 = t221 * t223 + T33 * t225
+    h_wrist_backward_up_noflip = ops.sqrt(ops.select(t219, t220 + t226 * t226, 1.0))
+    t227 = ops.select(t219, h_wrist_backward_up_noflip, 1.0)
+    t228 = 1.0 / t227
+    t229 = ops.select(aligned_wrist_backward_up_noflip, 0.0, R1_33_backward_up_noflip_2 * t228)
+    c_wrist_backward_up_noflip = ops.select(aligned_wrist_backward_up_noflip, 1.0, -(t226 * t228))
+    t230 = ops.select(t28, c_wrist_backward_up_noflip, 1.0)
+    t231 = ops.atan2(t229, t230)
+    t232 = ops.wrap(flip_wrist_backward_up_noflip - t231)
+    t233 = t226 * c_wrist_backward_up_noflip - R1_33_backward_up_noflip_2 * t229
+    t234 = ops.select(t28, t221 * t225 - T33 * t223, 1.0)
+    t235 = ops.atan2(t233, t234)
+    t236 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t235))
+    t237 = t118 - T11 * c1_backward_up_noflip
+    R1_31_backward_up_noflip = t119 + T21 * c1_backward_up_noflip
+    t238 = R1_31_backward_up_noflip * c_wrist_backward_up_noflip
+    t239 = t122 - T12 * c1_backward_up_noflip
+    R1_32_backward_up_noflip = t121 + T22 * c1_backward_up_noflip
+    t240 = R1_32_backward_up_noflip * c_wrist_backward_up_noflip
+    t241 = ops.select(t28, -(t229 * (t239 * t223 + T32 * t225) + t240), 1.0)
+    t242 = ops.atan2(t229 * (t237 * t223 + T31 * t225) + t238, t241)
+    t243 = ops.wrap(flip_wrist_backward_up_noflip - t242)
+    t244 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t231))
+    t245 = ops.select(failed_2, ops.nan, ops.wrap_cut(t235))
+    t246 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t242))
+    clower_backward_down_noflip = t175 + t179
+    slower_backward_down_noflip = t180 - t181
+    t247 = ops.select(t28, -slower_backward_down_noflip, 1.0)
+    t248 = ops.wrap_cut(ops.atan2(clower_backward_down_noflip, t247))
+    t249 = ops.select(failed_2, ops.nan, t248)
+    t250 = t186 - t187
+    c3_backward_down_noflip = t189 + t190
+    t251 = ops.select(t28, c3_backward_down_noflip, 1.0)
+    t252 = ops.select(failed_2, ops.nan, ops.wrap_cut(ops.atan2(-t250, t251)))
+    clower_backward_down_noflip_2 = t200 + t204
+    c3_backward_down_noflip_2 = t206 + t207
+    t253 = clower_backward_down_noflip_2 * c3_backward_down_noflip_2
+    slower_backward_down_noflip_2 = t209 - t210
+    t254 = t211 - t212
+    t255 = t194 * (t253 + slower_backward_down_noflip_2 * t254)
+    t256 = slower_backward_down_noflip_2 * c3_backward_down_noflip_2
+    t257 = T33 * (t256 - clower_backward_down_noflip_2 * t254)
+    t258 = t255 + t257
+    aligned_wrist_backward_down_noflip = ops.sqrt(t193 + t258 * t258) <= t104
     flip_wrist_backward_down_noflip = ops.select(aligned_wrist_backward_down_noflip, 0.0, 3.141592653589793)
-    t266 = ops.opposite(aligned_wrist_backward_down_noflip)
-    t267 = t31 & t266
-    t268 = clower_backward_down_noflip * c3_backward_down_noflip
-    t269 = t268 + slower_backward_down_noflip * t257
-    t270 = slower_backward_down_noflip * c3_backward_down_noflip
-    t271 = t270 - clower_backward_down_noflip * t257
-    t272 = t228 * t269 + T33 * t271
-    h_wrist_backward_down_noflip = ops.sqrt(ops.select(t267, t227 + t272 * t272, 1.0))
-    t273 = ops.select(t267, h_wrist_backward_down_noflip, 1.0)
-    t274 = 1.0 / t273
-    t275 = ops.select(aligned_wrist_backward_down_noflip, 0.0, R1_33_backward_up_noflip_2 * t274)
-    c_wrist_backward_down_noflip = ops.select(aligned_wrist_backward_down_noflip, 1.0, -(t272 * t274))
-    t276 = ops.select(t31, c_wrist_backward_down_noflip, 1.0)
-    t277 = ops.atan2(t275, t276)
-    t278 = ops.wrap(flip_wrist_backward_down_noflip - t277)
-    t279 = t272 * c_wrist_backward_down_noflip - R1_33_backward_up_noflip_2 * t275
-    t280 = ops.select(t31, t228 * t271 - T33 * t269, 1.0)
-    t281 = ops.atan2(t279, t280)
-    t282 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t281))
-    t283 = R1_31_backward_up_noflip * c_wrist_backward_down_noflip
-    t284 = R1_32_backward_up_noflip * c_wrist_backward_down_noflip
-    t285 = ops.select(t31, -(t275 * (t246 * t269 + T32 * t271) + t284), 1.0)
-    t286 = ops.atan2(t275 * (t244 * t269 + T31 * t271) + t283, t285)
-    t287 = ops.wrap(flip_wrist_backward_down_noflip - t286)
-    t288 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t277))
-    t289 = ops.select(failed_2, ops.nan, ops.wrap_cut(t281))
-    t290 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t286))
-    t291 = free1 | no_link_elbow
-    t292 = t291 | folded_elbow
-    t293 = ops.status(invalid, unreachable, t292 | aligned_wrist)
-    t294 = ops.status(invalid, unreachable, t292 | aligned_wrist_facing_down_noflip)
-    t295 = t291 | folded_elbow_backward_up_noflip
-    t296 = ops.status(invalid, unreachable_2, t295 | aligned_wrist_backward_up_noflip)
-    t297 = ops.status(invalid, unreachable_2, t295 | aligned_wrist_backward_down_noflip)
+    t259 = ops.opposite(aligned_wrist_backward_down_noflip)
+    t260 = t28 & t259
+    t261 = clower_backward_down_noflip * c3_backward_down_noflip
+    t262 = t261 + slower_backward_down_noflip * t250
+    t263 = slower_backward_down_noflip * c3_backward_down_noflip
+    t264 = t263 - clower_backward_down_noflip * t250
+    t265 = t221 * t262 + T33 * t264
+    h_wrist_backward_down_noflip = ops.sqrt(ops.select(t260, t220 + t265 * t265, 1.0))
+    t266 = ops.select(t260, h_wrist_backward_down_noflip, 1.0)
+    t267 = 1.0 / t266
+    t268 = ops.select(aligned_wrist_backward_down_noflip, 0.0, R1_33_backward_up_noflip_2 * t267)
+    c_wrist_backward_down_noflip = ops.select(aligned_wrist_backward_down_noflip, 1.0, -(t265 * t267))
+    t269 = ops.select(t28, c_wrist_backward_down_noflip, 1.0)
+    t270 = ops.atan2(t268, t269)
+    t271 = ops.wrap(flip_wrist_backward_down_noflip - t270)
+    t272 = t265 * c_wrist_backward_down_noflip - R1_33_backward_up_noflip_2 * t268
+    t273 = ops.select(t28, t221 * t264 - T33 * t262, 1.0)
+    t274 = ops.atan2(t272, t273)
+    t275 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t274))
+    t276 = R1_31_backward_up_noflip * c_wrist_backward_down_noflip
+    t277 = R1_32_backward_up_noflip * c_wrist_backward_down_noflip
+    t278 = ops.select(t28, -(t268 * (t239 * t262 + T32 * t264) + t277), 1.0)
+    t279 = ops.atan2(t268 * (t237 * t262 + T31 * t264) + t276, t278)
+    t280 = ops.wrap(flip_wrist_backward_down_noflip - t279)
+    t281 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t270))
+    t282 = ops.select(failed_2, ops.nan, ops.wrap_cut(t274))
+    t283 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t279))
+    t284 = free1 | no_link_elbow
+    t285 = t284 | folded_elbow
+    t286 = ops.status(invalid, unreachable, t285 | aligned_wrist)
+    t287 = ops.status(invalid, unreachable, t285 | aligned_wrist_facing_down_noflip)
+    t288 = t284 | folded_elbow_backward_up_noflip
+    t289 = ops.status(invalid, unreachable_2, t288 | aligned_wrist_backward_up_noflip)
+    t290 = ops.status(invalid, unreachable_2, t288 | aligned_wrist_backward_down_noflip)
     return (
-        t55,
-        t74,
-        t85,
-        t121,
-        t124,
-        t132,
-        t55,
-        t74,
-        t85,
-        t133,
+        t49,
+        t70,
+        t79,
+        t114,
+        t117,
+        t125,
+        t49,
+        t70,
+        t79,
+        t126,
+        t127,
+        t128,
+        t49,
+        t131,
         t134,
-        t135,
-        t55,
-        t138,
-        t141,
-        ops.select(failed, ops.nan, t159),
+        ops.select(failed, ops.nan, t152),
+        t156,
+        ops.select(failed, ops.nan, t161),
+        t49,
+        t131,
+        t134,
+        t162,
         t163,
-        ops.select(failed, ops.nan, t168),
-        t55,
-        t138,
-        t141,
-        t169,
-        t170,
-        t171,
-        t173,
-        t189,
-        t199,
-        ops.select(failed_2, ops.nan, t239),
-        t243,
-        ops.select(failed_2, ops.nan, t250),
-        t173,
-        t189,
-        t199,
-        t251,
+        t164,
+        t166,
+        t184,
+        t192,
+        ops.select(failed_2, ops.nan, t232),
+        t236,
+        ops.select(failed_2, ops.nan, t243),
+        t166,
+        t184,
+        t192,
+        t244,
+        t245,
+        t246,
+        t166,
+        t249,
         t252,
-        t253,
-        t173,
-        t256,
-        t259,
-        ops.select(failed_2, ops.nan, t278),
+        ops.select(failed_2, ops.nan, t271),
+        t275,
+        ops.select(failed_2, ops.nan, t280),
+        t166,
+        t249,
+        t252,
+        t281,
         t282,
-        ops.select(failed_2, ops.nan, t287),
-        t173,
-        t256,
-        t259,
-        t288,
+        t283,
+        t286,
+        t286,
+        t287,
+        t287,
+        t289,
         t289,
         t290,
-        t293,
-        t293,
-        t294,
-        t294,
-        t296,
-        t296,
-        t297,
-        t297,
+        t290,
     )
 
 

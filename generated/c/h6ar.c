@@ -3618,11 +3618,11 @@ CF_INLINE void h6ar_ik_branch_kernel(const int single, const real_t one,
     const real_t play = t50 + lengths * CLOSEDFORM_C(0.00048828125);
     const real_t play_alpha = cf_sqrt(t48) * play;
     const real_t t51 = CLOSEDFORM_VANISHING * t39;
-    const real_t t52 = CLOSEDFORM_C(1.0) / cf_divisor(1, fore <= t51, fore);
+    const real_t t52 = CLOSEDFORM_C(1.0) / cf_select(fore <= t51, CLOSEDFORM_C(1.0), fore);
     const real_t c_lag = a_3W * t52;
     const real_t M = cf_max(t46, CLOSEDFORM_C(0.0));
     const real_t N = cf_max(t42, CLOSEDFORM_C(0.0));
-    const real_t t53 = CLOSEDFORM_C(1.0) / cf_divisor(1, fore <= t51, M + N);
+    const real_t t53 = CLOSEDFORM_C(1.0) / cf_select(fore <= t51, CLOSEDFORM_C(1.0), M + N);
     const real_t t54 = M - N;
     const real_t c_bend = t53 * t54;
     const real_t s_lag = L_2W * t52;
@@ -3639,7 +3639,7 @@ CF_INLINE void h6ar_ik_branch_kernel(const int single, const real_t one,
     const real_t up = cf_rounded(single, one, onward * t59) + cf_rounded(single, one, t41 * ahead_1);
     const real_t t60 = cf_rounded(single, one, t41 * t59) - cf_rounded(single, one, onward * ahead_1);
     const real_t t61 = cf_rounded(single, one, t60 * t60) + cf_rounded(single, one, up * up);
-    const real_t t62 = CLOSEDFORM_C(1.0) / cf_divisor(1, fore <= t51, cf_sqrt(t61));
+    const real_t t62 = CLOSEDFORM_C(1.0) / cf_select(fore <= t51, CLOSEDFORM_C(1.0), cf_sqrt(t61));
     const real_t stheta2A = up * t62;
     const real_t t63 = t60 * t62;
     const real_t t64 = cf_rounded(single, one, ahead * stheta2A) + cf_rounded(single, one, higher * t63);
@@ -3664,7 +3664,7 @@ CF_INLINE void h6ar_ik_branch_kernel(const int single, const real_t one,
     const real_t t77 = CLOSEDFORM_VANISHING * t76;
     const real_t below_beta_0 = cf_max(t71, t77);
     const real_t above_beta_0 = cf_max(t73, t77);
-    const real_t t78 = CLOSEDFORM_C(1.0) / cf_divisor(1, fore <= t51, below_beta_0 + above_beta_0);
+    const real_t t78 = CLOSEDFORM_C(1.0) / cf_select(fore <= t51, CLOSEDFORM_C(1.0), below_beta_0 + above_beta_0);
     const real_t t79 = (below_beta_0 - above_beta_0) * t78;
     const real_t t80 = t64 - cf_rounded(single, one, v_2 * t79);
     const real_t left_along = L1 - cf_abs(t80);
@@ -3676,7 +3676,7 @@ CF_INLINE void h6ar_ik_branch_kernel(const int single, const real_t one,
     const real_t t85 = cf_poison(single, invalid | unreachable);
     const real_t below_alpha = cf_max(t82, t77);
     const real_t above_alpha = cf_max(t83, t77);
-    const real_t t86 = CLOSEDFORM_C(1.0) / cf_divisor(1, fore <= t51, below_alpha + above_alpha);
+    const real_t t86 = CLOSEDFORM_C(1.0) / cf_select(fore <= t51, CLOSEDFORM_C(1.0), below_alpha + above_alpha);
     const real_t t87 = CLOSEDFORM_C(2.0) * cf_root(1, above_alpha) * cf_root(1, below_alpha);
     const real_t t88 = CLOSEDFORM_C(2.0) * cf_root(1, above_beta_0) * cf_root(1, below_beta_0);
     const int t89 = CLOSEDFORM_C(1.0) <= CLOSEDFORM_DETERMINED;

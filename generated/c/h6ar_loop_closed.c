@@ -4524,7 +4524,7 @@ CF_INLINE void h6ar_loop_closed_ik_branch_kernel(const int single, const real_t 
     const real_t M = cf_max(t44, CLOSEDFORM_C(0.0));
     const real_t N = cf_max(t40, CLOSEDFORM_C(0.0));
     const real_t t50 = CLOSEDFORM_VANISHING * t37;
-    const real_t t51 = CLOSEDFORM_C(1.0) / cf_divisor(1, fore <= t50, M + N);
+    const real_t t51 = CLOSEDFORM_C(1.0) / cf_select(fore <= t50, CLOSEDFORM_C(1.0), M + N);
     const real_t t52 = CLOSEDFORM_C(2.0) * (sigma_waist * sigma_elbow);
     const real_t t53 = t51 * (t52 * cf_sqrt(M * N));
     const real_t t54 = fore * t53;
@@ -4532,9 +4532,9 @@ CF_INLINE void h6ar_loop_closed_ik_branch_kernel(const int single, const real_t 
     const real_t up = cf_rounded(single, one, onward * t54) + cf_rounded(single, one, t39 * ahead_1);
     const real_t t55 = cf_rounded(single, one, t39 * t54) - cf_rounded(single, one, onward * ahead_1);
     const real_t t56 = cf_rounded(single, one, t55 * t55) + cf_rounded(single, one, up * up);
-    const real_t t57 = CLOSEDFORM_C(1.0) / cf_divisor(1, fore <= t50, cf_sqrt(t56));
+    const real_t t57 = CLOSEDFORM_C(1.0) / cf_select(fore <= t50, CLOSEDFORM_C(1.0), cf_sqrt(t56));
     const real_t stheta2A = up * t57;
-    const real_t t58 = CLOSEDFORM_C(1.0) / cf_divisor(1, fore <= t50, fore);
+    const real_t t58 = CLOSEDFORM_C(1.0) / cf_select(fore <= t50, CLOSEDFORM_C(1.0), fore);
     const real_t c_lag = a_3W * t58;
     const real_t c_bend = t51 * (M - N);
     const real_t s_lag = L_2W * t58;
@@ -4565,7 +4565,7 @@ CF_INLINE void h6ar_loop_closed_ik_branch_kernel(const int single, const real_t 
     const int t74 = CLOSEDFORM_C(0.0) <= straight_mid;
     const real_t large_mid = fore_arm + cf_abs(straight_mid);
     const real_t t75 = cf_rounded(single, one, L2 * c_relative) - cf_rounded(single, one, a3 * s_relative);
-    const real_t small_mid = t75 * t75 / cf_divisor(1, fore_arm <= CLOSEDFORM_VANISHING * size, large_mid);
+    const real_t small_mid = t75 * t75 / cf_select(fore_arm <= CLOSEDFORM_VANISHING * size, CLOSEDFORM_C(1.0), large_mid);
     const real_t M_mid = cf_rounded(single, one, t33 * cf_select(t74, large_mid, small_mid));
     const real_t t76 = M_mid + gap;
     const real_t t77 = cf_rounded(single, one, CLOSEDFORM_C(2.0) * t67 * shift_11);
@@ -4593,14 +4593,14 @@ CF_INLINE void h6ar_loop_closed_ik_branch_kernel(const int single, const real_t 
     const real_t t90 = CLOSEDFORM_VANISHING * t89;
     const real_t M_right = cf_max(farther_right, t90);
     const real_t N_right = cf_max(nearer_right, t90);
-    const real_t t91 = CLOSEDFORM_C(1.0) / cf_divisor(1, (t88 <= CLOSEDFORM_VANISHING * t49) | (fore_arm <= CLOSEDFORM_VANISHING * size), M_right + N_right);
+    const real_t t91 = CLOSEDFORM_C(1.0) / cf_select((t88 <= CLOSEDFORM_VANISHING * t49) | (fore_arm <= CLOSEDFORM_VANISHING * size), CLOSEDFORM_C(1.0), M_right + N_right);
     const real_t ahead_1_right = t72 + t87 * M_right * t91;
     const real_t sigma_right = cf_sign(-t75);
     const real_t t92 = CLOSEDFORM_C(2.0) * cf_root(1, M_right * N_right);
     const real_t t93 = fore_arm * (t91 * (sigma_right * t92));
     const real_t M_left = cf_max(farther_left, CLOSEDFORM_C(0.0));
     const real_t N_left = cf_max(nearer_left, CLOSEDFORM_C(0.0));
-    const real_t t94 = CLOSEDFORM_C(1.0) / cf_divisor(1, fore_arm <= CLOSEDFORM_VANISHING * size, M_left + N_left);
+    const real_t t94 = CLOSEDFORM_C(1.0) / cf_select(fore_arm <= CLOSEDFORM_VANISHING * size, CLOSEDFORM_C(1.0), M_left + N_left);
     const real_t ahead_1_left = t72 + t87 * M_left * t94;
     const real_t sigma_other = sigma_left * sigma_right;
     const real_t t95 = CLOSEDFORM_C(2.0) * cf_sqrt(M_left * N_left);

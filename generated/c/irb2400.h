@@ -13,7 +13,7 @@
  *   jacobian_body: 29 add, 64 multiply, 5 sincos
  *   joints_from_motors: 1 add
  *   motors_from_joints: 1 add
- *   ik: 153 compare and select, 159 add, 22 atan2, 12 divide, 184 multiply, 11 sqrt
+ *   ik: 149 compare and select, 158 add, 22 atan2, 12 divide, 179 multiply, 10 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not

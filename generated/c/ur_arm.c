@@ -6314,7 +6314,7 @@ CF_INLINE void ur_arm_ik_branch_kernel(const int single, const real_t one,
     const real_t full_1_1 = L2 + L3;
     const real_t size = d1 + d4 + d5 + d6 + full_1_1;
     const real_t t5 = CLOSEDFORM_VANISHING * size;
-    const real_t t6 = CLOSEDFORM_C(1.0) / cf_divisor(1, h1 <= t5, h1 * (below1 + above1));
+    const real_t t6 = CLOSEDFORM_C(1.0) / cf_select(h1 <= t5, CLOSEDFORM_C(1.0), h1 * (below1 + above1));
     const real_t root1 = cf_sqrt(below1 * above1);
     const real_t t7 = root1 * (sigma_1 * CLOSEDFORM_C(2.0));
     const real_t t8 = cf_rounded(single, one, w_x * t4 * t6) + cf_rounded(single, one, t6 * (w_y * t7));
@@ -6350,7 +6350,7 @@ CF_INLINE void ur_arm_ik_branch_kernel(const int single, const real_t one,
     const real_t t36 = cf_rounded(single, one, T33 * T33) + cf_rounded(single, one, t35 * t35);
     const real_t h_wrist = cf_sqrt(t36);
     const int aligned_wrist = h_wrist <= CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
-    const real_t t37 = CLOSEDFORM_C(1.0) / cf_divisor(1, aligned_wrist, h_wrist);
+    const real_t t37 = CLOSEDFORM_C(1.0) / cf_select(aligned_wrist, CLOSEDFORM_C(1.0), h_wrist);
     const real_t s_phi = T33 * sigma_wrist * t37;
     const real_t t38 = t34 - cf_rounded(single, one, d5 * s_phi);
     const real_t t39 = d1 - (T34 - cf_rounded(single, one, T33 * d6));
@@ -6365,7 +6365,7 @@ CF_INLINE void ur_arm_ik_branch_kernel(const int single, const real_t one,
     const real_t t46 = r_elbow - t43;
     const int unreachable = !(t45 & (-t33 <= t46));
     const real_t t47 = cf_poison(single, invalid | unreachable);
-    const real_t t48 = CLOSEDFORM_C(1.0) / cf_divisor(1, r_elbow <= t5, r_elbow);
+    const real_t t48 = CLOSEDFORM_C(1.0) / cf_select(r_elbow <= t5, CLOSEDFORM_C(1.0), r_elbow);
     const real_t t49 = ey * t48;
     const real_t A_elbow = cf_max(t42, CLOSEDFORM_C(0.0));
     const real_t C_elbow = cf_max(t46, CLOSEDFORM_C(0.0));
@@ -6373,7 +6373,7 @@ CF_INLINE void ur_arm_ik_branch_kernel(const int single, const real_t one,
     const real_t S_elbow = full_1_1 + r_elbow;
     const real_t B_elbow = cf_max(t44, CLOSEDFORM_C(0.0));
     const real_t t51 = S_elbow * B_elbow;
-    const real_t t52 = CLOSEDFORM_C(1.0) / cf_divisor(1, r_elbow <= t5, t50 + t51);
+    const real_t t52 = CLOSEDFORM_C(1.0) / cf_select(r_elbow <= t5, CLOSEDFORM_C(1.0), t50 + t51);
     const real_t t53 = (t50 - t51) * t52;
     const real_t t54 = t38 * t48;
     const real_t t55 = sigma_elbow * (CLOSEDFORM_C(2.0) * cf_root(1, t50 * t51));
@@ -6383,7 +6383,7 @@ CF_INLINE void ur_arm_ik_branch_kernel(const int single, const real_t one,
     const real_t t57 = A_elbow * S_elbow;
     const real_t t58 = C_elbow * B_elbow;
     const real_t t59 = t57 - t58;
-    const real_t t60 = CLOSEDFORM_C(1.0) / cf_divisor(1, r_elbow <= t5, t57 + t58);
+    const real_t t60 = CLOSEDFORM_C(1.0) / cf_select(r_elbow <= t5, CLOSEDFORM_C(1.0), t57 + t58);
     const real_t t61 = t59 * t60;
     const real_t t62 = s_phi * c2 + t40 * t56;
     const real_t s3 = t55 * t60;

@@ -12,7 +12,7 @@
 #   jacobian_body: 29 add, 64 multiply, 5 sincos
 #   joints_from_motors: 1 add
 #   motors_from_joints: 1 add
-#   ik: 153 compare and select, 159 add, 22 atan2, 12 divide, 184 multiply, 11 sqrt
+#   ik: 149 compare and select, 158 add, 22 atan2, 12 divide, 179 multiply, 10 sqrt
 """Six-axis arm on a parallelogram (IRB 2400).
 
 theta1 turns about the vertical.  The axes of theta2 and theta3 are horizontal and parallel, and
@@ -980,428 +980,418 @@ def _ik(
     del t1
     t2 = size * _runtime.VANISHING
     free1 = h1 <= t2
-    below1 = np.maximum(h1, 0.0)
-    t3 = 1.0 / (h1 * (below1 + below1))
-    root1 = np.sqrt(below1 * below1)
-    del below1
-    t4 = 2.0 * root1
-    s1 = _runtime.select(free1, 0.0, t3 * (w_y * t4))
+    t3 = 1.0 / h1
+    s1 = _runtime.select(free1, 0.0, w_y * t3)
     del w_y
-    t5 = t3 * (w_x * t4)
-    del t3, t4, w_x
-    c1 = _runtime.select(free1, 1.0, t5)
-    t6 = np.isfinite(a1) & np.isfinite(d1) & np.isfinite(a2) & np.isfinite(a3) & np.isfinite(d4) & np.isfinite(d6)
-    t7 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
-    t8 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t9 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
-    t10 = t6 & (0.0 <= a2) & (0.0 <= d4) & t7 & t8 & t9
-    del t6, t7, t8, t9
-    t11 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
-    t12 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t13 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t14 = t10 & t11 & (t12 <= _runtime.ROTATION) & (t13 <= _runtime.ROTATION)
-    del t10, t11, t12, t13
-    t15 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t16 = t14 & t15 & (np.abs(T41) <= _runtime.ROTATION)
-    del t14, t15
-    t17 = t16 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    t4 = w_x * t3
+    del t3, w_x
+    c1 = _runtime.select(free1, 1.0, t4)
+    t5 = np.isfinite(a1) & np.isfinite(d1) & np.isfinite(a2) & np.isfinite(a3) & np.isfinite(d4) & np.isfinite(d6)
+    t6 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
+    t7 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t8 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t9 = t5 & (0.0 <= a2) & (0.0 <= d4) & t6 & t7 & t8
+    del t5, t6, t7, t8
+    t10 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t11 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t12 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t13 = t9 & t10 & (t11 <= _runtime.ROTATION) & (t12 <= _runtime.ROTATION)
+    del t10, t11, t12, t9
+    t14 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t15 = t13 & t14 & (np.abs(T41) <= _runtime.ROTATION)
+    del t13, t14
+    t16 = t15 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    del t15
+    t17 = t16 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
     del t16
-    t18 = t17 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    invalid = np.logical_not(t17)
     del t17
-    invalid = np.logical_not(t18)
-    del t18
-    t19 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t18 = -(_runtime.FEASIBILITY * (size * 0.5))
     del size
-    t20 = t19 <= h1
-    del h1
     f = np.sqrt(a3 * a3 + d4 * d4)
-    t21 = a2 + f
+    t19 = a2 + f
+    t20 = a1 - h1
     y_elbow = d1 - (T34 - T33 * d6)
-    t22 = y_elbow * y_elbow
-    t23 = a1 - root1
-    r_elbow = np.sqrt(t22 + t23 * t23)
-    t24 = t21 - r_elbow
-    t25 = a2 - f
-    t26 = r_elbow + t25
-    t27 = r_elbow - t25
-    t28 = t20 & (t19 <= t24) & (t19 <= t26) & (t19 <= t27)
-    unreachable = np.logical_not(t28)
-    del t28
-    t29 = _runtime.poison(invalid | unreachable)
-    t30 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t29
+    t21 = y_elbow * y_elbow
+    r_elbow = np.sqrt(t20 * t20 + t21)
+    t22 = t19 - r_elbow
+    t23 = a2 - f
+    t24 = r_elbow + t23
+    t25 = r_elbow - t23
+    unreachable = np.logical_not((t18 <= t22) & (t18 <= t24) & (t18 <= t25))
+    t26 = _runtime.poison(invalid | unreachable)
+    t27 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t26
     folded_elbow = r_elbow <= t2
-    t31 = 1.0 / r_elbow
-    t32 = _runtime.select(folded_elbow, 1.0, -(t23 * t31))
-    del t23
-    no_link_elbow = a2 * f <= _runtime.VANISHING * (t21 * t21)
-    t33 = folded_elbow | no_link_elbow
-    A_elbow = np.maximum(t24, 0.0)
-    del t24
-    C_elbow = np.maximum(t27, 0.0)
-    del t27
-    t34 = A_elbow * C_elbow
-    S_elbow = t21 + r_elbow
-    del r_elbow
-    B_elbow = np.maximum(t26, 0.0)
-    del t26
-    t35 = S_elbow * B_elbow
-    t36 = 1.0 / (t34 + t35)
-    c_base_elbow = _runtime.select(t33, 1.0, -((t34 - t35) * t36))
-    t37 = t32 * c_base_elbow
-    t38 = _runtime.select(folded_elbow, 0.0, y_elbow * t31)
-    del t31
-    area_elbow = 2.0 * np.sqrt(t34 * t35)
-    del t34, t35
-    s_base_elbow = _runtime.select(t33, 0.0, t36 * area_elbow)
-    del t33, t36
-    t39 = t38 * s_base_elbow
-    clower = t37 + t39
-    t40 = t38 * c_base_elbow
-    del c_base_elbow, t38
-    t41 = t32 * s_base_elbow
-    del s_base_elbow, t32
-    slower = t40 - t41
-    t42 = _runtime.wrap_cut(np.arctan2(clower, -slower))
-    t43 = t42 + t29
-    del t42
-    no_forearm = f <= 0.0
-    t44 = 1.0 / f
-    del f
-    s_forearm = _runtime.select(no_forearm, 0.0, d4 * t44)
-    t45 = A_elbow * S_elbow
-    del A_elbow, S_elbow
-    t46 = C_elbow * B_elbow
-    del B_elbow, C_elbow
-    t47 = 1.0 / (t45 + t46)
-    celbow = _runtime.select(no_link_elbow, 1.0, -((t45 - t46) * t47))
-    del t45, t46
-    t48 = s_forearm * celbow
-    c_forearm = _runtime.select(no_forearm, 1.0, a3 * t44)
-    del no_forearm, t44
-    selbow = _runtime.select(no_link_elbow, 0.0, area_elbow * t47)
-    del area_elbow, t47
-    t49 = c_forearm * selbow
-    t50 = t48 - t49
-    t51 = c_forearm * celbow
-    del celbow
-    t52 = s_forearm * selbow
-    del selbow
-    c3 = t51 + t52
-    t53 = _runtime.wrap_cut(np.arctan2(-t50, c3)) + t29
-    t54 = T13 * s1
-    R2_23 = t54 - T23 * c1
-    t55 = R2_23 * R2_23
-    t56 = T23 * s1
-    R1_13 = T13 * c1 + t56
-    t57 = clower * c3 + slower * t50
-    t58 = slower * c3 - clower * t50
-    del c3, clower, slower, t50
-    R2_13 = R1_13 * t57 - T33 * t58
-    h_wrist = np.sqrt(t55 + R2_13 * R2_13)
-    t59 = _runtime.VANISHING * 16.0
-    aligned_wrist = h_wrist <= t59
-    flip_wrist = _runtime.select(aligned_wrist, 0.0, 3.141592653589793)
-    t60 = 1.0 / h_wrist
-    del h_wrist
-    s_wrist = _runtime.select(aligned_wrist, 0.0, R2_23 * t60)
-    c_wrist = _runtime.select(aligned_wrist, 1.0, R2_13 * t60)
-    del t60
-    t61 = np.arctan2(s_wrist, c_wrist)
-    t62 = np.arctan2(R2_13 * c_wrist + R2_23 * s_wrist, -(R1_13 * t58 + T33 * t57))
-    del R2_13
-    t63 = T21 * s1
-    R1_11 = T11 * c1 + t63
-    t64 = T11 * s1
-    R2_21 = t64 - T21 * c1
-    t65 = s_wrist * (R1_11 * t57 - T31 * t58) - R2_21 * c_wrist
-    t66 = T12 * s1
-    R2_22 = t66 - T22 * c1
-    t67 = T22 * s1
-    R1_12 = T12 * c1 + t67
-    del c1
-    t68 = R2_22 * c_wrist - s_wrist * (R1_12 * t57 - T32 * t58)
-    del c_wrist, s_wrist, t57, t58
-    t69 = np.arctan2(t65, t68)
-    del t65, t68
-    clower_facing_down_noflip = t37 - t39
-    del t37, t39
-    slower_facing_down_noflip = t40 + t41
-    del t40, t41
-    t70 = np.arctan2(clower_facing_down_noflip, -slower_facing_down_noflip)
-    t71 = _runtime.wrap_cut(t70) + t29
-    del t70
-    t72 = t48 + t49
-    del t48, t49
-    c3_facing_down_noflip = t51 - t52
-    del t51, t52
-    t73 = _runtime.wrap_cut(-np.arctan2(t72, c3_facing_down_noflip))
-    t74 = t73 + t29
-    del t73
-    t75 = clower_facing_down_noflip * c3_facing_down_noflip
-    t76 = t75 + slower_facing_down_noflip * t72
-    del t75
-    t77 = slower_facing_down_noflip * c3_facing_down_noflip
-    del c3_facing_down_noflip, slower_facing_down_noflip
-    t78 = t77 - clower_facing_down_noflip * t72
-    del clower_facing_down_noflip, t72, t77
-    R2_13_facing_down_noflip = R1_13 * t76 - T33 * t78
-    t79 = R2_13_facing_down_noflip * R2_13_facing_down_noflip
-    h_wrist_facing_down_noflip = np.sqrt(t55 + t79)
-    del t55, t79
-    aligned_wrist_facing_down_noflip = h_wrist_facing_down_noflip <= t59
-    flip_wrist_facing_down_noflip = _runtime.select(aligned_wrist_facing_down_noflip, 0.0, 3.141592653589793)
-    t80 = 1.0 / h_wrist_facing_down_noflip
-    del h_wrist_facing_down_noflip
-    s_wrist_facing_down_noflip = _runtime.select(aligned_wrist_facing_down_noflip, 0.0, R2_23 * t80)
-    c_wrist_facing_down_noflip = _runtime.select(aligned_wrist_facing_down_noflip, 1.0, R2_13_facing_down_noflip * t80)
-    del t80
-    t81 = np.arctan2(s_wrist_facing_down_noflip, c_wrist_facing_down_noflip)
-    t82 = _runtime.wrap(flip_wrist_facing_down_noflip + t81)
-    t83 = R2_13_facing_down_noflip * c_wrist_facing_down_noflip
-    del R2_13_facing_down_noflip
-    t84 = np.arctan2(t83 + R2_23 * s_wrist_facing_down_noflip, -(R1_13 * t78 + T33 * t76))
-    del R1_13, R2_23, t83
-    t85 = s_wrist_facing_down_noflip * (R1_11 * t76 - T31 * t78)
-    del R1_11
-    t86 = s_wrist_facing_down_noflip * (R1_12 * t76 - T32 * t78)
-    del R1_12, s_wrist_facing_down_noflip, t76, t78
-    t87 = np.arctan2(t85 - R2_21 * c_wrist_facing_down_noflip, R2_22 * c_wrist_facing_down_noflip - t86)
-    del R2_21, R2_22, c_wrist_facing_down_noflip, t85, t86
-    t88 = _runtime.wrap(flip_wrist_facing_down_noflip - t87)
-    del flip_wrist_facing_down_noflip
-    c1_backward_up_noflip = _runtime.select(free1, 1.0, -t5)
-    del t5
-    t89 = _runtime.wrap_cut(-np.arctan2(s1, c1_backward_up_noflip))
-    del s1
-    t90 = a1 + root1
-    del root1
-    r_elbow_backward_up_noflip = np.sqrt(t22 + t90 * t90)
+    t28 = 1.0 / r_elbow
+    t29 = _runtime.select(folded_elbow, 1.0, -(t20 * t28))
+    del t20
+    no_link_elbow = a2 * f <= _runtime.VANISHING * (t19 * t19)
+    t30 = folded_elbow | no_link_elbow
+    A_elbow = np.maximum(t22, 0.0)
     del t22
-    t91 = t21 - r_elbow_backward_up_noflip
-    t92 = r_elbow_backward_up_noflip + t25
-    t93 = r_elbow_backward_up_noflip - t25
+    C_elbow = np.maximum(t25, 0.0)
     del t25
-    t94 = t20 & (t19 <= t91) & (t19 <= t92) & (t19 <= t93)
-    del t19, t20
-    unreachable_2 = np.logical_not(t94)
-    del t94
-    t95 = _runtime.poison(invalid | unreachable_2)
-    t96 = t89 + t95
-    del t89
+    t31 = A_elbow * C_elbow
+    S_elbow = r_elbow + t19
+    del r_elbow
+    B_elbow = np.maximum(t24, 0.0)
+    del t24
+    t32 = S_elbow * B_elbow
+    t33 = 1.0 / (t31 + t32)
+    c_base_elbow = _runtime.select(t30, 1.0, -((t31 - t32) * t33))
+    del t31, t32
+    t34 = t29 * c_base_elbow
+    t35 = _runtime.select(folded_elbow, 0.0, y_elbow * t28)
+    del t28
+    t36 = A_elbow * S_elbow
+    del A_elbow, S_elbow
+    t37 = C_elbow * B_elbow
+    del B_elbow, C_elbow
+    area_elbow = 2.0 * np.sqrt(t36 * t37)
+    s_base_elbow = _runtime.select(t30, 0.0, t33 * area_elbow)
+    del t30, t33
+    t38 = t35 * s_base_elbow
+    clower = t34 + t38
+    t39 = t35 * c_base_elbow
+    del c_base_elbow, t35
+    t40 = t29 * s_base_elbow
+    del s_base_elbow, t29
+    slower = t39 - t40
+    t41 = _runtime.wrap_cut(np.arctan2(clower, -slower))
+    t42 = t41 + t26
+    del t41
+    no_forearm = f <= 0.0
+    t43 = 1.0 / f
+    del f
+    s_forearm = _runtime.select(no_forearm, 0.0, d4 * t43)
+    t44 = 1.0 / (t36 + t37)
+    celbow = _runtime.select(no_link_elbow, 1.0, -((t36 - t37) * t44))
+    del t36, t37
+    t45 = s_forearm * celbow
+    c_forearm = _runtime.select(no_forearm, 1.0, a3 * t43)
+    del no_forearm, t43
+    selbow = _runtime.select(no_link_elbow, 0.0, area_elbow * t44)
+    del area_elbow, t44
+    t46 = c_forearm * selbow
+    t47 = t45 - t46
+    t48 = c_forearm * celbow
+    del celbow
+    t49 = s_forearm * selbow
+    del selbow
+    c3 = t48 + t49
+    t50 = _runtime.wrap_cut(np.arctan2(-t47, c3)) + t26
+    t51 = T13 * s1
+    R2_23 = t51 - T23 * c1
+    t52 = R2_23 * R2_23
+    t53 = T23 * s1
+    R1_13 = T13 * c1 + t53
+    t54 = clower * c3 + slower * t47
+    t55 = slower * c3 - clower * t47
+    del c3, clower, slower, t47
+    R2_13 = R1_13 * t54 - T33 * t55
+    h_wrist = np.sqrt(t52 + R2_13 * R2_13)
+    t56 = _runtime.VANISHING * 16.0
+    aligned_wrist = h_wrist <= t56
+    flip_wrist = _runtime.select(aligned_wrist, 0.0, 3.141592653589793)
+    t57 = 1.0 / h_wrist
+    del h_wrist
+    s_wrist = _runtime.select(aligned_wrist, 0.0, R2_23 * t57)
+    c_wrist = _runtime.select(aligned_wrist, 1.0, R2_13 * t57)
+    del t57
+    t58 = np.arctan2(s_wrist, c_wrist)
+    t59 = np.arctan2(R2_13 * c_wrist + R2_23 * s_wrist, -(R1_13 * t55 + T33 * t54))
+    del R2_13
+    t60 = T21 * s1
+    R1_11 = T11 * c1 + t60
+    t61 = T11 * s1
+    R2_21 = t61 - T21 * c1
+    t62 = s_wrist * (R1_11 * t54 - T31 * t55) - R2_21 * c_wrist
+    t63 = T12 * s1
+    R2_22 = t63 - T22 * c1
+    t64 = T22 * s1
+    R1_12 = T12 * c1 + t64
+    del c1
+    t65 = R2_22 * c_wrist - s_wrist * (R1_12 * t54 - T32 * t55)
+    del c_wrist, s_wrist, t54, t55
+    t66 = np.arctan2(t62, t65)
+    del t62, t65
+    clower_facing_down_noflip = t34 - t38
+    del t34, t38
+    slower_facing_down_noflip = t39 + t40
+    del t39, t40
+    t67 = np.arctan2(clower_facing_down_noflip, -slower_facing_down_noflip)
+    t68 = _runtime.wrap_cut(t67) + t26
+    del t67
+    t69 = t45 + t46
+    del t45, t46
+    c3_facing_down_noflip = t48 - t49
+    del t48, t49
+    t70 = _runtime.wrap_cut(-np.arctan2(t69, c3_facing_down_noflip))
+    t71 = t70 + t26
+    del t70
+    t72 = clower_facing_down_noflip * c3_facing_down_noflip
+    t73 = t72 + slower_facing_down_noflip * t69
+    del t72
+    t74 = slower_facing_down_noflip * c3_facing_down_noflip
+    del c3_facing_down_noflip, slower_facing_down_noflip
+    t75 = t74 - clower_facing_down_noflip * t69
+    del clower_facing_down_noflip, t69, t74
+    R2_13_facing_down_noflip = R1_13 * t73 - T33 * t75
+    t76 = R2_13_facing_down_noflip * R2_13_facing_down_noflip
+    h_wrist_facing_down_noflip = np.sqrt(t52 + t76)
+    del t52, t76
+    aligned_wrist_facing_down_noflip = h_wrist_facing_down_noflip <= t56
+    flip_wrist_facing_down_noflip = _runtime.select(aligned_wrist_facing_down_noflip, 0.0, 3.141592653589793)
+    t77 = 1.0 / h_wrist_facing_down_noflip
+    del h_wrist_facing_down_noflip
+    s_wrist_facing_down_noflip = _runtime.select(aligned_wrist_facing_down_noflip, 0.0, R2_23 * t77)
+    c_wrist_facing_down_noflip = _runtime.select(aligned_wrist_facing_down_noflip, 1.0, R2_13_facing_down_noflip * t77)
+    del t77
+    t78 = np.arctan2(s_wrist_facing_down_noflip, c_wrist_facing_down_noflip)
+    t79 = _runtime.wrap(flip_wrist_facing_down_noflip + t78)
+    t80 = R2_13_facing_down_noflip * c_wrist_facing_down_noflip
+    del R2_13_facing_down_noflip
+    t81 = np.arctan2(t80 + R2_23 * s_wrist_facing_down_noflip, -(R1_13 * t75 + T33 * t73))
+    del R1_13, R2_23, t80
+    t82 = s_wrist_facing_down_noflip * (R1_11 * t73 - T31 * t75)
+    del R1_11
+    t83 = s_wrist_facing_down_noflip * (R1_12 * t73 - T32 * t75)
+    del R1_12, s_wrist_facing_down_noflip, t73, t75
+    t84 = np.arctan2(t82 - R2_21 * c_wrist_facing_down_noflip, R2_22 * c_wrist_facing_down_noflip - t83)
+    del R2_21, R2_22, c_wrist_facing_down_noflip, t82, t83
+    t85 = _runtime.wrap(flip_wrist_facing_down_noflip - t84)
+    del flip_wrist_facing_down_noflip
+    c1_backward_up_noflip = _runtime.select(free1, 1.0, -t4)
+    del t4
+    t86 = _runtime.wrap_cut(-np.arctan2(s1, c1_backward_up_noflip))
+    del s1
+    t87 = a1 + h1
+    del h1
+    r_elbow_backward_up_noflip = np.sqrt(t21 + t87 * t87)
+    del t21
+    t88 = t19 - r_elbow_backward_up_noflip
+    t89 = r_elbow_backward_up_noflip + t23
+    t90 = r_elbow_backward_up_noflip - t23
+    del t23
+    unreachable_2 = np.logical_not((t18 <= t88) & (t18 <= t89) & (t18 <= t90))
+    del t18
+    t91 = _runtime.poison(invalid | unreachable_2)
+    t92 = t86 + t91
+    del t86
     folded_elbow_backward_up_noflip = r_elbow_backward_up_noflip <= t2
     del t2
-    t97 = 1.0 / r_elbow_backward_up_noflip
-    t98 = _runtime.select(folded_elbow_backward_up_noflip, 1.0, -(t90 * t97))
+    t93 = 1.0 / r_elbow_backward_up_noflip
+    t94 = _runtime.select(folded_elbow_backward_up_noflip, 1.0, -(t87 * t93))
+    del t87
+    t95 = folded_elbow_backward_up_noflip | no_link_elbow
+    A_elbow_backward_up_noflip = np.maximum(t88, 0.0)
+    del t88
+    C_elbow_backward_up_noflip = np.maximum(t90, 0.0)
     del t90
-    t99 = folded_elbow_backward_up_noflip | no_link_elbow
-    A_elbow_backward_up_noflip = np.maximum(t91, 0.0)
-    del t91
-    C_elbow_backward_up_noflip = np.maximum(t93, 0.0)
-    del t93
-    t100 = A_elbow_backward_up_noflip * C_elbow_backward_up_noflip
-    S_elbow_backward_up_noflip = t21 + r_elbow_backward_up_noflip
-    del r_elbow_backward_up_noflip, t21
-    B_elbow_backward_up_noflip = np.maximum(t92, 0.0)
-    del t92
-    t101 = S_elbow_backward_up_noflip * B_elbow_backward_up_noflip
-    t102 = 1.0 / (t100 + t101)
-    c_base_elbow_backward_up_noflip = _runtime.select(t99, 1.0, -((t100 - t101) * t102))
-    t103 = t98 * c_base_elbow_backward_up_noflip
-    t104 = _runtime.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t97)
-    del t97, y_elbow
-    area_elbow_backward_up_noflip = 2.0 * np.sqrt(t100 * t101)
-    del t100, t101
-    s_base_elbow_backward_down_noflip = _runtime.select(t99, 0.0, t102 * area_elbow_backward_up_noflip)
-    del t102, t99
-    t105 = t104 * s_base_elbow_backward_down_noflip
-    clower_backward_up_noflip = t103 - t105
-    t106 = t104 * c_base_elbow_backward_up_noflip
-    del c_base_elbow_backward_up_noflip, t104
-    t107 = t98 * s_base_elbow_backward_down_noflip
-    del s_base_elbow_backward_down_noflip, t98
-    slower_backward_up_noflip = t106 + t107
-    t108 = np.arctan2(clower_backward_up_noflip, -slower_backward_up_noflip)
-    t109 = _runtime.wrap_cut(t108) + t95
-    del t108
-    t110 = A_elbow_backward_up_noflip * S_elbow_backward_up_noflip
+    t96 = A_elbow_backward_up_noflip * C_elbow_backward_up_noflip
+    S_elbow_backward_up_noflip = t19 + r_elbow_backward_up_noflip
+    del r_elbow_backward_up_noflip, t19
+    B_elbow_backward_up_noflip = np.maximum(t89, 0.0)
+    del t89
+    t97 = S_elbow_backward_up_noflip * B_elbow_backward_up_noflip
+    t98 = 1.0 / (t96 + t97)
+    c_base_elbow_backward_up_noflip = _runtime.select(t95, 1.0, -((t96 - t97) * t98))
+    del t96, t97
+    t99 = t94 * c_base_elbow_backward_up_noflip
+    t100 = _runtime.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t93)
+    del t93, y_elbow
+    t101 = A_elbow_backward_up_noflip * S_elbow_backward_up_noflip
     del A_elbow_backward_up_noflip, S_elbow_backward_up_noflip
-    t111 = C_elbow_backward_up_noflip * B_elbow_backward_up_noflip
+    t102 = C_elbow_backward_up_noflip * B_elbow_backward_up_noflip
     del B_elbow_backward_up_noflip, C_elbow_backward_up_noflip
-    t112 = 1.0 / (t110 + t111)
-    celbow_backward_up_noflip = _runtime.select(no_link_elbow, 1.0, -((t110 - t111) * t112))
-    del t110, t111
-    t113 = s_forearm * celbow_backward_up_noflip
-    selbow_backward_down_noflip = _runtime.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip * t112)
-    del area_elbow_backward_up_noflip, t112
-    t114 = c_forearm * selbow_backward_down_noflip
-    t115 = t113 + t114
-    t116 = c_forearm * celbow_backward_up_noflip
+    area_elbow_backward_up_noflip = 2.0 * np.sqrt(t101 * t102)
+    s_base_elbow_backward_down_noflip = _runtime.select(t95, 0.0, t98 * area_elbow_backward_up_noflip)
+    del t95, t98
+    t103 = t100 * s_base_elbow_backward_down_noflip
+    clower_backward_up_noflip = t99 - t103
+    t104 = t100 * c_base_elbow_backward_up_noflip
+    del c_base_elbow_backward_up_noflip, t100
+    t105 = t94 * s_base_elbow_backward_down_noflip
+    del s_base_elbow_backward_down_noflip, t94
+    slower_backward_up_noflip = t104 + t105
+    t106 = np.arctan2(clower_backward_up_noflip, -slower_backward_up_noflip)
+    t107 = _runtime.wrap_cut(t106) + t91
+    del t106
+    t108 = 1.0 / (t101 + t102)
+    celbow_backward_up_noflip = _runtime.select(no_link_elbow, 1.0, -((t101 - t102) * t108))
+    del t101, t102
+    t109 = s_forearm * celbow_backward_up_noflip
+    selbow_backward_down_noflip = _runtime.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip * t108)
+    del area_elbow_backward_up_noflip, t108
+    t110 = c_forearm * selbow_backward_down_noflip
+    t111 = t109 + t110
+    t112 = c_forearm * celbow_backward_up_noflip
     del c_forearm, celbow_backward_up_noflip
-    t117 = s_forearm * selbow_backward_down_noflip
+    t113 = s_forearm * selbow_backward_down_noflip
     del s_forearm, selbow_backward_down_noflip
-    c3_backward_up_noflip = t116 - t117
-    t118 = _runtime.wrap_cut(-np.arctan2(t115, c3_backward_up_noflip))
-    t119 = t118 + t95
+    c3_backward_up_noflip = t112 - t113
+    t114 = _runtime.wrap_cut(-np.arctan2(t111, c3_backward_up_noflip))
+    t115 = t114 + t91
+    del t114
+    R1_33_backward_up_noflip = t51 + T23 * c1_backward_up_noflip
+    del t51
+    t116 = R1_33_backward_up_noflip * R1_33_backward_up_noflip
+    t117 = t53 - T13 * c1_backward_up_noflip
+    del t53
+    t118 = clower_backward_up_noflip * c3_backward_up_noflip
+    t119 = t118 + slower_backward_up_noflip * t111
     del t118
-    R1_33_backward_up_noflip = t54 + T23 * c1_backward_up_noflip
-    del t54
-    t120 = R1_33_backward_up_noflip * R1_33_backward_up_noflip
-    t121 = t56 - T13 * c1_backward_up_noflip
-    del t56
-    t122 = clower_backward_up_noflip * c3_backward_up_noflip
-    t123 = t122 + slower_backward_up_noflip * t115
-    del t122
-    t124 = slower_backward_up_noflip * c3_backward_up_noflip
+    t120 = slower_backward_up_noflip * c3_backward_up_noflip
     del c3_backward_up_noflip, slower_backward_up_noflip
-    t125 = t124 - clower_backward_up_noflip * t115
-    del clower_backward_up_noflip, t115, t124
-    t126 = t121 * t123 + T33 * t125
-    h_wrist_backward_up_noflip = np.sqrt(t120 + t126 * t126)
-    aligned_wrist_backward_up_noflip = h_wrist_backward_up_noflip <= t59
+    t121 = t120 - clower_backward_up_noflip * t111
+    del clower_backward_up_noflip, t111, t120
+    t122 = t117 * t119 + T33 * t121
+    h_wrist_backward_up_noflip = np.sqrt(t116 + t122 * t122)
+    aligned_wrist_backward_up_noflip = h_wrist_backward_up_noflip <= t56
     flip_wrist_backward_up_noflip = _runtime.select(aligned_wrist_backward_up_noflip, 0.0, 3.141592653589793)
-    t127 = 1.0 / h_wrist_backward_up_noflip
+    t123 = 1.0 / h_wrist_backward_up_noflip
     del h_wrist_backward_up_noflip
-    t128 = _runtime.select(aligned_wrist_backward_up_noflip, 0.0, R1_33_backward_up_noflip * t127)
-    c_wrist_backward_up_noflip = _runtime.select(aligned_wrist_backward_up_noflip, 1.0, -(t126 * t127))
+    t124 = _runtime.select(aligned_wrist_backward_up_noflip, 0.0, R1_33_backward_up_noflip * t123)
+    c_wrist_backward_up_noflip = _runtime.select(aligned_wrist_backward_up_noflip, 1.0, -(t122 * t123))
+    del t123
+    t125 = np.arctan2(t124, c_wrist_backward_up_noflip)
+    t126 = _runtime.wrap(flip_wrist_backward_up_noflip - t125)
+    t127 = t122 * c_wrist_backward_up_noflip - R1_33_backward_up_noflip * t124
+    del t122
+    t128 = np.arctan2(t127, t117 * t121 - T33 * t119)
     del t127
-    t129 = np.arctan2(t128, c_wrist_backward_up_noflip)
-    t130 = _runtime.wrap(flip_wrist_backward_up_noflip - t129)
-    t131 = t126 * c_wrist_backward_up_noflip - R1_33_backward_up_noflip * t128
-    del t126
-    t132 = np.arctan2(t131, t121 * t125 - T33 * t123)
-    del t131
-    t133 = t63 - T11 * c1_backward_up_noflip
-    del t63
-    R1_31_backward_up_noflip = t64 + T21 * c1_backward_up_noflip
+    t129 = t60 - T11 * c1_backward_up_noflip
+    del t60
+    R1_31_backward_up_noflip = t61 + T21 * c1_backward_up_noflip
+    del t61
+    t130 = R1_31_backward_up_noflip * c_wrist_backward_up_noflip
+    t131 = t64 - T12 * c1_backward_up_noflip
     del t64
-    t134 = R1_31_backward_up_noflip * c_wrist_backward_up_noflip
-    t135 = t67 - T12 * c1_backward_up_noflip
-    del t67
-    R1_32_backward_up_noflip = t66 + T22 * c1_backward_up_noflip
-    del c1_backward_up_noflip, t66
-    t136 = R1_32_backward_up_noflip * c_wrist_backward_up_noflip
+    R1_32_backward_up_noflip = t63 + T22 * c1_backward_up_noflip
+    del c1_backward_up_noflip, t63
+    t132 = R1_32_backward_up_noflip * c_wrist_backward_up_noflip
     del c_wrist_backward_up_noflip
-    t137 = np.arctan2(t128 * (t133 * t123 + T31 * t125) + t134, -(t128 * (t135 * t123 + T32 * t125) + t136))
-    del t123, t125, t128, t134, t136
-    t138 = _runtime.wrap(flip_wrist_backward_up_noflip - t137)
+    t133 = np.arctan2(t124 * (t129 * t119 + T31 * t121) + t130, -(t124 * (t131 * t119 + T32 * t121) + t132))
+    del t119, t121, t124, t130, t132
+    t134 = _runtime.wrap(flip_wrist_backward_up_noflip - t133)
     del flip_wrist_backward_up_noflip
-    clower_backward_down_noflip = t103 + t105
-    del t103, t105
-    slower_backward_down_noflip = t106 - t107
-    del t106, t107
-    t139 = np.arctan2(clower_backward_down_noflip, -slower_backward_down_noflip)
-    t140 = _runtime.wrap_cut(t139) + t95
-    del t139
-    t141 = t113 - t114
-    del t113, t114
-    c3_backward_down_noflip = t116 + t117
-    del t116, t117
-    t142 = _runtime.wrap_cut(np.arctan2(-t141, c3_backward_down_noflip))
-    t143 = t142 + t95
-    del t142
-    t144 = clower_backward_down_noflip * c3_backward_down_noflip
-    t145 = t144 + slower_backward_down_noflip * t141
-    del t144
-    t146 = slower_backward_down_noflip * c3_backward_down_noflip
+    clower_backward_down_noflip = t99 + t103
+    del t103, t99
+    slower_backward_down_noflip = t104 - t105
+    del t104, t105
+    t135 = np.arctan2(clower_backward_down_noflip, -slower_backward_down_noflip)
+    t136 = _runtime.wrap_cut(t135) + t91
+    del t135
+    t137 = t109 - t110
+    del t109, t110
+    c3_backward_down_noflip = t112 + t113
+    del t112, t113
+    t138 = _runtime.wrap_cut(np.arctan2(-t137, c3_backward_down_noflip))
+    t139 = t138 + t91
+    del t138
+    t140 = clower_backward_down_noflip * c3_backward_down_noflip
+    t141 = t140 + slower_backward_down_noflip * t137
+    del t140
+    t142 = slower_backward_down_noflip * c3_backward_down_noflip
     del c3_backward_down_noflip, slower_backward_down_noflip
-    t147 = t146 - clower_backward_down_noflip * t141
-    del clower_backward_down_noflip, t141, t146
-    t148 = t121 * t145 + T33 * t147
-    h_wrist_backward_down_noflip = np.sqrt(t120 + t148 * t148)
-    del t120
-    aligned_wrist_backward_down_noflip = h_wrist_backward_down_noflip <= t59
-    del t59
+    t143 = t142 - clower_backward_down_noflip * t137
+    del clower_backward_down_noflip, t137, t142
+    t144 = t117 * t141 + T33 * t143
+    h_wrist_backward_down_noflip = np.sqrt(t116 + t144 * t144)
+    del t116
+    aligned_wrist_backward_down_noflip = h_wrist_backward_down_noflip <= t56
+    del t56
     flip_wrist_backward_down_noflip = _runtime.select(aligned_wrist_backward_down_noflip, 0.0, 3.141592653589793)
-    t149 = 1.0 / h_wrist_backward_down_noflip
+    t145 = 1.0 / h_wrist_backward_down_noflip
     del h_wrist_backward_down_noflip
-    t150 = _runtime.select(aligned_wrist_backward_down_noflip, 0.0, R1_33_backward_up_noflip * t149)
-    c_wrist_backward_down_noflip = _runtime.select(aligned_wrist_backward_down_noflip, 1.0, -(t148 * t149))
-    del t149
-    t151 = np.arctan2(t150, c_wrist_backward_down_noflip)
-    t152 = _runtime.wrap(flip_wrist_backward_down_noflip - t151)
-    t153 = t148 * c_wrist_backward_down_noflip - R1_33_backward_up_noflip * t150
-    del R1_33_backward_up_noflip, t148
-    t154 = np.arctan2(t153, t121 * t147 - T33 * t145)
-    del t121, t153
-    t155 = R1_31_backward_up_noflip * c_wrist_backward_down_noflip
+    t146 = _runtime.select(aligned_wrist_backward_down_noflip, 0.0, R1_33_backward_up_noflip * t145)
+    c_wrist_backward_down_noflip = _runtime.select(aligned_wrist_backward_down_noflip, 1.0, -(t144 * t145))
+    del t145
+    t147 = np.arctan2(t146, c_wrist_backward_down_noflip)
+    t148 = _runtime.wrap(flip_wrist_backward_down_noflip - t147)
+    t149 = t144 * c_wrist_backward_down_noflip - R1_33_backward_up_noflip * t146
+    del R1_33_backward_up_noflip, t144
+    t150 = np.arctan2(t149, t117 * t143 - T33 * t141)
+    del t117, t149
+    t151 = R1_31_backward_up_noflip * c_wrist_backward_down_noflip
     del R1_31_backward_up_noflip
-    t156 = R1_32_backward_up_noflip * c_wrist_backward_down_noflip
+    t152 = R1_32_backward_up_noflip * c_wrist_backward_down_noflip
     del R1_32_backward_up_noflip, c_wrist_backward_down_noflip
-    t157 = np.arctan2(t150 * (t133 * t145 + T31 * t147) + t155, -(t150 * (t135 * t145 + T32 * t147) + t156))
-    del t133, t135, t145, t147, t150, t155, t156
-    t158 = _runtime.wrap(flip_wrist_backward_down_noflip - t157)
+    t153 = np.arctan2(t146 * (t129 * t141 + T31 * t143) + t151, -(t146 * (t131 * t141 + T32 * t143) + t152))
+    del t129, t131, t141, t143, t146, t151, t152
+    t154 = _runtime.wrap(flip_wrist_backward_down_noflip - t153)
     del flip_wrist_backward_down_noflip
-    t159 = free1 | no_link_elbow
+    t155 = free1 | no_link_elbow
     del free1, no_link_elbow
-    t160 = t159 | folded_elbow
+    t156 = t155 | folded_elbow
     del folded_elbow
-    t161 = _runtime.status(invalid, unreachable, t160 | aligned_wrist)
+    t157 = _runtime.status(invalid, unreachable, t156 | aligned_wrist)
     del aligned_wrist
-    t162 = _runtime.status(invalid, unreachable, t160 | aligned_wrist_facing_down_noflip)
-    del aligned_wrist_facing_down_noflip, t160, unreachable
-    t163 = t159 | folded_elbow_backward_up_noflip
-    del folded_elbow_backward_up_noflip, t159
-    t164 = _runtime.status(invalid, unreachable_2, t163 | aligned_wrist_backward_up_noflip)
+    t158 = _runtime.status(invalid, unreachable, t156 | aligned_wrist_facing_down_noflip)
+    del aligned_wrist_facing_down_noflip, t156, unreachable
+    t159 = t155 | folded_elbow_backward_up_noflip
+    del folded_elbow_backward_up_noflip, t155
+    t160 = _runtime.status(invalid, unreachable_2, t159 | aligned_wrist_backward_up_noflip)
     del aligned_wrist_backward_up_noflip
-    t165 = _runtime.status(invalid, unreachable_2, t163 | aligned_wrist_backward_down_noflip)
-    del aligned_wrist_backward_down_noflip, invalid, t163, unreachable_2
+    t161 = _runtime.status(invalid, unreachable_2, t159 | aligned_wrist_backward_down_noflip)
+    del aligned_wrist_backward_down_noflip, invalid, t159, unreachable_2
     return (
-        t30,
-        t43,
-        t53,
-        _runtime.wrap(flip_wrist + t61) + t29,
-        _runtime.wrap_cut(t62) + t29,
-        _runtime.wrap(flip_wrist - t69) + t29,
-        t30,
-        t43,
-        t53,
-        _runtime.wrap_cut(t61) + t29,
-        _runtime.wrap_cut(-t62) + t29,
-        _runtime.wrap_cut(-t69) + t29,
-        t30,
+        t27,
+        t42,
+        t50,
+        _runtime.wrap(flip_wrist + t58) + t26,
+        _runtime.wrap_cut(t59) + t26,
+        _runtime.wrap(flip_wrist - t66) + t26,
+        t27,
+        t42,
+        t50,
+        _runtime.wrap_cut(t58) + t26,
+        _runtime.wrap_cut(-t59) + t26,
+        _runtime.wrap_cut(-t66) + t26,
+        t27,
+        t68,
         t71,
-        t74,
-        t82 + t29,
-        _runtime.wrap_cut(t84) + t29,
-        t88 + t29,
-        t30,
+        t79 + t26,
+        _runtime.wrap_cut(t81) + t26,
+        t85 + t26,
+        t27,
+        t68,
         t71,
-        t74,
-        _runtime.wrap_cut(t81) + t29,
-        _runtime.wrap_cut(-t84) + t29,
-        _runtime.wrap_cut(-t87) + t29,
-        t96,
-        t109,
-        t119,
-        t130 + t95,
-        _runtime.wrap_cut(-t132) + t95,
-        t138 + t95,
-        t96,
-        t109,
-        t119,
-        _runtime.wrap_cut(-t129) + t95,
-        _runtime.wrap_cut(t132) + t95,
-        _runtime.wrap_cut(-t137) + t95,
-        t96,
-        t140,
-        t143,
-        t152 + t95,
-        _runtime.wrap_cut(-t154) + t95,
-        t158 + t95,
-        t96,
-        t140,
-        t143,
-        _runtime.wrap_cut(-t151) + t95,
-        _runtime.wrap_cut(t154) + t95,
-        _runtime.wrap_cut(-t157) + t95,
+        _runtime.wrap_cut(t78) + t26,
+        _runtime.wrap_cut(-t81) + t26,
+        _runtime.wrap_cut(-t84) + t26,
+        t92,
+        t107,
+        t115,
+        t126 + t91,
+        _runtime.wrap_cut(-t128) + t91,
+        t134 + t91,
+        t92,
+        t107,
+        t115,
+        _runtime.wrap_cut(-t125) + t91,
+        _runtime.wrap_cut(t128) + t91,
+        _runtime.wrap_cut(-t133) + t91,
+        t92,
+        t136,
+        t139,
+        t148 + t91,
+        _runtime.wrap_cut(-t150) + t91,
+        t154 + t91,
+        t92,
+        t136,
+        t139,
+        _runtime.wrap_cut(-t147) + t91,
+        _runtime.wrap_cut(t150) + t91,
+        _runtime.wrap_cut(-t153) + t91,
+        t157,
+        t157,
+        t158,
+        t158,
+        t160,
+        t160,
         t161,
         t161,
-        t162,
-        t162,
-        t164,
-        t164,
-        t165,
-        t165,
     )
 
 

@@ -127,3 +127,14 @@ def test_what_the_arm_does_not_reach_stays_unreachable(tmp_path: Path) -> None:
         aside = link(0, 0, 0, size) @ link(0, size, 0, np.array(0.0))
         _, status = module.ik(T @ aside)
         assert (status == UNREACHABLE).all(axis=-1).mean() > 0.99
+
+
+@pytest.mark.parametrize("rows", [ROLLING, POLAR], ids=["straight elbow", "slide drawn in"])
+def test_a_branch_that_is_far_out_of_reach_is_not_corrected(rows: list, tmp_path: Path) -> None:
+    """Nearly all targets lost time with a step for branches that it cannot bring to them."""
+    module = arm(rows, tmp_path)
+    T = pose(rows, np.random.default_rng(9).uniform(0.3, 2.8, (2000, len(rows))))
+    assert (module.ik(T).status == UNREACHABLE).any(axis=-1).mean() > 0.1
+    with np.errstate(all="ignore"):
+        *_, rare = module._IK.common(*T.reshape(-1, 16).T)
+    assert rare.mean() < 0.02

@@ -136,10 +136,12 @@ class CPrinter(Printer):
         """
         unused = self._unused_where.get(node.id)
         if unused is not None:
-            where = "1" if self.branch else self.single
             texts = [self.text[n.id] for n in unused]
             either = " | ".join(t.at(UNARY) for t in texts) if len(texts) > 1 else texts[0].code
-            safe = f"cf_divisor({where}, {either}, {divisor.code})"
+            if self.branch:
+                safe = f"cf_select({either}, CLOSEDFORM_C(1.0), {divisor.code})"
+            else:
+                safe = f"cf_divisor({self.single}, {either}, {divisor.code})"
             return Text(f"{dividend.at(PRODUCT)} / {safe}", PRODUCT)
         if self.branch:
             return super().div(node, dividend, divisor)

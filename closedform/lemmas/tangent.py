@@ -297,7 +297,9 @@ class Nearest(Goal):
     def reached(self, turn: Tangency) -> Reached:
         chain, at, suffix = turn.chain, turn.at, turn.suffix
         found = turn.pair(turn.root, turn.width)
-        tangent = nearly_tangent(chain.program, turn.root, chain.size, suffix)
+        # of which rounding changes the right side of the equation
+        scale = turn.allowance / ROUNDING
+        tangent = nearly_tangent(chain.program, turn.root, scale, suffix)
         near = self.nearest(
             Turn(
                 chain=chain,

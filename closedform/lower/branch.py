@@ -67,6 +67,8 @@ class Branch:
     """Conditions without which the target is UNREACHABLE."""
     singular: list[Node] = field(default_factory=list)
     """Conditions of which any one makes the answer SINGULAR."""
+    before: dict[int, tuple[Node, ...]] = field(default_factory=dict)
+    """For a flag, the conditions of ``reachable`` that do not depend on it."""
     unscaled: bool = False
     """Whether lengths are numbers, so that powers of a large target overflow."""
 
@@ -123,6 +125,7 @@ class Branch:
                 limit = self._tolerance("vanishing", statement.scale, statement.squares)
                 flag = self.graph.node("le", value, limit)
                 self._name(statement.symbol, flag)
+                self.before.setdefault(flag.id, tuple(self.reachable))
                 if statement.free:
                     self.singular.append(flag)
             case Determined():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -12,7 +12,7 @@ import sympy as sp
 
 from closedform.lower.branch import Branch, UnboundedAngleError, expressions_of, is_guarded
 from closedform.lower.build import Builder, angle_divisors
-from closedform.lower.common import common_case
+from closedform.lower.common import Earlier, common_case
 from closedform.lower.degrees import NUMBERS, Degrees, degrees
 from closedform.lower.edge import within_edge
 from closedform.lower.graph import Graph, Node, inverse_power_of_two, reachable
@@ -229,19 +229,22 @@ def _lower(
     leaves = {s: graph.input(s.name) for s in (*function.symbols, *parameters)}
     divisors = angle_divisors([*expressions_of(function), *(e for e, _ in entries)])
     names: dict[int, str] = {}
+    before: Earlier = defaultdict(set)
     rows = []
     ranges = _ranges(function, derivation, signs)
     for label, chosen in cases:
         build = Builder(graph, leaves, divisors)
         branch = Branch(function, derivation, build, names, label, signs, ranges, unscaled=unscaled)
         rows.append(branch.lowered(chosen, entries))
+        for flag, conditions in branch.before.items():
+            before[flag].add(conditions)
     nodes = [tuple(n for row in rows for n in row[0][k]) for k in range(len(function.outputs))]
     nodes.append(tuple(row[1] for row in rows))
     results = [replace(r, nodes=n) for r, n in zip(results_of(function), nodes, strict=False)]
 
     finish = partial(_finished, function, [p.name for p in parameters], graph, ranges)
     whole = finish(results=results, names=names)
-    images, rare, kept = common_case(graph, [n for r in results for n in r.nodes], names)
+    images, rare, kept = common_case(graph, [n for r in results for n in r.nodes], names, before)
     flat = iter(images)
     plain = [replace(r, nodes=tuple(islice(flat, len(r.nodes)))) for r in results]
     plain.append(Result("rare", (), "bool", (rare,)))

@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 543 compare and select, 361 add, 23 atan2, 36 divide, 591 multiply, 1 sincos, 52 sqrt
+#   ik: 543 compare and select, 362 add, 23 atan2, 36 divide, 593 multiply, 1 sincos, 52 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder.  The axis of theta4, the elbow, is
@@ -1063,702 +1063,704 @@ def _ik(
     t37 = ops.max(t25, 0.0) * ops.max(t26, 0.0)
     t38 = size * 4.0
     lever_elbow = 2.0 * ops.sqrt(t36 * t37) / t38
-    t39 = ops.vanishing * size
-    tangent_elbow = lever_elbow - size * 0.00390625 <= t39
-    t40 = size * 2.0
-    t41 = 1.0 / t40
-    t42 = t41 * t36
-    span_elbow = t41 * (t36 + t37)
-    t43 = 1.0 / span_elbow
-    t44 = (t42 - t41 * t37) * t43
+    t39 = size * ops.rounding
+    t40 = lever_elbow - (t39 * 0.00390625 + far * 0.00390625)
+    t41 = t39 + far
+    tangent_elbow = t40 <= ops.vanishing * t41
+    t42 = size * 2.0
+    t43 = 1.0 / t42
+    t44 = t43 * t36
+    span_elbow = t43 * (t36 + t37)
+    t45 = 1.0 / span_elbow
+    t46 = (t44 - t43 * t37) * t45
     height6 = ops.abs(w_y)
-    t45 = height6 < reach
-    t46 = ops.select(t45, -t32, level_s_elbow)
-    t47 = t46 * t44
-    t48 = ops.select(t45, level_s_elbow, t32)
-    s__elbow_1_over_ahead_front = t43 * (2.0 * lever_elbow)
-    t49 = t48 * s__elbow_1_over_ahead_front
-    t50 = t47 + t49
-    t51 = c_straight * t44
-    t52 = s_straight * s__elbow_1_over_ahead_front
-    t53 = t51 + t52
-    t54 = s_straight * t44
-    t55 = c_straight * s__elbow_1_over_ahead_front
-    t56 = t54 - t55
-    q__elbow_1 = ops.select(t45, a5 + a4 * t53 - d3 * t56, d3 * t53 - (d5 - a4 * t56))
+    t47 = height6 < reach
+    t48 = ops.select(t47, -t32, level_s_elbow)
+    t49 = t48 * t46
+    t50 = ops.select(t47, level_s_elbow, t32)
+    s__elbow_1_over_ahead_front = t45 * (2.0 * lever_elbow)
+    t51 = t50 * s__elbow_1_over_ahead_front
+    t52 = t49 + t51
+    t53 = c_straight * t46
+    t54 = s_straight * s__elbow_1_over_ahead_front
+    t55 = t53 + t54
+    t56 = s_straight * t46
+    t57 = c_straight * s__elbow_1_over_ahead_front
+    t58 = t56 - t57
+    q__elbow_1 = ops.select(t47, a5 + a4 * t55 - d3 * t58, d3 * t55 - (d5 - a4 * t58))
     size__elbow_1 = ops.abs(q__elbow_1)
-    t57 = size * ops.rounding
-    t58 = ops.select(t45, height6, 0.0) - t57
-    t59 = t57 + ops.select(t45, size, reach)
-    t60 = size__elbow_1 - ops.max(t58, ops.min(size__elbow_1, t59))
-    t61 = ops.sign(q__elbow_1)
-    t62 = t60 * t61
-    t63 = t48 * t44
-    t64 = t46 * s__elbow_1_over_ahead_front
-    t65 = t62 - 2.0 * (t63 - t64)
-    inner__elbow_1 = t50 * t50 - t62 * t65
-    t66 = inner__elbow_1 < 0.0
-    t67 = ops.sign(-t50)
-    t68 = t50 - t67 * ops.sqrt(ops.max(0.0, inner__elbow_1))
-    t69 = ops.select(t66, t65, t68)
-    t70 = ops.select(t66, t50, t62)
-    t71 = ops.abs(t69) <= ops.abs(t70)
-    half__elbow_1 = ops.select(t71, 0.0, t70 / t69)
-    t72 = half__elbow_1 * half__elbow_1
-    t73 = 1.0 / (1.0 + t72)
-    by_s__elbow_1 = 2.0 * half__elbow_1 * t73
-    t74 = ops.abs(span_elbow * 0.5 - t42)
-    by_c__elbow_1 = t73 * (1.0 - t72)
-    t75 = by_s__elbow_1 * by_s__elbow_1 / (1.0 + ops.abs(by_c__elbow_1))
-    versine__elbow_1 = ops.select(0.0 < by_c__elbow_1, t75, 1.0 - by_c__elbow_1)
-    cost__elbow_1 = lever_elbow * ops.abs(by_s__elbow_1) + t74 * versine__elbow_1
-    whole__elbow_1 = ops.rounding * (t57 + far)
-    t76 = cost__elbow_1 <= whole__elbow_1
-    sine__elbow_1 = ops.select(t76, by_s__elbow_1, 0.0)
-    cosine__elbow_1 = ops.select(t76, by_c__elbow_1, 1.0)
-    t77 = s__elbow_1_over_ahead_front * cosine__elbow_1
-    t78 = ops.select(tangent_elbow, t44 * sine__elbow_1 + t77, s__elbow_1_over_ahead_front)
-    selbow = ops.select(no_link_elbow, t35, -t78)
-    t79 = ops.select(t33, 1.0, level_s_elbow * t34)
-    t80 = t44 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
-    celbow = ops.select(no_link_elbow, t79, -ops.select(tangent_elbow, t80, t44))
-    t81 = c_straight * selbow - s_straight * celbow
-    t82 = c_straight * celbow + s_straight * selbow
-    t83 = d5 - a4 * t81 + d3 * t82
-    t84 = reach + t83
-    t85 = reach - t83
-    t86 = t27 & (-t13 <= t84) & (-t13 <= t85)
-    t87 = ops.max(reach * 1.52587890625e-05, ops.min(reach * 0.25, t57 * 8.0))
-    t88 = reach * t87
-    t89 = ops.vanishing * ops.vanishing * (reach * reach)
-    tangent6 = ops.abs(t84 * t85) - t88 <= t89
-    free6 = reach <= t39
-    v_x = a5 - a4 * t82 - d3 * t81
-    t90 = ops.abs(v_x)
-    t91 = t90 < reach
-    t92 = ops.max(0.0, -((height6 - t90) * (height6 + t90)))
-    below6 = ops.max(t84, 0.0)
-    above6 = ops.max(t85, 0.0)
-    t93 = below6 * above6
-    held6 = ops.select(t91, t92, t93)
-    t94 = below6 - above6
-    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t94 * t94), below6 + above6)
-    t95 = 1.0 / (reach * span6)
-    t96 = u_x * 2.0
-    kept6 = ops.select(tangent6, ops.sqrt(held6), ops.sqrt(t93))
-    t97 = t95 * (t96 * kept6)
-    t98 = t95 * (s_z * t94)
-    c6 = ops.select(free6, 1.0, t97 + t98)
-    t99 = s_z * 2.0
-    t100 = t99 * kept6 * t95
-    t101 = t95 * (u_x * t94)
-    s6 = ops.select(free6, 0.0, t100 - t101)
+    t59 = ops.select(t47, height6, 0.0) - t39
+    t60 = t39 + ops.select(t47, size, reach)
+    t61 = size__elbow_1 - ops.max(t59, ops.min(size__elbow_1, t60))
+    t62 = ops.sign(q__elbow_1)
+    t63 = t61 * t62
+    t64 = t50 * t46
+    t65 = t48 * s__elbow_1_over_ahead_front
+    t66 = t63 - 2.0 * (t64 - t65)
+    inner__elbow_1 = t52 * t52 - t63 * t66
+    t67 = inner__elbow_1 < 0.0
+    t68 = ops.sign(-t52)
+    t69 = t52 - t68 * ops.sqrt(ops.max(0.0, inner__elbow_1))
+    t70 = ops.select(t67, t66, t69)
+    t71 = ops.select(t67, t52, t63)
+    t72 = ops.abs(t70) <= ops.abs(t71)
+    half__elbow_1 = ops.select(t72, 0.0, t71 / t70)
+    t73 = half__elbow_1 * half__elbow_1
+    t74 = 1.0 / (1.0 + t73)
+    by_s__elbow_1 = 2.0 * half__elbow_1 * t74
+    t75 = ops.abs(span_elbow * 0.5 - t44)
+    by_c__elbow_1 = t74 * (1.0 - t73)
+    t76 = by_s__elbow_1 * by_s__elbow_1 / (1.0 + ops.abs(by_c__elbow_1))
+    versine__elbow_1 = ops.select(0.0 < by_c__elbow_1, t76, 1.0 - by_c__elbow_1)
+    cost__elbow_1 = lever_elbow * ops.abs(by_s__elbow_1) + t75 * versine__elbow_1
+    whole__elbow_1 = ops.rounding * t41
+    t77 = cost__elbow_1 <= whole__elbow_1
+    sine__elbow_1 = ops.select(t77, by_s__elbow_1, 0.0)
+    cosine__elbow_1 = ops.select(t77, by_c__elbow_1, 1.0)
+    t78 = s__elbow_1_over_ahead_front * cosine__elbow_1
+    t79 = ops.select(tangent_elbow, t46 * sine__elbow_1 + t78, s__elbow_1_over_ahead_front)
+    selbow = ops.select(no_link_elbow, t35, -t79)
+    t80 = ops.select(t33, 1.0, level_s_elbow * t34)
+    t81 = t46 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
+    celbow = ops.select(no_link_elbow, t80, -ops.select(tangent_elbow, t81, t46))
+    t82 = c_straight * selbow - s_straight * celbow
+    t83 = c_straight * celbow + s_straight * selbow
+    t84 = d5 - a4 * t82 + d3 * t83
+    t85 = reach + t84
+    t86 = reach - t84
+    t87 = t27 & (-t13 <= t85) & (-t13 <= t86)
+    t88 = ops.max(reach * 1.52587890625e-05, ops.min(reach * 0.25, t39 * 8.0))
+    t89 = reach * t88
+    t90 = ops.vanishing * ops.vanishing * (reach * reach)
+    tangent6 = ops.abs(t85 * t86) - t89 <= t90
+    t91 = ops.vanishing * size
+    free6 = reach <= t91
+    v_x = a5 - a4 * t83 - d3 * t82
+    t92 = ops.abs(v_x)
+    t93 = t92 < reach
+    t94 = ops.max(0.0, -((height6 - t92) * (height6 + t92)))
+    below6 = ops.max(t85, 0.0)
+    above6 = ops.max(t86, 0.0)
+    t95 = below6 * above6
+    held6 = ops.select(t93, t94, t95)
+    t96 = below6 - above6
+    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t96 * t96), below6 + above6)
+    t97 = 1.0 / (reach * span6)
+    t98 = u_x * 2.0
+    kept6 = ops.select(tangent6, ops.sqrt(held6), ops.sqrt(t95))
+    t99 = t97 * (t98 * kept6)
+    t100 = t97 * (s_z * t96)
+    c6 = ops.select(free6, 1.0, t99 + t100)
+    t101 = s_z * 2.0
+    t102 = t101 * kept6 * t97
+    t103 = t97 * (u_x * t96)
+    s6 = ops.select(free6, 0.0, t102 - t103)
     w_x = u_x * c6 + s_z * s6
-    t102 = ops.sqrt(t20 + w_x * w_x)
-    t103 = ops.sqrt(v_x * v_x)
-    t104 = ops.abs(ops.select(tangent6, t102 - t103, 0.0))
-    unreachable = ops.opposite(t86 & (t104 <= t13))
+    t104 = ops.sqrt(t20 + w_x * w_x)
+    t105 = ops.sqrt(v_x * v_x)
+    t106 = ops.abs(ops.select(tangent6, t104 - t105, 0.0))
+    unreachable = ops.opposite(t87 & (t106 <= t13))
     failed = invalid | unreachable
     R1_11 = T11 * c_x_theta7 - T12 * s_x_theta7
-    on_axis_5 = ops.min(t103, t102) <= t39
+    on_axis_5 = ops.min(t105, t104) <= t91
     dot_5 = v_x * w_x
-    t105 = w_y * v_x
-    t106 = t105 * t105
-    t107 = 1.0 / ops.sqrt(t106 + dot_5 * dot_5)
-    c5 = ops.select(on_axis_5, 1.0, dot_5 * t107)
+    t107 = w_y * v_x
+    t108 = t107 * t107
+    t109 = 1.0 / ops.sqrt(t108 + dot_5 * dot_5)
+    c5 = ops.select(on_axis_5, 1.0, dot_5 * t109)
     R1_13 = T11 * s_x_theta7 + T12 * c_x_theta7
-    t108 = ops.select(on_axis_5, 0.0, t105 * t107)
-    t109 = t81 * (c5 * (R1_11 * c6 + T13 * s6) - R1_13 * t108)
-    R4_13 = t82 * (R1_11 * s6 - T13 * c6) + t109
+    t110 = ops.select(on_axis_5, 0.0, t107 * t109)
+    t111 = t82 * (c5 * (R1_11 * c6 + T13 * s6) - R1_13 * t110)
+    R4_13 = t83 * (R1_11 * s6 - T13 * c6) + t111
     R1_21 = T21 * c_x_theta7 - T22 * s_x_theta7
     R1_23 = T21 * s_x_theta7 + T22 * c_x_theta7
-    t110 = t81 * (c5 * (R1_21 * c6 + T23 * s6) - R1_23 * t108)
-    R4_23 = t82 * (R1_21 * s6 - T23 * c6) + t110
-    t111 = ops.vanishing * 16.0
-    aligned_wrist = ops.sqrt(R4_13 * R4_13 + R4_23 * R4_23) <= t111
-    t112 = ops.opposite(failed)
-    c6_bent_behind_front = ops.select(free6, 1.0, t98 - t97)
-    t113 = ops.select(free6, 0.0, t100 + t101)
-    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t113
-    t114 = w_x_bent_behind_front * w_x_bent_behind_front
-    t115 = ops.sqrt(t20 + t114)
-    t116 = ops.abs(ops.select(tangent6, t115 - t103, 0.0))
-    unreachable_2 = ops.opposite(t86 & (t116 <= t13))
+    t112 = t82 * (c5 * (R1_21 * c6 + T23 * s6) - R1_23 * t110)
+    R4_23 = t83 * (R1_21 * s6 - T23 * c6) + t112
+    t113 = ops.vanishing * 16.0
+    aligned_wrist = ops.sqrt(R4_13 * R4_13 + R4_23 * R4_23) <= t113
+    t114 = ops.opposite(failed)
+    c6_bent_behind_front = ops.select(free6, 1.0, t100 - t99)
+    t115 = ops.select(free6, 0.0, t102 + t103)
+    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t115
+    t116 = w_x_bent_behind_front * w_x_bent_behind_front
+    t117 = ops.sqrt(t20 + t116)
+    t118 = ops.abs(ops.select(tangent6, t117 - t105, 0.0))
+    unreachable_2 = ops.opposite(t87 & (t118 <= t13))
     failed_2 = invalid | unreachable_2
-    t117 = ops.opposite(failed_2)
-    t118 = t112 | t117
-    t119 = t47 - t49
-    t120 = t51 - t52
-    t121 = t54 + t55
-    q__elbow_1_over_ahead_front = ops.select(t45, a5 + a4 * t120 - d3 * t121, d3 * t120 - (d5 - a4 * t121))
+    t119 = ops.opposite(failed_2)
+    t120 = t114 | t119
+    t121 = t49 - t51
+    t122 = t53 - t54
+    t123 = t56 + t57
+    q__elbow_1_over_ahead_front = ops.select(t47, a5 + a4 * t122 - d3 * t123, d3 * t122 - (d5 - a4 * t123))
     size__elbow_1_over_ahead_front = ops.abs(q__elbow_1_over_ahead_front)
-    t122 = ops.max(t58, ops.min(size__elbow_1_over_ahead_front, t59))
-    t123 = ops.sign(q__elbow_1_over_ahead_front)
-    t124 = (size__elbow_1_over_ahead_front - t122) * t123
-    t125 = t124 - 2.0 * (t63 + t64)
-    inner__elbow_1_over_ahead_front = t119 * t119 - t124 * t125
-    t126 = inner__elbow_1_over_ahead_front < 0.0
-    t127 = ops.sign(-t119)
-    t128 = ops.max(0.0, inner__elbow_1_over_ahead_front)
-    t129 = ops.select(t126, t125, t119 - t127 * ops.sqrt(t128))
-    t130 = ops.select(t126, t119, t124)
-    t131 = ops.abs(t129) <= ops.abs(t130)
-    half__elbow_1_over_ahead_front = ops.select(t131, 0.0, t130 / t129)
-    t132 = half__elbow_1_over_ahead_front * half__elbow_1_over_ahead_front
-    t133 = 1.0 / (1.0 + t132)
-    by_s__elbow_1_over_ahead_front = 2.0 * half__elbow_1_over_ahead_front * t133
-    t134 = lever_elbow * ops.abs(by_s__elbow_1_over_ahead_front)
-    by_c__elbow_1_over_ahead_front = t133 * (1.0 - t132)
-    t135 = by_s__elbow_1_over_ahead_front * by_s__elbow_1_over_ahead_front
-    t136 = 1.0 + ops.abs(by_c__elbow_1_over_ahead_front)
-    versine__elbow_1_over_ahead_front = ops.select(0.0 < by_c__elbow_1_over_ahead_front, t135 / t136, 1.0 - by_c__elbow_1_over_ahead_front)
-    cost__elbow_1_over_ahead_front = t134 + t74 * versine__elbow_1_over_ahead_front
-    t137 = cost__elbow_1_over_ahead_front <= whole__elbow_1
-    cosine__elbow_1_over_ahead_front = ops.select(t137, by_c__elbow_1_over_ahead_front, 1.0)
-    t138 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
-    sine__elbow_1_over_ahead_front = ops.select(t137, by_s__elbow_1_over_ahead_front, 0.0)
-    t139 = ops.select(tangent_elbow, t138 - t44 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
-    selbow_over_ahead_front = ops.select(no_link_elbow, t35, t139)
-    t140 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
-    t141 = t44 * cosine__elbow_1_over_ahead_front + t140
-    celbow_over_ahead_front = ops.select(no_link_elbow, t79, -ops.select(tangent_elbow, t141, t44))
-    t142 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
-    t143 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
-    t144 = d5 - a4 * t142 + d3 * t143
-    t145 = reach + t144
-    t146 = reach - t144
-    t147 = t27 & (-t13 <= t145) & (-t13 <= t146)
-    tangent6_over_ahead_front = ops.abs(t145 * t146) - t88 <= t89
-    v_x_over_ahead_front = a5 - a4 * t143 - d3 * t142
-    t148 = ops.abs(v_x_over_ahead_front)
-    t149 = t148 < reach
-    t150 = ops.max(0.0, -((height6 - t148) * (height6 + t148)))
-    below6_over_ahead_front = ops.max(t145, 0.0)
-    above6_over_ahead_front = ops.max(t146, 0.0)
-    t151 = below6_over_ahead_front * above6_over_ahead_front
-    held6_over_ahead_front = ops.select(t149, t150, t151)
-    t152 = below6_over_ahead_front - above6_over_ahead_front
-    t153 = ops.sqrt(4.0 * held6_over_ahead_front + t152 * t152)
+    t124 = ops.max(t59, ops.min(size__elbow_1_over_ahead_front, t60))
+    t125 = ops.sign(q__elbow_1_over_ahead_front)
+    t126 = (size__elbow_1_over_ahead_front - t124) * t125
+    t127 = t126 - 2.0 * (t64 + t65)
+    inner__elbow_1_over_ahead_front = t121 * t121 - t126 * t127
+    t128 = inner__elbow_1_over_ahead_front < 0.0
+    t129 = ops.sign(-t121)
+    t130 = ops.max(0.0, inner__elbow_1_over_ahead_front)
+    t131 = ops.select(t128, t127, t121 - t129 * ops.sqrt(t130))
+    t132 = ops.select(t128, t121, t126)
+    t133 = ops.abs(t131) <= ops.abs(t132)
+    half__elbow_1_over_ahead_front = ops.select(t133, 0.0, t132 / t131)
+    t134 = half__elbow_1_over_ahead_front * half__elbow_1_over_ahead_front
+    t135 = 1.0 / (1.0 + t134)
+    by_s__elbow_1_over_ahead_front = 2.0 * half__elbow_1_over_ahead_front * t135
+    t136 = lever_elbow * ops.abs(by_s__elbow_1_over_ahead_front)
+    by_c__elbow_1_over_ahead_front = t135 * (1.0 - t134)
+    t137 = by_s__elbow_1_over_ahead_front * by_s__elbow_1_over_ahead_front
+    t138 = 1.0 + ops.abs(by_c__elbow_1_over_ahead_front)
+    versine__elbow_1_over_ahead_front = ops.select(0.0 < by_c__elbow_1_over_ahead_front, t137 / t138, 1.0 - by_c__elbow_1_over_ahead_front)
+    cost__elbow_1_over_ahead_front = t136 + t75 * versine__elbow_1_over_ahead_front
+    t139 = cost__elbow_1_over_ahead_front <= whole__elbow_1
+    cosine__elbow_1_over_ahead_front = ops.select(t139, by_c__elbow_1_over_ahead_front, 1.0)
+    t140 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
+    sine__elbow_1_over_ahead_front = ops.select(t139, by_s__elbow_1_over_ahead_front, 0.0)
+    t141 = ops.select(tangent_elbow, t140 - t46 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
+    selbow_over_ahead_front = ops.select(no_link_elbow, t35, t141)
+    t142 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
+    t143 = t46 * cosine__elbow_1_over_ahead_front + t142
+    celbow_over_ahead_front = ops.select(no_link_elbow, t80, -ops.select(tangent_elbow, t143, t46))
+    t144 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
+    t145 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
+    t146 = d5 - a4 * t144 + d3 * t145
+    t147 = reach + t146
+    t148 = reach - t146
+    t149 = t27 & (-t13 <= t147) & (-t13 <= t148)
+    tangent6_over_ahead_front = ops.abs(t147 * t148) - t89 <= t90
+    v_x_over_ahead_front = a5 - a4 * t145 - d3 * t144
+    t150 = ops.abs(v_x_over_ahead_front)
+    t151 = t150 < reach
+    t152 = ops.max(0.0, -((height6 - t150) * (height6 + t150)))
+    below6_over_ahead_front = ops.max(t147, 0.0)
+    above6_over_ahead_front = ops.max(t148, 0.0)
+    t153 = below6_over_ahead_front * above6_over_ahead_front
+    held6_over_ahead_front = ops.select(t151, t152, t153)
+    t154 = below6_over_ahead_front - above6_over_ahead_front
+    t155 = ops.sqrt(4.0 * held6_over_ahead_front + t154 * t154)
     width6_over_ahead_front = below6_over_ahead_front + above6_over_ahead_front
-    span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t153, width6_over_ahead_front)
-    t154 = 1.0 / (reach * span6_over_ahead_front)
-    kept6_over_ahead_front = ops.select(tangent6_over_ahead_front, ops.sqrt(held6_over_ahead_front), ops.sqrt(t151))
-    t155 = t154 * (t96 * kept6_over_ahead_front)
-    t156 = t154 * (s_z * t152)
-    c6_over_ahead_front = ops.select(free6, 1.0, t155 + t156)
-    t157 = t99 * kept6_over_ahead_front * t154
-    t158 = t154 * (u_x * t152)
-    s6_over_ahead_front = ops.select(free6, 0.0, t157 - t158)
+    span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t155, width6_over_ahead_front)
+    t156 = 1.0 / (reach * span6_over_ahead_front)
+    kept6_over_ahead_front = ops.select(tangent6_over_ahead_front, ops.sqrt(held6_over_ahead_front), ops.sqrt(t153))
+    t157 = t156 * (t98 * kept6_over_ahead_front)
+    t158 = t156 * (s_z * t154)
+    c6_over_ahead_front = ops.select(free6, 1.0, t157 + t158)
+    t159 = t101 * kept6_over_ahead_front * t156
+    t160 = t156 * (u_x * t154)
+    s6_over_ahead_front = ops.select(free6, 0.0, t159 - t160)
     w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
-    t159 = t20 + w_x_over_ahead_front * w_x_over_ahead_front
-    t160 = ops.sqrt(t159)
-    t161 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
-    t162 = ops.select(tangent6_over_ahead_front, t160 - t161, 0.0)
-    unreachable_3 = ops.opposite(t147 & (ops.abs(t162) <= t13))
+    t161 = t20 + w_x_over_ahead_front * w_x_over_ahead_front
+    t162 = ops.sqrt(t161)
+    t163 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    t164 = ops.select(tangent6_over_ahead_front, t162 - t163, 0.0)
+    unreachable_3 = ops.opposite(t149 & (ops.abs(t164) <= t13))
     failed_3 = invalid | unreachable_3
-    t163 = ops.opposite(failed_3)
-    c6_over_behind_front = ops.select(free6, 1.0, t156 - t155)
-    t164 = ops.select(free6, 0.0, t157 + t158)
-    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t164
-    t165 = w_x_over_behind_front * w_x_over_behind_front
-    t166 = ops.sqrt(t20 + t165)
-    t167 = ops.select(tangent6_over_ahead_front, t166 - t161, 0.0)
-    unreachable_4 = ops.opposite(t147 & (ops.abs(t167) <= t13))
+    t165 = ops.opposite(failed_3)
+    c6_over_behind_front = ops.select(free6, 1.0, t158 - t157)
+    t166 = ops.select(free6, 0.0, t159 + t160)
+    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t166
+    t167 = w_x_over_behind_front * w_x_over_behind_front
+    t168 = ops.sqrt(t20 + t167)
+    t169 = ops.select(tangent6_over_ahead_front, t168 - t163, 0.0)
+    unreachable_4 = ops.opposite(t149 & (ops.abs(t169) <= t13))
     failed_4 = invalid | unreachable_4
-    t168 = ops.opposite(failed_4)
-    t169 = t118 | t163 | t168
-    t170 = t163 | t168
-    t171 = ops.opposite(no_link_elbow)
-    t172 = t170 & t171
-    t173 = t172 & tangent_elbow & t137
-    t174 = t173 & ops.opposite(t131)
-    t175 = (t170 & no_link_elbow) | (t118 & no_link_elbow)
-    t176 = t175 & ops.opposite(t33)
-    t177 = t118 & t171
-    t178 = t177 & tangent_elbow & t76
-    t179 = t178 & ops.opposite(t71)
-    t180 = (t169 | t174 | t176 | t179) & ops.opposite(no_straight)
-    t181 = ops.select(t180, ops.sqrt(ops.select(t180, t30, 1.0)), 1.0)
-    t182 = 1.0 / t181
-    c_straight_2 = ops.select(no_straight, 1.0, -(t28 * t182))
-    s_straight_2 = ops.select(no_straight, 0.0, t29 * t182)
+    t170 = ops.opposite(failed_4)
+    t171 = t120 | t165 | t170
+    t172 = t165 | t170
+    t173 = ops.opposite(no_link_elbow)
+    t174 = t172 & t173
+    t175 = t174 & tangent_elbow & t139
+    t176 = t175 & ops.opposite(t133)
+    t177 = (t172 & no_link_elbow) | (t120 & no_link_elbow)
+    t178 = t177 & ops.opposite(t33)
+    t179 = t120 & t173
+    t180 = t179 & tangent_elbow & t77
+    t181 = t180 & ops.opposite(t72)
+    t182 = (t171 | t176 | t178 | t181) & ops.opposite(no_straight)
+    t183 = ops.select(t182, ops.sqrt(ops.select(t182, t30, 1.0)), 1.0)
+    t184 = 1.0 / t183
+    c_straight_2 = ops.select(no_straight, 1.0, -(t28 * t184))
+    s_straight_2 = ops.select(no_straight, 0.0, t29 * t184)
     level_s_elbow_2 = a4 * c_straight_2 - d3 * s_straight_2
-    t183 = a4 * s_straight_2 + d3 * c_straight_2
-    t184 = t183 * t183 + level_s_elbow_2 * level_s_elbow_2
-    t185 = ops.select(t176, ops.sqrt(ops.select(t176, t184, 1.0)), 1.0)
-    t186 = 1.0 / t185
-    t187 = ops.select(t33, 1.0, level_s_elbow_2 * t186)
-    t188 = t172 | t174 | t177 | t179
-    t189 = 1.0 / ops.select(t188, t40, 1.0)
-    upper_2 = ops.sqrt(ops.select(t188, t14, 1.0))
-    fore_2 = ops.sqrt(ops.select(t188, t15, 1.0))
-    t190 = upper_2 + fore_2
-    far_2 = ops.sqrt(ops.select(t188, t22, 1.0))
-    t191 = (t190 + far_2) * ops.max(t190 - far_2, 0.0)
-    t192 = upper_2 - fore_2
-    t193 = ops.max(t192 + far_2, 0.0) * ops.max(far_2 - t192, 0.0)
-    t194 = 1.0 / ops.select(t188, t189 * (t191 + t193), 1.0)
-    t195 = (t189 * t191 - t189 * t193) * t194
-    t196 = ops.select(t45, -t183, level_s_elbow_2)
-    t197 = t196 * t195
-    t198 = ops.select(t45, level_s_elbow_2, t183)
-    area_elbow = 2.0 * ops.sqrt(ops.select(t188, t191 * t193, 1.0))
-    t199 = 2.0 * (area_elbow / ops.select(t188, t38, 1.0))
-    s__elbow_1_over_ahead_front_2 = t194 * t199
-    t200 = t198 * s__elbow_1_over_ahead_front_2
-    t201 = t197 + t200
-    t202 = c_straight_2 * t195
-    t203 = s_straight_2 * s__elbow_1_over_ahead_front_2
-    t204 = t202 + t203
-    t205 = s_straight_2 * t195
-    t206 = c_straight_2 * s__elbow_1_over_ahead_front_2
-    t207 = t205 - t206
-    q__elbow_1_2 = ops.select(t45, a5 + a4 * t204 - d3 * t207, d3 * t204 - (d5 - a4 * t207))
+    t185 = a4 * s_straight_2 + d3 * c_straight_2
+    t186 = t185 * t185 + level_s_elbow_2 * level_s_elbow_2
+    t187 = ops.select(t178, ops.sqrt(ops.select(t178, t186, 1.0)), 1.0)
+    t188 = 1.0 / t187
+    t189 = ops.select(t33, 1.0, level_s_elbow_2 * t188)
+    t190 = t174 | t176 | t179 | t181
+    t191 = 1.0 / ops.select(t190, t42, 1.0)
+    upper_2 = ops.sqrt(ops.select(t190, t14, 1.0))
+    fore_2 = ops.sqrt(ops.select(t190, t15, 1.0))
+    t192 = upper_2 + fore_2
+    far_2 = ops.sqrt(ops.select(t190, t22, 1.0))
+    t193 = (t192 + far_2) * ops.max(t192 - far_2, 0.0)
+    t194 = upper_2 - fore_2
+    t195 = ops.max(t194 + far_2, 0.0) * ops.max(far_2 - t194, 0.0)
+    t196 = 1.0 / ops.select(t190, t191 * (t193 + t195), 1.0)
+    t197 = (t191 * t193 - t191 * t195) * t196
+    t198 = ops.select(t47, -t185, level_s_elbow_2)
+    t199 = t198 * t197
+    t200 = ops.select(t47, level_s_elbow_2, t185)
+    area_elbow = 2.0 * ops.sqrt(ops.select(t190, t193 * t195, 1.0))
+    t201 = 2.0 * (area_elbow / ops.select(t190, t38, 1.0))
+    s__elbow_1_over_ahead_front_2 = t196 * t201
+    t202 = t200 * s__elbow_1_over_ahead_front_2
+    t203 = t199 + t202
+    t204 = c_straight_2 * t197
+    t205 = s_straight_2 * s__elbow_1_over_ahead_front_2
+    t206 = t204 + t205
+    t207 = s_straight_2 * t197
+    t208 = c_straight_2 * s__elbow_1_over_ahead_front_2
+    t209 = t207 - t208
+    q__elbow_1_2 = ops.select(t47, a5 + a4 * t206 - d3 * t209, d3 * t206 - (d5 - a4 * t209))
     size__elbow_1_2 = ops.abs(q__elbow_1_2)
-    t208 = ops.opposite(free6)
-    t209 = (t168 & t208) | (t163 & t208)
-    t210 = t209 & tangent6_over_ahead_front
-    t211 = t117 & t208
-    t212 = t112 & t208
-    t213 = t209 | (t210 & ops.opposite(t149)) | t211 | t212
-    t214 = t211 | t212
-    t215 = t214 & tangent6
-    t216 = t213 | (t215 & ops.opposite(t91)) | ((t174 | t179) & ops.opposite(t45))
-    reach_2 = ops.sqrt(ops.select(t216, t21, 1.0))
-    t217 = t57 + ops.select(t45, size, reach_2)
-    t218 = size__elbow_1_2 - ops.max(t58, ops.min(size__elbow_1_2, t217))
-    t219 = t218 * t61
-    t220 = t198 * t195
-    t221 = t196 * s__elbow_1_over_ahead_front_2
-    t222 = t219 - 2.0 * (t220 - t221)
-    t223 = ops.select(t179 & ops.opposite(t66), ops.max(0.0, t201 * t201 - t219 * t222), 1.0)
-    t224 = ops.select(t66, t222, t201 - t67 * ops.sqrt(t223))
-    t225 = ops.select(t66, t201, t219) / ops.select(t179, t224, 1.0)
-    half__elbow_1_2 = ops.select(t71, 0.0, t225)
-    t226 = half__elbow_1_2 * half__elbow_1_2
-    t227 = 1.0 / ops.select(t178, 1.0 + t226, 1.0)
-    cosine__elbow_1_2 = ops.select(t76, t227 * (1.0 - t226), 1.0)
-    sine__elbow_1_2 = ops.select(t76, 2.0 * half__elbow_1_2 * t227, 0.0)
-    t228 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
-    t229 = ops.select(tangent_elbow, t195 * cosine__elbow_1_2 - t228, t195)
-    celbow_2 = ops.select(no_link_elbow, t187, -t229)
-    t230 = ops.select(t33, 0.0, t183 * t186)
-    t231 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
-    t232 = ops.select(tangent_elbow, t195 * sine__elbow_1_2 + t231, s__elbow_1_over_ahead_front_2)
-    selbow_2 = ops.select(no_link_elbow, t230, -t232)
-    t233 = c_straight_2 * celbow_2 + s_straight_2 * selbow_2
-    t234 = c_straight_2 * selbow_2 - s_straight_2 * celbow_2
-    v_x_2 = a5 - a4 * t233 - d3 * t234
-    t235 = ops.abs(v_x_2)
-    t236 = ops.max(0.0, -((height6 - t235) * (height6 + t235)))
-    t237 = d5 - a4 * t234 + d3 * t233
-    below6_2 = ops.max(reach_2 + t237, 0.0)
-    above6_2 = ops.max(reach_2 - t237, 0.0)
-    t238 = below6_2 * above6_2
-    held6_2 = ops.select(t91, t236, t238)
-    t239 = ops.select(t214 & ops.opposite(tangent6), t238, 1.0)
-    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t215, held6_2, 1.0)), ops.sqrt(t239))
-    t240 = below6_2 - above6_2
-    t241 = ops.select(t215, 4.0 * held6_2 + t240 * t240, 1.0)
-    span6_2 = ops.select(tangent6, ops.sqrt(t241), below6_2 + above6_2)
-    t242 = 1.0 / ops.select(t214, reach_2 * span6_2, 1.0)
-    t243 = t99 * kept6_2 * t242
-    t244 = t242 * (u_x * t240)
-    s6_2 = ops.select(free6, 0.0, t243 - t244)
-    t245 = t242 * (t96 * kept6_2)
-    t246 = t242 * (s_z * t240)
-    c6_2 = ops.select(free6, 1.0, t245 + t246)
+    t210 = ops.opposite(free6)
+    t211 = (t170 & t210) | (t165 & t210)
+    t212 = t211 & tangent6_over_ahead_front
+    t213 = t119 & t210
+    t214 = t114 & t210
+    t215 = t211 | (t212 & ops.opposite(t151)) | t213 | t214
+    t216 = t213 | t214
+    t217 = t216 & tangent6
+    t218 = t215 | (t217 & ops.opposite(t93)) | ((t176 | t181) & ops.opposite(t47))
+    reach_2 = ops.sqrt(ops.select(t218, t21, 1.0))
+    t219 = t39 + ops.select(t47, size, reach_2)
+    t220 = size__elbow_1_2 - ops.max(t59, ops.min(size__elbow_1_2, t219))
+    t221 = t220 * t62
+    t222 = t200 * t197
+    t223 = t198 * s__elbow_1_over_ahead_front_2
+    t224 = t221 - 2.0 * (t222 - t223)
+    t225 = ops.select(t181 & ops.opposite(t67), ops.max(0.0, t203 * t203 - t221 * t224), 1.0)
+    t226 = ops.select(t67, t224, t203 - t68 * ops.sqrt(t225))
+    t227 = ops.select(t67, t203, t221) / ops.select(t181, t226, 1.0)
+    half__elbow_1_2 = ops.select(t72, 0.0, t227)
+    t228 = half__elbow_1_2 * half__elbow_1_2
+    t229 = 1.0 / ops.select(t180, 1.0 + t228, 1.0)
+    cosine__elbow_1_2 = ops.select(t77, t229 * (1.0 - t228), 1.0)
+    sine__elbow_1_2 = ops.select(t77, 2.0 * half__elbow_1_2 * t229, 0.0)
+    t230 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
+    t231 = ops.select(tangent_elbow, t197 * cosine__elbow_1_2 - t230, t197)
+    celbow_2 = ops.select(no_link_elbow, t189, -t231)
+    t232 = ops.select(t33, 0.0, t185 * t188)
+    t233 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
+    t234 = ops.select(tangent_elbow, t197 * sine__elbow_1_2 + t233, s__elbow_1_over_ahead_front_2)
+    selbow_2 = ops.select(no_link_elbow, t232, -t234)
+    t235 = c_straight_2 * celbow_2 + s_straight_2 * selbow_2
+    t236 = c_straight_2 * selbow_2 - s_straight_2 * celbow_2
+    v_x_2 = a5 - a4 * t235 - d3 * t236
+    t237 = ops.abs(v_x_2)
+    t238 = ops.max(0.0, -((height6 - t237) * (height6 + t237)))
+    t239 = d5 - a4 * t236 + d3 * t235
+    below6_2 = ops.max(reach_2 + t239, 0.0)
+    above6_2 = ops.max(reach_2 - t239, 0.0)
+    t240 = below6_2 * above6_2
+    held6_2 = ops.select(t93, t238, t240)
+    t241 = ops.select(t216 & ops.opposite(tangent6), t240, 1.0)
+    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t217, held6_2, 1.0)), ops.sqrt(t241))
+    t242 = below6_2 - above6_2
+    t243 = ops.select(t217, 4.0 * held6_2 + t242 * t242, 1.0)
+    span6_2 = ops.select(tangent6, ops.sqrt(t243), below6_2 + above6_2)
+    t244 = 1.0 / ops.select(t216, reach_2 * span6_2, 1.0)
+    t245 = t101 * kept6_2 * t244
+    t246 = t244 * (u_x * t242)
+    s6_2 = ops.select(free6, 0.0, t245 - t246)
+    t247 = t244 * (t98 * kept6_2)
+    t248 = t244 * (s_z * t242)
+    c6_2 = ops.select(free6, 1.0, t247 + t248)
     R2_23 = R1_21 * s6_2 - T23 * c6_2
     dot_5_2 = v_x_2 * (u_x * c6_2 + s_z * s6_2)
-    t247 = t112 & ops.opposite(on_axis_5)
-    t248 = w_y * v_x_2
-    t249 = t248 * t248
-    t250 = ops.select(t247, t249 + dot_5_2 * dot_5_2, 1.0)
-    t251 = 1.0 / ops.select(t247, ops.sqrt(t250), 1.0)
-    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t251)
+    t249 = t114 & ops.opposite(on_axis_5)
+    t250 = w_y * v_x_2
+    t251 = t250 * t250
+    t252 = ops.select(t249, t251 + dot_5_2 * dot_5_2, 1.0)
+    t253 = 1.0 / ops.select(t249, ops.sqrt(t252), 1.0)
+    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t253)
     R2_21 = R1_21 * c6_2 + T23 * s6_2
-    t252 = ops.select(on_axis_5, 0.0, t248 * t251)
-    R3_21 = c5_2 * R2_21 - R1_23 * t252
-    R4_23_2 = t233 * R2_23 + t234 * R3_21
-    t253 = t112 & ops.opposite(aligned_wrist)
+    t254 = ops.select(on_axis_5, 0.0, t250 * t253)
+    R3_21 = c5_2 * R2_21 - R1_23 * t254
+    R4_23_2 = t235 * R2_23 + t236 * R3_21
+    t255 = t114 & ops.opposite(aligned_wrist)
     R2_13 = R1_11 * s6_2 - T13 * c6_2
     R2_11 = R1_11 * c6_2 + T13 * s6_2
-    R3_11 = c5_2 * R2_11 - R1_13 * t252
-    R4_13_2 = t233 * R2_13 + t234 * R3_11
-    t254 = ops.select(t253, R4_13_2 * R4_13_2, 1.0) + ops.select(t253, R4_23_2 * R4_23_2, 1.0)
-    t255 = ops.select(t253, ops.sqrt(ops.select(t253, t254, 1.0)), 1.0)
-    t256 = 1.0 / t255
-    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t256)
-    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t256)
-    t257 = ops.atan2(s_wrist, ops.select(t112, c_wrist, 1.0))
-    t258 = ops.select(failed, ops.nan, ops.wrap_cut(t257))
-    t259 = ops.select(t112, R4_13_2 * c_wrist, 1.0) + ops.select(t112, R4_23_2 * s_wrist, 1.0)
+    R3_11 = c5_2 * R2_11 - R1_13 * t254
+    R4_13_2 = t235 * R2_13 + t236 * R3_11
+    t256 = ops.select(t255, R4_13_2 * R4_13_2, 1.0) + ops.select(t255, R4_23_2 * R4_23_2, 1.0)
+    t257 = ops.select(t255, ops.sqrt(ops.select(t255, t256, 1.0)), 1.0)
+    t258 = 1.0 / t257
+    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t258)
+    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t258)
+    t259 = ops.atan2(s_wrist, ops.select(t114, c_wrist, 1.0))
+    t260 = ops.select(failed, ops.nan, ops.wrap_cut(t259))
+    t261 = ops.select(t114, R4_13_2 * c_wrist, 1.0) + ops.select(t114, R4_23_2 * s_wrist, 1.0)
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t252
-    R4_33 = t233 * (R1_31 * s6_2 - T33 * c6_2) + t234 * R3_31
-    t260 = ops.atan2(t259, ops.select(t112, R4_33, 1.0))
-    t261 = ops.select(failed, ops.nan, ops.wrap_cut(t260))
-    t262 = ops.select(t112, s_wrist * (t234 * R2_13 - t233 * R3_11), 1.0)
-    t263 = ops.select(t112, c_wrist * (t234 * R2_23 - t233 * R3_21), 1.0)
-    t264 = ops.select(t112, s_wrist * (R2_11 * t252 + R1_13 * c5_2), 1.0)
-    t265 = ops.select(t112, c_wrist * (t252 * R2_21 + R1_23 * c5_2), 1.0)
-    t266 = ops.atan2(t262 - t263, ops.select(t112, t264 - t265, 1.0))
-    t267 = ops.select(failed, ops.nan, ops.wrap_cut(t266))
-    t268 = ops.wrap_cut(ops.atan2(t234, ops.select(t118, t233, 1.0)))
-    t269 = ops.select(failed, ops.nan, t268)
-    t270 = ops.wrap_cut(-ops.atan2(t252, ops.select(t112, c5_2, 1.0)))
+    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t254
+    R4_33 = t235 * (R1_31 * s6_2 - T33 * c6_2) + t236 * R3_31
+    t262 = ops.atan2(t261, ops.select(t114, R4_33, 1.0))
+    t263 = ops.select(failed, ops.nan, ops.wrap_cut(t262))
+    t264 = ops.select(t114, s_wrist * (t236 * R2_13 - t235 * R3_11), 1.0)
+    t265 = ops.select(t114, c_wrist * (t236 * R2_23 - t235 * R3_21), 1.0)
+    t266 = ops.select(t114, s_wrist * (R2_11 * t254 + R1_13 * c5_2), 1.0)
+    t267 = ops.select(t114, c_wrist * (t254 * R2_21 + R1_23 * c5_2), 1.0)
+    t268 = ops.atan2(t264 - t265, ops.select(t114, t266 - t267, 1.0))
+    t269 = ops.select(failed, ops.nan, ops.wrap_cut(t268))
+    t270 = ops.wrap_cut(ops.atan2(t236, ops.select(t120, t235, 1.0)))
     t271 = ops.select(failed, ops.nan, t270)
-    t272 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t112, c6_2, 1.0)))
+    t272 = ops.wrap_cut(-ops.atan2(t254, ops.select(t114, c5_2, 1.0)))
     t273 = ops.select(failed, ops.nan, t272)
-    t274 = ops.atan2(s_x_theta7, ops.select(t169, c_x_theta7, 1.0))
-    t275 = ops.wrap_cut(t274)
-    t276 = ops.select(failed, ops.nan, t275)
+    t274 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t114, c6_2, 1.0)))
+    t275 = ops.select(failed, ops.nan, t274)
+    t276 = ops.atan2(s_x_theta7, ops.select(t171, c_x_theta7, 1.0))
+    t277 = ops.wrap_cut(t276)
+    t278 = ops.select(failed, ops.nan, t277)
     flip_wrist = ops.select(aligned_wrist, 0.0, 3.141592653589793)
-    t277 = ops.select(failed, ops.nan, ops.wrap(t257 + flip_wrist))
-    t278 = ops.select(failed, ops.nan, ops.wrap_cut(-t260))
-    t279 = ops.select(failed, ops.nan, ops.wrap(t266 + flip_wrist))
-    t280 = t82 * (R1_11 * t113 + T13 * c6_bent_behind_front)
-    on_axis_5_bent_behind_front = ops.min(t103, t115) <= t39
+    t279 = ops.select(failed, ops.nan, ops.wrap(t259 + flip_wrist))
+    t280 = ops.select(failed, ops.nan, ops.wrap_cut(-t262))
+    t281 = ops.select(failed, ops.nan, ops.wrap(t268 + flip_wrist))
+    t282 = t83 * (R1_11 * t115 + T13 * c6_bent_behind_front)
+    on_axis_5_bent_behind_front = ops.min(t105, t117) <= t91
     dot_5_bent_behind_front = v_x * w_x_bent_behind_front
-    t281 = dot_5_bent_behind_front * dot_5_bent_behind_front
-    t282 = 1.0 / ops.sqrt(t106 + t281)
-    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t282)
-    t283 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t113)
-    t284 = ops.select(on_axis_5_bent_behind_front, 0.0, t105 * t282)
-    t285 = t280 - t81 * (t283 - R1_13 * t284)
-    t286 = t82 * (R1_21 * t113 + T23 * c6_bent_behind_front)
-    t287 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t113)
-    t288 = t286 - t81 * (t287 - R1_23 * t284)
-    aligned_wrist_bent_behind_front = ops.sqrt(t285 * t285 + t288 * t288) <= t111
-    t289 = ops.select(free6, 0.0, t243 + t244)
-    c6_bent_behind_front_2 = ops.select(free6, 1.0, t246 - t245)
-    t290 = R1_21 * t289 + T23 * c6_bent_behind_front_2
-    dot_5_bent_behind_front_2 = v_x_2 * (u_x * c6_bent_behind_front_2 - s_z * t289)
-    t291 = t117 & ops.opposite(on_axis_5_bent_behind_front)
-    t292 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
-    t293 = ops.select(t291, ops.sqrt(ops.select(t291, t249 + t292, 1.0)), 1.0)
-    t294 = 1.0 / t293
-    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t294)
-    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t289
-    t295 = c5_bent_behind_front_2 * R2_21_bent_behind_front
-    t296 = ops.select(on_axis_5_bent_behind_front, 0.0, t248 * t294)
-    R3_21_bent_behind_front = t295 - R1_23 * t296
-    t297 = t233 * t290 - t234 * R3_21_bent_behind_front
-    t298 = ops.opposite(aligned_wrist_bent_behind_front)
-    t299 = t117 & t298
-    t300 = R1_11 * t289 + T13 * c6_bent_behind_front_2
-    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t289
-    t301 = c5_bent_behind_front_2 * R2_11_bent_behind_front
-    R3_11_bent_behind_front = t301 - R1_13 * t296
-    t302 = t233 * t300 - t234 * R3_11_bent_behind_front
-    t303 = ops.select(t299, t302 * t302, 1.0) + ops.select(t299, t297 * t297, 1.0)
-    t304 = ops.select(t299, ops.sqrt(ops.select(t299, t303, 1.0)), 1.0)
-    t305 = 1.0 / t304
-    t306 = ops.select(aligned_wrist_bent_behind_front, 0.0, t297 * t305)
-    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t302 * t305))
-    t307 = ops.select(t117, c_wrist_bent_behind_front, 1.0)
-    t308 = ops.atan2(t306, t307)
-    t309 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t308))
-    t310 = ops.select(t117, t302 * c_wrist_bent_behind_front, 1.0)
-    t311 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t289)
-    t312 = t233 * (R1_31 * t289 + T33 * c6_bent_behind_front_2)
-    t313 = ops.select(t117, t234 * (t311 - R1_33 * t296) - t312, 1.0)
-    t314 = ops.atan2(t310 - ops.select(t117, t297 * t306, 1.0), t313)
-    t315 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t314))
-    t316 = t306 * (t234 * t300 + t233 * R3_11_bent_behind_front)
-    t317 = c_wrist_bent_behind_front * (t234 * t290 + t233 * R3_21_bent_behind_front)
-    t318 = ops.select(t117, t316, 1.0) + ops.select(t117, t317, 1.0)
-    R3_13_bent_behind_front = R2_11_bent_behind_front * t296 + R1_13 * c5_bent_behind_front_2
-    t319 = ops.select(t117, t306 * R3_13_bent_behind_front, 1.0)
-    R3_23_bent_behind_front = t296 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
-    t320 = c_wrist_bent_behind_front * R3_23_bent_behind_front
-    t321 = ops.select(t117, -(t319 + ops.select(t117, t320, 1.0)), 1.0)
-    t322 = ops.atan2(t318, t321)
-    t323 = ops.select(failed_2, ops.nan, ops.wrap_cut(t322))
-    t324 = ops.select(failed_2, ops.nan, t268)
-    t325 = ops.select(t117, c5_bent_behind_front_2, 1.0)
-    t326 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t296, t325)))
-    t327 = ops.select(t117, c6_bent_behind_front_2, 1.0)
-    t328 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t289, t327)))
-    t329 = ops.select(failed_2, ops.nan, t275)
+    t283 = dot_5_bent_behind_front * dot_5_bent_behind_front
+    t284 = 1.0 / ops.sqrt(t108 + t283)
+    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t284)
+    t285 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t115)
+    t286 = ops.select(on_axis_5_bent_behind_front, 0.0, t107 * t284)
+    t287 = t282 - t82 * (t285 - R1_13 * t286)
+    t288 = t83 * (R1_21 * t115 + T23 * c6_bent_behind_front)
+    t289 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t115)
+    t290 = t288 - t82 * (t289 - R1_23 * t286)
+    aligned_wrist_bent_behind_front = ops.sqrt(t287 * t287 + t290 * t290) <= t113
+    t291 = ops.select(free6, 0.0, t245 + t246)
+    c6_bent_behind_front_2 = ops.select(free6, 1.0, t248 - t247)
+    t292 = R1_21 * t291 + T23 * c6_bent_behind_front_2
+    dot_5_bent_behind_front_2 = v_x_2 * (u_x * c6_bent_behind_front_2 - s_z * t291)
+    t293 = t119 & ops.opposite(on_axis_5_bent_behind_front)
+    t294 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
+    t295 = ops.select(t293, ops.sqrt(ops.select(t293, t251 + t294, 1.0)), 1.0)
+    t296 = 1.0 / t295
+    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t296)
+    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t291
+    t297 = c5_bent_behind_front_2 * R2_21_bent_behind_front
+    t298 = ops.select(on_axis_5_bent_behind_front, 0.0, t250 * t296)
+    R3_21_bent_behind_front = t297 - R1_23 * t298
+    t299 = t235 * t292 - t236 * R3_21_bent_behind_front
+    t300 = ops.opposite(aligned_wrist_bent_behind_front)
+    t301 = t119 & t300
+    t302 = R1_11 * t291 + T13 * c6_bent_behind_front_2
+    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t291
+    t303 = c5_bent_behind_front_2 * R2_11_bent_behind_front
+    R3_11_bent_behind_front = t303 - R1_13 * t298
+    t304 = t235 * t302 - t236 * R3_11_bent_behind_front
+    t305 = ops.select(t301, t304 * t304, 1.0) + ops.select(t301, t299 * t299, 1.0)
+    t306 = ops.select(t301, ops.sqrt(ops.select(t301, t305, 1.0)), 1.0)
+    t307 = 1.0 / t306
+    t308 = ops.select(aligned_wrist_bent_behind_front, 0.0, t299 * t307)
+    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t304 * t307))
+    t309 = ops.select(t119, c_wrist_bent_behind_front, 1.0)
+    t310 = ops.atan2(t308, t309)
+    t311 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t310))
+    t312 = ops.select(t119, t304 * c_wrist_bent_behind_front, 1.0)
+    t313 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t291)
+    t314 = t235 * (R1_31 * t291 + T33 * c6_bent_behind_front_2)
+    t315 = ops.select(t119, t236 * (t313 - R1_33 * t298) - t314, 1.0)
+    t316 = ops.atan2(t312 - ops.select(t119, t299 * t308, 1.0), t315)
+    t317 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t316))
+    t318 = t308 * (t236 * t302 + t235 * R3_11_bent_behind_front)
+    t319 = c_wrist_bent_behind_front * (t236 * t292 + t235 * R3_21_bent_behind_front)
+    t320 = ops.select(t119, t318, 1.0) + ops.select(t119, t319, 1.0)
+    R3_13_bent_behind_front = R2_11_bent_behind_front * t298 + R1_13 * c5_bent_behind_front_2
+    t321 = ops.select(t119, t308 * R3_13_bent_behind_front, 1.0)
+    R3_23_bent_behind_front = t298 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
+    t322 = c_wrist_bent_behind_front * R3_23_bent_behind_front
+    t323 = ops.select(t119, -(t321 + ops.select(t119, t322, 1.0)), 1.0)
+    t324 = ops.atan2(t320, t323)
+    t325 = ops.select(failed_2, ops.nan, ops.wrap_cut(t324))
+    t326 = ops.select(failed_2, ops.nan, t270)
+    t327 = ops.select(t119, c5_bent_behind_front_2, 1.0)
+    t328 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t298, t327)))
+    t329 = ops.select(t119, c6_bent_behind_front_2, 1.0)
+    t330 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t291, t329)))
+    t331 = ops.select(failed_2, ops.nan, t277)
     flip_wrist_bent_behind_back = ops.select(aligned_wrist_bent_behind_front, 0.0, 3.141592653589793)
-    t330 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t308))
-    t331 = ops.select(failed_2, ops.nan, ops.wrap_cut(t314))
-    t332 = ops.select(failed_2, ops.nan, ops.wrap(t322 + flip_wrist_bent_behind_back))
+    t332 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t310))
+    t333 = ops.select(failed_2, ops.nan, ops.wrap_cut(t316))
+    t334 = ops.select(failed_2, ops.nan, ops.wrap(t324 + flip_wrist_bent_behind_back))
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
-    on_axis_5_over_ahead_front = ops.min(t161, t160) <= t39
+    on_axis_5_over_ahead_front = ops.min(t163, t162) <= t91
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
-    t333 = w_y * v_x_over_ahead_front
-    t334 = t333 * t333
-    t335 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t336 = 1.0 / ops.sqrt(t334 + t335)
-    c5_over_ahead_front = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t336)
+    t335 = w_y * v_x_over_ahead_front
+    t336 = t335 * t335
+    t337 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t338 = 1.0 / ops.sqrt(t336 + t337)
+    c5_over_ahead_front = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t338)
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    t337 = ops.select(on_axis_5_over_ahead_front, 0.0, t333 * t336)
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t337
-    R4_13_over_ahead_front = t143 * R2_13_over_ahead_front + t142 * R3_11_over_ahead_front
-    t338 = R4_13_over_ahead_front * R4_13_over_ahead_front
+    t339 = ops.select(on_axis_5_over_ahead_front, 0.0, t335 * t338)
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t339
+    R4_13_over_ahead_front = t145 * R2_13_over_ahead_front + t144 * R3_11_over_ahead_front
+    t340 = R4_13_over_ahead_front * R4_13_over_ahead_front
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t337
-    R4_23_over_ahead_front = t143 * R2_23_over_ahead_front + t142 * R3_21_over_ahead_front
-    t339 = R4_23_over_ahead_front * R4_23_over_ahead_front
-    aligned_wrist_over_ahead_front = ops.sqrt(t338 + t339) <= t111
-    t340 = t197 - t200
-    t341 = t202 - t203
-    t342 = t205 + t206
-    q__elbow_1_over_ahead_front_2 = ops.select(t45, a5 + a4 * t341 - d3 * t342, d3 * t341 - (d5 - a4 * t342))
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t339
+    R4_23_over_ahead_front = t145 * R2_23_over_ahead_front + t144 * R3_21_over_ahead_front
+    t341 = R4_23_over_ahead_front * R4_23_over_ahead_front
+    aligned_wrist_over_ahead_front = ops.sqrt(t340 + t341) <= t113
+    t342 = t199 - t202
+    t343 = t204 - t205
+    t344 = t207 + t208
+    q__elbow_1_over_ahead_front_2 = ops.select(t47, a5 + a4 * t343 - d3 * t344, d3 * t343 - (d5 - a4 * t344))
     size__elbow_1_over_ahead_front_2 = ops.abs(q__elbow_1_over_ahead_front_2)
-    t343 = ops.min(size__elbow_1_over_ahead_front_2, t217)
-    t344 = size__elbow_1_over_ahead_front_2 - ops.max(t58, t343)
-    t345 = t344 * t123
-    t346 = t345 - 2.0 * (t220 + t221)
-    t347 = ops.select(t174 & ops.opposite(t126), ops.max(0.0, t340 * t340 - t345 * t346), 1.0)
-    t348 = ops.select(t126, t346, t340 - t127 * ops.sqrt(t347))
-    t349 = ops.select(t126, t340, t345) / ops.select(t174, t348, 1.0)
-    half__elbow_1_over_ahead_front_2 = ops.select(t131, 0.0, t349)
-    t350 = half__elbow_1_over_ahead_front_2 * half__elbow_1_over_ahead_front_2
-    t351 = 1.0 / ops.select(t173, 1.0 + t350, 1.0)
-    cosine__elbow_1_over_ahead_front_2 = ops.select(t137, t351 * (1.0 - t350), 1.0)
-    by_s__elbow_1_over_ahead_front_2 = 2.0 * half__elbow_1_over_ahead_front_2 * t351
-    sine__elbow_1_over_ahead_front_2 = ops.select(t137, by_s__elbow_1_over_ahead_front_2, 0.0)
-    t352 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
-    t353 = t195 * cosine__elbow_1_over_ahead_front_2 + t352
-    celbow_over_ahead_front_2 = ops.select(no_link_elbow, t187, -ops.select(tangent_elbow, t353, t195))
-    t354 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
-    t355 = t354 - t195 * sine__elbow_1_over_ahead_front_2
-    t356 = ops.select(tangent_elbow, t355, s__elbow_1_over_ahead_front_2)
-    selbow_over_ahead_front_2 = ops.select(no_link_elbow, t230, t356)
-    t357 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
-    t358 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
-    v_x_over_ahead_front_2 = a5 - a4 * t357 - d3 * t358
-    t359 = ops.abs(v_x_over_ahead_front_2)
-    t360 = ops.max(0.0, -((height6 - t359) * (height6 + t359)))
-    t361 = d5 - a4 * t358 + d3 * t357
-    below6_over_ahead_front_2 = ops.max(reach_2 + t361, 0.0)
-    above6_over_ahead_front_2 = ops.max(reach_2 - t361, 0.0)
-    t362 = below6_over_ahead_front_2 * above6_over_ahead_front_2
-    held6_over_ahead_front_2 = ops.select(t149, t360, t362)
-    t363 = ops.select(t210, held6_over_ahead_front_2, 1.0)
-    t364 = t209 & ops.opposite(tangent6_over_ahead_front)
-    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t363), ops.sqrt(ops.select(t364, t362, 1.0)))
-    t365 = below6_over_ahead_front_2 - above6_over_ahead_front_2
-    t366 = ops.select(t210, 4.0 * held6_over_ahead_front_2 + t365 * t365, 1.0)
+    t345 = ops.min(size__elbow_1_over_ahead_front_2, t219)
+    t346 = size__elbow_1_over_ahead_front_2 - ops.max(t59, t345)
+    t347 = t346 * t125
+    t348 = t347 - 2.0 * (t222 + t223)
+    t349 = ops.select(t176 & ops.opposite(t128), ops.max(0.0, t342 * t342 - t347 * t348), 1.0)
+    t350 = ops.select(t128, t348, t342 - t129 * ops.sqrt(t349))
+    t351 = ops.select(t128, t342, t347) / ops.select(t176, t350, 1.0)
+    half__elbow_1_over_ahead_front_2 = ops.select(t133, 0.0, t351)
+    t352 = half__elbow_1_over_ahead_front_2 * half__elbow_1_over_ahead_front_2
+    t353 = 1.0 / ops.select(t175, 1.0 + t352, 1.0)
+    cosine__elbow_1_over_ahead_front_2 = ops.select(t139, t353 * (1.0 - t352), 1.0)
+    by_s__elbow_1_over_ahead_front_2 = 2.0 * half__elbow_1_over_ahead_front_2 * t353
+    sine__elbow_1_over_ahead_front_2 = ops.select(t139, by_s__elbow_1_over_ahead_front_2, 0.0)
+    t354 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
+    t355 = t197 * cosine__elbow_1_over_ahead_front_2 + t354
+    celbow_over_ahead_front_2 = ops.select(no_link_elbow, t189, -ops.select(tangent_elbow, t355, t197))
+    t356 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
+    t357 = t356 - t197 * sine__elbow_1_over_ahead_front_2
+    t358 = ops.select(tangent_elbow, t357, s__elbow_1_over_ahead_front_2)
+    selbow_over_ahead_front_2 = ops.select(no_link_elbow, t232, t358)
+    t359 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
+    t360 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
+    v_x_over_ahead_front_2 = a5 - a4 * t359 - d3 * t360
+    t361 = ops.abs(v_x_over_ahead_front_2)
+    t362 = ops.max(0.0, -((height6 - t361) * (height6 + t361)))
+    t363 = d5 - a4 * t360 + d3 * t359
+    below6_over_ahead_front_2 = ops.max(reach_2 + t363, 0.0)
+    above6_over_ahead_front_2 = ops.max(reach_2 - t363, 0.0)
+    t364 = below6_over_ahead_front_2 * above6_over_ahead_front_2
+    held6_over_ahead_front_2 = ops.select(t151, t362, t364)
+    t365 = ops.select(t212, held6_over_ahead_front_2, 1.0)
+    t366 = t211 & ops.opposite(tangent6_over_ahead_front)
+    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t365), ops.sqrt(ops.select(t366, t364, 1.0)))
+    t367 = below6_over_ahead_front_2 - above6_over_ahead_front_2
+    t368 = ops.select(t212, 4.0 * held6_over_ahead_front_2 + t367 * t367, 1.0)
     width6_over_ahead_front_2 = below6_over_ahead_front_2 + above6_over_ahead_front_2
-    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t366), width6_over_ahead_front_2)
-    t367 = ops.select(t209, reach_2 * span6_over_ahead_front_2, 1.0)
-    t368 = 1.0 / t367
-    t369 = t99 * kept6_over_ahead_front_2 * t368
-    t370 = t368 * (u_x * t365)
-    s6_over_ahead_front_2 = ops.select(free6, 0.0, t369 - t370)
-    t371 = t368 * (t96 * kept6_over_ahead_front_2)
-    t372 = t368 * (s_z * t365)
-    c6_over_ahead_front_2 = ops.select(free6, 1.0, t371 + t372)
+    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t368), width6_over_ahead_front_2)
+    t369 = ops.select(t211, reach_2 * span6_over_ahead_front_2, 1.0)
+    t370 = 1.0 / t369
+    t371 = t101 * kept6_over_ahead_front_2 * t370
+    t372 = t370 * (u_x * t367)
+    s6_over_ahead_front_2 = ops.select(free6, 0.0, t371 - t372)
+    t373 = t370 * (t98 * kept6_over_ahead_front_2)
+    t374 = t370 * (s_z * t367)
+    c6_over_ahead_front_2 = ops.select(free6, 1.0, t373 + t374)
     R2_23_over_ahead_front_2 = R1_21 * s6_over_ahead_front_2 - T23 * c6_over_ahead_front_2
     w_x_over_ahead_front_2 = u_x * c6_over_ahead_front_2 + s_z * s6_over_ahead_front_2
     dot_5_over_ahead_front_2 = v_x_over_ahead_front_2 * w_x_over_ahead_front_2
-    t373 = t163 & ops.opposite(on_axis_5_over_ahead_front)
-    t374 = w_y * v_x_over_ahead_front_2
-    t375 = t374 * t374
-    t376 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
-    t377 = ops.select(t373, ops.sqrt(ops.select(t373, t375 + t376, 1.0)), 1.0)
-    t378 = 1.0 / t377
-    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t378)
+    t375 = t165 & ops.opposite(on_axis_5_over_ahead_front)
+    t376 = w_y * v_x_over_ahead_front_2
+    t377 = t376 * t376
+    t378 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
+    t379 = ops.select(t375, ops.sqrt(ops.select(t375, t377 + t378, 1.0)), 1.0)
+    t380 = 1.0 / t379
+    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t380)
     R2_21_over_ahead_front_2 = R1_21 * c6_over_ahead_front_2 + T23 * s6_over_ahead_front_2
-    t379 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
-    t380 = ops.select(on_axis_5_over_ahead_front, 0.0, t374 * t378)
-    R3_21_over_ahead_front_2 = t379 - R1_23 * t380
-    R4_23_over_ahead_front_2 = t357 * R2_23_over_ahead_front_2 + t358 * R3_21_over_ahead_front_2
-    t381 = t163 & ops.opposite(aligned_wrist_over_ahead_front)
+    t381 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
+    t382 = ops.select(on_axis_5_over_ahead_front, 0.0, t376 * t380)
+    R3_21_over_ahead_front_2 = t381 - R1_23 * t382
+    R4_23_over_ahead_front_2 = t359 * R2_23_over_ahead_front_2 + t360 * R3_21_over_ahead_front_2
+    t383 = t165 & ops.opposite(aligned_wrist_over_ahead_front)
     R2_13_over_ahead_front_2 = R1_11 * s6_over_ahead_front_2 - T13 * c6_over_ahead_front_2
     R2_11_over_ahead_front_2 = R1_11 * c6_over_ahead_front_2 + T13 * s6_over_ahead_front_2
-    t382 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
-    R3_11_over_ahead_front_2 = t382 - R1_13 * t380
-    R4_13_over_ahead_front_2 = t357 * R2_13_over_ahead_front_2 + t358 * R3_11_over_ahead_front_2
-    t383 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
-    t384 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
-    t385 = ops.select(t381, t383, 1.0) + ops.select(t381, t384, 1.0)
-    t386 = ops.select(t381, ops.sqrt(ops.select(t381, t385, 1.0)), 1.0)
-    t387 = 1.0 / t386
-    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t387)
-    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t387)
-    t388 = ops.select(t163, c_wrist_over_ahead_front, 1.0)
-    t389 = ops.atan2(s_wrist_over_ahead_front, t388)
-    t390 = ops.select(failed_3, ops.nan, ops.wrap_cut(t389))
-    t391 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
-    t392 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
-    t393 = ops.select(t163, t391, 1.0) + ops.select(t163, t392, 1.0)
+    t384 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
+    R3_11_over_ahead_front_2 = t384 - R1_13 * t382
+    R4_13_over_ahead_front_2 = t359 * R2_13_over_ahead_front_2 + t360 * R3_11_over_ahead_front_2
+    t385 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
+    t386 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
+    t387 = ops.select(t383, t385, 1.0) + ops.select(t383, t386, 1.0)
+    t388 = ops.select(t383, ops.sqrt(ops.select(t383, t387, 1.0)), 1.0)
+    t389 = 1.0 / t388
+    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t389)
+    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t389)
+    t390 = ops.select(t165, c_wrist_over_ahead_front, 1.0)
+    t391 = ops.atan2(s_wrist_over_ahead_front, t390)
+    t392 = ops.select(failed_3, ops.nan, ops.wrap_cut(t391))
+    t393 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
+    t394 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
+    t395 = ops.select(t165, t393, 1.0) + ops.select(t165, t394, 1.0)
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front_2 - T33 * c6_over_ahead_front_2
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front_2 + T33 * s6_over_ahead_front_2
-    t394 = c5_over_ahead_front_2 * R2_31_over_ahead_front
-    R4_33_over_ahead_front = t357 * R2_33_over_ahead_front + t358 * (t394 - R1_33 * t380)
-    t395 = ops.select(t163, R4_33_over_ahead_front, 1.0)
-    t396 = ops.atan2(t393, t395)
-    t397 = ops.select(failed_3, ops.nan, ops.wrap_cut(t396))
-    t398 = t358 * R2_13_over_ahead_front_2 - t357 * R3_11_over_ahead_front_2
-    t399 = ops.select(t163, s_wrist_over_ahead_front * t398, 1.0)
-    t400 = t358 * R2_23_over_ahead_front_2 - t357 * R3_21_over_ahead_front_2
-    t401 = ops.select(t163, c_wrist_over_ahead_front * t400, 1.0)
-    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t380 + R1_13 * c5_over_ahead_front_2
-    t402 = s_wrist_over_ahead_front * R3_13_over_ahead_front
-    R3_23_over_ahead_front = t380 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
-    t403 = c_wrist_over_ahead_front * R3_23_over_ahead_front
-    t404 = ops.select(t163, t402, 1.0) - ops.select(t163, t403, 1.0)
-    t405 = ops.atan2(t399 - t401, ops.select(t163, t404, 1.0))
-    t406 = ops.select(failed_3, ops.nan, ops.wrap_cut(t405))
-    t407 = ops.wrap_cut(ops.atan2(t358, ops.select(t170, t357, 1.0)))
-    t408 = ops.select(failed_3, ops.nan, t407)
-    t409 = ops.atan2(t380, ops.select(t163, c5_over_ahead_front_2, 1.0))
-    t410 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t409))
-    t411 = ops.atan2(s6_over_ahead_front_2, ops.select(t163, c6_over_ahead_front_2, 1.0))
-    t412 = ops.select(failed_3, ops.nan, ops.wrap_cut(t411))
-    t413 = ops.select(failed_3, ops.nan, t275)
+    t396 = c5_over_ahead_front_2 * R2_31_over_ahead_front
+    R4_33_over_ahead_front = t359 * R2_33_over_ahead_front + t360 * (t396 - R1_33 * t382)
+    t397 = ops.select(t165, R4_33_over_ahead_front, 1.0)
+    t398 = ops.atan2(t395, t397)
+    t399 = ops.select(failed_3, ops.nan, ops.wrap_cut(t398))
+    t400 = t360 * R2_13_over_ahead_front_2 - t359 * R3_11_over_ahead_front_2
+    t401 = ops.select(t165, s_wrist_over_ahead_front * t400, 1.0)
+    t402 = t360 * R2_23_over_ahead_front_2 - t359 * R3_21_over_ahead_front_2
+    t403 = ops.select(t165, c_wrist_over_ahead_front * t402, 1.0)
+    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t382 + R1_13 * c5_over_ahead_front_2
+    t404 = s_wrist_over_ahead_front * R3_13_over_ahead_front
+    R3_23_over_ahead_front = t382 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
+    t405 = c_wrist_over_ahead_front * R3_23_over_ahead_front
+    t406 = ops.select(t165, t404, 1.0) - ops.select(t165, t405, 1.0)
+    t407 = ops.atan2(t401 - t403, ops.select(t165, t406, 1.0))
+    t408 = ops.select(failed_3, ops.nan, ops.wrap_cut(t407))
+    t409 = ops.wrap_cut(ops.atan2(t360, ops.select(t172, t359, 1.0)))
+    t410 = ops.select(failed_3, ops.nan, t409)
+    t411 = ops.atan2(t382, ops.select(t165, c5_over_ahead_front_2, 1.0))
+    t412 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t411))
+    t413 = ops.atan2(s6_over_ahead_front_2, ops.select(t165, c6_over_ahead_front_2, 1.0))
+    t414 = ops.select(failed_3, ops.nan, ops.wrap_cut(t413))
+    t415 = ops.select(failed_3, ops.nan, t277)
     flip_wrist_over_ahead_back = ops.select(aligned_wrist_over_ahead_front, 0.0, 3.141592653589793)
-    t414 = ops.select(failed_3, ops.nan, ops.wrap(t389 + flip_wrist_over_ahead_back))
-    t415 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t396))
-    t416 = ops.select(failed_3, ops.nan, ops.wrap(t405 + flip_wrist_over_ahead_back))
-    t417 = t143 * (R1_11 * t164 + T13 * c6_over_behind_front)
-    on_axis_5_over_behind_front = ops.min(t161, t166) <= t39
+    t416 = ops.select(failed_3, ops.nan, ops.wrap(t391 + flip_wrist_over_ahead_back))
+    t417 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t398))
+    t418 = ops.select(failed_3, ops.nan, ops.wrap(t407 + flip_wrist_over_ahead_back))
+    t419 = t145 * (R1_11 * t166 + T13 * c6_over_behind_front)
+    on_axis_5_over_behind_front = ops.min(t163, t168) <= t91
     dot_5_over_behind_front = v_x_over_ahead_front * w_x_over_behind_front
-    t418 = dot_5_over_behind_front * dot_5_over_behind_front
-    t419 = 1.0 / ops.sqrt(t334 + t418)
-    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t419)
-    t420 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t164)
-    t421 = ops.select(on_axis_5_over_behind_front, 0.0, t333 * t419)
-    t422 = t417 - t142 * (t420 - R1_13 * t421)
-    t423 = t143 * (R1_21 * t164 + T23 * c6_over_behind_front)
-    t424 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t164)
-    t425 = t423 - t142 * (t424 - R1_23 * t421)
-    aligned_wrist_over_behind_front = ops.sqrt(t422 * t422 + t425 * t425) <= t111
-    t426 = ops.select(free6, 0.0, t369 + t370)
-    c6_over_behind_front_2 = ops.select(free6, 1.0, t372 - t371)
-    t427 = R1_21 * t426 + T23 * c6_over_behind_front_2
-    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (u_x * c6_over_behind_front_2 - s_z * t426)
-    t428 = t168 & ops.opposite(on_axis_5_over_behind_front)
-    t429 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
-    t430 = ops.select(t428, ops.sqrt(ops.select(t428, t375 + t429, 1.0)), 1.0)
-    t431 = 1.0 / t430
-    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t431)
-    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t426
-    t432 = c5_over_behind_front_2 * R2_21_over_behind_front
-    t433 = ops.select(on_axis_5_over_behind_front, 0.0, t374 * t431)
-    R3_21_over_behind_front = t432 - R1_23 * t433
-    t434 = t357 * t427 - t358 * R3_21_over_behind_front
-    t435 = ops.opposite(aligned_wrist_over_behind_front)
-    t436 = t168 & t435
-    t437 = R1_11 * t426 + T13 * c6_over_behind_front_2
-    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t426
-    t438 = c5_over_behind_front_2 * R2_11_over_behind_front
-    R3_11_over_behind_front = t438 - R1_13 * t433
-    t439 = t357 * t437 - t358 * R3_11_over_behind_front
-    t440 = ops.select(t436, t439 * t439, 1.0) + ops.select(t436, t434 * t434, 1.0)
-    t441 = ops.select(t436, ops.sqrt(ops.select(t436, t440, 1.0)), 1.0)
-    t442 = 1.0 / t441
-    t443 = ops.select(aligned_wrist_over_behind_front, 0.0, t434 * t442)
-    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t439 * t442))
-    t444 = ops.select(t168, c_wrist_over_behind_front, 1.0)
-    t445 = ops.atan2(t443, t444)
-    t446 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t445))
-    t447 = ops.select(t168, t439 * c_wrist_over_behind_front, 1.0)
-    t448 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t426)
-    t449 = t357 * (R1_31 * t426 + T33 * c6_over_behind_front_2)
-    t450 = ops.select(t168, t358 * (t448 - R1_33 * t433) - t449, 1.0)
-    t451 = ops.atan2(t447 - ops.select(t168, t434 * t443, 1.0), t450)
-    t452 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t451))
-    t453 = t443 * (t358 * t437 + t357 * R3_11_over_behind_front)
-    t454 = c_wrist_over_behind_front * (t358 * t427 + t357 * R3_21_over_behind_front)
-    t455 = ops.select(t168, t453, 1.0) + ops.select(t168, t454, 1.0)
-    R3_13_over_behind_front = R2_11_over_behind_front * t433 + R1_13 * c5_over_behind_front_2
-    t456 = ops.select(t168, t443 * R3_13_over_behind_front, 1.0)
-    R3_23_over_behind_front = t433 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
-    t457 = c_wrist_over_behind_front * R3_23_over_behind_front
-    t458 = ops.select(t168, -(t456 + ops.select(t168, t457, 1.0)), 1.0)
-    t459 = ops.atan2(t455, t458)
-    t460 = ops.select(failed_4, ops.nan, ops.wrap_cut(t459))
-    t461 = ops.select(failed_4, ops.nan, t407)
-    t462 = ops.select(t168, c5_over_behind_front_2, 1.0)
-    t463 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t433, t462)))
-    t464 = ops.select(t168, c6_over_behind_front_2, 1.0)
-    t465 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t426, t464)))
-    t466 = ops.select(failed_4, ops.nan, t275)
+    t420 = dot_5_over_behind_front * dot_5_over_behind_front
+    t421 = 1.0 / ops.sqrt(t336 + t420)
+    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t421)
+    t422 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t166)
+    t423 = ops.select(on_axis_5_over_behind_front, 0.0, t335 * t421)
+    t424 = t419 - t144 * (t422 - R1_13 * t423)
+    t425 = t145 * (R1_21 * t166 + T23 * c6_over_behind_front)
+    t426 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t166)
+    t427 = t425 - t144 * (t426 - R1_23 * t423)
+    aligned_wrist_over_behind_front = ops.sqrt(t424 * t424 + t427 * t427) <= t113
+    t428 = ops.select(free6, 0.0, t371 + t372)
+    c6_over_behind_front_2 = ops.select(free6, 1.0, t374 - t373)
+    t429 = R1_21 * t428 + T23 * c6_over_behind_front_2
+    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (u_x * c6_over_behind_front_2 - s_z * t428)
+    t430 = t170 & ops.opposite(on_axis_5_over_behind_front)
+    t431 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
+    t432 = ops.select(t430, ops.sqrt(ops.select(t430, t377 + t431, 1.0)), 1.0)
+    t433 = 1.0 / t432
+    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t433)
+    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t428
+    t434 = c5_over_behind_front_2 * R2_21_over_behind_front
+    t435 = ops.select(on_axis_5_over_behind_front, 0.0, t376 * t433)
+    R3_21_over_behind_front = t434 - R1_23 * t435
+    t436 = t359 * t429 - t360 * R3_21_over_behind_front
+    t437 = ops.opposite(aligned_wrist_over_behind_front)
+    t438 = t170 & t437
+    t439 = R1_11 * t428 + T13 * c6_over_behind_front_2
+    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t428
+    t440 = c5_over_behind_front_2 * R2_11_over_behind_front
+    R3_11_over_behind_front = t440 - R1_13 * t435
+    t441 = t359 * t439 - t360 * R3_11_over_behind_front
+    t442 = ops.select(t438, t441 * t441, 1.0) + ops.select(t438, t436 * t436, 1.0)
+    t443 = ops.select(t438, ops.sqrt(ops.select(t438, t442, 1.0)), 1.0)
+    t444 = 1.0 / t443
+    t445 = ops.select(aligned_wrist_over_behind_front, 0.0, t436 * t444)
+    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t441 * t444))
+    t446 = ops.select(t170, c_wrist_over_behind_front, 1.0)
+    t447 = ops.atan2(t445, t446)
+    t448 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t447))
+    t449 = ops.select(t170, t441 * c_wrist_over_behind_front, 1.0)
+    t450 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t428)
+    t451 = t359 * (R1_31 * t428 + T33 * c6_over_behind_front_2)
+    t452 = ops.select(t170, t360 * (t450 - R1_33 * t435) - t451, 1.0)
+    t453 = ops.atan2(t449 - ops.select(t170, t436 * t445, 1.0), t452)
+    t454 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t453))
+    t455 = t445 * (t360 * t439 + t359 * R3_11_over_behind_front)
+    t456 = c_wrist_over_behind_front * (t360 * t429 + t359 * R3_21_over_behind_front)
+    t457 = ops.select(t170, t455, 1.0) + ops.select(t170, t456, 1.0)
+    R3_13_over_behind_front = R2_11_over_behind_front * t435 + R1_13 * c5_over_behind_front_2
+    t458 = ops.select(t170, t445 * R3_13_over_behind_front, 1.0)
+    R3_23_over_behind_front = t435 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
+    t459 = c_wrist_over_behind_front * R3_23_over_behind_front
+    t460 = ops.select(t170, -(t458 + ops.select(t170, t459, 1.0)), 1.0)
+    t461 = ops.atan2(t457, t460)
+    t462 = ops.select(failed_4, ops.nan, ops.wrap_cut(t461))
+    t463 = ops.select(failed_4, ops.nan, t409)
+    t464 = ops.select(t170, c5_over_behind_front_2, 1.0)
+    t465 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t435, t464)))
+    t466 = ops.select(t170, c6_over_behind_front_2, 1.0)
+    t467 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t428, t466)))
+    t468 = ops.select(failed_4, ops.nan, t277)
     flip_wrist_over_behind_back = ops.select(aligned_wrist_over_behind_front, 0.0, 3.141592653589793)
-    t467 = ops.select(failed_4, ops.nan, ops.wrap(flip_wrist_over_behind_back - t445))
-    t468 = ops.select(failed_4, ops.nan, ops.wrap_cut(t451))
-    t469 = ops.select(failed_4, ops.nan, ops.wrap(t459 + flip_wrist_over_behind_back))
-    t470 = no_link_elbow | free6
-    t471 = ops.status(invalid, unreachable, t470 | on_axis_5 | aligned_wrist)
-    t472 = t470 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
-    t473 = ops.status(invalid, unreachable_2, t472)
-    t474 = t470 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
-    t475 = ops.status(invalid, unreachable_3, t474)
-    t476 = t470 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
-    t477 = ops.status(invalid, unreachable_4, t476)
+    t469 = ops.select(failed_4, ops.nan, ops.wrap(flip_wrist_over_behind_back - t447))
+    t470 = ops.select(failed_4, ops.nan, ops.wrap_cut(t453))
+    t471 = ops.select(failed_4, ops.nan, ops.wrap(t461 + flip_wrist_over_behind_back))
+    t472 = no_link_elbow | free6
+    t473 = ops.status(invalid, unreachable, t472 | on_axis_5 | aligned_wrist)
+    t474 = t472 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
+    t475 = ops.status(invalid, unreachable_2, t474)
+    t476 = t472 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
+    t477 = ops.status(invalid, unreachable_3, t476)
+    t478 = t472 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
+    t479 = ops.status(invalid, unreachable_4, t478)
     return (
-        t258,
-        t261,
-        t267,
+        t260,
+        t263,
         t269,
         t271,
         t273,
-        t276,
-        t277,
+        t275,
         t278,
         t279,
-        t269,
+        t280,
+        t281,
         t271,
         t273,
-        t276,
-        t309,
-        t315,
-        t323,
-        t324,
+        t275,
+        t278,
+        t311,
+        t317,
+        t325,
         t326,
         t328,
-        t329,
         t330,
         t331,
         t332,
-        t324,
+        t333,
+        t334,
         t326,
         t328,
-        t329,
-        t390,
-        t397,
-        t406,
+        t330,
+        t331,
+        t392,
+        t399,
         t408,
         t410,
         t412,
-        t413,
         t414,
         t415,
         t416,
-        t408,
+        t417,
+        t418,
         t410,
         t412,
-        t413,
-        t446,
-        t452,
-        t460,
-        t461,
+        t414,
+        t415,
+        t448,
+        t454,
+        t462,
         t463,
         t465,
-        t466,
         t467,
         t468,
         t469,
-        t461,
+        t470,
+        t471,
         t463,
         t465,
-        t466,
-        t471,
-        t471,
+        t467,
+        t468,
         t473,
         t473,
         t475,
         t475,
         t477,
         t477,
+        t479,
+        t479,
     )
 
 

@@ -4,25 +4,25 @@
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 51 compare and select, 67 add, 2 divide, 99 multiply, 6 sincos, 1 sqrt
- *   fk where nothing vanishes: 60 add, 29 compare and select, 1 divide, 77 multiply, 6 sincos, 1
+ *   fk where nothing vanishes: 60 add, 30 compare and select, 1 divide, 77 multiply, 6 sincos, 1
  *     sqrt
  *   skeleton: 50 compare and select, 182 add, 2 divide, 105 multiply, 6 sincos, 1 sqrt
  *   jacobian_parallel: 50 compare and select, 88 add, 2 divide, 99 multiply, 6 sincos, 1 sqrt
- *   jacobian_parallel where nothing vanishes: 81 add, 28 compare and select, 1 divide, 77
+ *   jacobian_parallel where nothing vanishes: 81 add, 29 compare and select, 1 divide, 77
  *     multiply, 6 sincos, 1 sqrt
  *   jacobian_serial: 50 compare and select, 88 add, 2 divide, 123 multiply, 6 sincos, 1 sqrt
- *   jacobian_serial where nothing vanishes: 81 add, 28 compare and select, 1 divide, 101 multiply,
+ *   jacobian_serial where nothing vanishes: 81 add, 29 compare and select, 1 divide, 101 multiply,
  *     6 sincos, 1 sqrt
  *   jacobian: 50 compare and select, 118 add, 20 divide, 178 multiply, 6 sincos, 1 sqrt
  *   determinant: 50 compare and select, 84 add, 4 divide, 128 multiply, 6 sincos, 1 sqrt
- *   determinant where nothing vanishes: 77 add, 28 compare and select, 3 divide, 106 multiply, 6
+ *   determinant where nothing vanishes: 77 add, 29 compare and select, 3 divide, 106 multiply, 6
  *     sincos, 1 sqrt
  *   singularities: 50 compare and select, 90 add, 2 divide, 124 multiply, 6 sincos, 1 sqrt
- *   singularities where nothing vanishes: 83 add, 28 compare and select, 1 divide, 102 multiply, 6
+ *   singularities where nothing vanishes: 83 add, 29 compare and select, 1 divide, 102 multiply, 6
  *     sincos, 1 sqrt
  *   condition_number: 50 compare and select, 122 add, 4 divide, 175 multiply, 6 sincos, 3 sqrt
  *   constraint: 50 compare and select, 94 add, 2 divide, 161 multiply, 6 sincos, 1 sqrt
- *   constraint where nothing vanishes: 87 add, 28 compare and select, 1 divide, 129 multiply, 6
+ *   constraint where nothing vanishes: 87 add, 29 compare and select, 1 divide, 129 multiply, 6
  *     sincos, 1 sqrt
  *   ik: 139 compare and select, 130 add, 6 atan2, 9 divide, 155 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 48 add, 53 compare and select, 3 divide, 43 multiply, 3 sincos, 6 sqrt
@@ -261,7 +261,7 @@ CF_INLINE void delta_fk_common_kernel(const int single, const real_t one,
     const real_t t48 = u_u * v_v;
     const real_t t49 = product_2 - t48 * CLOSEDFORM_C(0.000244140625);
     const int t50 = (u_u <= t25) | (u_u + v_v <= t25) | (t49 <= CLOSEDFORM_VANISHING * t48);
-    const int t51 = t50 | (product_2 <= t24 * (t23 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t39);
+    const int t51 = t50 | (product_2 <= t24 * (t23 * u_u)) | (t40 & (slack <= CLOSEDFORM_VANISHING * t39));
     p[0] = t29 - t33 + t41;
     p[1] = t42 + t43 + t41;
     p[2] = -(t44 + t45) + t41;
@@ -1162,7 +1162,7 @@ CF_INLINE void delta_jacobian_parallel_common_kernel(const int single, const rea
     const real_t t48 = u_u * v_v;
     const real_t t49 = product_2 - t48 * CLOSEDFORM_C(0.000244140625);
     const int t50 = (u_u <= t23) | (u_u + v_v <= t23) | (t49 <= CLOSEDFORM_VANISHING * t48);
-    const int t51 = t50 | (product_2 <= t22 * (t21 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t38);
+    const int t51 = t50 | (product_2 <= t22 * (t21 * u_u)) | (t39 & (slack <= CLOSEDFORM_VANISHING * t38));
     A[0] = -t32 + t40;
     A[1] = A_12 + t40;
     A[2] = -t45 + t40;
@@ -1565,7 +1565,7 @@ CF_INLINE void delta_jacobian_serial_common_kernel(const int single, const real_
     const real_t t60 = u_u * v_v;
     const real_t t61 = product_2 - t60 * CLOSEDFORM_C(0.000244140625);
     const int t62 = (u_u <= t28) | (u_u + v_v <= t28) | (t61 <= CLOSEDFORM_VANISHING * t60);
-    const int t63 = t62 | (product_2 <= t27 * (t26 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t49);
+    const int t63 = t62 | (product_2 <= t27 * (t26 * u_u)) | (t50 & (slack <= CLOSEDFORM_VANISHING * t49));
     B[0] = t2 * t37 - t38 * A_12 + t5 * t43 + t51;
     B[1] = B_22 + t51;
     B[2] = B_33 + t51;
@@ -2203,7 +2203,7 @@ CF_INLINE void delta_determinant_common_kernel(const int single, const real_t on
     const real_t t67 = u_u * v_v;
     const real_t t68 = product_2 - t67 * CLOSEDFORM_C(0.000244140625);
     const int t69 = (u_u <= t28) | (u_u + v_v <= t28) | (t68 <= CLOSEDFORM_VANISHING * t67);
-    const int t70 = t69 | (product_2 <= t27 * (t26 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t51);
+    const int t70 = t69 | (product_2 <= t27 * (t26 * u_u)) | (t58 & (slack <= CLOSEDFORM_VANISHING * t51));
     det[0] = -t52 + t59;
     det[1] = -t65 + t59;
     rare[0] = (t70) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
@@ -2578,7 +2578,7 @@ CF_INLINE void delta_singularities_common_kernel(const int single, const real_t 
     const real_t t60 = u_u * v_v;
     const real_t t61 = product_2 - t60 * CLOSEDFORM_C(0.000244140625);
     const int t62 = (u_u <= t28) | (u_u + v_v <= t28) | (t61 <= CLOSEDFORM_VANISHING * t60);
-    const int t63 = t62 | (product_2 <= t27 * (t26 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t49);
+    const int t63 = t62 | (product_2 <= t27 * (t26 * u_u)) | (t50 & (slack <= CLOSEDFORM_VANISHING * t49));
     factors[0] = t2 * t37 - t38 * A_12 + t5 * t43 + t51;
     factors[1] = B_22 + t51;
     factors[2] = B_33 + t51;
@@ -3233,7 +3233,7 @@ CF_INLINE void delta_constraint_common_kernel(const int single, const real_t one
     const real_t t87 = u_u * v_v;
     const real_t t88 = product_2 - t87 * CLOSEDFORM_C(0.000244140625);
     const int t89 = (u_u <= t27) | (u_u + v_v <= t27) | (t88 <= CLOSEDFORM_VANISHING * t87);
-    const int t90 = t89 | (product_2 <= t26 * (t25 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t67);
+    const int t90 = t89 | (product_2 <= t26 * (t25 * u_u)) | (t68 & (slack <= CLOSEDFORM_VANISHING * t67));
     factors[0] = t61 + t69;
     factors[1] = t85 + t69;
     rare[0] = (t90) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);

@@ -4,25 +4,25 @@
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 51 compare and select, 67 add, 2 divide, 99 multiply, 6 sincos, 1 sqrt
- *   fk where nothing vanishes: 60 add, 29 compare and select, 1 divide, 77 multiply, 6 sincos, 1
+ *   fk where nothing vanishes: 60 add, 30 compare and select, 1 divide, 77 multiply, 6 sincos, 1
  *     sqrt
  *   skeleton: 50 compare and select, 182 add, 2 divide, 105 multiply, 6 sincos, 1 sqrt
  *   jacobian_parallel: 50 compare and select, 88 add, 2 divide, 99 multiply, 6 sincos, 1 sqrt
- *   jacobian_parallel where nothing vanishes: 81 add, 28 compare and select, 1 divide, 77
+ *   jacobian_parallel where nothing vanishes: 81 add, 29 compare and select, 1 divide, 77
  *     multiply, 6 sincos, 1 sqrt
  *   jacobian_serial: 50 compare and select, 88 add, 2 divide, 123 multiply, 6 sincos, 1 sqrt
- *   jacobian_serial where nothing vanishes: 81 add, 28 compare and select, 1 divide, 101 multiply,
+ *   jacobian_serial where nothing vanishes: 81 add, 29 compare and select, 1 divide, 101 multiply,
  *     6 sincos, 1 sqrt
  *   jacobian: 50 compare and select, 118 add, 20 divide, 178 multiply, 6 sincos, 1 sqrt
  *   determinant: 50 compare and select, 84 add, 4 divide, 128 multiply, 6 sincos, 1 sqrt
- *   determinant where nothing vanishes: 77 add, 28 compare and select, 3 divide, 106 multiply, 6
+ *   determinant where nothing vanishes: 77 add, 29 compare and select, 3 divide, 106 multiply, 6
  *     sincos, 1 sqrt
  *   singularities: 50 compare and select, 90 add, 2 divide, 124 multiply, 6 sincos, 1 sqrt
- *   singularities where nothing vanishes: 83 add, 28 compare and select, 1 divide, 102 multiply, 6
+ *   singularities where nothing vanishes: 83 add, 29 compare and select, 1 divide, 102 multiply, 6
  *     sincos, 1 sqrt
  *   condition_number: 50 compare and select, 122 add, 4 divide, 175 multiply, 6 sincos, 3 sqrt
  *   constraint: 50 compare and select, 94 add, 2 divide, 161 multiply, 6 sincos, 1 sqrt
- *   constraint where nothing vanishes: 87 add, 28 compare and select, 1 divide, 129 multiply, 6
+ *   constraint where nothing vanishes: 87 add, 29 compare and select, 1 divide, 129 multiply, 6
  *     sincos, 1 sqrt
  *   ik: 139 compare and select, 130 add, 6 atan2, 9 divide, 155 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 48 add, 53 compare and select, 3 divide, 43 multiply, 3 sincos, 6 sqrt

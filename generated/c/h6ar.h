@@ -15,7 +15,7 @@
  *   singularities: 32 compare and select, 43 add, 4 divide, 64 multiply, 5 sincos, 3 sqrt
  *   ik: 725 compare and select, 539 add, 29 atan2, 104 divide, 812 multiply, 1 reduce to a turn, 3
  *     sincos, 54 sqrt
- *   ik where nothing vanishes: 250 compare and select, 174 add, 16 atan2, 15 divide, 196 multiply,
+ *   ik where nothing vanishes: 264 compare and select, 174 add, 16 atan2, 15 divide, 196 multiply,
  *     1 reduce to a turn, 3 sincos, 25 sqrt
  *   wrist_length: 21 compare and select, 6 add, 1 divide, 7 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add

@@ -15,7 +15,7 @@
  *   singularities: 55 compare and select, 91 add, 13 divide, 153 multiply, 5 sincos, 6 sqrt
  *   ik: 866 compare and select, 643 add, 28 atan2, 96 divide, 983 multiply, 1 reduce to a turn, 3
  *     sincos, 42 sqrt
- *   ik where nothing vanishes: 285 compare and select, 263 add, 23 atan2, 17 divide, 362 multiply,
+ *   ik where nothing vanishes: 304 compare and select, 263 add, 23 atan2, 17 divide, 362 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
  *   wrist_length: 22 compare and select, 7 add, 1 divide, 11 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add

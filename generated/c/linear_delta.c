@@ -4,29 +4,29 @@
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 50 compare and select, 53 add, 2 divide, 78 multiply, 1 sqrt
- *   fk where nothing vanishes: 30 compare and select, 46 add, 1 divide, 55 multiply, 1 sqrt
+ *   fk where nothing vanishes: 31 compare and select, 46 add, 1 divide, 55 multiply, 1 sqrt
  *   skeleton: 49 compare and select, 127 add, 2 divide, 80 multiply, 1 sqrt
- *   skeleton where nothing vanishes: 29 compare and select, 120 add, 1 divide, 57 multiply, 1 sqrt
+ *   skeleton where nothing vanishes: 30 compare and select, 120 add, 1 divide, 57 multiply, 1 sqrt
  *   jacobian_parallel: 49 compare and select, 71 add, 2 divide, 78 multiply, 1 sqrt
- *   jacobian_parallel where nothing vanishes: 29 compare and select, 64 add, 1 divide, 55
+ *   jacobian_parallel where nothing vanishes: 30 compare and select, 64 add, 1 divide, 55
  *     multiply, 1 sqrt
  *   jacobian_serial: 45 compare and select, 47 add, 2 divide, 65 multiply, 1 sqrt
- *   jacobian_serial where nothing vanishes: 29 compare and select, 40 add, 1 divide, 45 multiply,
+ *   jacobian_serial where nothing vanishes: 30 compare and select, 40 add, 1 divide, 45 multiply,
  *     1 sqrt
  *   jacobian: 49 compare and select, 91 add, 20 divide, 129 multiply, 1 sqrt
- *   jacobian where nothing vanishes: 29 compare and select, 84 add, 19 divide, 106 multiply, 1
+ *   jacobian where nothing vanishes: 30 compare and select, 84 add, 19 divide, 106 multiply, 1
  *     sqrt
  *   determinant: 45 compare and select, 43 add, 4 divide, 70 multiply, 1 sqrt
- *   determinant where nothing vanishes: 29 compare and select, 36 add, 3 divide, 50 multiply, 1
+ *   determinant where nothing vanishes: 30 compare and select, 36 add, 3 divide, 50 multiply, 1
  *     sqrt
  *   singularities: 45 compare and select, 49 add, 2 divide, 66 multiply, 1 sqrt
- *   singularities where nothing vanishes: 29 compare and select, 42 add, 1 divide, 46 multiply, 1
+ *   singularities where nothing vanishes: 30 compare and select, 42 add, 1 divide, 46 multiply, 1
  *     sqrt
  *   condition_number: 49 compare and select, 107 add, 4 divide, 148 multiply, 3 sqrt
- *   condition_number where nothing vanishes: 29 compare and select, 100 add, 3 divide, 125
+ *   condition_number where nothing vanishes: 30 compare and select, 100 add, 3 divide, 125
  *     multiply, 3 sqrt
  *   constraint: 49 compare and select, 65 add, 2 divide, 108 multiply, 1 sqrt
- *   constraint where nothing vanishes: 29 compare and select, 58 add, 1 divide, 85 multiply, 1
+ *   constraint where nothing vanishes: 30 compare and select, 58 add, 1 divide, 85 multiply, 1
  *     sqrt
  *   ik: 60 compare and select, 63 add, 49 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 13 multiply, 3 sqrt
@@ -200,7 +200,7 @@ CF_INLINE void linear_delta_fk_common_kernel(const int single, const real_t one,
     const real_t t35 = u_u * v_v;
     const real_t t36 = product_2 - t35 * CLOSEDFORM_C(0.000244140625);
     const int t37 = (u_u <= t14) | (u_u + v_v <= t14) | (t36 <= CLOSEDFORM_VANISHING * t35);
-    const int t38 = t37 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t27);
+    const int t38 = t37 | (product_2 <= t13 * (t12 * u_u)) | (t28 & (slack <= CLOSEDFORM_VANISHING * t27));
     p[0] = t18 - t22 + t29;
     p[1] = t30 + t31 + t29;
     p[2] = t32 - t33 + t29;
@@ -660,197 +660,197 @@ CF_INLINE void linear_delta_skeleton_common_kernel(const int single, const real_
     const real_t t26 = cf_rounded(single, one, CLOSEDFORM_C(2.0) * t17 * t25);
     const real_t t27 = u_u * (CLOSEDFORM_C(1.0) + t26) * CLOSEDFORM_C(0.25);
     const real_t t28 = cf_rounded(single, one, l * l) - t27;
-    const int unreachable = !(t5 & (-(CLOSEDFORM_FEASIBILITY * t6) <= t28));
-    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= l) & t3)) | unreachable;
-    const real_t t29 = cf_poison(single, failed);
-    const real_t t30 = f + t29;
-    const real_t t31 = CLOSEDFORM_C(0.0) + t29;
-    const real_t t32 = rho1 + t29;
-    const real_t t33 = e + c1_x;
-    const real_t t34 = t10 * CLOSEDFORM_C(0.5) + t25 * (c3_y * t22 - t7 * t19);
+    const int t29 = t5 & (-(CLOSEDFORM_FEASIBILITY * t6) <= t28);
+    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= l) & t3)) | (!t29);
+    const real_t t30 = cf_poison(single, failed);
+    const real_t t31 = f + t30;
+    const real_t t32 = CLOSEDFORM_C(0.0) + t30;
+    const real_t t33 = rho1 + t30;
+    const real_t t34 = e + c1_x;
+    const real_t t35 = t10 * CLOSEDFORM_C(0.5) + t25 * (c3_y * t22 - t7 * t19);
     const real_t slack = cf_max(t28, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t35 = t18 * h;
-    const real_t t36 = t34 + t35;
-    const real_t t37 = t33 - t36 + t29;
-    const real_t t38 = t25 * (t10 * t22 + t7 * t18) - c3_y * CLOSEDFORM_C(0.5);
-    const real_t t39 = t19 * h;
-    const real_t A_12 = t38 + t39;
-    const real_t t40 = A_12 + t29;
-    const real_t t41 = t25 * (t10 * t19 + c3_y * t18) + t7 * CLOSEDFORM_C(0.5);
-    const real_t t42 = t22 * h;
-    const real_t t43 = rho1 - (t41 - t42) + t29;
-    const real_t t44 = t8 + t29;
-    const real_t t45 = -t8 + t29;
-    const real_t t46 = -t9 + t29;
-    const real_t t47 = t13 + t29;
-    const real_t t48 = rho2 + t29;
-    const real_t t49 = c1_x - t8;
-    const real_t t50 = t49 - t36;
-    const real_t t51 = t50 + t29;
-    const real_t t52 = t11 * CLOSEDFORM_C(0.25);
-    const real_t t53 = -(t9 + t52) + t29;
-    const real_t t54 = e * CLOSEDFORM_C(0.25);
-    const real_t t55 = t13 - t54;
-    const real_t t56 = t55 + t29;
-    const real_t t57 = t52 - t9 + t29;
-    const real_t t58 = t13 + t54;
-    const real_t t59 = t58 + t29;
-    const real_t t60 = t50 - t52 + t29;
-    const real_t t61 = t12 - t54;
-    const real_t t62 = t52 + t50 + t29;
-    const real_t t63 = t12 + t54;
-    const real_t t64 = -t13 + t29;
-    const real_t t65 = rho3 + t29;
-    const real_t t66 = -t58 + t29;
-    const real_t t67 = -t55 + t29;
-    const real_t t68 = t34 - t35;
-    const real_t t69 = t33 - t68 + t29;
-    const real_t A_12_above = t38 - t39;
-    const real_t t70 = A_12_above + t29;
-    const real_t t71 = rho1 - (t41 + t42) + t29;
-    const real_t t72 = t49 - t68;
-    const real_t t73 = t72 + t29;
-    const real_t t74 = t72 - t52 + t29;
-    const real_t t75 = t52 + t72 + t29;
+    const real_t t36 = t18 * h;
+    const real_t t37 = t35 + t36;
+    const real_t t38 = t34 - t37 + t30;
+    const real_t t39 = t25 * (t10 * t22 + t7 * t18) - c3_y * CLOSEDFORM_C(0.5);
+    const real_t t40 = t19 * h;
+    const real_t A_12 = t39 + t40;
+    const real_t t41 = A_12 + t30;
+    const real_t t42 = t25 * (t10 * t19 + c3_y * t18) + t7 * CLOSEDFORM_C(0.5);
+    const real_t t43 = t22 * h;
+    const real_t t44 = rho1 - (t42 - t43) + t30;
+    const real_t t45 = t8 + t30;
+    const real_t t46 = -t8 + t30;
+    const real_t t47 = -t9 + t30;
+    const real_t t48 = t13 + t30;
+    const real_t t49 = rho2 + t30;
+    const real_t t50 = c1_x - t8;
+    const real_t t51 = t50 - t37;
+    const real_t t52 = t51 + t30;
+    const real_t t53 = t11 * CLOSEDFORM_C(0.25);
+    const real_t t54 = -(t9 + t53) + t30;
+    const real_t t55 = e * CLOSEDFORM_C(0.25);
+    const real_t t56 = t13 - t55;
+    const real_t t57 = t56 + t30;
+    const real_t t58 = t53 - t9 + t30;
+    const real_t t59 = t13 + t55;
+    const real_t t60 = t59 + t30;
+    const real_t t61 = t51 - t53 + t30;
+    const real_t t62 = t12 - t55;
+    const real_t t63 = t53 + t51 + t30;
+    const real_t t64 = t12 + t55;
+    const real_t t65 = -t13 + t30;
+    const real_t t66 = rho3 + t30;
+    const real_t t67 = -t59 + t30;
+    const real_t t68 = -t56 + t30;
+    const real_t t69 = t35 - t36;
+    const real_t t70 = t34 - t69 + t30;
+    const real_t A_12_above = t39 - t40;
+    const real_t t71 = A_12_above + t30;
+    const real_t t72 = rho1 - (t42 + t43) + t30;
+    const real_t t73 = t50 - t69;
+    const real_t t74 = t73 + t30;
+    const real_t t75 = t73 - t53 + t30;
+    const real_t t76 = t53 + t73 + t30;
     const real_t v_v = cf_rounded(single, one, t16 * t16) + t14;
-    const real_t t76 = u_u * v_v;
-    const real_t t77 = product_2 - t76 * CLOSEDFORM_C(0.000244140625);
-    const int t78 = (u_u <= t24) | (u_u + v_v <= t24) | (t77 <= CLOSEDFORM_VANISHING * t76);
-    const int t79 = t78 | (product_2 <= t23 * (t4 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t6);
-    points[0] = t30;
-    points[1] = t31;
-    points[2] = t31;
-    points[3] = t30;
-    points[4] = t31;
-    points[5] = t32;
-    points[6] = t37;
-    points[7] = t40;
-    points[8] = t43;
-    points[9] = t30;
-    points[10] = t44;
-    points[11] = t32;
-    points[12] = t30;
-    points[13] = t45;
-    points[14] = t32;
-    points[15] = t37;
-    points[16] = t8 + A_12 + t29;
-    points[17] = t43;
-    points[18] = t37;
-    points[19] = A_12 - t8 + t29;
-    points[20] = t43;
-    points[21] = t46;
-    points[22] = t47;
-    points[23] = t31;
-    points[24] = t46;
-    points[25] = t47;
-    points[26] = t48;
-    points[27] = t51;
-    points[28] = t12 + A_12 + t29;
-    points[29] = t43;
-    points[30] = t53;
-    points[31] = t56;
-    points[32] = t48;
-    points[33] = t57;
-    points[34] = t59;
-    points[35] = t48;
-    points[36] = t60;
-    points[37] = t61 + A_12 + t29;
-    points[38] = t43;
-    points[39] = t62;
-    points[40] = t63 + A_12 + t29;
-    points[41] = t43;
-    points[42] = t46;
-    points[43] = t64;
-    points[44] = t31;
-    points[45] = t46;
-    points[46] = t64;
-    points[47] = t65;
-    points[48] = t51;
-    points[49] = A_12 - t12 + t29;
-    points[50] = t43;
-    points[51] = t57;
-    points[52] = t66;
-    points[53] = t65;
-    points[54] = t53;
-    points[55] = t67;
-    points[56] = t65;
-    points[57] = t62;
-    points[58] = A_12 - t63 + t29;
-    points[59] = t43;
-    points[60] = t60;
-    points[61] = A_12 - t61 + t29;
-    points[62] = t43;
-    points[63] = c1_x - t36 + t29;
-    points[64] = t40;
-    points[65] = t43;
-    points[66] = t30;
-    points[67] = t31;
-    points[68] = t31;
-    points[69] = t30;
-    points[70] = t31;
-    points[71] = t32;
-    points[72] = t69;
-    points[73] = t70;
-    points[74] = t71;
-    points[75] = t30;
-    points[76] = t44;
-    points[77] = t32;
-    points[78] = t30;
-    points[79] = t45;
-    points[80] = t32;
-    points[81] = t69;
-    points[82] = t8 + A_12_above + t29;
-    points[83] = t71;
-    points[84] = t69;
-    points[85] = A_12_above - t8 + t29;
-    points[86] = t71;
-    points[87] = t46;
-    points[88] = t47;
-    points[89] = t31;
-    points[90] = t46;
-    points[91] = t47;
-    points[92] = t48;
-    points[93] = t73;
-    points[94] = t12 + A_12_above + t29;
-    points[95] = t71;
-    points[96] = t53;
-    points[97] = t56;
-    points[98] = t48;
-    points[99] = t57;
-    points[100] = t59;
-    points[101] = t48;
-    points[102] = t74;
-    points[103] = t61 + A_12_above + t29;
-    points[104] = t71;
-    points[105] = t75;
-    points[106] = t63 + A_12_above + t29;
-    points[107] = t71;
-    points[108] = t46;
-    points[109] = t64;
-    points[110] = t31;
-    points[111] = t46;
-    points[112] = t64;
-    points[113] = t65;
-    points[114] = t73;
-    points[115] = A_12_above - t12 + t29;
-    points[116] = t71;
-    points[117] = t57;
-    points[118] = t66;
-    points[119] = t65;
-    points[120] = t53;
-    points[121] = t67;
-    points[122] = t65;
-    points[123] = t75;
-    points[124] = A_12_above - t63 + t29;
-    points[125] = t71;
-    points[126] = t74;
-    points[127] = A_12_above - t61 + t29;
-    points[128] = t71;
-    points[129] = c1_x - t68 + t29;
-    points[130] = t70;
-    points[131] = t71;
-    rare[0] = (t79) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t77 = u_u * v_v;
+    const real_t t78 = product_2 - t77 * CLOSEDFORM_C(0.000244140625);
+    const int t79 = (u_u <= t24) | (u_u + v_v <= t24) | (t78 <= CLOSEDFORM_VANISHING * t77);
+    const int t80 = t79 | (product_2 <= t23 * (t4 * u_u)) | (t29 & (slack <= CLOSEDFORM_VANISHING * t6));
+    points[0] = t31;
+    points[1] = t32;
+    points[2] = t32;
+    points[3] = t31;
+    points[4] = t32;
+    points[5] = t33;
+    points[6] = t38;
+    points[7] = t41;
+    points[8] = t44;
+    points[9] = t31;
+    points[10] = t45;
+    points[11] = t33;
+    points[12] = t31;
+    points[13] = t46;
+    points[14] = t33;
+    points[15] = t38;
+    points[16] = t8 + A_12 + t30;
+    points[17] = t44;
+    points[18] = t38;
+    points[19] = A_12 - t8 + t30;
+    points[20] = t44;
+    points[21] = t47;
+    points[22] = t48;
+    points[23] = t32;
+    points[24] = t47;
+    points[25] = t48;
+    points[26] = t49;
+    points[27] = t52;
+    points[28] = t12 + A_12 + t30;
+    points[29] = t44;
+    points[30] = t54;
+    points[31] = t57;
+    points[32] = t49;
+    points[33] = t58;
+    points[34] = t60;
+    points[35] = t49;
+    points[36] = t61;
+    points[37] = t62 + A_12 + t30;
+    points[38] = t44;
+    points[39] = t63;
+    points[40] = t64 + A_12 + t30;
+    points[41] = t44;
+    points[42] = t47;
+    points[43] = t65;
+    points[44] = t32;
+    points[45] = t47;
+    points[46] = t65;
+    points[47] = t66;
+    points[48] = t52;
+    points[49] = A_12 - t12 + t30;
+    points[50] = t44;
+    points[51] = t58;
+    points[52] = t67;
+    points[53] = t66;
+    points[54] = t54;
+    points[55] = t68;
+    points[56] = t66;
+    points[57] = t63;
+    points[58] = A_12 - t64 + t30;
+    points[59] = t44;
+    points[60] = t61;
+    points[61] = A_12 - t62 + t30;
+    points[62] = t44;
+    points[63] = c1_x - t37 + t30;
+    points[64] = t41;
+    points[65] = t44;
+    points[66] = t31;
+    points[67] = t32;
+    points[68] = t32;
+    points[69] = t31;
+    points[70] = t32;
+    points[71] = t33;
+    points[72] = t70;
+    points[73] = t71;
+    points[74] = t72;
+    points[75] = t31;
+    points[76] = t45;
+    points[77] = t33;
+    points[78] = t31;
+    points[79] = t46;
+    points[80] = t33;
+    points[81] = t70;
+    points[82] = t8 + A_12_above + t30;
+    points[83] = t72;
+    points[84] = t70;
+    points[85] = A_12_above - t8 + t30;
+    points[86] = t72;
+    points[87] = t47;
+    points[88] = t48;
+    points[89] = t32;
+    points[90] = t47;
+    points[91] = t48;
+    points[92] = t49;
+    points[93] = t74;
+    points[94] = t12 + A_12_above + t30;
+    points[95] = t72;
+    points[96] = t54;
+    points[97] = t57;
+    points[98] = t49;
+    points[99] = t58;
+    points[100] = t60;
+    points[101] = t49;
+    points[102] = t75;
+    points[103] = t62 + A_12_above + t30;
+    points[104] = t72;
+    points[105] = t76;
+    points[106] = t64 + A_12_above + t30;
+    points[107] = t72;
+    points[108] = t47;
+    points[109] = t65;
+    points[110] = t32;
+    points[111] = t47;
+    points[112] = t65;
+    points[113] = t66;
+    points[114] = t74;
+    points[115] = A_12_above - t12 + t30;
+    points[116] = t72;
+    points[117] = t58;
+    points[118] = t67;
+    points[119] = t66;
+    points[120] = t54;
+    points[121] = t68;
+    points[122] = t66;
+    points[123] = t76;
+    points[124] = A_12_above - t64 + t30;
+    points[125] = t72;
+    points[126] = t75;
+    points[127] = A_12_above - t62 + t30;
+    points[128] = t72;
+    points[129] = c1_x - t69 + t30;
+    points[130] = t71;
+    points[131] = t72;
+    rare[0] = (t80) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void linear_delta_skeleton_common_batch(size_t n, const linear_delta_params *params,
@@ -1275,7 +1275,7 @@ CF_INLINE void linear_delta_jacobian_parallel_common_kernel(const int single, co
     const real_t t40 = u_u * v_v;
     const real_t t41 = product_2 - t40 * CLOSEDFORM_C(0.000244140625);
     const int t42 = (u_u <= t14) | (u_u + v_v <= t14) | (t41 <= CLOSEDFORM_VANISHING * t40);
-    const int t43 = t42 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t28);
+    const int t43 = t42 | (product_2 <= t13 * (t12 * u_u)) | (t29 & (slack <= CLOSEDFORM_VANISHING * t28));
     A[0] = -t23 + t30;
     A[1] = A_12 + t30;
     A[2] = -t35 + t30;
@@ -1568,7 +1568,7 @@ CF_INLINE void linear_delta_jacobian_serial_common_kernel(const int single, cons
     const real_t t32 = u_u * v_v;
     const real_t t33 = product_2 - t32 * CLOSEDFORM_C(0.000244140625);
     const int t34 = (u_u + v_v <= t14) | (u_u <= t14) | (t33 <= CLOSEDFORM_VANISHING * t32);
-    const int t35 = t34 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t28);
+    const int t35 = t34 | (product_2 <= t13 * (t12 * u_u)) | (t29 & (slack <= CLOSEDFORM_VANISHING * t28));
     B[0] = -t23 + t30;
     B[1] = t3 - t23 + t30;
     B[2] = t2 - t23 + t30;
@@ -1937,7 +1937,7 @@ CF_INLINE void linear_delta_jacobian_common_kernel(const int single, const real_
     const real_t t67 = u_u * v_v;
     const real_t t68 = product_2 - t67 * CLOSEDFORM_C(0.000244140625);
     const int t69 = (u_u + v_v <= t14) | (u_u <= t14) | (t68 <= CLOSEDFORM_VANISHING * t67);
-    const int t70 = t69 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t27);
+    const int t70 = t69 | (product_2 <= t13 * (t12 * u_u)) | (t33 & (slack <= CLOSEDFORM_VANISHING * t27));
     J[0] = t28 + t34;
     J[1] = t35 + t34;
     J[2] = -t36 + t34;
@@ -2229,7 +2229,7 @@ CF_INLINE void linear_delta_determinant_common_kernel(const int single, const re
     const real_t t34 = u_u * v_v;
     const real_t t35 = product_2 - t34 * CLOSEDFORM_C(0.000244140625);
     const int t36 = (u_u + v_v <= t14) | (u_u <= t14) | (t35 <= CLOSEDFORM_VANISHING * t34);
-    const int t37 = t36 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t24);
+    const int t37 = t36 | (product_2 <= t13 * (t12 * u_u)) | (t30 & (slack <= CLOSEDFORM_VANISHING * t24));
     det[0] = t25 + t31;
     det[1] = -t33 + t31;
     rare[0] = (t37) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
@@ -2491,7 +2491,7 @@ CF_INLINE void linear_delta_singularities_common_kernel(const int single, const 
     const real_t t32 = u_u * v_v;
     const real_t t33 = product_2 - t32 * CLOSEDFORM_C(0.000244140625);
     const int t34 = (u_u + v_v <= t14) | (u_u <= t14) | (t33 <= CLOSEDFORM_VANISHING * t32);
-    const int t35 = t34 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t28);
+    const int t35 = t34 | (product_2 <= t13 * (t12 * u_u)) | (t29 & (slack <= CLOSEDFORM_VANISHING * t28));
     factors[0] = -t23 + t30;
     factors[1] = t3 - t23 + t30;
     factors[2] = t2 - t23 + t30;
@@ -2872,7 +2872,7 @@ CF_INLINE void linear_delta_condition_number_common_kernel(const int single, con
     const real_t t74 = u_u * v_v;
     const real_t t75 = product_2 - t74 * CLOSEDFORM_C(0.000244140625);
     const int t76 = (u_u <= t14) | (u_u + v_v <= t14) | (t75 <= CLOSEDFORM_VANISHING * t74);
-    const int t77 = t76 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t47);
+    const int t77 = t76 | (product_2 <= t13 * (t12 * u_u)) | (t53 & (slack <= CLOSEDFORM_VANISHING * t47));
     kappa[0] = t48 + t54;
     kappa[1] = t73 + t54;
     rare[0] = (t77) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
@@ -3175,7 +3175,7 @@ CF_INLINE void linear_delta_constraint_common_kernel(const int single, const rea
     const real_t t49 = u_u * v_v;
     const real_t t50 = product_2 - t49 * CLOSEDFORM_C(0.000244140625);
     const int t51 = (u_u <= t14) | (u_u + v_v <= t14) | (t50 <= CLOSEDFORM_VANISHING * t49);
-    const int t52 = t51 | (product_2 <= t13 * (t12 * u_u)) | (slack <= CLOSEDFORM_VANISHING * t38);
+    const int t52 = t51 | (product_2 <= t13 * (t12 * u_u)) | (t39 & (slack <= CLOSEDFORM_VANISHING * t38));
     factors[0] = t33 + A_23 * t32 * (c3_y - A_12) + t40;
     factors[1] = t48;
     rare[0] = (t52) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);

@@ -4,29 +4,29 @@
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 50 compare and select, 53 add, 2 divide, 78 multiply, 1 sqrt
- *   fk where nothing vanishes: 30 compare and select, 46 add, 1 divide, 55 multiply, 1 sqrt
+ *   fk where nothing vanishes: 31 compare and select, 46 add, 1 divide, 55 multiply, 1 sqrt
  *   skeleton: 49 compare and select, 127 add, 2 divide, 80 multiply, 1 sqrt
- *   skeleton where nothing vanishes: 29 compare and select, 120 add, 1 divide, 57 multiply, 1 sqrt
+ *   skeleton where nothing vanishes: 30 compare and select, 120 add, 1 divide, 57 multiply, 1 sqrt
  *   jacobian_parallel: 49 compare and select, 71 add, 2 divide, 78 multiply, 1 sqrt
- *   jacobian_parallel where nothing vanishes: 29 compare and select, 64 add, 1 divide, 55
+ *   jacobian_parallel where nothing vanishes: 30 compare and select, 64 add, 1 divide, 55
  *     multiply, 1 sqrt
  *   jacobian_serial: 45 compare and select, 47 add, 2 divide, 65 multiply, 1 sqrt
- *   jacobian_serial where nothing vanishes: 29 compare and select, 40 add, 1 divide, 45 multiply,
+ *   jacobian_serial where nothing vanishes: 30 compare and select, 40 add, 1 divide, 45 multiply,
  *     1 sqrt
  *   jacobian: 49 compare and select, 91 add, 20 divide, 129 multiply, 1 sqrt
- *   jacobian where nothing vanishes: 29 compare and select, 84 add, 19 divide, 106 multiply, 1
+ *   jacobian where nothing vanishes: 30 compare and select, 84 add, 19 divide, 106 multiply, 1
  *     sqrt
  *   determinant: 45 compare and select, 43 add, 4 divide, 70 multiply, 1 sqrt
- *   determinant where nothing vanishes: 29 compare and select, 36 add, 3 divide, 50 multiply, 1
+ *   determinant where nothing vanishes: 30 compare and select, 36 add, 3 divide, 50 multiply, 1
  *     sqrt
  *   singularities: 45 compare and select, 49 add, 2 divide, 66 multiply, 1 sqrt
- *   singularities where nothing vanishes: 29 compare and select, 42 add, 1 divide, 46 multiply, 1
+ *   singularities where nothing vanishes: 30 compare and select, 42 add, 1 divide, 46 multiply, 1
  *     sqrt
  *   condition_number: 49 compare and select, 107 add, 4 divide, 148 multiply, 3 sqrt
- *   condition_number where nothing vanishes: 29 compare and select, 100 add, 3 divide, 125
+ *   condition_number where nothing vanishes: 30 compare and select, 100 add, 3 divide, 125
  *     multiply, 3 sqrt
  *   constraint: 49 compare and select, 65 add, 2 divide, 108 multiply, 1 sqrt
- *   constraint where nothing vanishes: 29 compare and select, 58 add, 1 divide, 85 multiply, 1
+ *   constraint where nothing vanishes: 30 compare and select, 58 add, 1 divide, 85 multiply, 1
  *     sqrt
  *   ik: 60 compare and select, 63 add, 49 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 13 multiply, 3 sqrt

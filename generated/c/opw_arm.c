@@ -14,7 +14,7 @@
  *   jacobian_space: 49 add, 90 multiply, 5 sincos
  *   jacobian_body: 33 add, 70 multiply, 5 sincos
  *   ik: 201 compare and select, 200 add, 22 atan2, 18 divide, 248 multiply, 13 sqrt
- *   ik where nothing vanishes: 128 compare and select, 170 add, 22 atan2, 12 divide, 199 multiply,
+ *   ik where nothing vanishes: 133 compare and select, 170 add, 22 atan2, 12 divide, 199 multiply,
  *     11 sqrt
  */
 #include "opw_arm.h"
@@ -1659,9 +1659,11 @@ CF_INLINE void opw_arm_ik_common_kernel(const int single, const real_t one,
     const real_t t154 = cf_status(single, invalid, unreachable, 0);
     const real_t t155 = cf_status(single, invalid, unreachable_2, 0);
     const int tangent1 = root1 - size * CLOSEDFORM_C(0.00390625) <= t6;
-    const int t156 = (h1 <= t6) | tangent1 | (r_elbow <= t6) | (c2 * f <= CLOSEDFORM_VANISHING * (t39 * t39));
-    const int t157 = t156 | (h_wrist <= t75) | (h_wrist_facing_down_noflip <= t75);
-    const int t158 = t157 | (r_elbow_backward_up_noflip <= t6) | (h_wrist_backward_up_noflip <= t75);
+    const int t156 = (r_elbow <= t6) | (h_wrist <= t75) | (h_wrist_facing_down_noflip <= t75);
+    const int t157 = (t37 & ((h1 <= t6) | tangent1)) | (t46 & t156);
+    const int t158 = (t46 | t98) & (c2 * f <= CLOSEDFORM_VANISHING * (t39 * t39));
+    const int t159 = (r_elbow_backward_up_noflip <= t6) | (h_wrist_backward_up_noflip <= t75);
+    const int t160 = t98 & (t159 | (h_wrist_backward_down_noflip <= t75));
     const real_t opposite[24] = { -t11, clower, s3, -t70, t70 * t77 + t73 * t78, t79 * t78 - t77 * (R1_11 * t71 - T31 * t72), clower_facing_down_noflip, t82, -t70, t70 * t90 + t88 * t91, t79 * t91 - t90 * (R1_11 * t85 - T31 * t87), -t92, clower_backward_up_noflip, t118, t123, t123 * t133 + t130 * t134, t137, clower_backward_down_noflip, s3_backward_down_noflip, t123, t123 * t150 + t148 * t151, t152, t152, t152 };
     const real_t adjacent[24] = { c_1_1, t59, -t69, -t73, -(R1_13 * t72 + T33 * t71), t77 * (R1_12 * t71 - T32 * t72) - t80 * t78, t81, -t83, -t88, -(R1_13 * t87 + T33 * t85), t90 * (R1_12 * t85 - T32 * t87) - t80 * t91, c_1_1_backward_up_noflip, t111, -t121, -t130, -(t125 * t129 + T33 * t127), t140, t141, -t142, -t148, -(t125 * t147 + T33 * t144), t153, t153, t153 };
     real_t angles[24];
@@ -1691,72 +1693,72 @@ CF_INLINE void opw_arm_ik_common_kernel(const int single, const real_t one,
         angles[20] = cf_atan2(opposite[20], adjacent[20]);
         angles[21] = cf_atan2(opposite[21], adjacent[21]);
     }
-    const real_t t159 = cf_wrap_cut(angles[0]) + t47;
-    const real_t t160 = cf_wrap_cut(angles[1]) + t47;
-    const real_t t161 = cf_wrap_cut(angles[2]) + t47;
-    const real_t t162 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[3]);
-    const real_t t163 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[5]);
-    const real_t t164 = cf_wrap_cut(angles[6]) + t47;
-    const real_t t165 = cf_wrap_cut(-angles[7]) + t47;
-    const real_t t166 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[8]);
-    const real_t t167 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[10]);
-    const real_t t168 = cf_wrap_cut(angles[11]) + t99;
-    const real_t t169 = cf_wrap_cut(angles[12]) + t99;
-    const real_t t170 = cf_wrap_cut(-angles[13]) + t99;
-    const real_t t171 = cf_wrap(CLOSEDFORM_C(3.141592653589793) + angles[14]);
-    const real_t t172 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[16]);
-    const real_t t173 = cf_wrap_cut(angles[17]) + t99;
-    const real_t t174 = cf_wrap_cut(angles[18]) + t99;
-    const real_t t175 = cf_wrap(CLOSEDFORM_C(3.141592653589793) + angles[19]);
-    const real_t t176 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[21]);
-    q[0] = t159;
-    q[1] = t160;
-    q[2] = t161;
+    const real_t t161 = cf_wrap_cut(angles[0]) + t47;
+    const real_t t162 = cf_wrap_cut(angles[1]) + t47;
+    const real_t t163 = cf_wrap_cut(angles[2]) + t47;
+    const real_t t164 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[3]);
+    const real_t t165 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[5]);
+    const real_t t166 = cf_wrap_cut(angles[6]) + t47;
+    const real_t t167 = cf_wrap_cut(-angles[7]) + t47;
+    const real_t t168 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[8]);
+    const real_t t169 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[10]);
+    const real_t t170 = cf_wrap_cut(angles[11]) + t99;
+    const real_t t171 = cf_wrap_cut(angles[12]) + t99;
+    const real_t t172 = cf_wrap_cut(-angles[13]) + t99;
+    const real_t t173 = cf_wrap(CLOSEDFORM_C(3.141592653589793) + angles[14]);
+    const real_t t174 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[16]);
+    const real_t t175 = cf_wrap_cut(angles[17]) + t99;
+    const real_t t176 = cf_wrap_cut(angles[18]) + t99;
+    const real_t t177 = cf_wrap(CLOSEDFORM_C(3.141592653589793) + angles[19]);
+    const real_t t178 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[21]);
+    q[0] = t161;
+    q[1] = t162;
+    q[2] = t163;
     q[3] = cf_wrap_cut(-angles[3]) + t47;
     q[4] = cf_wrap_cut(angles[4]) + t47;
     q[5] = cf_wrap_cut(-angles[5]) + t47;
-    q[6] = t159;
-    q[7] = t160;
-    q[8] = t161;
-    q[9] = t162 + t47;
+    q[6] = t161;
+    q[7] = t162;
+    q[8] = t163;
+    q[9] = t164 + t47;
     q[10] = cf_wrap_cut(-angles[4]) + t47;
-    q[11] = t163 + t47;
-    q[12] = t159;
-    q[13] = t164;
-    q[14] = t165;
+    q[11] = t165 + t47;
+    q[12] = t161;
+    q[13] = t166;
+    q[14] = t167;
     q[15] = cf_wrap_cut(-angles[8]) + t47;
     q[16] = cf_wrap_cut(angles[9]) + t47;
     q[17] = cf_wrap_cut(-angles[10]) + t47;
-    q[18] = t159;
-    q[19] = t164;
-    q[20] = t165;
-    q[21] = t166 + t47;
+    q[18] = t161;
+    q[19] = t166;
+    q[20] = t167;
+    q[21] = t168 + t47;
     q[22] = cf_wrap_cut(-angles[9]) + t47;
-    q[23] = t167 + t47;
-    q[24] = t168;
-    q[25] = t169;
-    q[26] = t170;
+    q[23] = t169 + t47;
+    q[24] = t170;
+    q[25] = t171;
+    q[26] = t172;
     q[27] = cf_wrap_cut(angles[14]) + t99;
     q[28] = cf_wrap_cut(angles[15]) + t99;
     q[29] = cf_wrap_cut(-angles[16]) + t99;
-    q[30] = t168;
-    q[31] = t169;
-    q[32] = t170;
-    q[33] = t171 + t99;
+    q[30] = t170;
+    q[31] = t171;
+    q[32] = t172;
+    q[33] = t173 + t99;
     q[34] = cf_wrap_cut(-angles[15]) + t99;
-    q[35] = t172 + t99;
-    q[36] = t168;
-    q[37] = t173;
-    q[38] = t174;
+    q[35] = t174 + t99;
+    q[36] = t170;
+    q[37] = t175;
+    q[38] = t176;
     q[39] = cf_wrap_cut(angles[19]) + t99;
     q[40] = cf_wrap_cut(angles[20]) + t99;
     q[41] = cf_wrap_cut(-angles[21]) + t99;
-    q[42] = t168;
-    q[43] = t173;
-    q[44] = t174;
-    q[45] = t175 + t99;
+    q[42] = t170;
+    q[43] = t175;
+    q[44] = t176;
+    q[45] = t177 + t99;
     q[46] = cf_wrap_cut(-angles[20]) + t99;
-    q[47] = t176 + t99;
+    q[47] = t178 + t99;
     status[0] = t154;
     status[1] = t154;
     status[2] = t154;
@@ -1765,7 +1767,7 @@ CF_INLINE void opw_arm_ik_common_kernel(const int single, const real_t one,
     status[5] = t155;
     status[6] = t155;
     status[7] = t155;
-    rare[0] = (t158 | (h_wrist_backward_down_noflip <= t75)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    rare[0] = (t157 | t158 | t160) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void opw_arm_ik_common_batch(size_t n, const opw_arm_params *params,

@@ -14,7 +14,7 @@
  *   jacobian_space: 49 add, 90 multiply, 5 sincos
  *   jacobian_body: 33 add, 70 multiply, 5 sincos
  *   ik: 201 compare and select, 200 add, 22 atan2, 18 divide, 248 multiply, 13 sqrt
- *   ik where nothing vanishes: 128 compare and select, 170 add, 22 atan2, 12 divide, 199 multiply,
+ *   ik where nothing vanishes: 133 compare and select, 170 add, 22 atan2, 12 divide, 199 multiply,
  *     11 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a

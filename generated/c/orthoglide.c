@@ -4,28 +4,28 @@
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 46 compare and select, 43 add, 2 divide, 71 multiply, 1 sqrt
- *   fk where nothing vanishes: 26 compare and select, 27 add, 1 divide, 41 multiply, 1 sqrt
+ *   fk where nothing vanishes: 27 compare and select, 27 add, 1 divide, 41 multiply, 1 sqrt
  *   skeleton: 45 compare and select, 74 add, 2 divide, 72 multiply, 1 sqrt
- *   skeleton where nothing vanishes: 25 compare and select, 58 add, 1 divide, 42 multiply, 1 sqrt
+ *   skeleton where nothing vanishes: 26 compare and select, 58 add, 1 divide, 42 multiply, 1 sqrt
  *   jacobian_parallel: 45 compare and select, 54 add, 2 divide, 71 multiply, 1 sqrt
- *   jacobian_parallel where nothing vanishes: 25 compare and select, 38 add, 1 divide, 41
+ *   jacobian_parallel where nothing vanishes: 26 compare and select, 38 add, 1 divide, 41
  *     multiply, 1 sqrt
  *   jacobian_serial: 45 compare and select, 46 add, 2 divide, 71 multiply, 1 sqrt
- *   jacobian_serial where nothing vanishes: 25 compare and select, 30 add, 1 divide, 41 multiply,
+ *   jacobian_serial where nothing vanishes: 26 compare and select, 30 add, 1 divide, 41 multiply,
  *     1 sqrt
  *   jacobian: 45 compare and select, 78 add, 20 divide, 114 multiply, 1 sqrt
- *   jacobian where nothing vanishes: 25 compare and select, 62 add, 19 divide, 84 multiply, 1 sqrt
+ *   jacobian where nothing vanishes: 26 compare and select, 62 add, 19 divide, 84 multiply, 1 sqrt
  *   determinant: 45 compare and select, 42 add, 4 divide, 76 multiply, 1 sqrt
- *   determinant where nothing vanishes: 25 compare and select, 26 add, 3 divide, 46 multiply, 1
+ *   determinant where nothing vanishes: 26 compare and select, 26 add, 3 divide, 46 multiply, 1
  *     sqrt
  *   singularities: 45 compare and select, 48 add, 2 divide, 72 multiply, 1 sqrt
- *   singularities where nothing vanishes: 25 compare and select, 32 add, 1 divide, 42 multiply, 1
+ *   singularities where nothing vanishes: 26 compare and select, 32 add, 1 divide, 42 multiply, 1
  *     sqrt
  *   condition_number: 45 compare and select, 94 add, 4 divide, 129 multiply, 3 sqrt
- *   condition_number where nothing vanishes: 25 compare and select, 78 add, 3 divide, 99 multiply,
+ *   condition_number where nothing vanishes: 26 compare and select, 78 add, 3 divide, 99 multiply,
  *     3 sqrt
  *   constraint: 45 compare and select, 46 add, 2 divide, 79 multiply, 1 sqrt
- *   constraint where nothing vanishes: 25 compare and select, 30 add, 1 divide, 49 multiply, 1
+ *   constraint where nothing vanishes: 26 compare and select, 30 add, 1 divide, 49 multiply, 1
  *     sqrt
  *   ik: 56 compare and select, 45 add, 45 multiply, 6 sqrt
  *   workspace_contains: 23 compare and select, 12 add, 5 multiply, 3 sqrt
@@ -175,7 +175,7 @@ CF_INLINE void orthoglide_fk_common_kernel(const int single, const real_t one,
     const real_t t25 = u_u * v_v;
     const real_t t26 = product_2 - t25 * CLOSEDFORM_C(0.000244140625);
     const int t27 = (u_u <= t6) | (u_u + v_v <= t6) | (t26 <= CLOSEDFORM_VANISHING * t25);
-    const int t28 = t27 | (product_2 <= t5 * (u_u * t4)) | (slack <= CLOSEDFORM_VANISHING * t17);
+    const int t28 = t27 | (product_2 <= t5 * (u_u * t4)) | (t18 & (slack <= CLOSEDFORM_VANISHING * t17));
     p[0] = t12 + t13 + t19;
     p[1] = t20 - t21 + t19;
     p[2] = t22 + t23 + t19;
@@ -563,156 +563,156 @@ CF_INLINE void orthoglide_skeleton_common_kernel(const int single, const real_t 
     const real_t t13 = cf_rounded(single, one, t7 * CLOSEDFORM_C(2.0) * t12);
     const real_t t14 = u_u * (CLOSEDFORM_C(1.0) + t13) * CLOSEDFORM_C(0.25);
     const real_t t15 = cf_rounded(single, one, L * L) - t14;
-    const int unreachable = !(t4 & (-(CLOSEDFORM_FEASIBILITY * t5) <= t15));
-    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= L) & t2)) | unreachable;
-    const real_t t16 = cf_poison(single, failed);
-    const real_t t17 = CLOSEDFORM_C(0.0) + t16;
-    const real_t t18 = rho1 + t16;
-    const real_t t19 = L * CLOSEDFORM_C(0.0625);
-    const real_t t20 = t19 + t16;
-    const real_t t21 = -t19 + t16;
+    const int t16 = t4 & (-(CLOSEDFORM_FEASIBILITY * t5) <= t15);
+    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= L) & t2)) | (!t16);
+    const real_t t17 = cf_poison(single, failed);
+    const real_t t18 = CLOSEDFORM_C(0.0) + t17;
+    const real_t t19 = rho1 + t17;
+    const real_t t20 = L * CLOSEDFORM_C(0.0625);
+    const real_t t21 = t20 + t17;
+    const real_t t22 = -t20 + t17;
     const real_t slack = cf_max(t15, CLOSEDFORM_C(0.0));
     const real_t h = cf_sqrt(part * slack);
-    const real_t t22 = product_x * h;
-    const real_t t23 = rho1 * CLOSEDFORM_C(0.5) + t12 * (rho2 * product_z);
-    const real_t t24 = rho1 + (t22 - t23);
-    const real_t t25 = t24 + t16;
-    const real_t t26 = m_y * h;
-    const real_t t27 = t12 * (rho1 * product_z) - rho2 * CLOSEDFORM_C(0.5);
-    const real_t A_12 = t26 - t27;
-    const real_t t28 = t12 * (rho1 * m_y + rho2 * product_x);
-    const real_t t29 = product_z * h;
-    const real_t A_13 = t28 + t29;
-    const real_t t30 = A_13 + t16;
-    const real_t t31 = rho2 + t16;
-    const real_t t32 = A_12 + t16;
-    const real_t t33 = rho3 + t16;
-    const real_t t34 = rho1 - (t22 + t23);
-    const real_t t35 = t34 + t16;
-    const real_t t36 = t26 + t27;
-    const real_t A_13_inner = t28 - t29;
-    const real_t t37 = A_13_inner + t16;
-    const real_t t38 = -t36 + t16;
+    const real_t t23 = product_x * h;
+    const real_t t24 = rho1 * CLOSEDFORM_C(0.5) + t12 * (rho2 * product_z);
+    const real_t t25 = rho1 + (t23 - t24);
+    const real_t t26 = t25 + t17;
+    const real_t t27 = m_y * h;
+    const real_t t28 = t12 * (rho1 * product_z) - rho2 * CLOSEDFORM_C(0.5);
+    const real_t A_12 = t27 - t28;
+    const real_t t29 = t12 * (rho1 * m_y + rho2 * product_x);
+    const real_t t30 = product_z * h;
+    const real_t A_13 = t29 + t30;
+    const real_t t31 = A_13 + t17;
+    const real_t t32 = rho2 + t17;
+    const real_t t33 = A_12 + t17;
+    const real_t t34 = rho3 + t17;
+    const real_t t35 = rho1 - (t23 + t24);
+    const real_t t36 = t35 + t17;
+    const real_t t37 = t27 + t28;
+    const real_t A_13_inner = t29 - t30;
+    const real_t t38 = A_13_inner + t17;
+    const real_t t39 = -t37 + t17;
     const real_t v_v = t6 + t7;
-    const real_t t39 = u_u * v_v;
-    const real_t t40 = product_2 - t39 * CLOSEDFORM_C(0.000244140625);
-    const int t41 = (u_u <= t11) | (u_u + v_v <= t11) | (t40 <= CLOSEDFORM_VANISHING * t39);
-    const int t42 = t41 | (product_2 <= t10 * (u_u * t3)) | (slack <= CLOSEDFORM_VANISHING * t5);
-    points[0] = t17;
-    points[1] = t17;
-    points[2] = t17;
-    points[3] = t18;
-    points[4] = t17;
-    points[5] = t17;
-    points[6] = t18;
-    points[7] = t20;
-    points[8] = t17;
-    points[9] = t18;
-    points[10] = t21;
-    points[11] = t17;
-    points[12] = t25;
-    points[13] = t19 + A_12 + t16;
-    points[14] = t30;
-    points[15] = t25;
-    points[16] = A_12 - t19 + t16;
-    points[17] = t30;
-    points[18] = t17;
-    points[19] = t17;
-    points[20] = t17;
-    points[21] = t17;
-    points[22] = t31;
-    points[23] = t17;
-    points[24] = t17;
-    points[25] = t31;
-    points[26] = t20;
-    points[27] = t17;
-    points[28] = t31;
-    points[29] = t21;
-    points[30] = t25;
-    points[31] = t32;
-    points[32] = t19 + A_13 + t16;
-    points[33] = t25;
-    points[34] = t32;
-    points[35] = A_13 - t19 + t16;
-    points[36] = t17;
-    points[37] = t17;
-    points[38] = t17;
-    points[39] = t17;
-    points[40] = t17;
-    points[41] = t33;
-    points[42] = t20;
-    points[43] = t17;
-    points[44] = t33;
-    points[45] = t21;
-    points[46] = t17;
-    points[47] = t33;
-    points[48] = t19 + t24 + t16;
-    points[49] = t32;
-    points[50] = t30;
-    points[51] = t24 - t19 + t16;
-    points[52] = t32;
-    points[53] = t30;
-    points[54] = t25;
-    points[55] = t32;
-    points[56] = t30;
-    points[57] = t17;
-    points[58] = t17;
-    points[59] = t17;
-    points[60] = t18;
-    points[61] = t17;
-    points[62] = t17;
-    points[63] = t18;
-    points[64] = t20;
-    points[65] = t17;
-    points[66] = t18;
-    points[67] = t21;
-    points[68] = t17;
-    points[69] = t35;
-    points[70] = t19 - t36 + t16;
-    points[71] = t37;
-    points[72] = t35;
-    points[73] = -(t19 + t36) + t16;
-    points[74] = t37;
-    points[75] = t17;
-    points[76] = t17;
-    points[77] = t17;
-    points[78] = t17;
-    points[79] = t31;
-    points[80] = t17;
-    points[81] = t17;
-    points[82] = t31;
-    points[83] = t20;
-    points[84] = t17;
-    points[85] = t31;
-    points[86] = t21;
-    points[87] = t35;
-    points[88] = t38;
-    points[89] = t19 + A_13_inner + t16;
-    points[90] = t35;
-    points[91] = t38;
-    points[92] = A_13_inner - t19 + t16;
-    points[93] = t17;
-    points[94] = t17;
-    points[95] = t17;
-    points[96] = t17;
-    points[97] = t17;
-    points[98] = t33;
-    points[99] = t20;
-    points[100] = t17;
-    points[101] = t33;
-    points[102] = t21;
-    points[103] = t17;
-    points[104] = t33;
-    points[105] = t19 + t34 + t16;
-    points[106] = t38;
-    points[107] = t37;
-    points[108] = t34 - t19 + t16;
-    points[109] = t38;
-    points[110] = t37;
-    points[111] = t35;
-    points[112] = t38;
-    points[113] = t37;
-    rare[0] = (t42) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t40 = u_u * v_v;
+    const real_t t41 = product_2 - t40 * CLOSEDFORM_C(0.000244140625);
+    const int t42 = (u_u <= t11) | (u_u + v_v <= t11) | (t41 <= CLOSEDFORM_VANISHING * t40);
+    const int t43 = t42 | (product_2 <= t10 * (u_u * t3)) | (t16 & (slack <= CLOSEDFORM_VANISHING * t5));
+    points[0] = t18;
+    points[1] = t18;
+    points[2] = t18;
+    points[3] = t19;
+    points[4] = t18;
+    points[5] = t18;
+    points[6] = t19;
+    points[7] = t21;
+    points[8] = t18;
+    points[9] = t19;
+    points[10] = t22;
+    points[11] = t18;
+    points[12] = t26;
+    points[13] = t20 + A_12 + t17;
+    points[14] = t31;
+    points[15] = t26;
+    points[16] = A_12 - t20 + t17;
+    points[17] = t31;
+    points[18] = t18;
+    points[19] = t18;
+    points[20] = t18;
+    points[21] = t18;
+    points[22] = t32;
+    points[23] = t18;
+    points[24] = t18;
+    points[25] = t32;
+    points[26] = t21;
+    points[27] = t18;
+    points[28] = t32;
+    points[29] = t22;
+    points[30] = t26;
+    points[31] = t33;
+    points[32] = t20 + A_13 + t17;
+    points[33] = t26;
+    points[34] = t33;
+    points[35] = A_13 - t20 + t17;
+    points[36] = t18;
+    points[37] = t18;
+    points[38] = t18;
+    points[39] = t18;
+    points[40] = t18;
+    points[41] = t34;
+    points[42] = t21;
+    points[43] = t18;
+    points[44] = t34;
+    points[45] = t22;
+    points[46] = t18;
+    points[47] = t34;
+    points[48] = t20 + t25 + t17;
+    points[49] = t33;
+    points[50] = t31;
+    points[51] = t25 - t20 + t17;
+    points[52] = t33;
+    points[53] = t31;
+    points[54] = t26;
+    points[55] = t33;
+    points[56] = t31;
+    points[57] = t18;
+    points[58] = t18;
+    points[59] = t18;
+    points[60] = t19;
+    points[61] = t18;
+    points[62] = t18;
+    points[63] = t19;
+    points[64] = t21;
+    points[65] = t18;
+    points[66] = t19;
+    points[67] = t22;
+    points[68] = t18;
+    points[69] = t36;
+    points[70] = t20 - t37 + t17;
+    points[71] = t38;
+    points[72] = t36;
+    points[73] = -(t20 + t37) + t17;
+    points[74] = t38;
+    points[75] = t18;
+    points[76] = t18;
+    points[77] = t18;
+    points[78] = t18;
+    points[79] = t32;
+    points[80] = t18;
+    points[81] = t18;
+    points[82] = t32;
+    points[83] = t21;
+    points[84] = t18;
+    points[85] = t32;
+    points[86] = t22;
+    points[87] = t36;
+    points[88] = t39;
+    points[89] = t20 + A_13_inner + t17;
+    points[90] = t36;
+    points[91] = t39;
+    points[92] = A_13_inner - t20 + t17;
+    points[93] = t18;
+    points[94] = t18;
+    points[95] = t18;
+    points[96] = t18;
+    points[97] = t18;
+    points[98] = t34;
+    points[99] = t21;
+    points[100] = t18;
+    points[101] = t34;
+    points[102] = t22;
+    points[103] = t18;
+    points[104] = t34;
+    points[105] = t20 + t35 + t17;
+    points[106] = t39;
+    points[107] = t38;
+    points[108] = t35 - t20 + t17;
+    points[109] = t39;
+    points[110] = t38;
+    points[111] = t36;
+    points[112] = t39;
+    points[113] = t38;
+    rare[0] = (t43) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void orthoglide_skeleton_common_batch(size_t n, const orthoglide_params *params,
@@ -1103,7 +1103,7 @@ CF_INLINE void orthoglide_jacobian_parallel_common_kernel(const int single, cons
     const real_t t32 = u_u * v_v;
     const real_t t33 = product_2 - t32 * CLOSEDFORM_C(0.000244140625);
     const int t34 = (u_u <= t6) | (u_u + v_v <= t6) | (t33 <= CLOSEDFORM_VANISHING * t32);
-    const int t35 = t34 | (product_2 <= t5 * (u_u * t4)) | (slack <= CLOSEDFORM_VANISHING * t17);
+    const int t35 = t34 | (product_2 <= t5 * (u_u * t4)) | (t18 & (slack <= CLOSEDFORM_VANISHING * t17));
     A[0] = A_11 + t19;
     A[1] = t22;
     A[2] = t25;
@@ -1381,7 +1381,7 @@ CF_INLINE void orthoglide_jacobian_serial_common_kernel(const int single, const 
     const real_t t24 = u_u * v_v;
     const real_t t25 = product_2 - t24 * CLOSEDFORM_C(0.000244140625);
     const int t26 = (u_u <= t6) | (u_u + v_v <= t6) | (t25 <= CLOSEDFORM_VANISHING * t24);
-    const int t27 = t26 | (product_2 <= t5 * (u_u * t4)) | (slack <= CLOSEDFORM_VANISHING * t17);
+    const int t27 = t26 | (product_2 <= t5 * (u_u * t4)) | (t18 & (slack <= CLOSEDFORM_VANISHING * t17));
     B[0] = t12 - t13 + t19;
     B[1] = t20 - t21 - rho2 + t19;
     B[2] = t22 + t23 - rho3 + t19;
@@ -1706,7 +1706,7 @@ CF_INLINE void orthoglide_jacobian_common_kernel(const int single, const real_t 
     const real_t t57 = u_u * v_v;
     const real_t t58 = product_2 - t57 * CLOSEDFORM_C(0.000244140625);
     const int t59 = (u_u <= t6) | (u_u + v_v <= t6) | (t58 <= CLOSEDFORM_VANISHING * t57);
-    const int t60 = t59 | (product_2 <= t5 * (u_u * t4)) | (slack <= CLOSEDFORM_VANISHING * t23);
+    const int t60 = t59 | (product_2 <= t5 * (u_u * t4)) | (t28 & (slack <= CLOSEDFORM_VANISHING * t23));
     J[0] = -t24 + t29;
     J[1] = -t30 + t29;
     J[2] = -t31 + t29;
@@ -1984,7 +1984,7 @@ CF_INLINE void orthoglide_determinant_common_kernel(const int single, const real
     const real_t t28 = u_u * v_v;
     const real_t t29 = product_2 - t28 * CLOSEDFORM_C(0.000244140625);
     const int t30 = (u_u <= t7) | (u_u + v_v <= t7) | (t29 <= CLOSEDFORM_VANISHING * t28);
-    const int t31 = t30 | (product_2 <= t6 * (u_u * t5)) | (slack <= CLOSEDFORM_VANISHING * t19);
+    const int t31 = t30 | (product_2 <= t6 * (u_u * t5)) | (t24 & (slack <= CLOSEDFORM_VANISHING * t19));
     det[0] = t20 + t25;
     det[1] = t27 + t25;
     rare[0] = (t31) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
@@ -2230,7 +2230,7 @@ CF_INLINE void orthoglide_singularities_common_kernel(const int single, const re
     const real_t t24 = u_u * v_v;
     const real_t t25 = product_2 - t24 * CLOSEDFORM_C(0.000244140625);
     const int t26 = (u_u <= t6) | (u_u + v_v <= t6) | (t25 <= CLOSEDFORM_VANISHING * t24);
-    const int t27 = t26 | (product_2 <= t5 * (u_u * t4)) | (slack <= CLOSEDFORM_VANISHING * t17);
+    const int t27 = t26 | (product_2 <= t5 * (u_u * t4)) | (t18 & (slack <= CLOSEDFORM_VANISHING * t17));
     factors[0] = t12 - t13 + t19;
     factors[1] = t20 - t21 - rho2 + t19;
     factors[2] = t22 + t23 - rho3 + t19;
@@ -2588,7 +2588,7 @@ CF_INLINE void orthoglide_condition_number_common_kernel(const int single, const
     const real_t t74 = u_u * v_v;
     const real_t t75 = product_2 - t74 * CLOSEDFORM_C(0.000244140625);
     const int t76 = (u_u <= t7) | (u_u + v_v <= t7) | (t75 <= CLOSEDFORM_VANISHING * t74);
-    const int t77 = t76 | (product_2 <= t6 * (u_u * t5)) | (slack <= CLOSEDFORM_VANISHING * t42);
+    const int t77 = t76 | (product_2 <= t6 * (u_u * t5)) | (t47 & (slack <= CLOSEDFORM_VANISHING * t42));
     kappa[0] = t43 + t48;
     kappa[1] = t73 + t48;
     rare[0] = (t77) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
@@ -2842,7 +2842,7 @@ CF_INLINE void orthoglide_constraint_common_kernel(const int single, const real_
     const real_t t31 = u_u * v_v;
     const real_t t32 = product_2 - t31 * CLOSEDFORM_C(0.000244140625);
     const int t33 = (u_u <= t7) | (u_u + v_v <= t7) | (t32 <= CLOSEDFORM_VANISHING * t31);
-    const int t34 = t33 | (product_2 <= t6 * (u_u * t5)) | (slack <= CLOSEDFORM_VANISHING * t24);
+    const int t34 = t33 | (product_2 <= t6 * (u_u * t5)) | (t25 & (slack <= CLOSEDFORM_VANISHING * t24));
     factors[0] = t20 + t26;
     factors[1] = t30 + t26;
     rare[0] = (t34) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);

@@ -4,28 +4,28 @@
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 46 compare and select, 43 add, 2 divide, 71 multiply, 1 sqrt
- *   fk where nothing vanishes: 26 compare and select, 27 add, 1 divide, 41 multiply, 1 sqrt
+ *   fk where nothing vanishes: 27 compare and select, 27 add, 1 divide, 41 multiply, 1 sqrt
  *   skeleton: 45 compare and select, 74 add, 2 divide, 72 multiply, 1 sqrt
- *   skeleton where nothing vanishes: 25 compare and select, 58 add, 1 divide, 42 multiply, 1 sqrt
+ *   skeleton where nothing vanishes: 26 compare and select, 58 add, 1 divide, 42 multiply, 1 sqrt
  *   jacobian_parallel: 45 compare and select, 54 add, 2 divide, 71 multiply, 1 sqrt
- *   jacobian_parallel where nothing vanishes: 25 compare and select, 38 add, 1 divide, 41
+ *   jacobian_parallel where nothing vanishes: 26 compare and select, 38 add, 1 divide, 41
  *     multiply, 1 sqrt
  *   jacobian_serial: 45 compare and select, 46 add, 2 divide, 71 multiply, 1 sqrt
- *   jacobian_serial where nothing vanishes: 25 compare and select, 30 add, 1 divide, 41 multiply,
+ *   jacobian_serial where nothing vanishes: 26 compare and select, 30 add, 1 divide, 41 multiply,
  *     1 sqrt
  *   jacobian: 45 compare and select, 78 add, 20 divide, 114 multiply, 1 sqrt
- *   jacobian where nothing vanishes: 25 compare and select, 62 add, 19 divide, 84 multiply, 1 sqrt
+ *   jacobian where nothing vanishes: 26 compare and select, 62 add, 19 divide, 84 multiply, 1 sqrt
  *   determinant: 45 compare and select, 42 add, 4 divide, 76 multiply, 1 sqrt
- *   determinant where nothing vanishes: 25 compare and select, 26 add, 3 divide, 46 multiply, 1
+ *   determinant where nothing vanishes: 26 compare and select, 26 add, 3 divide, 46 multiply, 1
  *     sqrt
  *   singularities: 45 compare and select, 48 add, 2 divide, 72 multiply, 1 sqrt
- *   singularities where nothing vanishes: 25 compare and select, 32 add, 1 divide, 42 multiply, 1
+ *   singularities where nothing vanishes: 26 compare and select, 32 add, 1 divide, 42 multiply, 1
  *     sqrt
  *   condition_number: 45 compare and select, 94 add, 4 divide, 129 multiply, 3 sqrt
- *   condition_number where nothing vanishes: 25 compare and select, 78 add, 3 divide, 99 multiply,
+ *   condition_number where nothing vanishes: 26 compare and select, 78 add, 3 divide, 99 multiply,
  *     3 sqrt
  *   constraint: 45 compare and select, 46 add, 2 divide, 79 multiply, 1 sqrt
- *   constraint where nothing vanishes: 25 compare and select, 30 add, 1 divide, 49 multiply, 1
+ *   constraint where nothing vanishes: 26 compare and select, 30 add, 1 divide, 49 multiply, 1
  *     sqrt
  *   ik: 56 compare and select, 45 add, 45 multiply, 6 sqrt
  *   workspace_contains: 23 compare and select, 12 add, 5 multiply, 3 sqrt

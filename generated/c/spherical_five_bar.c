@@ -4,25 +4,25 @@
  * Source: The closedform authors: Loops on a sphere, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 75 compare and select, 65 add, 4 divide, 112 multiply, 7 sincos, 4 sqrt
- *   fk where nothing vanishes: 47 compare and select, 58 add, 4 divide, 87 multiply, 7 sincos, 4
+ *   fk where nothing vanishes: 48 compare and select, 58 add, 4 divide, 87 multiply, 7 sincos, 4
  *     sqrt
  *   skeleton: 74 compare and select, 77 add, 5 divide, 111 multiply, 7 sincos, 4 sqrt
- *   skeleton where nothing vanishes: 46 compare and select, 70 add, 4 divide, 87 multiply, 7
+ *   skeleton where nothing vanishes: 47 compare and select, 70 add, 4 divide, 87 multiply, 7
  *     sincos, 4 sqrt
  *   jacobian_parallel: 74 compare and select, 86 add, 5 divide, 111 multiply, 7 sincos, 4 sqrt
- *   jacobian_parallel where nothing vanishes: 46 compare and select, 79 add, 4 divide, 87
+ *   jacobian_parallel where nothing vanishes: 47 compare and select, 79 add, 4 divide, 87
  *     multiply, 7 sincos, 4 sqrt
  *   jacobian_serial: 74 compare and select, 72 add, 5 divide, 123 multiply, 7 sincos, 4 sqrt
- *   jacobian_serial where nothing vanishes: 46 compare and select, 65 add, 4 divide, 99 multiply,
+ *   jacobian_serial where nothing vanishes: 47 compare and select, 65 add, 4 divide, 99 multiply,
  *     7 sincos, 4 sqrt
  *   jacobian: 74 compare and select, 98 add, 17 divide, 160 multiply, 7 sincos, 4 sqrt
- *   jacobian where nothing vanishes: 46 compare and select, 91 add, 16 divide, 136 multiply, 7
+ *   jacobian where nothing vanishes: 47 compare and select, 91 add, 16 divide, 136 multiply, 7
  *     sincos, 4 sqrt
  *   singularities: 74 compare and select, 74 add, 5 divide, 124 multiply, 7 sincos, 4 sqrt
- *   singularities where nothing vanishes: 46 compare and select, 67 add, 4 divide, 100 multiply, 7
+ *   singularities where nothing vanishes: 47 compare and select, 67 add, 4 divide, 100 multiply, 7
  *     sincos, 4 sqrt
  *   condition_number: 74 compare and select, 114 add, 13 divide, 169 multiply, 7 sincos, 8 sqrt
- *   condition_number where nothing vanishes: 46 compare and select, 107 add, 12 divide, 145
+ *   condition_number where nothing vanishes: 47 compare and select, 107 add, 12 divide, 145
  *     multiply, 7 sincos, 8 sqrt
  *   ik: 107 compare and select, 78 add, 4 atan2, 8 divide, 110 multiply, 5 sincos, 7 sqrt
  *   workspace_contains: 53 compare and select, 26 add, 3 divide, 36 multiply, 5 sincos, 5 sqrt
@@ -295,28 +295,29 @@ CF_INLINE void spherical_five_bar_fk_common_kernel(const int single, const real_
     const int t40 = (-t39 <= t20) & (-t39 <= t17) & (-t39 <= t18);
     const real_t t41 = r * (r + r * CLOSEDFORM_C(2.2737367544323206e-13));
     const real_t t42 = CLOSEDFORM_FEASIBILITY * (t41 * CLOSEDFORM_C(0.5));
-    const int unreachable = !(t40 & (-t42 <= t29) & (-t42 <= t30));
-    const real_t t43 = cf_poison(single, invalid | unreachable);
-    const real_t t44 = (t7 * m_z - t8 * product_x) * Y - (c1_y - t5 * X);
-    const real_t t45 = t9 * h;
-    const real_t t46 = m_z * h;
-    const real_t t47 = (t7 * t9 + t5 * product_x) * Y - (c1_z - t8 * X);
-    const real_t t48 = cf_status(single, invalid, unreachable, 0);
-    const real_t t49 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
-    const real_t v_v = t49 + cf_rounded(single, one, c1_z * c1_z);
-    const real_t t50 = u_u * v_v;
-    const real_t t51 = product_2 - t50 * CLOSEDFORM_C(0.000244140625);
-    const int t52 = (u_u <= t14) | (u_u + v_v <= t14) | (t51 <= CLOSEDFORM_VANISHING * t50);
-    const int t53 = t52 | (product_2 <= t13 * (t12 * u_u)) | (both <= CLOSEDFORM_VANISHING * t12);
-    p[0] = t31 + t33 + t43;
-    p[1] = -(t44 + t45) + t43;
-    p[2] = t46 - t47 + t43;
-    p[3] = t31 - t33 + t43;
-    p[4] = t45 - t44 + t43;
-    p[5] = -(t47 + t46) + t43;
-    status[0] = t48;
-    status[1] = t48;
-    rare[0] = (t53) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const int t43 = t40 & (-t42 <= t29) & (-t42 <= t30);
+    const int unreachable = !t43;
+    const real_t t44 = cf_poison(single, invalid | unreachable);
+    const real_t t45 = (t7 * m_z - t8 * product_x) * Y - (c1_y - t5 * X);
+    const real_t t46 = t9 * h;
+    const real_t t47 = m_z * h;
+    const real_t t48 = (t7 * t9 + t5 * product_x) * Y - (c1_z - t8 * X);
+    const real_t t49 = cf_status(single, invalid, unreachable, 0);
+    const real_t t50 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t50 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t51 = u_u * v_v;
+    const real_t t52 = product_2 - t51 * CLOSEDFORM_C(0.000244140625);
+    const int t53 = (u_u <= t14) | (u_u + v_v <= t14) | (t52 <= CLOSEDFORM_VANISHING * t51);
+    const int t54 = t53 | (product_2 <= t13 * (t12 * u_u)) | (t43 & (both <= CLOSEDFORM_VANISHING * t12));
+    p[0] = t31 + t33 + t44;
+    p[1] = -(t45 + t46) + t44;
+    p[2] = t47 - t48 + t44;
+    p[3] = t31 - t33 + t44;
+    p[4] = t46 - t45 + t44;
+    p[5] = -(t48 + t47) + t44;
+    status[0] = t49;
+    status[1] = t49;
+    rare[0] = (t54) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void spherical_five_bar_fk_common_batch(size_t n, const spherical_five_bar_params *params,
@@ -755,73 +756,74 @@ CF_INLINE void spherical_five_bar_skeleton_common_kernel(const int single, const
     const real_t t39 = t32 - t38;
     const int t40 = (-t6 <= t20) & (-t6 <= t22) & (-t6 <= t23) & (-t25 <= t39);
     const real_t t41 = t38 + t32;
-    const real_t t42 = cf_poison(single, (!(t4 & t5)) | (!(t40 & (-t25 <= t41))));
-    const real_t t43 = CLOSEDFORM_C(0.0) + t42;
-    const real_t t44 = c1_x + t42;
-    const real_t t45 = c1_y + t42;
-    const real_t t46 = c1_z + t42;
-    const real_t t47 = t12 + t42;
-    const real_t t48 = t16 + t42;
-    const real_t t49 = -t13 + t42;
-    const real_t t50 = c2_y + t42;
-    const real_t t51 = c2_z + t42;
+    const int t42 = t40 & (-t25 <= t41);
+    const real_t t43 = cf_poison(single, (!(t4 & t5)) | (!t42));
+    const real_t t44 = CLOSEDFORM_C(0.0) + t43;
+    const real_t t45 = c1_x + t43;
+    const real_t t46 = c1_y + t43;
+    const real_t t47 = c1_z + t43;
+    const real_t t48 = t12 + t43;
+    const real_t t49 = t16 + t43;
+    const real_t t50 = -t13 + t43;
+    const real_t t51 = c2_y + t43;
+    const real_t t52 = c2_z + t43;
     const real_t X = over_a * along;
     const real_t upper = cf_max(t39, CLOSEDFORM_C(0.0));
     const real_t lower = cf_max(t41, CLOSEDFORM_C(0.0));
     const real_t both = upper + lower;
     const real_t half = rho / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t28, both);
     const real_t Y = part * over_a * half * (upper - lower);
-    const real_t t52 = t14 * X - (t17 * m_z + t19 * t27) * Y;
-    const real_t t53 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
-    const real_t h = part * t53;
-    const real_t t54 = product_x * h;
-    const real_t t55 = t17 * X + (t14 * m_z - t19 * product_x) * Y;
-    const real_t t56 = t27 * h;
-    const real_t t57 = t19 * X + (t14 * t27 + t17 * product_x) * Y;
-    const real_t t58 = m_z * h;
-    const real_t t59 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
-    const real_t v_v = t59 + cf_rounded(single, one, c1_z * c1_z);
-    const real_t t60 = u_u * v_v;
-    const real_t t61 = product_2 - t60 * CLOSEDFORM_C(0.000244140625);
-    const int t62 = (u_u <= t30) | (u_u + v_v <= t30) | (t61 <= CLOSEDFORM_VANISHING * t60);
-    const int t63 = t62 | (product_2 <= t29 * (t28 * u_u)) | (both <= CLOSEDFORM_VANISHING * t28);
-    points[0] = t43;
-    points[1] = t43;
-    points[2] = t43;
-    points[3] = t44;
-    points[4] = t43;
-    points[5] = t43;
-    points[6] = t44;
-    points[7] = t45;
-    points[8] = t46;
-    points[9] = t47;
-    points[10] = t48;
-    points[11] = t43;
-    points[12] = t49;
-    points[13] = t50;
-    points[14] = t51;
-    points[15] = c1_x - (t52 - t54) + t42;
-    points[16] = c1_y - (t55 + t56) + t42;
-    points[17] = c1_z - (t57 - t58) + t42;
-    points[18] = t43;
-    points[19] = t43;
-    points[20] = t43;
-    points[21] = t44;
-    points[22] = t43;
-    points[23] = t43;
-    points[24] = t44;
-    points[25] = t45;
-    points[26] = t46;
-    points[27] = t47;
-    points[28] = t48;
-    points[29] = t43;
-    points[30] = t49;
-    points[31] = t50;
-    points[32] = t51;
-    points[33] = c1_x - (t52 + t54) + t42;
-    points[34] = c1_y - (t55 - t56) + t42;
-    points[35] = c1_z - (t57 + t58) + t42;
-    rare[0] = (t63) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t t53 = t14 * X - (t17 * m_z + t19 * t27) * Y;
+    const real_t t54 = CLOSEDFORM_C(2.0) * half * cf_sqrt(upper * lower);
+    const real_t h = part * t54;
+    const real_t t55 = product_x * h;
+    const real_t t56 = t17 * X + (t14 * m_z - t19 * product_x) * Y;
+    const real_t t57 = t27 * h;
+    const real_t t58 = t19 * X + (t14 * t27 + t17 * product_x) * Y;
+    const real_t t59 = m_z * h;
+    const real_t t60 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t60 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t61 = u_u * v_v;
+    const real_t t62 = product_2 - t61 * CLOSEDFORM_C(0.000244140625);
+    const int t63 = (u_u <= t30) | (u_u + v_v <= t30) | (t62 <= CLOSEDFORM_VANISHING * t61);
+    const int t64 = t63 | (product_2 <= t29 * (t28 * u_u)) | (t42 & (both <= CLOSEDFORM_VANISHING * t28));
+    points[0] = t44;
+    points[1] = t44;
+    points[2] = t44;
+    points[3] = t45;
+    points[4] = t44;
+    points[5] = t44;
+    points[6] = t45;
+    points[7] = t46;
+    points[8] = t47;
+    points[9] = t48;
+    points[10] = t49;
+    points[11] = t44;
+    points[12] = t50;
+    points[13] = t51;
+    points[14] = t52;
+    points[15] = c1_x - (t53 - t55) + t43;
+    points[16] = c1_y - (t56 + t57) + t43;
+    points[17] = c1_z - (t58 - t59) + t43;
+    points[18] = t44;
+    points[19] = t44;
+    points[20] = t44;
+    points[21] = t45;
+    points[22] = t44;
+    points[23] = t44;
+    points[24] = t45;
+    points[25] = t46;
+    points[26] = t47;
+    points[27] = t48;
+    points[28] = t49;
+    points[29] = t44;
+    points[30] = t50;
+    points[31] = t51;
+    points[32] = t52;
+    points[33] = c1_x - (t53 + t55) + t43;
+    points[34] = c1_y - (t56 - t57) + t43;
+    points[35] = c1_z - (t58 + t59) + t43;
+    rare[0] = (t64) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void spherical_five_bar_skeleton_common_batch(size_t n, const spherical_five_bar_params *params,
@@ -1252,42 +1254,42 @@ CF_INLINE void spherical_five_bar_jacobian_parallel_common_kernel(const int sing
     const int t41 = (-t40 <= t20) & (-t40 <= t17) & (-t40 <= t18);
     const real_t t42 = r * (r + r * CLOSEDFORM_C(2.2737367544323206e-13));
     const real_t t43 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * t42);
-    const int failed = (!(t38 & t39)) | (!(t41 & (-t43 <= t29) & (-t43 <= t30)));
-    const real_t t44 = cf_poison(single, failed);
-    const real_t t45 = t7 * X + (t5 * m_z - t8 * product_x) * Y;
-    const real_t t46 = t10 * h;
-    const real_t t47 = t45 + t46;
-    const real_t t48 = t8 * X + (t5 * t10 + t7 * product_x) * Y;
-    const real_t t49 = m_z * h;
-    const real_t t50 = t48 - t49;
-    const real_t t51 = t31 + t33;
-    const real_t t52 = t45 - t46;
-    const real_t t53 = t48 + t49;
-    const real_t t54 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
-    const real_t v_v = t54 + cf_rounded(single, one, c1_z * c1_z);
-    const real_t t55 = u_u * v_v;
-    const real_t t56 = product_2 - t55 * CLOSEDFORM_C(0.000244140625);
-    const int t57 = (u_u <= t14) | (u_u + v_v <= t14) | (t56 <= CLOSEDFORM_VANISHING * t55);
-    const int t58 = t57 | (product_2 <= t13 * (t12 * u_u)) | (both <= CLOSEDFORM_VANISHING * t12);
-    A[0] = c1_x - t34 + t44;
-    A[1] = c1_y - t47 + t44;
-    A[2] = c1_z - t50 + t44;
-    A[3] = -t34 + t44;
-    A[4] = -t47 + t44;
-    A[5] = -t50 + t44;
-    A[6] = t5 - t34 + t44;
-    A[7] = t7 - t47 + t44;
-    A[8] = t8 - t50 + t44;
-    A[9] = c1_x - t51 + t44;
-    A[10] = c1_y - t52 + t44;
-    A[11] = c1_z - t53 + t44;
-    A[12] = -t51 + t44;
-    A[13] = -t52 + t44;
-    A[14] = -t53 + t44;
-    A[15] = t5 - t51 + t44;
-    A[16] = t7 - t52 + t44;
-    A[17] = t8 - t53 + t44;
-    rare[0] = (t58) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const int t44 = t41 & (-t43 <= t29) & (-t43 <= t30);
+    const real_t t45 = cf_poison(single, (!(t38 & t39)) | (!t44));
+    const real_t t46 = t7 * X + (t5 * m_z - t8 * product_x) * Y;
+    const real_t t47 = t10 * h;
+    const real_t t48 = t46 + t47;
+    const real_t t49 = t8 * X + (t5 * t10 + t7 * product_x) * Y;
+    const real_t t50 = m_z * h;
+    const real_t t51 = t49 - t50;
+    const real_t t52 = t31 + t33;
+    const real_t t53 = t46 - t47;
+    const real_t t54 = t49 + t50;
+    const real_t t55 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t55 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t56 = u_u * v_v;
+    const real_t t57 = product_2 - t56 * CLOSEDFORM_C(0.000244140625);
+    const int t58 = (u_u <= t14) | (u_u + v_v <= t14) | (t57 <= CLOSEDFORM_VANISHING * t56);
+    const int t59 = t58 | (product_2 <= t13 * (t12 * u_u)) | (t44 & (both <= CLOSEDFORM_VANISHING * t12));
+    A[0] = c1_x - t34 + t45;
+    A[1] = c1_y - t48 + t45;
+    A[2] = c1_z - t51 + t45;
+    A[3] = -t34 + t45;
+    A[4] = -t48 + t45;
+    A[5] = -t51 + t45;
+    A[6] = t5 - t34 + t45;
+    A[7] = t7 - t48 + t45;
+    A[8] = t8 - t51 + t45;
+    A[9] = c1_x - t52 + t45;
+    A[10] = c1_y - t53 + t45;
+    A[11] = c1_z - t54 + t45;
+    A[12] = -t52 + t45;
+    A[13] = -t53 + t45;
+    A[14] = -t54 + t45;
+    A[15] = t5 - t52 + t45;
+    A[16] = t7 - t53 + t45;
+    A[17] = t8 - t54 + t45;
+    rare[0] = (t59) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void spherical_five_bar_jacobian_parallel_common_batch(size_t n, const spherical_five_bar_params *params,
@@ -1692,27 +1694,27 @@ CF_INLINE void spherical_five_bar_jacobian_serial_common_kernel(const int single
     const int t43 = (-t42 <= t20) & (-t42 <= t17) & (-t42 <= t18);
     const real_t t44 = r * (r + r * CLOSEDFORM_C(2.2737367544323206e-13));
     const real_t t45 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * t44);
-    const int failed = (!(t40 & t41)) | (!(t43 & (-t45 <= t29) & (-t45 <= t30)));
-    const real_t t46 = cf_poison(single, failed);
-    const real_t t47 = s_gamma * c2_z;
-    const real_t t48 = t9 * X - (t5 * m_z - t6 * t10) * Y;
-    const real_t t49 = product_x * h;
-    const real_t t50 = c_gamma * c2_z;
-    const real_t B_22 = t47 * (t9 - (t48 - t49)) - t50 * (t5 - t34) - t4 * (t6 - A_13);
-    const real_t t51 = t31 - t33;
+    const int t46 = t43 & (-t45 <= t29) & (-t45 <= t30);
+    const real_t t47 = cf_poison(single, (!(t40 & t41)) | (!t46));
+    const real_t t48 = s_gamma * c2_z;
+    const real_t t49 = t9 * X - (t5 * m_z - t6 * t10) * Y;
+    const real_t t50 = product_x * h;
+    const real_t t51 = c_gamma * c2_z;
+    const real_t B_22 = t48 * (t9 - (t49 - t50)) - t51 * (t5 - t34) - t4 * (t6 - A_13);
+    const real_t t52 = t31 - t33;
     const real_t A_13_below = t35 - t36;
-    const real_t B_22_below = t47 * (t9 - (t48 + t49)) - t50 * (t5 - t51) - t4 * (t6 - A_13_below);
-    const real_t t52 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
-    const real_t v_v = t52 + cf_rounded(single, one, c1_z * c1_z);
-    const real_t t53 = u_u * v_v;
-    const real_t t54 = product_2 - t53 * CLOSEDFORM_C(0.000244140625);
-    const int t55 = (u_u <= t14) | (u_u + v_v <= t14) | (t54 <= CLOSEDFORM_VANISHING * t53);
-    const int t56 = t55 | (product_2 <= t13 * (t12 * u_u)) | (both <= CLOSEDFORM_VANISHING * t12);
-    B[0] = c1_z * t34 + c1_y * A_13 + t46;
-    B[1] = B_22 + t46;
-    B[2] = c1_z * t51 + c1_y * A_13_below + t46;
-    B[3] = B_22_below + t46;
-    rare[0] = (t56) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t B_22_below = t48 * (t9 - (t49 + t50)) - t51 * (t5 - t52) - t4 * (t6 - A_13_below);
+    const real_t t53 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t53 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t54 = u_u * v_v;
+    const real_t t55 = product_2 - t54 * CLOSEDFORM_C(0.000244140625);
+    const int t56 = (u_u <= t14) | (u_u + v_v <= t14) | (t55 <= CLOSEDFORM_VANISHING * t54);
+    const int t57 = t56 | (product_2 <= t13 * (t12 * u_u)) | (t46 & (both <= CLOSEDFORM_VANISHING * t12));
+    B[0] = c1_z * t34 + c1_y * A_13 + t47;
+    B[1] = B_22 + t47;
+    B[2] = c1_z * t52 + c1_y * A_13_below + t47;
+    B[3] = B_22_below + t47;
+    rare[0] = (t57) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void spherical_five_bar_jacobian_serial_common_batch(size_t n, const spherical_five_bar_params *params,
@@ -2147,58 +2149,58 @@ CF_INLINE void spherical_five_bar_jacobian_common_kernel(const int single, const
     const int t45 = (-t44 <= t20) & (-t44 <= t17) & (-t44 <= t18);
     const real_t t46 = r * (r + r * CLOSEDFORM_C(2.2737367544323206e-13));
     const real_t t47 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * t46);
-    const int failed = (!(t42 & t43)) | (!(t45 & (-t47 <= t29) & (-t47 <= t30)));
-    const real_t t48 = cf_poison(single, failed);
-    const real_t t49 = B_11 * (A_02 * t37 + A_03 * A_22) / t38 + t48;
-    const real_t t50 = s_gamma * c2_z;
-    const real_t t51 = t9 * X - (t5 * m_z - t6 * t10) * Y;
-    const real_t t52 = product_x * h;
-    const real_t t53 = t51 - t52;
-    const real_t A_21 = t9 - t53;
-    const real_t t54 = c_gamma * c2_z;
-    const real_t B_22 = t50 * A_21 - t54 * A_22 - t4 * t37;
-    const real_t t55 = B_22 * (A_13 * A_02 + t34 * A_03) / t38 + t48;
-    const real_t A_01 = c1_x - t53;
-    const real_t t56 = -(B_11 * (t37 * A_01 + A_03 * A_21) / t38) + t48;
-    const real_t t57 = -(B_22 * (A_13 * A_01 + A_03 * t53) / t38) + t48;
-    const real_t t58 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / t38) + t48;
-    const real_t t59 = -(B_22 * (t34 * A_01 - A_02 * t53) / t38) + t48;
-    const real_t t60 = t31 - t33;
+    const int t48 = t45 & (-t47 <= t29) & (-t47 <= t30);
+    const real_t t49 = cf_poison(single, (!(t42 & t43)) | (!t48));
+    const real_t t50 = B_11 * (A_02 * t37 + A_03 * A_22) / t38 + t49;
+    const real_t t51 = s_gamma * c2_z;
+    const real_t t52 = t9 * X - (t5 * m_z - t6 * t10) * Y;
+    const real_t t53 = product_x * h;
+    const real_t t54 = t52 - t53;
+    const real_t A_21 = t9 - t54;
+    const real_t t55 = c_gamma * c2_z;
+    const real_t B_22 = t51 * A_21 - t55 * A_22 - t4 * t37;
+    const real_t t56 = B_22 * (A_13 * A_02 + t34 * A_03) / t38 + t49;
+    const real_t A_01 = c1_x - t54;
+    const real_t t57 = -(B_11 * (t37 * A_01 + A_03 * A_21) / t38) + t49;
+    const real_t t58 = -(B_22 * (A_13 * A_01 + A_03 * t54) / t38) + t49;
+    const real_t t59 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / t38) + t49;
+    const real_t t60 = -(B_22 * (t34 * A_01 - A_02 * t54) / t38) + t49;
+    const real_t t61 = t31 - t33;
     const real_t A_13_below = t35 - t36;
-    const real_t B_11_below = c1_z * t60 + c1_y * A_13_below;
-    const real_t A_02_below = c1_y - t60;
-    const real_t t61 = t6 - A_13_below;
+    const real_t B_11_below = c1_z * t61 + c1_y * A_13_below;
+    const real_t A_02_below = c1_y - t61;
+    const real_t t62 = t6 - A_13_below;
     const real_t A_03_below = c1_z + A_13_below;
-    const real_t A_22_below = t5 - t60;
-    const real_t t62 = B_11_below * (A_02_below * t61 + A_03_below * A_22_below);
-    const real_t t63 = t51 + t52;
-    const real_t A_21_below = t9 - t63;
-    const real_t B_22_below = t50 * A_21_below - t54 * A_22_below - t4 * t61;
-    const real_t t64 = B_22_below * (A_13_below * A_02_below + t60 * A_03_below);
-    const real_t A_01_below = c1_x - t63;
-    const real_t t65 = B_11_below * (t61 * A_01_below + A_03_below * A_21_below);
-    const real_t t66 = B_22_below * (A_13_below * A_01_below + A_03_below * t63);
-    const real_t t67 = A_22_below * A_01_below - A_02_below * A_21_below;
-    const real_t t68 = B_22_below * (t60 * A_01_below - A_02_below * t63);
-    const real_t t69 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
-    const real_t v_v = t69 + cf_rounded(single, one, c1_z * c1_z);
-    const real_t t70 = u_u * v_v;
-    const real_t t71 = product_2 - t70 * CLOSEDFORM_C(0.000244140625);
-    const int t72 = (u_u <= t14) | (u_u + v_v <= t14) | (t71 <= CLOSEDFORM_VANISHING * t70);
-    const int t73 = t72 | (product_2 <= t13 * (t12 * u_u)) | (both <= CLOSEDFORM_VANISHING * t12);
-    J[0] = t49;
-    J[1] = t55;
-    J[2] = t56;
-    J[3] = t57;
-    J[4] = t58;
-    J[5] = t59;
-    J[6] = -(t62 / t38) + t48;
-    J[7] = -(t64 / t38) + t48;
-    J[8] = t65 / t38 + t48;
-    J[9] = t66 / t38 + t48;
-    J[10] = B_11_below * t67 / t38 + t48;
-    J[11] = t68 / t38 + t48;
-    rare[0] = (t73) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t A_22_below = t5 - t61;
+    const real_t t63 = B_11_below * (A_02_below * t62 + A_03_below * A_22_below);
+    const real_t t64 = t52 + t53;
+    const real_t A_21_below = t9 - t64;
+    const real_t B_22_below = t51 * A_21_below - t55 * A_22_below - t4 * t62;
+    const real_t t65 = B_22_below * (A_13_below * A_02_below + t61 * A_03_below);
+    const real_t A_01_below = c1_x - t64;
+    const real_t t66 = B_11_below * (t62 * A_01_below + A_03_below * A_21_below);
+    const real_t t67 = B_22_below * (A_13_below * A_01_below + A_03_below * t64);
+    const real_t t68 = A_22_below * A_01_below - A_02_below * A_21_below;
+    const real_t t69 = B_22_below * (t61 * A_01_below - A_02_below * t64);
+    const real_t t70 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t70 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t71 = u_u * v_v;
+    const real_t t72 = product_2 - t71 * CLOSEDFORM_C(0.000244140625);
+    const int t73 = (u_u <= t14) | (u_u + v_v <= t14) | (t72 <= CLOSEDFORM_VANISHING * t71);
+    const int t74 = t73 | (product_2 <= t13 * (t12 * u_u)) | (t48 & (both <= CLOSEDFORM_VANISHING * t12));
+    J[0] = t50;
+    J[1] = t56;
+    J[2] = t57;
+    J[3] = t58;
+    J[4] = t59;
+    J[5] = t60;
+    J[6] = -(t63 / t38) + t49;
+    J[7] = -(t65 / t38) + t49;
+    J[8] = t66 / t38 + t49;
+    J[9] = t67 / t38 + t49;
+    J[10] = B_11_below * t68 / t38 + t49;
+    J[11] = t69 / t38 + t49;
+    rare[0] = (t74) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void spherical_five_bar_jacobian_common_batch(size_t n, const spherical_five_bar_params *params,
@@ -2601,30 +2603,30 @@ CF_INLINE void spherical_five_bar_singularities_common_kernel(const int single, 
     const int t43 = (-t42 <= t20) & (-t42 <= t17) & (-t42 <= t18);
     const real_t t44 = r * (r + r * CLOSEDFORM_C(2.2737367544323206e-13));
     const real_t t45 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * t44);
-    const int failed = (!(t40 & t41)) | (!(t43 & (-t45 <= t29) & (-t45 <= t30)));
-    const real_t t46 = cf_poison(single, failed);
-    const real_t t47 = s_gamma * c2_z;
-    const real_t t48 = t9 * X - (t5 * m_z - t6 * t10) * Y;
-    const real_t t49 = product_x * h;
-    const real_t t50 = c_gamma * c2_z;
-    const real_t B_22 = t47 * (t9 - (t48 - t49)) - t50 * (t5 - t34) - t4 * (t6 - A_13);
+    const int t46 = t43 & (-t45 <= t29) & (-t45 <= t30);
+    const real_t t47 = cf_poison(single, (!(t40 & t41)) | (!t46));
+    const real_t t48 = s_gamma * c2_z;
+    const real_t t49 = t9 * X - (t5 * m_z - t6 * t10) * Y;
+    const real_t t50 = product_x * h;
+    const real_t t51 = c_gamma * c2_z;
+    const real_t B_22 = t48 * (t9 - (t49 - t50)) - t51 * (t5 - t34) - t4 * (t6 - A_13);
     const real_t Delta = product_2 * h;
-    const real_t t51 = t31 - t33;
+    const real_t t52 = t31 - t33;
     const real_t A_13_below = t35 - t36;
-    const real_t B_22_below = t47 * (t9 - (t48 + t49)) - t50 * (t5 - t51) - t4 * (t6 - A_13_below);
-    const real_t t52 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
-    const real_t v_v = t52 + cf_rounded(single, one, c1_z * c1_z);
-    const real_t t53 = u_u * v_v;
-    const real_t t54 = product_2 - t53 * CLOSEDFORM_C(0.000244140625);
-    const int t55 = (u_u <= t14) | (u_u + v_v <= t14) | (t54 <= CLOSEDFORM_VANISHING * t53);
-    const int t56 = t55 | (product_2 <= t13 * (t12 * u_u)) | (both <= CLOSEDFORM_VANISHING * t12);
-    factors[0] = c1_z * t34 + c1_y * A_13 + t46;
-    factors[1] = B_22 + t46;
-    factors[2] = Delta + t46;
-    factors[3] = c1_z * t51 + c1_y * A_13_below + t46;
-    factors[4] = B_22_below + t46;
-    factors[5] = -Delta + t46;
-    rare[0] = (t56) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t B_22_below = t48 * (t9 - (t49 + t50)) - t51 * (t5 - t52) - t4 * (t6 - A_13_below);
+    const real_t t53 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t53 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t54 = u_u * v_v;
+    const real_t t55 = product_2 - t54 * CLOSEDFORM_C(0.000244140625);
+    const int t56 = (u_u <= t14) | (u_u + v_v <= t14) | (t55 <= CLOSEDFORM_VANISHING * t54);
+    const int t57 = t56 | (product_2 <= t13 * (t12 * u_u)) | (t46 & (both <= CLOSEDFORM_VANISHING * t12));
+    factors[0] = c1_z * t34 + c1_y * A_13 + t47;
+    factors[1] = B_22 + t47;
+    factors[2] = Delta + t47;
+    factors[3] = c1_z * t52 + c1_y * A_13_below + t47;
+    factors[4] = B_22_below + t47;
+    factors[5] = -Delta + t47;
+    rare[0] = (t57) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void spherical_five_bar_singularities_common_batch(size_t n, const spherical_five_bar_params *params,
@@ -3095,47 +3097,47 @@ CF_INLINE void spherical_five_bar_condition_number_common_kernel(const int singl
     const int t56 = (-t55 <= t20) & (-t55 <= t17) & (-t55 <= t18);
     const real_t t57 = r * (r + r * CLOSEDFORM_C(2.2737367544323206e-13));
     const real_t t58 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.625) * t57);
-    const int failed = (!(t53 & t54)) | (!(t56 & (-t58 <= t29) & (-t58 <= t30)));
-    const real_t t59 = cf_poison(single, failed);
-    const real_t t60 = t31 + t33;
-    const real_t A_01_below = c1_x - t60;
-    const real_t t61 = t35 - t36;
-    const real_t A_02_below = c1_y - t61;
-    const real_t t62 = A_01_below * A_01_below + A_02_below * A_02_below;
-    const real_t t63 = t38 + t39;
-    const real_t A_03_below = c1_z - t63;
-    const real_t strut_below = cf_sqrt(t62 + A_03_below * A_03_below);
+    const int t59 = t56 & (-t58 <= t29) & (-t58 <= t30);
+    const real_t t60 = cf_poison(single, (!(t53 & t54)) | (!t59));
+    const real_t t61 = t31 + t33;
+    const real_t A_01_below = c1_x - t61;
+    const real_t t62 = t35 - t36;
+    const real_t A_02_below = c1_y - t62;
+    const real_t t63 = A_01_below * A_01_below + A_02_below * A_02_below;
+    const real_t t64 = t38 + t39;
+    const real_t A_03_below = c1_z - t64;
+    const real_t strut_below = cf_sqrt(t63 + A_03_below * A_03_below);
     const real_t radial_x_below = A_01_below / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t12, strut_below);
     const real_t radial_y_below = A_02_below / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t12, strut_below);
     const real_t radial_z_below = A_03_below / cf_divisor(single, both <= CLOSEDFORM_VANISHING * t12, strut_below);
-    const real_t t64 = t60 * radial_x_below + t61 * radial_y_below + t63 * radial_z_below;
-    const real_t t65 = t60 - radial_x_below * t64;
-    const real_t t66 = t61 - radial_y_below * t64;
-    const real_t t67 = t63 - radial_z_below * t64;
-    const real_t square1_below = t65 * t65 + t66 * t66 + t67 * t67;
-    const real_t A_21_below = t5 - t60;
-    const real_t A_22_below = t7 - t61;
-    const real_t t68 = radial_x_below * A_21_below + radial_y_below * A_22_below;
-    const real_t A_23_below = t8 - t63;
-    const real_t off2_below = t68 + radial_z_below * A_23_below;
+    const real_t t65 = t61 * radial_x_below + t62 * radial_y_below + t64 * radial_z_below;
+    const real_t t66 = t61 - radial_x_below * t65;
+    const real_t t67 = t62 - radial_y_below * t65;
+    const real_t t68 = t64 - radial_z_below * t65;
+    const real_t square1_below = t66 * t66 + t67 * t67 + t68 * t68;
+    const real_t A_21_below = t5 - t61;
+    const real_t A_22_below = t7 - t62;
+    const real_t t69 = radial_x_below * A_21_below + radial_y_below * A_22_below;
+    const real_t A_23_below = t8 - t64;
+    const real_t off2_below = t69 + radial_z_below * A_23_below;
     const real_t t2_x_below = A_21_below - radial_x_below * off2_below;
     const real_t t2_y_below = A_22_below - radial_y_below * off2_below;
-    const real_t t69 = t2_x_below * t2_x_below + t2_y_below * t2_y_below;
+    const real_t t70 = t2_x_below * t2_x_below + t2_y_below * t2_y_below;
     const real_t t2_z_below = A_23_below - radial_z_below * off2_below;
-    const real_t square2_below = t69 + t2_z_below * t2_z_below;
-    const real_t t70 = square1_below - square2_below;
-    const real_t t71 = t65 * t2_x_below + t66 * t2_y_below + t67 * t2_z_below;
-    const real_t t72 = cf_sqrt(t70 * t70 + CLOSEDFORM_C(4.0) * (t71 * t71));
-    const real_t t73 = strut_below * (square1_below + square2_below + t72);
-    const real_t t74 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
-    const real_t v_v = t74 + cf_rounded(single, one, c1_z * c1_z);
-    const real_t t75 = u_u * v_v;
-    const real_t t76 = product_2 - t75 * CLOSEDFORM_C(0.000244140625);
-    const int t77 = (u_u <= t14) | (u_u + v_v <= t14) | (t76 <= CLOSEDFORM_VANISHING * t75);
-    const int t78 = t77 | (product_2 <= t13 * (t12 * u_u)) | (both <= CLOSEDFORM_VANISHING * t12);
-    kappa[0] = t49 + t59;
-    kappa[1] = cf_quotient(single, t73, t48) + t59;
-    rare[0] = (t78) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    const real_t square2_below = t70 + t2_z_below * t2_z_below;
+    const real_t t71 = square1_below - square2_below;
+    const real_t t72 = t66 * t2_x_below + t67 * t2_y_below + t68 * t2_z_below;
+    const real_t t73 = cf_sqrt(t71 * t71 + CLOSEDFORM_C(4.0) * (t72 * t72));
+    const real_t t74 = strut_below * (square1_below + square2_below + t73);
+    const real_t t75 = cf_rounded(single, one, c1_x * c1_x) + cf_rounded(single, one, c1_y * c1_y);
+    const real_t v_v = t75 + cf_rounded(single, one, c1_z * c1_z);
+    const real_t t76 = u_u * v_v;
+    const real_t t77 = product_2 - t76 * CLOSEDFORM_C(0.000244140625);
+    const int t78 = (u_u <= t14) | (u_u + v_v <= t14) | (t77 <= CLOSEDFORM_VANISHING * t76);
+    const int t79 = t78 | (product_2 <= t13 * (t12 * u_u)) | (t59 & (both <= CLOSEDFORM_VANISHING * t12));
+    kappa[0] = t49 + t60;
+    kappa[1] = cf_quotient(single, t74, t48) + t60;
+    rare[0] = (t79) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void spherical_five_bar_condition_number_common_batch(size_t n, const spherical_five_bar_params *params,

@@ -4,25 +4,25 @@
  * Source: The closedform authors: Loops on a sphere, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 75 compare and select, 65 add, 4 divide, 112 multiply, 7 sincos, 4 sqrt
- *   fk where nothing vanishes: 47 compare and select, 58 add, 4 divide, 87 multiply, 7 sincos, 4
+ *   fk where nothing vanishes: 48 compare and select, 58 add, 4 divide, 87 multiply, 7 sincos, 4
  *     sqrt
  *   skeleton: 74 compare and select, 77 add, 5 divide, 111 multiply, 7 sincos, 4 sqrt
- *   skeleton where nothing vanishes: 46 compare and select, 70 add, 4 divide, 87 multiply, 7
+ *   skeleton where nothing vanishes: 47 compare and select, 70 add, 4 divide, 87 multiply, 7
  *     sincos, 4 sqrt
  *   jacobian_parallel: 74 compare and select, 86 add, 5 divide, 111 multiply, 7 sincos, 4 sqrt
- *   jacobian_parallel where nothing vanishes: 46 compare and select, 79 add, 4 divide, 87
+ *   jacobian_parallel where nothing vanishes: 47 compare and select, 79 add, 4 divide, 87
  *     multiply, 7 sincos, 4 sqrt
  *   jacobian_serial: 74 compare and select, 72 add, 5 divide, 123 multiply, 7 sincos, 4 sqrt
- *   jacobian_serial where nothing vanishes: 46 compare and select, 65 add, 4 divide, 99 multiply,
+ *   jacobian_serial where nothing vanishes: 47 compare and select, 65 add, 4 divide, 99 multiply,
  *     7 sincos, 4 sqrt
  *   jacobian: 74 compare and select, 98 add, 17 divide, 160 multiply, 7 sincos, 4 sqrt
- *   jacobian where nothing vanishes: 46 compare and select, 91 add, 16 divide, 136 multiply, 7
+ *   jacobian where nothing vanishes: 47 compare and select, 91 add, 16 divide, 136 multiply, 7
  *     sincos, 4 sqrt
  *   singularities: 74 compare and select, 74 add, 5 divide, 124 multiply, 7 sincos, 4 sqrt
- *   singularities where nothing vanishes: 46 compare and select, 67 add, 4 divide, 100 multiply, 7
+ *   singularities where nothing vanishes: 47 compare and select, 67 add, 4 divide, 100 multiply, 7
  *     sincos, 4 sqrt
  *   condition_number: 74 compare and select, 114 add, 13 divide, 169 multiply, 7 sincos, 8 sqrt
- *   condition_number where nothing vanishes: 46 compare and select, 107 add, 12 divide, 145
+ *   condition_number where nothing vanishes: 47 compare and select, 107 add, 12 divide, 145
  *     multiply, 7 sincos, 8 sqrt
  *   ik: 107 compare and select, 78 add, 4 atan2, 8 divide, 110 multiply, 5 sincos, 7 sqrt
  *   workspace_contains: 53 compare and select, 26 add, 3 divide, 36 multiply, 5 sincos, 5 sqrt

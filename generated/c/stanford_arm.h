@@ -13,7 +13,7 @@
  *   jacobian_space: 14 add, 43 multiply, 4 sincos
  *   jacobian_body: 14 add, 41 multiply, 4 sincos
  *   ik: 105 compare and select, 111 add, 16 atan2, 6 divide, 115 multiply, 8 sqrt
- *   ik where nothing vanishes: 79 compare and select, 95 add, 16 atan2, 4 divide, 90 multiply, 6
+ *   ik where nothing vanishes: 80 compare and select, 95 add, 16 atan2, 4 divide, 90 multiply, 6
  *     sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a

@@ -12,7 +12,7 @@
  *   jacobian_space: 29 add, 57 multiply, 5 sincos
  *   jacobian_body: 27 add, 58 multiply, 5 sincos
  *   ik: 2239 compare and select, 1783 add, 32 atan2, 311 divide, 3046 multiply, 210 sqrt
- *   ik where nothing vanishes: 154 compare and select, 183 add, 30 atan2, 15 divide, 220 multiply,
+ *   ik where nothing vanishes: 163 compare and select, 183 add, 30 atan2, 15 divide, 220 multiply,
  *     12 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a

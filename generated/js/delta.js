@@ -3,25 +3,25 @@
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   fk: 51 compare and select, 67 add, 2 divide, 99 multiply, 6 sincos, 1 sqrt
-//   fk where nothing vanishes: 60 add, 29 compare and select, 1 divide, 77 multiply, 6 sincos, 1
+//   fk where nothing vanishes: 60 add, 30 compare and select, 1 divide, 77 multiply, 6 sincos, 1
 //     sqrt
 //   skeleton: 50 compare and select, 182 add, 2 divide, 105 multiply, 6 sincos, 1 sqrt
 //   jacobian_parallel: 50 compare and select, 88 add, 2 divide, 99 multiply, 6 sincos, 1 sqrt
-//   jacobian_parallel where nothing vanishes: 81 add, 28 compare and select, 1 divide, 77
+//   jacobian_parallel where nothing vanishes: 81 add, 29 compare and select, 1 divide, 77
 //     multiply, 6 sincos, 1 sqrt
 //   jacobian_serial: 50 compare and select, 88 add, 2 divide, 123 multiply, 6 sincos, 1 sqrt
-//   jacobian_serial where nothing vanishes: 81 add, 28 compare and select, 1 divide, 101 multiply,
+//   jacobian_serial where nothing vanishes: 81 add, 29 compare and select, 1 divide, 101 multiply,
 //     6 sincos, 1 sqrt
 //   jacobian: 50 compare and select, 118 add, 20 divide, 178 multiply, 6 sincos, 1 sqrt
 //   determinant: 50 compare and select, 84 add, 4 divide, 128 multiply, 6 sincos, 1 sqrt
-//   determinant where nothing vanishes: 77 add, 28 compare and select, 3 divide, 106 multiply, 6
+//   determinant where nothing vanishes: 77 add, 29 compare and select, 3 divide, 106 multiply, 6
 //     sincos, 1 sqrt
 //   singularities: 50 compare and select, 90 add, 2 divide, 124 multiply, 6 sincos, 1 sqrt
-//   singularities where nothing vanishes: 83 add, 28 compare and select, 1 divide, 102 multiply, 6
+//   singularities where nothing vanishes: 83 add, 29 compare and select, 1 divide, 102 multiply, 6
 //     sincos, 1 sqrt
 //   condition_number: 50 compare and select, 122 add, 4 divide, 175 multiply, 6 sincos, 3 sqrt
 //   constraint: 50 compare and select, 94 add, 2 divide, 161 multiply, 6 sincos, 1 sqrt
-//   constraint where nothing vanishes: 87 add, 28 compare and select, 1 divide, 129 multiply, 6
+//   constraint where nothing vanishes: 87 add, 29 compare and select, 1 divide, 129 multiply, 6
 //     sincos, 1 sqrt
 //   ik: 139 compare and select, 130 add, 6 atan2, 9 divide, 155 multiply, 3 sincos, 9 sqrt
 //   workspace_contains: 48 add, 53 compare and select, 3 divide, 43 multiply, 3 sincos, 6 sqrt
@@ -321,6 +321,7 @@ function _fk_common(v, o) {
     const t32 = u_u * v_v;
     const slim = product_2 - t32 * 0.000244140625 <= _runtime.VANISHING * t32;
     const t33 = u_u <= t31 || u_u + v_v <= t31 || slim || product_2 <= t30 * (t21 * u_u);
+    const t34 = t33 || (t23 && slack <= _runtime.VANISHING * t22);
     o[0] = t15 - t17 + t24;
     o[1] = t25 + t26 + t24;
     o[2] = -(t27 + t28) + t24;
@@ -329,7 +330,7 @@ function _fk_common(v, o) {
     o[5] = t27 - t28 + t24;
     o[6] = t29;
     o[7] = t29;
-    o[8] = (t33 || slack <= _runtime.VANISHING * t22) ? 1 : 0;
+    o[8] = (t34) ? 1 : 0;
 }
 
 const _FK = _runtime.kernel({
@@ -958,6 +959,7 @@ function _jacobian_parallel_common(v, o) {
     const t34 = u_u * v_v;
     const slim = product_2 - t34 * 0.000244140625 <= _runtime.VANISHING * t34;
     const t35 = u_u <= t33 || u_u + v_v <= t33 || slim || product_2 <= t32 * (t22 * u_u);
+    const t36 = t35 || (t24 && slack <= _runtime.VANISHING * t23);
     o[0] = -t18 + t25;
     o[1] = A_12 + t25;
     o[2] = -t30 + t25;
@@ -976,7 +978,7 @@ function _jacobian_parallel_common(v, o) {
     o[15] = A_11_above - t11 + t25;
     o[16] = -(t7 + t31) + t25;
     o[17] = A_13_above - v_z + t25;
-    o[18] = (t35 || slack <= _runtime.VANISHING * t23) ? 1 : 0;
+    o[18] = (t36) ? 1 : 0;
 }
 
 const _JACOBIAN_PARALLEL = _runtime.kernel({
@@ -1251,13 +1253,14 @@ function _jacobian_serial_common(v, o) {
     const t44 = u_u * v_v;
     const slim = product_2 - t44 * 0.000244140625 <= _runtime.VANISHING * t44;
     const t45 = u_u <= t43 || u_u + v_v <= t43 || slim || product_2 <= t42 * (t31 * u_u);
+    const t46 = t45 || (t33 && slack <= _runtime.VANISHING * t32);
     o[0] = t2 * t21 - t22 * A_12 + t4 * t27 + t34;
     o[1] = B_22 + t34;
     o[2] = B_33 + t34;
     o[3] = t41;
     o[4] = B_22_above + t34;
     o[5] = B_33_above + t34;
-    o[6] = (t45 || slack <= _runtime.VANISHING * t32) ? 1 : 0;
+    o[6] = (t46) ? 1 : 0;
 }
 
 const _JACOBIAN_SERIAL = _runtime.kernel({
@@ -1750,9 +1753,10 @@ function _determinant_common(v, o) {
     const t49 = u_u * v_v;
     const slim = product_2 - t49 * 0.000244140625 <= _runtime.VANISHING * t49;
     const t50 = u_u <= t48 || u_u + v_v <= t48 || slim || product_2 <= t47 * (t38 * u_u);
+    const t51 = t50 || (t40 && slack <= _runtime.VANISHING * t39);
     o[0] = -(t34 / Delta) + t41;
     o[1] = -(t45 * t46 / Delta) + t41;
-    o[2] = (t50 || slack <= _runtime.VANISHING * t39) ? 1 : 0;
+    o[2] = (t51) ? 1 : 0;
 }
 
 const _DETERMINANT = _runtime.kernel({
@@ -2031,6 +2035,7 @@ function _singularities_common(v, o) {
     const t44 = u_u * v_v;
     const slim = product_2 - t44 * 0.000244140625 <= _runtime.VANISHING * t44;
     const t45 = u_u <= t43 || u_u + v_v <= t43 || slim || product_2 <= t42 * (t31 * u_u);
+    const t46 = t45 || (t33 && slack <= _runtime.VANISHING * t32);
     o[0] = t2 * t21 - t22 * A_12 + t4 * t27 + t34;
     o[1] = B_22 + t34;
     o[2] = B_33 + t34;
@@ -2039,7 +2044,7 @@ function _singularities_common(v, o) {
     o[5] = B_22_above + t34;
     o[6] = B_33_above + t34;
     o[7] = Delta + t34;
-    o[8] = (t45 || slack <= _runtime.VANISHING * t32) ? 1 : 0;
+    o[8] = (t46) ? 1 : 0;
 }
 
 const _SINGULARITIES = _runtime.kernel({
@@ -2561,9 +2566,10 @@ function _constraint_common(v, o) {
     const t71 = u_u * v_v;
     const slim = product_2 - t71 * 0.000244140625 <= _runtime.VANISHING * t71;
     const t72 = u_u <= t70 || u_u + v_v <= t70 || slim || product_2 <= t69 * (t49 * u_u);
+    const t73 = t72 || (t51 && slack <= _runtime.VANISHING * t50);
     o[0] = t45 + t52;
     o[1] = t68 + t52;
-    o[2] = (t72 || slack <= _runtime.VANISHING * t50) ? 1 : 0;
+    o[2] = (t73) ? 1 : 0;
 }
 
 const _CONSTRAINT = _runtime.kernel({

@@ -3,29 +3,29 @@
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   fk: 50 compare and select, 53 add, 2 divide, 78 multiply, 1 sqrt
-//   fk where nothing vanishes: 30 compare and select, 46 add, 1 divide, 55 multiply, 1 sqrt
+//   fk where nothing vanishes: 31 compare and select, 46 add, 1 divide, 55 multiply, 1 sqrt
 //   skeleton: 49 compare and select, 127 add, 2 divide, 80 multiply, 1 sqrt
-//   skeleton where nothing vanishes: 29 compare and select, 120 add, 1 divide, 57 multiply, 1 sqrt
+//   skeleton where nothing vanishes: 30 compare and select, 120 add, 1 divide, 57 multiply, 1 sqrt
 //   jacobian_parallel: 49 compare and select, 71 add, 2 divide, 78 multiply, 1 sqrt
-//   jacobian_parallel where nothing vanishes: 29 compare and select, 64 add, 1 divide, 55
+//   jacobian_parallel where nothing vanishes: 30 compare and select, 64 add, 1 divide, 55
 //     multiply, 1 sqrt
 //   jacobian_serial: 45 compare and select, 47 add, 2 divide, 65 multiply, 1 sqrt
-//   jacobian_serial where nothing vanishes: 29 compare and select, 40 add, 1 divide, 45 multiply,
+//   jacobian_serial where nothing vanishes: 30 compare and select, 40 add, 1 divide, 45 multiply,
 //     1 sqrt
 //   jacobian: 49 compare and select, 91 add, 20 divide, 129 multiply, 1 sqrt
-//   jacobian where nothing vanishes: 29 compare and select, 84 add, 19 divide, 106 multiply, 1
+//   jacobian where nothing vanishes: 30 compare and select, 84 add, 19 divide, 106 multiply, 1
 //     sqrt
 //   determinant: 45 compare and select, 43 add, 4 divide, 70 multiply, 1 sqrt
-//   determinant where nothing vanishes: 29 compare and select, 36 add, 3 divide, 50 multiply, 1
+//   determinant where nothing vanishes: 30 compare and select, 36 add, 3 divide, 50 multiply, 1
 //     sqrt
 //   singularities: 45 compare and select, 49 add, 2 divide, 66 multiply, 1 sqrt
-//   singularities where nothing vanishes: 29 compare and select, 42 add, 1 divide, 46 multiply, 1
+//   singularities where nothing vanishes: 30 compare and select, 42 add, 1 divide, 46 multiply, 1
 //     sqrt
 //   condition_number: 49 compare and select, 107 add, 4 divide, 148 multiply, 3 sqrt
-//   condition_number where nothing vanishes: 29 compare and select, 100 add, 3 divide, 125
+//   condition_number where nothing vanishes: 30 compare and select, 100 add, 3 divide, 125
 //     multiply, 3 sqrt
 //   constraint: 49 compare and select, 65 add, 2 divide, 108 multiply, 1 sqrt
-//   constraint where nothing vanishes: 29 compare and select, 58 add, 1 divide, 85 multiply, 1
+//   constraint where nothing vanishes: 30 compare and select, 58 add, 1 divide, 85 multiply, 1
 //     sqrt
 //   ik: 60 compare and select, 63 add, 49 multiply, 6 sqrt
 //   workspace_contains: 27 compare and select, 21 add, 13 multiply, 3 sqrt
@@ -252,6 +252,7 @@ function _fk_common(v, o) {
     const t28 = u_u * v_v;
     const slim = product_2 - t28 * 0.000244140625 <= _runtime.VANISHING * t28;
     const t29 = u_u <= t27 || u_u + v_v <= t27 || slim || product_2 <= t26 * (t17 * u_u);
+    const t30 = t29 || (t19 && slack <= _runtime.VANISHING * t18);
     o[0] = t10 - t13 + t20;
     o[1] = t21 + t22 + t20;
     o[2] = t23 - t24 + t20;
@@ -260,7 +261,7 @@ function _fk_common(v, o) {
     o[5] = -(t24 + t23) + t20;
     o[6] = t25;
     o[7] = t25;
-    o[8] = (t29 || slack <= _runtime.VANISHING * t18) ? 1 : 0;
+    o[8] = (t30) ? 1 : 0;
 }
 
 const _FK = _runtime.kernel({
@@ -666,6 +667,7 @@ function _skeleton_common(v, o) {
     const t71 = u_u * v_v;
     const slim = product_2 - t71 * 0.000244140625 <= _runtime.VANISHING * t71;
     const t72 = u_u <= t70 || u_u + v_v <= t70 || slim || product_2 <= t69 * (t3 * u_u);
+    const t73 = t72 || (t21 && slack <= _runtime.VANISHING * t4);
     o[0] = t23;
     o[1] = t24;
     o[2] = t24;
@@ -798,7 +800,7 @@ function _skeleton_common(v, o) {
     o[129] = c1_x - t61 + t22;
     o[130] = t63;
     o[131] = t64;
-    o[132] = (t72 || slack <= _runtime.VANISHING * t4) ? 1 : 0;
+    o[132] = (t73) ? 1 : 0;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -1002,6 +1004,7 @@ function _jacobian_parallel_common(v, o) {
     const t33 = u_u * v_v;
     const slim = product_2 - t33 * 0.000244140625 <= _runtime.VANISHING * t33;
     const t34 = u_u <= t32 || u_u + v_v <= t32 || slim || product_2 <= t31 * (t18 * u_u);
+    const t35 = t34 || (t20 && slack <= _runtime.VANISHING * t19);
     o[0] = -t14 + t21;
     o[1] = A_12 + t21;
     o[2] = -t26 + t21;
@@ -1020,7 +1023,7 @@ function _jacobian_parallel_common(v, o) {
     o[15] = t30;
     o[16] = A_12_above - c3_y + t21;
     o[17] = t5 - t29 + t21;
-    o[18] = (t34 || slack <= _runtime.VANISHING * t19) ? 1 : 0;
+    o[18] = (t35) ? 1 : 0;
 }
 
 const _JACOBIAN_PARALLEL = _runtime.kernel({
@@ -1186,13 +1189,14 @@ function _jacobian_serial_common(v, o) {
     const t25 = u_u * v_v;
     const slim = product_2 - t25 * 0.000244140625 <= _runtime.VANISHING * t25;
     const t26 = u_u + v_v <= t24 || u_u <= t24 || slim || product_2 <= t23 * (t18 * u_u);
+    const t27 = t26 || (t20 && slack <= _runtime.VANISHING * t19);
     o[0] = -t14 + t21;
     o[1] = t3 - t14 + t21;
     o[2] = t2 - t14 + t21;
     o[3] = -t22 + t21;
     o[4] = t3 - t22 + t21;
     o[5] = t2 - t22 + t21;
-    o[6] = (t26 || slack <= _runtime.VANISHING * t19) ? 1 : 0;
+    o[6] = (t27) ? 1 : 0;
 }
 
 const _JACOBIAN_SERIAL = _runtime.kernel({
@@ -1448,6 +1452,7 @@ function _jacobian_common(v, o) {
     const t51 = u_u * v_v;
     const slim = product_2 - t51 * 0.000244140625 <= _runtime.VANISHING * t51;
     const t52 = u_u + v_v <= t50 || u_u <= t50 || slim || product_2 <= t49 * (t21 * u_u);
+    const t53 = t52 || (t23 && slack <= _runtime.VANISHING * t22);
     o[0] = t25;
     o[1] = t26;
     o[2] = t27;
@@ -1466,7 +1471,7 @@ function _jacobian_common(v, o) {
     o[15] = t45 / Delta + t24;
     o[16] = t47;
     o[17] = -t48 + t24;
-    o[18] = (t52 || slack <= _runtime.VANISHING * t22) ? 1 : 0;
+    o[18] = (t53) ? 1 : 0;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -1635,9 +1640,10 @@ function _determinant_common(v, o) {
     const t26 = u_u * v_v;
     const slim = product_2 - t26 * 0.000244140625 <= _runtime.VANISHING * t26;
     const t27 = u_u + v_v <= t25 || u_u <= t25 || slim || product_2 <= t24 * (t18 * u_u);
+    const t28 = t27 || (t20 && slack <= _runtime.VANISHING * t19);
     o[0] = t14 * (t3 - t14) * (t2 - t14) / Delta + t21;
     o[1] = t23;
-    o[2] = (t27 || slack <= _runtime.VANISHING * t19) ? 1 : 0;
+    o[2] = (t28) ? 1 : 0;
 }
 
 const _DETERMINANT = _runtime.kernel({
@@ -1808,6 +1814,7 @@ function _singularities_common(v, o) {
     const t25 = u_u * v_v;
     const slim = product_2 - t25 * 0.000244140625 <= _runtime.VANISHING * t25;
     const t26 = u_u + v_v <= t24 || u_u <= t24 || slim || product_2 <= t23 * (t18 * u_u);
+    const t27 = t26 || (t20 && slack <= _runtime.VANISHING * t19);
     o[0] = -t14 + t21;
     o[1] = t3 - t14 + t21;
     o[2] = t2 - t14 + t21;
@@ -1816,7 +1823,7 @@ function _singularities_common(v, o) {
     o[5] = t3 - t22 + t21;
     o[6] = t2 - t22 + t21;
     o[7] = Delta + t21;
-    o[8] = (t26 || slack <= _runtime.VANISHING * t19) ? 1 : 0;
+    o[8] = (t27) ? 1 : 0;
 }
 
 const _SINGULARITIES = _runtime.kernel({
@@ -2088,9 +2095,10 @@ function _condition_number_common(v, o) {
     const t66 = u_u * v_v;
     const slim = product_2 - t66 * 0.000244140625 <= _runtime.VANISHING * t66;
     const t67 = u_u <= t65 || u_u + v_v <= t65 || slim || product_2 <= t64 * (t41 * u_u);
+    const t68 = t67 || (t43 && slack <= _runtime.VANISHING * t42);
     o[0] = Math.sqrt(t36) / t37 + t44;
     o[1] = t63;
-    o[2] = (t67 || slack <= _runtime.VANISHING * t42) ? 1 : 0;
+    o[2] = (t68) ? 1 : 0;
 }
 
 const _CONDITION_NUMBER = _runtime.kernel({
@@ -2299,9 +2307,10 @@ function _constraint_common(v, o) {
     const t40 = u_u * v_v;
     const slim = product_2 - t40 * 0.000244140625 <= _runtime.VANISHING * t40;
     const t41 = u_u <= t39 || u_u + v_v <= t39 || slim || product_2 <= t38 * (t27 * u_u);
+    const t42 = t41 || (t29 && slack <= _runtime.VANISHING * t28);
     o[0] = t23 + A_23 * t22 * (c3_y - A_12) + t30;
     o[1] = t37 + t30;
-    o[2] = (t41 || slack <= _runtime.VANISHING * t28) ? 1 : 0;
+    o[2] = (t42) ? 1 : 0;
 }
 
 const _CONSTRAINT = _runtime.kernel({

@@ -13,7 +13,7 @@
 //   jacobian_space: 49 add, 90 multiply, 5 sincos
 //   jacobian_body: 33 add, 70 multiply, 5 sincos
 //   ik: 201 compare and select, 200 add, 22 atan2, 18 divide, 248 multiply, 13 sqrt
-//   ik where nothing vanishes: 128 compare and select, 170 add, 22 atan2, 12 divide, 199 multiply,
+//   ik where nothing vanishes: 133 compare and select, 170 add, 22 atan2, 12 divide, 199 multiply,
 //     11 sqrt
 
 /**
@@ -1668,11 +1668,12 @@ function _ik_common(v, o) {
     const t179 = invalid ? 3 : unreachable_2 ? 1 : false ? 2 : 0;
     const t180 = size * _runtime.VANISHING;
     const t181 = h1 <= t180 || root1 - size * 0.00390625 <= t180;
-    const t182 = t181 || r_elbow <= t180 || c2 * f <= _runtime.VANISHING * (t28 * t28);
-    const t183 = _runtime.VANISHING * 16.0;
-    const t184 = t182 || h_wrist <= t183 || h_wrist_facing_down_noflip <= t183;
-    const t185 = t184 || r_elbow_backward_up_noflip <= t180 || h_wrist_backward_up_noflip <=
-        t183;
+    const t182 = _runtime.VANISHING * 16.0;
+    const t183 = r_elbow <= t180 || h_wrist <= t182 || h_wrist_facing_down_noflip <= t182;
+    const t184 = (t35 || t105) && c2 * f <= _runtime.VANISHING * (t28 * t28);
+    const t185 = r_elbow_backward_up_noflip <= t180 || h_wrist_backward_up_noflip <= t182;
+    const t186 = t105 && (t185 || h_wrist_backward_down_noflip <= t182);
+    const t187 = (t27 && t181) || (t35 && t183) || t184 || t186;
     o[0] = t37;
     o[1] = t51;
     o[2] = t63;
@@ -1729,7 +1730,7 @@ function _ik_common(v, o) {
     o[53] = t179;
     o[54] = t179;
     o[55] = t179;
-    o[56] = (t185 || h_wrist_backward_down_noflip <= t183) ? 1 : 0;
+    o[56] = (t187) ? 1 : 0;
 }
 
 const _IK = _runtime.kernel({

@@ -3,28 +3,28 @@
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   fk: 46 compare and select, 43 add, 2 divide, 71 multiply, 1 sqrt
-//   fk where nothing vanishes: 26 compare and select, 27 add, 1 divide, 41 multiply, 1 sqrt
+//   fk where nothing vanishes: 27 compare and select, 27 add, 1 divide, 41 multiply, 1 sqrt
 //   skeleton: 45 compare and select, 74 add, 2 divide, 72 multiply, 1 sqrt
-//   skeleton where nothing vanishes: 25 compare and select, 58 add, 1 divide, 42 multiply, 1 sqrt
+//   skeleton where nothing vanishes: 26 compare and select, 58 add, 1 divide, 42 multiply, 1 sqrt
 //   jacobian_parallel: 45 compare and select, 54 add, 2 divide, 71 multiply, 1 sqrt
-//   jacobian_parallel where nothing vanishes: 25 compare and select, 38 add, 1 divide, 41
+//   jacobian_parallel where nothing vanishes: 26 compare and select, 38 add, 1 divide, 41
 //     multiply, 1 sqrt
 //   jacobian_serial: 45 compare and select, 46 add, 2 divide, 71 multiply, 1 sqrt
-//   jacobian_serial where nothing vanishes: 25 compare and select, 30 add, 1 divide, 41 multiply,
+//   jacobian_serial where nothing vanishes: 26 compare and select, 30 add, 1 divide, 41 multiply,
 //     1 sqrt
 //   jacobian: 45 compare and select, 78 add, 20 divide, 114 multiply, 1 sqrt
-//   jacobian where nothing vanishes: 25 compare and select, 62 add, 19 divide, 84 multiply, 1 sqrt
+//   jacobian where nothing vanishes: 26 compare and select, 62 add, 19 divide, 84 multiply, 1 sqrt
 //   determinant: 45 compare and select, 42 add, 4 divide, 76 multiply, 1 sqrt
-//   determinant where nothing vanishes: 25 compare and select, 26 add, 3 divide, 46 multiply, 1
+//   determinant where nothing vanishes: 26 compare and select, 26 add, 3 divide, 46 multiply, 1
 //     sqrt
 //   singularities: 45 compare and select, 48 add, 2 divide, 72 multiply, 1 sqrt
-//   singularities where nothing vanishes: 25 compare and select, 32 add, 1 divide, 42 multiply, 1
+//   singularities where nothing vanishes: 26 compare and select, 32 add, 1 divide, 42 multiply, 1
 //     sqrt
 //   condition_number: 45 compare and select, 94 add, 4 divide, 129 multiply, 3 sqrt
-//   condition_number where nothing vanishes: 25 compare and select, 78 add, 3 divide, 99 multiply,
+//   condition_number where nothing vanishes: 26 compare and select, 78 add, 3 divide, 99 multiply,
 //     3 sqrt
 //   constraint: 45 compare and select, 46 add, 2 divide, 79 multiply, 1 sqrt
-//   constraint where nothing vanishes: 25 compare and select, 30 add, 1 divide, 49 multiply, 1
+//   constraint where nothing vanishes: 26 compare and select, 30 add, 1 divide, 49 multiply, 1
 //     sqrt
 //   ik: 56 compare and select, 45 add, 45 multiply, 6 sqrt
 //   workspace_contains: 23 compare and select, 12 add, 5 multiply, 3 sqrt
@@ -222,6 +222,7 @@ function _fk_common(v, o) {
     const t19 = u_u * v_v;
     const slim = product_2 - t19 * 0.000244140625 <= _runtime.VANISHING * t19;
     const t20 = u_u <= t18 || u_u + v_v <= t18 || slim || product_2 <= t17 * (u_u * t8);
+    const t21 = t20 || (t10 && slack <= _runtime.VANISHING * t9);
     o[0] = t5 + t6 + t11;
     o[1] = t12 - t13 + t11;
     o[2] = t14 + t15 + t11;
@@ -230,7 +231,7 @@ function _fk_common(v, o) {
     o[5] = t14 - t15 + t11;
     o[6] = t16;
     o[7] = t16;
-    o[8] = (t20 || slack <= _runtime.VANISHING * t9) ? 1 : 0;
+    o[8] = (t21) ? 1 : 0;
 }
 
 const _FK = _runtime.kernel({
@@ -544,6 +545,7 @@ function _skeleton_common(v, o) {
     const t34 = u_u * v_v;
     const slim = product_2 - t34 * 0.000244140625 <= _runtime.VANISHING * t34;
     const t35 = u_u <= t33 || u_u + v_v <= t33 || slim || product_2 <= t32 * (u_u * t2);
+    const t36 = t35 || (t8 && slack <= _runtime.VANISHING * t3);
     o[0] = t10;
     o[1] = t10;
     o[2] = t10;
@@ -658,7 +660,7 @@ function _skeleton_common(v, o) {
     o[111] = t28;
     o[112] = t31;
     o[113] = t30;
-    o[114] = (t35 || slack <= _runtime.VANISHING * t3) ? 1 : 0;
+    o[114] = (t36) ? 1 : 0;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -855,6 +857,7 @@ function _jacobian_parallel_common(v, o) {
     const t26 = u_u * v_v;
     const slim = product_2 - t26 * 0.000244140625 <= _runtime.VANISHING * t26;
     const t27 = u_u <= t25 || u_u + v_v <= t25 || slim || product_2 <= t24 * (u_u * t8);
+    const t28 = t27 || (t10 && slack <= _runtime.VANISHING * t9);
     o[0] = A_11 + t11;
     o[1] = t14;
     o[2] = t17;
@@ -873,7 +876,7 @@ function _jacobian_parallel_common(v, o) {
     o[15] = t23;
     o[16] = t21;
     o[17] = A_13_inner - rho3 + t11;
-    o[18] = (t27 || slack <= _runtime.VANISHING * t9) ? 1 : 0;
+    o[18] = (t28) ? 1 : 0;
 }
 
 const _JACOBIAN_PARALLEL = _runtime.kernel({
@@ -1032,13 +1035,14 @@ function _jacobian_serial_common(v, o) {
     const t18 = u_u * v_v;
     const slim = product_2 - t18 * 0.000244140625 <= _runtime.VANISHING * t18;
     const t19 = u_u <= t17 || u_u + v_v <= t17 || slim || product_2 <= t16 * (u_u * t8);
+    const t20 = t19 || (t10 && slack <= _runtime.VANISHING * t9);
     o[0] = t5 - t6 + t11;
     o[1] = t12 - t13 - rho2 + t11;
     o[2] = t14 + t15 - rho3 + t11;
     o[3] = -(t5 + t6) + t11;
     o[4] = -(rho2 + (t12 + t13)) + t11;
     o[5] = t14 - t15 - rho3 + t11;
-    o[6] = (t19 || slack <= _runtime.VANISHING * t9) ? 1 : 0;
+    o[6] = (t20) ? 1 : 0;
 }
 
 const _JACOBIAN_SERIAL = _runtime.kernel({
@@ -1250,6 +1254,7 @@ function _jacobian_common(v, o) {
     const t34 = u_u * v_v;
     const slim = product_2 - t34 * 0.000244140625 <= _runtime.VANISHING * t34;
     const t35 = u_u <= t33 || u_u + v_v <= t33 || slim || product_2 <= t32 * (u_u * t17);
+    const t36 = t35 || (t19 && slack <= _runtime.VANISHING * t18);
     o[0] = -(A_11 * (t13 - t14 * t15) / Delta) + t20;
     o[1] = -(t15 * (t13 + t14 * t12) / Delta) + t20;
     o[2] = -(t14 * (t13 + t9 * t15) / Delta) + t20;
@@ -1268,7 +1273,7 @@ function _jacobian_common(v, o) {
     o[15] = t31;
     o[16] = -(t28 * (t30 + t23 * t25) / Delta) + t20;
     o[17] = t27 * (t30 + t23 * t28) / Delta + t20;
-    o[18] = (t35 || slack <= _runtime.VANISHING * t18) ? 1 : 0;
+    o[18] = (t36) ? 1 : 0;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -1430,9 +1435,10 @@ function _determinant_common(v, o) {
     const t20 = u_u * v_v;
     const slim = product_2 - t20 * 0.000244140625 <= _runtime.VANISHING * t20;
     const t21 = u_u <= t19 || u_u + v_v <= t19 || slim || product_2 <= t18 * (u_u * t13);
+    const t22 = t21 || (t15 && slack <= _runtime.VANISHING * t14);
     o[0] = t11 / Delta + t16;
     o[1] = t17 / Delta + t16;
-    o[2] = (t21 || slack <= _runtime.VANISHING * t14) ? 1 : 0;
+    o[2] = (t22) ? 1 : 0;
 }
 
 const _DETERMINANT = _runtime.kernel({
@@ -1595,6 +1601,7 @@ function _singularities_common(v, o) {
     const t18 = u_u * v_v;
     const slim = product_2 - t18 * 0.000244140625 <= _runtime.VANISHING * t18;
     const t19 = u_u <= t17 || u_u + v_v <= t17 || slim || product_2 <= t16 * (u_u * t8);
+    const t20 = t19 || (t10 && slack <= _runtime.VANISHING * t9);
     o[0] = t5 - t6 + t11;
     o[1] = t12 - t13 - rho2 + t11;
     o[2] = t14 + t15 - rho3 + t11;
@@ -1603,7 +1610,7 @@ function _singularities_common(v, o) {
     o[5] = -(rho2 + (t12 + t13)) + t11;
     o[6] = t14 - t15 - rho3 + t11;
     o[7] = -Delta + t11;
-    o[8] = (t19 || slack <= _runtime.VANISHING * t9) ? 1 : 0;
+    o[8] = (t20) ? 1 : 0;
 }
 
 const _SINGULARITIES = _runtime.kernel({
@@ -1860,9 +1867,10 @@ function _condition_number_common(v, o) {
     const t66 = u_u * v_v;
     const slim = product_2 - t66 * 0.000244140625 <= _runtime.VANISHING * t66;
     const t67 = u_u <= t65 || u_u + v_v <= t65 || slim || product_2 <= t64 * (u_u * t36);
+    const t68 = t67 || (t38 && slack <= _runtime.VANISHING * t37);
     o[0] = Math.sqrt(t33) / t34 + t39;
     o[1] = Math.sqrt(t63) / t34 + t39;
-    o[2] = (t67 || slack <= _runtime.VANISHING * t37) ? 1 : 0;
+    o[2] = (t68) ? 1 : 0;
 }
 
 const _CONDITION_NUMBER = _runtime.kernel({
@@ -2034,9 +2042,10 @@ function _constraint_common(v, o) {
     const t25 = u_u * v_v;
     const slim = product_2 - t25 * 0.000244140625 <= _runtime.VANISHING * t25;
     const t26 = u_u <= t24 || u_u + v_v <= t24 || slim || product_2 <= t23 * (u_u * t15);
+    const t27 = t26 || (t17 && slack <= _runtime.VANISHING * t16);
     o[0] = t13 + t18;
     o[1] = t22 + t18;
-    o[2] = (t26 || slack <= _runtime.VANISHING * t16) ? 1 : 0;
+    o[2] = (t27) ? 1 : 0;
 }
 
 const _CONSTRAINT = _runtime.kernel({

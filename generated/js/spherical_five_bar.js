@@ -3,25 +3,25 @@
 // Source: The closedform authors: Loops on a sphere, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   fk: 75 compare and select, 65 add, 4 divide, 112 multiply, 7 sincos, 4 sqrt
-//   fk where nothing vanishes: 47 compare and select, 58 add, 4 divide, 87 multiply, 7 sincos, 4
+//   fk where nothing vanishes: 48 compare and select, 58 add, 4 divide, 87 multiply, 7 sincos, 4
 //     sqrt
 //   skeleton: 74 compare and select, 77 add, 5 divide, 111 multiply, 7 sincos, 4 sqrt
-//   skeleton where nothing vanishes: 46 compare and select, 70 add, 4 divide, 87 multiply, 7
+//   skeleton where nothing vanishes: 47 compare and select, 70 add, 4 divide, 87 multiply, 7
 //     sincos, 4 sqrt
 //   jacobian_parallel: 74 compare and select, 86 add, 5 divide, 111 multiply, 7 sincos, 4 sqrt
-//   jacobian_parallel where nothing vanishes: 46 compare and select, 79 add, 4 divide, 87
+//   jacobian_parallel where nothing vanishes: 47 compare and select, 79 add, 4 divide, 87
 //     multiply, 7 sincos, 4 sqrt
 //   jacobian_serial: 74 compare and select, 72 add, 5 divide, 123 multiply, 7 sincos, 4 sqrt
-//   jacobian_serial where nothing vanishes: 46 compare and select, 65 add, 4 divide, 99 multiply,
+//   jacobian_serial where nothing vanishes: 47 compare and select, 65 add, 4 divide, 99 multiply,
 //     7 sincos, 4 sqrt
 //   jacobian: 74 compare and select, 98 add, 17 divide, 160 multiply, 7 sincos, 4 sqrt
-//   jacobian where nothing vanishes: 46 compare and select, 91 add, 16 divide, 136 multiply, 7
+//   jacobian where nothing vanishes: 47 compare and select, 91 add, 16 divide, 136 multiply, 7
 //     sincos, 4 sqrt
 //   singularities: 74 compare and select, 74 add, 5 divide, 124 multiply, 7 sincos, 4 sqrt
-//   singularities where nothing vanishes: 46 compare and select, 67 add, 4 divide, 100 multiply, 7
+//   singularities where nothing vanishes: 47 compare and select, 67 add, 4 divide, 100 multiply, 7
 //     sincos, 4 sqrt
 //   condition_number: 74 compare and select, 114 add, 13 divide, 169 multiply, 7 sincos, 8 sqrt
-//   condition_number where nothing vanishes: 46 compare and select, 107 add, 12 divide, 145
+//   condition_number where nothing vanishes: 47 compare and select, 107 add, 12 divide, 145
 //     multiply, 7 sincos, 8 sqrt
 //   ik: 107 compare and select, 78 add, 4 atan2, 8 divide, 110 multiply, 5 sincos, 7 sqrt
 //   workspace_contains: 53 compare and select, 26 add, 3 divide, 36 multiply, 5 sincos, 5 sqrt
@@ -331,28 +331,30 @@ function _fk_common(v, o) {
     const t29 = -(_runtime.FEASIBILITY * (r * 0.25));
     const t30 = _runtime.FEASIBILITY * (r * (r + r * 2.2737367544323206e-13) * 0.5);
     const t31 = t29 <= t14 && t29 <= t11 && t29 <= t12 && -t30 <= t21;
-    const unreachable = !(t31 && -t30 <= t22);
-    const t32 = invalid || unreachable ? NaN : 0;
-    const t33 = (t6 * m_z - t7 * product_x) * Y - (c1_y - t5 * X);
-    const t34 = t8 * h;
-    const t35 = m_z * h;
-    const t36 = (t6 * t8 + t5 * product_x) * Y - (c1_z - t7 * X);
-    const t37 = invalid ? 3 : unreachable ? 1 : false ? 2 : 0;
-    const t38 = _runtime.VANISHING * _runtime.VANISHING;
-    const t39 = t17 * t38;
+    const t32 = t31 && -t30 <= t22;
+    const unreachable = !t32;
+    const t33 = invalid || unreachable ? NaN : 0;
+    const t34 = (t6 * m_z - t7 * product_x) * Y - (c1_y - t5 * X);
+    const t35 = t8 * h;
+    const t36 = m_z * h;
+    const t37 = (t6 * t8 + t5 * product_x) * Y - (c1_z - t7 * X);
+    const t38 = invalid ? 3 : unreachable ? 1 : false ? 2 : 0;
+    const t39 = _runtime.VANISHING * _runtime.VANISHING;
+    const t40 = t17 * t39;
     const v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
-    const t40 = u_u * v_v;
-    const slim = product_2 - t40 * 0.000244140625 <= _runtime.VANISHING * t40;
-    const t41 = u_u <= t39 || u_u + v_v <= t39 || slim || product_2 <= t38 * (t17 * u_u);
-    o[0] = t23 + t24 + t32;
-    o[1] = -(t33 + t34) + t32;
-    o[2] = t35 - t36 + t32;
-    o[3] = t23 - t24 + t32;
-    o[4] = t34 - t33 + t32;
-    o[5] = -(t36 + t35) + t32;
-    o[6] = t37;
-    o[7] = t37;
-    o[8] = (t41 || both <= _runtime.VANISHING * t17) ? 1 : 0;
+    const t41 = u_u * v_v;
+    const slim = product_2 - t41 * 0.000244140625 <= _runtime.VANISHING * t41;
+    const t42 = u_u <= t40 || u_u + v_v <= t40 || slim || product_2 <= t39 * (t17 * u_u);
+    const t43 = t42 || (t32 && both <= _runtime.VANISHING * t17);
+    o[0] = t23 + t24 + t33;
+    o[1] = -(t34 + t35) + t33;
+    o[2] = t36 - t37 + t33;
+    o[3] = t23 - t24 + t33;
+    o[4] = t35 - t34 + t33;
+    o[5] = -(t37 + t36) + t33;
+    o[6] = t38;
+    o[7] = t38;
+    o[8] = (t43) ? 1 : 0;
 }
 
 const _FK = _runtime.kernel({
@@ -681,72 +683,74 @@ function _skeleton_common(v, o) {
     const t32 = t26 - t31;
     const t33 = t5 <= t18 && t5 <= t20 && t5 <= t21 && t23 <= t32;
     const t34 = t31 + t26;
-    const t35 = !(t3 && t4) || !(t33 && t23 <= t34) ? NaN : 0;
-    const t36 = 0.0 + t35;
-    const t37 = c1_x + t35;
-    const t38 = c1_y + t35;
-    const t39 = c1_z + t35;
-    const t40 = t11 + t35;
-    const t41 = t15 + t35;
-    const t42 = -t12 + t35;
-    const t43 = c2_y + t35;
-    const t44 = c2_z + t35;
+    const t35 = t33 && t23 <= t34;
+    const t36 = !(t3 && t4) || !t35 ? NaN : 0;
+    const t37 = 0.0 + t36;
+    const t38 = c1_x + t36;
+    const t39 = c1_y + t36;
+    const t40 = c1_z + t36;
+    const t41 = t11 + t36;
+    const t42 = t15 + t36;
+    const t43 = -t12 + t36;
+    const t44 = c2_y + t36;
+    const t45 = c2_z + t36;
     const X = over_a * along;
     const upper = Math.max(t32, 0.0);
     const lower = Math.max(t34, 0.0);
     const both = upper + lower;
     const half = rho / both;
     const Y = part * over_a * half * (upper - lower);
-    const t45 = t13 * X - (t16 * m_z + t17 * t24) * Y;
+    const t46 = t13 * X - (t16 * m_z + t17 * t24) * Y;
     const h = part * (2.0 * half * Math.sqrt(upper * lower));
-    const t46 = product_x * h;
-    const t47 = t16 * X + (t13 * m_z - t17 * product_x) * Y;
-    const t48 = t24 * h;
-    const t49 = t17 * X + (t13 * t24 + t16 * product_x) * Y;
-    const t50 = m_z * h;
-    const t51 = _runtime.VANISHING * _runtime.VANISHING;
-    const t52 = t27 * t51;
+    const t47 = product_x * h;
+    const t48 = t16 * X + (t13 * m_z - t17 * product_x) * Y;
+    const t49 = t24 * h;
+    const t50 = t17 * X + (t13 * t24 + t16 * product_x) * Y;
+    const t51 = m_z * h;
+    const t52 = _runtime.VANISHING * _runtime.VANISHING;
+    const t53 = t27 * t52;
     const v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
-    const t53 = u_u * v_v;
-    const slim = product_2 - t53 * 0.000244140625 <= _runtime.VANISHING * t53;
-    const t54 = u_u <= t52 || u_u + v_v <= t52 || slim || product_2 <= t51 * (t27 * u_u);
-    o[0] = t36;
-    o[1] = t36;
-    o[2] = t36;
-    o[3] = t37;
-    o[4] = t36;
-    o[5] = t36;
-    o[6] = t37;
-    o[7] = t38;
-    o[8] = t39;
-    o[9] = t40;
-    o[10] = t41;
-    o[11] = t36;
-    o[12] = t42;
-    o[13] = t43;
-    o[14] = t44;
-    o[15] = c1_x - (t45 - t46) + t35;
-    o[16] = c1_y - (t47 + t48) + t35;
-    o[17] = c1_z - (t49 - t50) + t35;
-    o[18] = t36;
-    o[19] = t36;
-    o[20] = t36;
-    o[21] = t37;
-    o[22] = t36;
-    o[23] = t36;
-    o[24] = t37;
-    o[25] = t38;
-    o[26] = t39;
-    o[27] = t40;
-    o[28] = t41;
-    o[29] = t36;
-    o[30] = t42;
-    o[31] = t43;
-    o[32] = t44;
-    o[33] = c1_x - (t45 + t46) + t35;
-    o[34] = c1_y - (t47 - t48) + t35;
-    o[35] = c1_z - (t49 + t50) + t35;
-    o[36] = (t54 || both <= _runtime.VANISHING * t27) ? 1 : 0;
+    const t54 = u_u * v_v;
+    const slim = product_2 - t54 * 0.000244140625 <= _runtime.VANISHING * t54;
+    const t55 = u_u <= t53 || u_u + v_v <= t53 || slim || product_2 <= t52 * (t27 * u_u);
+    const t56 = t55 || (t35 && both <= _runtime.VANISHING * t27);
+    o[0] = t37;
+    o[1] = t37;
+    o[2] = t37;
+    o[3] = t38;
+    o[4] = t37;
+    o[5] = t37;
+    o[6] = t38;
+    o[7] = t39;
+    o[8] = t40;
+    o[9] = t41;
+    o[10] = t42;
+    o[11] = t37;
+    o[12] = t43;
+    o[13] = t44;
+    o[14] = t45;
+    o[15] = c1_x - (t46 - t47) + t36;
+    o[16] = c1_y - (t48 + t49) + t36;
+    o[17] = c1_z - (t50 - t51) + t36;
+    o[18] = t37;
+    o[19] = t37;
+    o[20] = t37;
+    o[21] = t38;
+    o[22] = t37;
+    o[23] = t37;
+    o[24] = t38;
+    o[25] = t39;
+    o[26] = t40;
+    o[27] = t41;
+    o[28] = t42;
+    o[29] = t37;
+    o[30] = t43;
+    o[31] = t44;
+    o[32] = t45;
+    o[33] = c1_x - (t46 + t47) + t36;
+    o[34] = c1_y - (t48 - t49) + t36;
+    o[35] = c1_z - (t50 + t51) + t36;
+    o[36] = (t56) ? 1 : 0;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -1045,41 +1049,43 @@ function _jacobian_parallel_common(v, o) {
     const t31 = 0.625 * (r * (r + r * 2.2737367544323206e-13));
     const t32 = -(_runtime.FEASIBILITY * t31);
     const t33 = t30 <= t14 && t30 <= t11 && t30 <= t12 && t32 <= t21;
-    const t34 = !(t28 && t29) || !(t33 && t32 <= t22) ? NaN : 0;
-    const t35 = t6 * X + (t4 * m_z - t7 * product_x) * Y;
-    const t36 = t8 * h;
-    const t37 = t35 + t36;
-    const t38 = t7 * X + (t4 * t8 + t6 * product_x) * Y;
-    const t39 = m_z * h;
-    const t40 = t38 - t39;
-    const t41 = t23 + t24;
-    const t42 = t35 - t36;
-    const t43 = t38 + t39;
-    const t44 = _runtime.VANISHING * _runtime.VANISHING;
-    const t45 = t18 * t44;
+    const t34 = t33 && t32 <= t22;
+    const t35 = !(t28 && t29) || !t34 ? NaN : 0;
+    const t36 = t6 * X + (t4 * m_z - t7 * product_x) * Y;
+    const t37 = t8 * h;
+    const t38 = t36 + t37;
+    const t39 = t7 * X + (t4 * t8 + t6 * product_x) * Y;
+    const t40 = m_z * h;
+    const t41 = t39 - t40;
+    const t42 = t23 + t24;
+    const t43 = t36 - t37;
+    const t44 = t39 + t40;
+    const t45 = _runtime.VANISHING * _runtime.VANISHING;
+    const t46 = t18 * t45;
     const v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
-    const t46 = u_u * v_v;
-    const slim = product_2 - t46 * 0.000244140625 <= _runtime.VANISHING * t46;
-    const t47 = u_u <= t45 || u_u + v_v <= t45 || slim || product_2 <= t44 * (t18 * u_u);
-    o[0] = c1_x - t25 + t34;
-    o[1] = c1_y - t37 + t34;
-    o[2] = c1_z - t40 + t34;
-    o[3] = -t25 + t34;
-    o[4] = -t37 + t34;
-    o[5] = -t40 + t34;
-    o[6] = t4 - t25 + t34;
-    o[7] = t6 - t37 + t34;
-    o[8] = t7 - t40 + t34;
-    o[9] = c1_x - t41 + t34;
-    o[10] = c1_y - t42 + t34;
-    o[11] = c1_z - t43 + t34;
-    o[12] = -t41 + t34;
-    o[13] = -t42 + t34;
-    o[14] = -t43 + t34;
-    o[15] = t4 - t41 + t34;
-    o[16] = t6 - t42 + t34;
-    o[17] = t7 - t43 + t34;
-    o[18] = (t47 || both <= _runtime.VANISHING * t18) ? 1 : 0;
+    const t47 = u_u * v_v;
+    const slim = product_2 - t47 * 0.000244140625 <= _runtime.VANISHING * t47;
+    const t48 = u_u <= t46 || u_u + v_v <= t46 || slim || product_2 <= t45 * (t18 * u_u);
+    const t49 = t48 || (t34 && both <= _runtime.VANISHING * t18);
+    o[0] = c1_x - t25 + t35;
+    o[1] = c1_y - t38 + t35;
+    o[2] = c1_z - t41 + t35;
+    o[3] = -t25 + t35;
+    o[4] = -t38 + t35;
+    o[5] = -t41 + t35;
+    o[6] = t4 - t25 + t35;
+    o[7] = t6 - t38 + t35;
+    o[8] = t7 - t41 + t35;
+    o[9] = c1_x - t42 + t35;
+    o[10] = c1_y - t43 + t35;
+    o[11] = c1_z - t44 + t35;
+    o[12] = -t42 + t35;
+    o[13] = -t43 + t35;
+    o[14] = -t44 + t35;
+    o[15] = t4 - t42 + t35;
+    o[16] = t6 - t43 + t35;
+    o[17] = t7 - t44 + t35;
+    o[18] = (t49) ? 1 : 0;
 }
 
 const _JACOBIAN_PARALLEL = _runtime.kernel({
@@ -1371,26 +1377,28 @@ function _jacobian_serial_common(v, o) {
     const t33 = 0.625 * (r * (r + r * 2.2737367544323206e-13));
     const t34 = -(_runtime.FEASIBILITY * t33);
     const t35 = t32 <= t14 && t32 <= t11 && t32 <= t12 && t34 <= t21;
-    const t36 = !(t30 && t31) || !(t35 && t34 <= t22) ? NaN : 0;
-    const t37 = s_gamma * c2_z;
-    const t38 = t7 * X - (t5 * m_z - t6 * t8) * Y;
-    const t39 = product_x * h;
-    const t40 = c_gamma * c2_z;
-    const B_22 = t37 * (t7 - (t38 - t39)) - t40 * (t5 - t25) - t4 * (t6 - A_13);
-    const t41 = t23 - t24;
+    const t36 = t35 && t34 <= t22;
+    const t37 = !(t30 && t31) || !t36 ? NaN : 0;
+    const t38 = s_gamma * c2_z;
+    const t39 = t7 * X - (t5 * m_z - t6 * t8) * Y;
+    const t40 = product_x * h;
+    const t41 = c_gamma * c2_z;
+    const B_22 = t38 * (t7 - (t39 - t40)) - t41 * (t5 - t25) - t4 * (t6 - A_13);
+    const t42 = t23 - t24;
     const A_13_below = t26 - t27;
-    const B_22_below = t37 * (t7 - (t38 + t39)) - t40 * (t5 - t41) - t4 * (t6 - A_13_below);
-    const t42 = _runtime.VANISHING * _runtime.VANISHING;
-    const t43 = t18 * t42;
+    const B_22_below = t38 * (t7 - (t39 + t40)) - t41 * (t5 - t42) - t4 * (t6 - A_13_below);
+    const t43 = _runtime.VANISHING * _runtime.VANISHING;
+    const t44 = t18 * t43;
     const v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
-    const t44 = u_u * v_v;
-    const slim = product_2 - t44 * 0.000244140625 <= _runtime.VANISHING * t44;
-    const t45 = u_u <= t43 || u_u + v_v <= t43 || slim || product_2 <= t42 * (t18 * u_u);
-    o[0] = c1_z * t25 + c1_y * A_13 + t36;
-    o[1] = B_22 + t36;
-    o[2] = c1_z * t41 + c1_y * A_13_below + t36;
-    o[3] = B_22_below + t36;
-    o[4] = (t45 || both <= _runtime.VANISHING * t18) ? 1 : 0;
+    const t45 = u_u * v_v;
+    const slim = product_2 - t45 * 0.000244140625 <= _runtime.VANISHING * t45;
+    const t46 = u_u <= t44 || u_u + v_v <= t44 || slim || product_2 <= t43 * (t18 * u_u);
+    const t47 = t46 || (t36 && both <= _runtime.VANISHING * t18);
+    o[0] = c1_z * t25 + c1_y * A_13 + t37;
+    o[1] = B_22 + t37;
+    o[2] = c1_z * t42 + c1_y * A_13_below + t37;
+    o[3] = B_22_below + t37;
+    o[4] = (t47) ? 1 : 0;
 }
 
 const _JACOBIAN_SERIAL = _runtime.kernel({
@@ -1725,57 +1733,59 @@ function _jacobian_common(v, o) {
     const t34 = 0.625 * (r * (r + r * 2.2737367544323206e-13));
     const t35 = -(_runtime.FEASIBILITY * t34);
     const t36 = t33 <= t14 && t33 <= t11 && t33 <= t12 && t35 <= t21;
-    const t37 = !(t31 && t32) || !(t36 && t35 <= t22) ? NaN : 0;
-    const t38 = B_11 * (A_02 * t28 + A_03 * A_22) / Delta + t37;
-    const t39 = s_gamma * c2_z;
-    const t40 = t7 * X - (t5 * m_z - t6 * t8) * Y;
-    const t41 = product_x * h;
-    const t42 = t40 - t41;
-    const A_21 = t7 - t42;
-    const t43 = c_gamma * c2_z;
-    const B_22 = t39 * A_21 - t43 * A_22 - t4 * t28;
-    const t44 = B_22 * (A_13 * A_02 + t25 * A_03) / Delta + t37;
-    const A_01 = c1_x - t42;
-    const t45 = -(B_11 * (t28 * A_01 + A_03 * A_21) / Delta) + t37;
-    const t46 = -(B_22 * (A_13 * A_01 + A_03 * t42) / Delta) + t37;
-    const t47 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta);
-    const t48 = -(B_22 * (t25 * A_01 - A_02 * t42) / Delta) + t37;
-    const t49 = t23 - t24;
+    const t37 = t36 && t35 <= t22;
+    const t38 = !(t31 && t32) || !t37 ? NaN : 0;
+    const t39 = B_11 * (A_02 * t28 + A_03 * A_22) / Delta + t38;
+    const t40 = s_gamma * c2_z;
+    const t41 = t7 * X - (t5 * m_z - t6 * t8) * Y;
+    const t42 = product_x * h;
+    const t43 = t41 - t42;
+    const A_21 = t7 - t43;
+    const t44 = c_gamma * c2_z;
+    const B_22 = t40 * A_21 - t44 * A_22 - t4 * t28;
+    const t45 = B_22 * (A_13 * A_02 + t25 * A_03) / Delta + t38;
+    const A_01 = c1_x - t43;
+    const t46 = -(B_11 * (t28 * A_01 + A_03 * A_21) / Delta) + t38;
+    const t47 = -(B_22 * (A_13 * A_01 + A_03 * t43) / Delta) + t38;
+    const t48 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta);
+    const t49 = -(B_22 * (t25 * A_01 - A_02 * t43) / Delta) + t38;
+    const t50 = t23 - t24;
     const A_13_below = t26 - t27;
-    const B_11_below = c1_z * t49 + c1_y * A_13_below;
-    const A_02_below = c1_y - t49;
-    const t50 = t6 - A_13_below;
+    const B_11_below = c1_z * t50 + c1_y * A_13_below;
+    const A_02_below = c1_y - t50;
+    const t51 = t6 - A_13_below;
     const A_03_below = c1_z + A_13_below;
-    const A_22_below = t5 - t49;
-    const t51 = B_11_below * (A_02_below * t50 + A_03_below * A_22_below);
-    const t52 = t40 + t41;
-    const A_21_below = t7 - t52;
-    const B_22_below = t39 * A_21_below - t43 * A_22_below - t4 * t50;
-    const t53 = B_22_below * (A_13_below * A_02_below + t49 * A_03_below);
-    const A_01_below = c1_x - t52;
-    const t54 = B_11_below * (t50 * A_01_below + A_03_below * A_21_below);
-    const t55 = B_22_below * (A_13_below * A_01_below + A_03_below * t52);
-    const t56 = A_22_below * A_01_below - A_02_below * A_21_below;
-    const t57 = B_22_below * (t49 * A_01_below - A_02_below * t52);
-    const t58 = _runtime.VANISHING * _runtime.VANISHING;
-    const t59 = t18 * t58;
+    const A_22_below = t5 - t50;
+    const t52 = B_11_below * (A_02_below * t51 + A_03_below * A_22_below);
+    const t53 = t41 + t42;
+    const A_21_below = t7 - t53;
+    const B_22_below = t40 * A_21_below - t44 * A_22_below - t4 * t51;
+    const t54 = B_22_below * (A_13_below * A_02_below + t50 * A_03_below);
+    const A_01_below = c1_x - t53;
+    const t55 = B_11_below * (t51 * A_01_below + A_03_below * A_21_below);
+    const t56 = B_22_below * (A_13_below * A_01_below + A_03_below * t53);
+    const t57 = A_22_below * A_01_below - A_02_below * A_21_below;
+    const t58 = B_22_below * (t50 * A_01_below - A_02_below * t53);
+    const t59 = _runtime.VANISHING * _runtime.VANISHING;
+    const t60 = t18 * t59;
     const v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
-    const t60 = u_u * v_v;
-    const slim = product_2 - t60 * 0.000244140625 <= _runtime.VANISHING * t60;
-    const t61 = u_u <= t59 || u_u + v_v <= t59 || slim || product_2 <= t58 * (t18 * u_u);
-    o[0] = t38;
-    o[1] = t44;
-    o[2] = t45;
-    o[3] = t46;
-    o[4] = t47 + t37;
-    o[5] = t48;
-    o[6] = -(t51 / Delta) + t37;
-    o[7] = -(t53 / Delta) + t37;
-    o[8] = t54 / Delta + t37;
-    o[9] = t55 / Delta + t37;
-    o[10] = B_11_below * t56 / Delta + t37;
-    o[11] = t57 / Delta + t37;
-    o[12] = (t61 || both <= _runtime.VANISHING * t18) ? 1 : 0;
+    const t61 = u_u * v_v;
+    const slim = product_2 - t61 * 0.000244140625 <= _runtime.VANISHING * t61;
+    const t62 = u_u <= t60 || u_u + v_v <= t60 || slim || product_2 <= t59 * (t18 * u_u);
+    const t63 = t62 || (t37 && both <= _runtime.VANISHING * t18);
+    o[0] = t39;
+    o[1] = t45;
+    o[2] = t46;
+    o[3] = t47;
+    o[4] = t48 + t38;
+    o[5] = t49;
+    o[6] = -(t52 / Delta) + t38;
+    o[7] = -(t54 / Delta) + t38;
+    o[8] = t55 / Delta + t38;
+    o[9] = t56 / Delta + t38;
+    o[10] = B_11_below * t57 / Delta + t38;
+    o[11] = t58 / Delta + t38;
+    o[12] = (t63) ? 1 : 0;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -2071,29 +2081,31 @@ function _singularities_common(v, o) {
     const t33 = 0.625 * (r * (r + r * 2.2737367544323206e-13));
     const t34 = -(_runtime.FEASIBILITY * t33);
     const t35 = t32 <= t14 && t32 <= t11 && t32 <= t12 && t34 <= t21;
-    const t36 = !(t30 && t31) || !(t35 && t34 <= t22) ? NaN : 0;
-    const t37 = s_gamma * c2_z;
-    const t38 = t7 * X - (t5 * m_z - t6 * t8) * Y;
-    const t39 = product_x * h;
-    const t40 = c_gamma * c2_z;
-    const B_22 = t37 * (t7 - (t38 - t39)) - t40 * (t5 - t25) - t4 * (t6 - A_13);
+    const t36 = t35 && t34 <= t22;
+    const t37 = !(t30 && t31) || !t36 ? NaN : 0;
+    const t38 = s_gamma * c2_z;
+    const t39 = t7 * X - (t5 * m_z - t6 * t8) * Y;
+    const t40 = product_x * h;
+    const t41 = c_gamma * c2_z;
+    const B_22 = t38 * (t7 - (t39 - t40)) - t41 * (t5 - t25) - t4 * (t6 - A_13);
     const Delta = product_2 * h;
-    const t41 = t23 - t24;
+    const t42 = t23 - t24;
     const A_13_below = t26 - t27;
-    const B_22_below = t37 * (t7 - (t38 + t39)) - t40 * (t5 - t41) - t4 * (t6 - A_13_below);
-    const t42 = _runtime.VANISHING * _runtime.VANISHING;
-    const t43 = t18 * t42;
+    const B_22_below = t38 * (t7 - (t39 + t40)) - t41 * (t5 - t42) - t4 * (t6 - A_13_below);
+    const t43 = _runtime.VANISHING * _runtime.VANISHING;
+    const t44 = t18 * t43;
     const v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
-    const t44 = u_u * v_v;
-    const slim = product_2 - t44 * 0.000244140625 <= _runtime.VANISHING * t44;
-    const t45 = u_u <= t43 || u_u + v_v <= t43 || slim || product_2 <= t42 * (t18 * u_u);
-    o[0] = c1_z * t25 + c1_y * A_13 + t36;
-    o[1] = B_22 + t36;
-    o[2] = Delta + t36;
-    o[3] = c1_z * t41 + c1_y * A_13_below + t36;
-    o[4] = B_22_below + t36;
-    o[5] = -Delta + t36;
-    o[6] = (t45 || both <= _runtime.VANISHING * t18) ? 1 : 0;
+    const t45 = u_u * v_v;
+    const slim = product_2 - t45 * 0.000244140625 <= _runtime.VANISHING * t45;
+    const t46 = u_u <= t44 || u_u + v_v <= t44 || slim || product_2 <= t43 * (t18 * u_u);
+    const t47 = t46 || (t36 && both <= _runtime.VANISHING * t18);
+    o[0] = c1_z * t25 + c1_y * A_13 + t37;
+    o[1] = B_22 + t37;
+    o[2] = Delta + t37;
+    o[3] = c1_z * t42 + c1_y * A_13_below + t37;
+    o[4] = B_22_below + t37;
+    o[5] = -Delta + t37;
+    o[6] = (t47) ? 1 : 0;
 }
 
 const _SINGULARITIES = _runtime.kernel({
@@ -2456,45 +2468,47 @@ function _condition_number_common(v, o) {
     const t45 = 0.625 * (r * (r + r * 2.2737367544323206e-13));
     const t46 = -(_runtime.FEASIBILITY * t45);
     const t47 = t44 <= t14 && t44 <= t11 && t44 <= t12 && t46 <= t21;
-    const t48 = !(t42 && t43) || !(t47 && t46 <= t22) ? NaN : 0;
-    const t49 = t23 + t24;
-    const A_01_below = c1_x - t49;
-    const t50 = t26 - t27;
-    const A_02_below = c1_y - t50;
-    const t51 = A_01_below * A_01_below + A_02_below * A_02_below;
-    const t52 = t29 + t30;
-    const A_03_below = c1_z - t52;
-    const strut_below = Math.sqrt(t51 + A_03_below * A_03_below);
+    const t48 = t47 && t46 <= t22;
+    const t49 = !(t42 && t43) || !t48 ? NaN : 0;
+    const t50 = t23 + t24;
+    const A_01_below = c1_x - t50;
+    const t51 = t26 - t27;
+    const A_02_below = c1_y - t51;
+    const t52 = A_01_below * A_01_below + A_02_below * A_02_below;
+    const t53 = t29 + t30;
+    const A_03_below = c1_z - t53;
+    const strut_below = Math.sqrt(t52 + A_03_below * A_03_below);
     const radial_x_below = A_01_below / strut_below;
     const radial_y_below = A_02_below / strut_below;
     const radial_z_below = A_03_below / strut_below;
-    const t53 = t49 * radial_x_below + t50 * radial_y_below + t52 * radial_z_below;
-    const t54 = t49 - radial_x_below * t53;
-    const t55 = t50 - radial_y_below * t53;
-    const t56 = t52 - radial_z_below * t53;
-    const square1_below = t54 * t54 + t55 * t55 + t56 * t56;
-    const A_21_below = t4 - t49;
-    const A_22_below = t6 - t50;
-    const t57 = radial_x_below * A_21_below + radial_y_below * A_22_below;
-    const A_23_below = t7 - t52;
-    const off2_below = t57 + radial_z_below * A_23_below;
+    const t54 = t50 * radial_x_below + t51 * radial_y_below + t53 * radial_z_below;
+    const t55 = t50 - radial_x_below * t54;
+    const t56 = t51 - radial_y_below * t54;
+    const t57 = t53 - radial_z_below * t54;
+    const square1_below = t55 * t55 + t56 * t56 + t57 * t57;
+    const A_21_below = t4 - t50;
+    const A_22_below = t6 - t51;
+    const t58 = radial_x_below * A_21_below + radial_y_below * A_22_below;
+    const A_23_below = t7 - t53;
+    const off2_below = t58 + radial_z_below * A_23_below;
     const t2_x_below = A_21_below - radial_x_below * off2_below;
     const t2_y_below = A_22_below - radial_y_below * off2_below;
-    const t58 = t2_x_below * t2_x_below + t2_y_below * t2_y_below;
+    const t59 = t2_x_below * t2_x_below + t2_y_below * t2_y_below;
     const t2_z_below = A_23_below - radial_z_below * off2_below;
-    const square2_below = t58 + t2_z_below * t2_z_below;
-    const t59 = square1_below - square2_below;
-    const t60 = t54 * t2_x_below + t55 * t2_y_below + t56 * t2_z_below;
-    const t61 = square1_below + square2_below + Math.sqrt(t59 * t59 + 4.0 * (t60 * t60));
-    const t62 = _runtime.VANISHING * _runtime.VANISHING;
-    const t63 = t18 * t62;
+    const square2_below = t59 + t2_z_below * t2_z_below;
+    const t60 = square1_below - square2_below;
+    const t61 = t55 * t2_x_below + t56 * t2_y_below + t57 * t2_z_below;
+    const t62 = square1_below + square2_below + Math.sqrt(t60 * t60 + 4.0 * (t61 * t61));
+    const t63 = _runtime.VANISHING * _runtime.VANISHING;
+    const t64 = t18 * t63;
     const v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z;
-    const t64 = u_u * v_v;
-    const slim = product_2 - t64 * 0.000244140625 <= _runtime.VANISHING * t64;
-    const t65 = u_u <= t63 || u_u + v_v <= t63 || slim || product_2 <= t62 * (t18 * u_u);
-    o[0] = strut * t38 / t39 + t48;
-    o[1] = strut_below * t61 / t39 + t48;
-    o[2] = (t65 || both <= _runtime.VANISHING * t18) ? 1 : 0;
+    const t65 = u_u * v_v;
+    const slim = product_2 - t65 * 0.000244140625 <= _runtime.VANISHING * t65;
+    const t66 = u_u <= t64 || u_u + v_v <= t64 || slim || product_2 <= t63 * (t18 * u_u);
+    const t67 = t66 || (t48 && both <= _runtime.VANISHING * t18);
+    o[0] = strut * t38 / t39 + t49;
+    o[1] = strut_below * t62 / t39 + t49;
+    o[2] = (t67) ? 1 : 0;
 }
 
 const _CONDITION_NUMBER = _runtime.kernel({

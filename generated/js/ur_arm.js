@@ -11,7 +11,7 @@
 //   jacobian_space: 29 add, 57 multiply, 5 sincos
 //   jacobian_body: 27 add, 58 multiply, 5 sincos
 //   ik: 2239 compare and select, 1783 add, 32 atan2, 311 divide, 3046 multiply, 210 sqrt
-//   ik where nothing vanishes: 154 compare and select, 183 add, 30 atan2, 15 divide, 220 multiply,
+//   ik where nothing vanishes: 163 compare and select, 183 add, 30 atan2, 15 divide, 220 multiply,
 //     12 sqrt
 
 /**
@@ -5367,11 +5367,14 @@ function _ik_common(v, o) {
     const t218 = _runtime.VANISHING * 16.0;
     const t219 = size * 0.00048828125;
     const t220 = t217 || h_wrist <= t218 || root1 * h_wrist - t219 <= t216;
-    const no_link_elbow = L2 * L3 <= _runtime.VANISHING * (full_1_1 * full_1_1);
-    const t221 = t220 || r_elbow <= t216 || no_link_elbow || r_elbow_left_flip_up <= t216;
     const close_right_noflip_up = root1 * h_wrist_right_noflip_up - t219 <= t216;
-    const t222 = t221 || h_wrist_right_noflip_up <= t218 || close_right_noflip_up;
-    const t223 = t222 || r_elbow_right_noflip_up <= t216 || r_elbow_right_flip_up <= t216;
+    const t221 = t220 || h_wrist_right_noflip_up <= t218 || close_right_noflip_up;
+    const no_link_elbow = L2 * L3 <= _runtime.VANISHING * (full_1_1 * full_1_1);
+    const t222 = (t42 || t85 || t132 || t177) && no_link_elbow;
+    const t223 = (t28 && t221) || (t42 && r_elbow <= t216) || t222;
+    const t224 = t223 || (t85 && r_elbow_left_flip_up <= t216);
+    const t225 = t224 || (t132 && r_elbow_right_noflip_up <= t216);
+    const t226 = t225 || (t177 && r_elbow_right_flip_up <= t216);
     o[0] = t44;
     o[1] = (t57 <= -Math.PI ? Math.PI : t57) + t43;
     o[2] = t61 + t43;
@@ -5428,7 +5431,7 @@ function _ik_common(v, o) {
     o[53] = t214;
     o[54] = t215;
     o[55] = t215;
-    o[56] = (t223) ? 1 : 0;
+    o[56] = (t226) ? 1 : 0;
 }
 
 const _IK = _runtime.kernel({

@@ -3,25 +3,25 @@
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 51 compare and select, 67 add, 2 divide, 99 multiply, 6 sincos, 1 sqrt
-#   fk where nothing vanishes: 60 add, 29 compare and select, 1 divide, 77 multiply, 6 sincos, 1
+#   fk where nothing vanishes: 60 add, 30 compare and select, 1 divide, 77 multiply, 6 sincos, 1
 #     sqrt
 #   skeleton: 50 compare and select, 182 add, 2 divide, 105 multiply, 6 sincos, 1 sqrt
 #   jacobian_parallel: 50 compare and select, 88 add, 2 divide, 99 multiply, 6 sincos, 1 sqrt
-#   jacobian_parallel where nothing vanishes: 81 add, 28 compare and select, 1 divide, 77
+#   jacobian_parallel where nothing vanishes: 81 add, 29 compare and select, 1 divide, 77
 #     multiply, 6 sincos, 1 sqrt
 #   jacobian_serial: 50 compare and select, 88 add, 2 divide, 123 multiply, 6 sincos, 1 sqrt
-#   jacobian_serial where nothing vanishes: 81 add, 28 compare and select, 1 divide, 101 multiply,
+#   jacobian_serial where nothing vanishes: 81 add, 29 compare and select, 1 divide, 101 multiply,
 #     6 sincos, 1 sqrt
 #   jacobian: 50 compare and select, 118 add, 20 divide, 178 multiply, 6 sincos, 1 sqrt
 #   determinant: 50 compare and select, 84 add, 4 divide, 128 multiply, 6 sincos, 1 sqrt
-#   determinant where nothing vanishes: 77 add, 28 compare and select, 3 divide, 106 multiply, 6
+#   determinant where nothing vanishes: 77 add, 29 compare and select, 3 divide, 106 multiply, 6
 #     sincos, 1 sqrt
 #   singularities: 50 compare and select, 90 add, 2 divide, 124 multiply, 6 sincos, 1 sqrt
-#   singularities where nothing vanishes: 83 add, 28 compare and select, 1 divide, 102 multiply, 6
+#   singularities where nothing vanishes: 83 add, 29 compare and select, 1 divide, 102 multiply, 6
 #     sincos, 1 sqrt
 #   condition_number: 50 compare and select, 122 add, 4 divide, 175 multiply, 6 sincos, 3 sqrt
 #   constraint: 50 compare and select, 94 add, 2 divide, 161 multiply, 6 sincos, 1 sqrt
-#   constraint where nothing vanishes: 87 add, 28 compare and select, 1 divide, 129 multiply, 6
+#   constraint where nothing vanishes: 87 add, 29 compare and select, 1 divide, 129 multiply, 6
 #     sincos, 1 sqrt
 #   ik: 139 compare and select, 130 add, 6 atan2, 9 divide, 155 multiply, 3 sincos, 9 sqrt
 #   workspace_contains: 48 add, 53 compare and select, 3 divide, 43 multiply, 3 sincos, 6 sqrt
@@ -350,7 +350,6 @@ def _fk_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t23 = (np.abs(0.0) <= t21 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t22) <= t16)
     del t16
     unreachable = np.logical_not(t23)
-    del t23
     t24 = _runtime.poison(invalid | unreachable)
     t25 = t11 * h
     t26 = t6 * 0.5 - (t5 + t14 * (t4 * m_z - u_z * t12))
@@ -370,6 +369,8 @@ def _fk_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del t32
     t33 = (u_u <= t31) | (u_u + v_v <= t31) | slim | (product_2 <= t30 * (t21 * u_u))
     del product_2, slim, t21, t30, t31, u_u, v_v
+    t34 = t33 | (t23 & (slack <= _runtime.VANISHING * t22))
+    del slack, t22, t23, t33
     return (
         t15 - t17 + t24,
         t25 + t26 + t24,
@@ -379,7 +380,7 @@ def _fk_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
         t27 - t28 + t24,
         t29,
         t29,
-        t33 | (slack <= _runtime.VANISHING * t22),
+        t34,
     )
 
 
@@ -1034,7 +1035,7 @@ def _jacobian_parallel_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2
     t24 = (np.abs(0.0) <= t22 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t23) <= t15)
     del t15
     failed = np.logical_not(t20 & t21) | np.logical_not(t24)
-    del t20, t21, t24
+    del t20, t21
     t25 = _runtime.poison(failed)
     del failed
     t26 = t12 * h
@@ -1059,6 +1060,8 @@ def _jacobian_parallel_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2
     del t34
     t35 = (u_u <= t33) | (u_u + v_v <= t33) | slim | (product_2 <= t32 * (t22 * u_u))
     del product_2, slim, t22, t32, t33, u_u, v_v
+    t36 = t35 | (t24 & (slack <= _runtime.VANISHING * t23))
+    del slack, t23, t24, t35
     return (
         -t18 + t25,
         A_12 + t25,
@@ -1078,7 +1081,7 @@ def _jacobian_parallel_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2
         A_11_above - t11 + t25,
         -(t7 + t31) + t25,
         A_13_above - v_z + t25,
-        t35 | (slack <= _runtime.VANISHING * t23),
+        t36,
     )
 
 
@@ -1344,7 +1347,7 @@ def _jacobian_serial_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     t33 = (np.abs(0.0) <= t31 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t32) <= t18)
     del t18
     failed = np.logical_not(t29 & t30) | np.logical_not(t33)
-    del t29, t30, t33
+    del t29, t30
     t34 = _runtime.poison(failed)
     del failed
     t35 = c_alpha2 * t8
@@ -1377,6 +1380,8 @@ def _jacobian_serial_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     del t44
     t45 = (u_u <= t43) | (u_u + v_v <= t43) | slim | (product_2 <= t42 * (t31 * u_u))
     del product_2, slim, t31, t42, t43, u_u, v_v
+    t46 = t45 | (t33 & (slack <= _runtime.VANISHING * t32))
+    del slack, t32, t33, t45
     return (
         t2 * t21 - t22 * A_12 + t4 * t27 + t34,
         B_22 + t34,
@@ -1384,7 +1389,7 @@ def _jacobian_serial_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
         t41,
         B_22_above + t34,
         B_33_above + t34,
-        t45 | (slack <= _runtime.VANISHING * t32),
+        t46,
     )
 
 
@@ -1909,7 +1914,7 @@ def _determinant_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t40 = (np.abs(0.0) <= t38 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t39) <= t18)
     del t18
     failed = np.logical_not(t36 & t37) | np.logical_not(t40)
-    del t36, t37, t40
+    del t36, t37
     t41 = _runtime.poison(failed)
     del failed
     A_11_above = t19 + t20
@@ -1933,10 +1938,12 @@ def _determinant_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     del t49
     t50 = (u_u <= t48) | (u_u + v_v <= t48) | slim | (product_2 <= t47 * (t38 * u_u))
     del product_2, slim, t38, t47, t48, u_u, v_v
+    t51 = t50 | (t40 & (slack <= _runtime.VANISHING * t39))
+    del slack, t39, t40, t50
     return (
         -(t34 / Delta) + t41,
         -(t45 * t46 / Delta) + t41,
-        t50 | (slack <= _runtime.VANISHING * t39),
+        t51,
     )
 
 
@@ -2205,7 +2212,7 @@ def _singularities_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t33 = (np.abs(0.0) <= t31 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t32) <= t18)
     del t18
     failed = np.logical_not(t29 & t30) | np.logical_not(t33)
-    del t29, t30, t33
+    del t29, t30
     t34 = _runtime.poison(failed)
     del failed
     t35 = c_alpha2 * t8
@@ -2240,6 +2247,8 @@ def _singularities_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     del t44
     t45 = (u_u <= t43) | (u_u + v_v <= t43) | slim | (product_2 <= t42 * (t31 * u_u))
     del product_2, slim, t31, t42, t43, u_u, v_v
+    t46 = t45 | (t33 & (slack <= _runtime.VANISHING * t32))
+    del slack, t32, t33, t45
     return (
         t2 * t21 - t22 * A_12 + t4 * t27 + t34,
         B_22 + t34,
@@ -2249,7 +2258,7 @@ def _singularities_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
         B_22_above + t34,
         B_33_above + t34,
         Delta + t34,
-        t45 | (slack <= _runtime.VANISHING * t32),
+        t46,
     )
 
 
@@ -2818,7 +2827,7 @@ def _constraint_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     t51 = (np.abs(0.0) <= t49 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t50) <= t17)
     del t17
     failed = np.logical_not(t47 & t48) | np.logical_not(t51)
-    del t47, t48, t51
+    del t47, t48
     t52 = _runtime.poison(failed)
     del failed
     A_11_above = t27 + t28
@@ -2861,10 +2870,12 @@ def _constraint_common(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     del t71
     t72 = (u_u <= t70) | (u_u + v_v <= t70) | slim | (product_2 <= t69 * (t49 * u_u))
     del product_2, slim, t49, t69, t70, u_u, v_v
+    t73 = t72 | (t51 & (slack <= _runtime.VANISHING * t50))
+    del slack, t50, t51, t72
     return (
         t45 + t52,
         t68 + t52,
-        t72 | (slack <= _runtime.VANISHING * t50),
+        t73,
     )
 
 

@@ -11,8 +11,8 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 265 compare and select, 279 add, 23 atan2, 21 divide, 387 multiply, 1 sincos, 29 sqrt
-#   ik where nothing vanishes: 147 compare and select, 220 add, 23 atan2, 14 divide, 319 multiply,
+#   ik: 265 compare and select, 280 add, 23 atan2, 21 divide, 389 multiply, 1 sincos, 29 sqrt
+#   ik where nothing vanishes: 154 compare and select, 222 add, 23 atan2, 14 divide, 321 multiply,
 #     1 sincos, 22 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
@@ -1102,638 +1102,642 @@ def _ik(
     t19 = np.maximum(t17, 0.0) * np.maximum(t18, 0.0)
     size = d3 + a4 + a5 + d5 + np.abs(a7) + np.abs(d1) + np.abs(d7)
     lever_elbow = 2.0 * np.sqrt(t15 * t19) / (size * 4.0)
-    t20 = _runtime.VANISHING * size
-    tangent_elbow = lever_elbow - size * 0.00390625 <= t20
-    t21 = 1.0 / (size * 2.0)
-    t22 = t21 * t15
-    span_elbow = t21 * (t15 + t19)
+    t20 = size * _runtime.ROUNDING
+    t21 = lever_elbow - (t20 * 0.00390625 + far * 0.00390625)
+    t22 = t20 + far
+    del far
+    tangent_elbow = t21 <= _runtime.VANISHING * t22
+    del t21
+    t23 = 1.0 / (size * 2.0)
+    t24 = t23 * t15
+    span_elbow = t23 * (t15 + t19)
     del t15
-    t23 = 1.0 / span_elbow
-    t24 = (t22 - t21 * t19) * t23
-    del t19, t21
+    t25 = 1.0 / span_elbow
+    t26 = (t24 - t23 * t19) * t25
+    del t19, t23
     height6 = np.abs(w_y)
     reach = np.sqrt(t13)
     del t13
-    t25 = height6 < reach
-    t26 = _runtime.select(t25, -t5, level_s_elbow)
-    t27 = t26 * t24
-    t28 = _runtime.select(t25, level_s_elbow, t5)
+    t27 = height6 < reach
+    t28 = _runtime.select(t27, -t5, level_s_elbow)
+    t29 = t28 * t26
+    t30 = _runtime.select(t27, level_s_elbow, t5)
     del level_s_elbow
-    s__elbow_1_over_ahead_front = t23 * (2.0 * lever_elbow)
-    del t23
-    t29 = t28 * s__elbow_1_over_ahead_front
-    t30 = t27 + t29
-    t31 = c_straight * t24
-    t32 = s_straight * s__elbow_1_over_ahead_front
-    t33 = t31 + t32
-    t34 = s_straight * t24
-    t35 = c_straight * s__elbow_1_over_ahead_front
-    t36 = t34 - t35
-    q__elbow_1 = _runtime.select(t25, a5 + a4 * t33 - d3 * t36, d3 * t33 - (d5 - a4 * t36))
-    del t33, t36
+    s__elbow_1_over_ahead_front = t25 * (2.0 * lever_elbow)
+    del t25
+    t31 = t30 * s__elbow_1_over_ahead_front
+    t32 = t29 + t31
+    t33 = c_straight * t26
+    t34 = s_straight * s__elbow_1_over_ahead_front
+    t35 = t33 + t34
+    t36 = s_straight * t26
+    t37 = c_straight * s__elbow_1_over_ahead_front
+    t38 = t36 - t37
+    q__elbow_1 = _runtime.select(t27, a5 + a4 * t35 - d3 * t38, d3 * t35 - (d5 - a4 * t38))
+    del t35, t38
     size__elbow_1 = np.abs(q__elbow_1)
-    t37 = size * _runtime.ROUNDING
-    t38 = _runtime.select(t25, height6, 0.0) - t37
-    t39 = t37 + _runtime.select(t25, size, reach)
-    t40 = np.maximum(t38, np.minimum(size__elbow_1, t39))
-    t41 = (size__elbow_1 - t40) * _runtime.sign(q__elbow_1)
-    del q__elbow_1, size__elbow_1, t40
-    t42 = t28 * t24
+    t39 = _runtime.select(t27, height6, 0.0) - t20
+    t40 = t20 + _runtime.select(t27, size, reach)
+    t41 = np.maximum(t39, np.minimum(size__elbow_1, t40))
+    t42 = (size__elbow_1 - t41) * _runtime.sign(q__elbow_1)
+    del q__elbow_1, size__elbow_1, t41
+    t43 = t30 * t26
+    del t30
+    t44 = t28 * s__elbow_1_over_ahead_front
     del t28
-    t43 = t26 * s__elbow_1_over_ahead_front
-    del t26
-    t44 = t41 - 2.0 * (t42 - t43)
-    inner__elbow_1 = t30 * t30 - t41 * t44
-    t45 = inner__elbow_1 < 0.0
-    t46 = _runtime.sign(-t30) * np.sqrt(np.maximum(0.0, inner__elbow_1))
+    t45 = t42 - 2.0 * (t43 - t44)
+    inner__elbow_1 = t32 * t32 - t42 * t45
+    t46 = inner__elbow_1 < 0.0
+    t47 = _runtime.sign(-t32) * np.sqrt(np.maximum(0.0, inner__elbow_1))
     del inner__elbow_1
-    t47 = _runtime.select(t45, t44, t30 - t46)
-    del t44, t46
-    t48 = _runtime.select(t45, t30, t41)
-    del t30, t41, t45
-    half__elbow_1 = _runtime.select(np.abs(t47) <= np.abs(t48), 0.0, t48 / t47)
-    del t47, t48
-    t49 = half__elbow_1 * half__elbow_1
-    t50 = 1.0 / (1.0 + t49)
-    by_s__elbow_1 = 2.0 * half__elbow_1 * t50
+    t48 = _runtime.select(t46, t45, t32 - t47)
+    del t45, t47
+    t49 = _runtime.select(t46, t32, t42)
+    del t32, t42, t46
+    half__elbow_1 = _runtime.select(np.abs(t48) <= np.abs(t49), 0.0, t49 / t48)
+    del t48, t49
+    t50 = half__elbow_1 * half__elbow_1
+    t51 = 1.0 / (1.0 + t50)
+    by_s__elbow_1 = 2.0 * half__elbow_1 * t51
     del half__elbow_1
-    t51 = np.abs(span_elbow * 0.5 - t22)
-    del span_elbow, t22
-    by_c__elbow_1 = t50 * (1.0 - t49)
-    del t49, t50
-    t52 = by_s__elbow_1 * by_s__elbow_1 / (1.0 + np.abs(by_c__elbow_1))
-    versine__elbow_1 = _runtime.select(0.0 < by_c__elbow_1, t52, 1.0 - by_c__elbow_1)
-    del t52
-    cost__elbow_1 = lever_elbow * np.abs(by_s__elbow_1) + t51 * versine__elbow_1
+    t52 = np.abs(span_elbow * 0.5 - t24)
+    del span_elbow, t24
+    by_c__elbow_1 = t51 * (1.0 - t50)
+    del t50, t51
+    t53 = by_s__elbow_1 * by_s__elbow_1 / (1.0 + np.abs(by_c__elbow_1))
+    versine__elbow_1 = _runtime.select(0.0 < by_c__elbow_1, t53, 1.0 - by_c__elbow_1)
+    del t53
+    cost__elbow_1 = lever_elbow * np.abs(by_s__elbow_1) + t52 * versine__elbow_1
     del versine__elbow_1
-    whole__elbow_1 = _runtime.ROUNDING * (t37 + far)
-    del far
-    t53 = cost__elbow_1 <= whole__elbow_1
+    whole__elbow_1 = _runtime.ROUNDING * t22
+    del t22
+    t54 = cost__elbow_1 <= whole__elbow_1
     del cost__elbow_1
-    cosine__elbow_1 = _runtime.select(t53, by_c__elbow_1, 1.0)
+    cosine__elbow_1 = _runtime.select(t54, by_c__elbow_1, 1.0)
     del by_c__elbow_1
-    sine__elbow_1 = _runtime.select(t53, by_s__elbow_1, 0.0)
-    del by_s__elbow_1, t53
-    t54 = t24 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
-    celbow = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t54, t24))
-    del t54
-    t55 = _runtime.select(t6, 0.0, t5 * t7)
+    sine__elbow_1 = _runtime.select(t54, by_s__elbow_1, 0.0)
+    del by_s__elbow_1, t54
+    t55 = t26 * cosine__elbow_1 - s__elbow_1_over_ahead_front * sine__elbow_1
+    celbow = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t55, t26))
+    del t55
+    t56 = _runtime.select(t6, 0.0, t5 * t7)
     del t5, t6, t7
-    t56 = s__elbow_1_over_ahead_front * cosine__elbow_1
+    t57 = s__elbow_1_over_ahead_front * cosine__elbow_1
     del cosine__elbow_1
-    t57 = _runtime.select(tangent_elbow, t24 * sine__elbow_1 + t56, s__elbow_1_over_ahead_front)
-    del sine__elbow_1, t56
-    selbow = _runtime.select(no_link_elbow, t55, -t57)
-    del t57
-    t58 = c_straight * celbow + s_straight * selbow
+    t58 = _runtime.select(tangent_elbow, t26 * sine__elbow_1 + t57, s__elbow_1_over_ahead_front)
+    del sine__elbow_1, t57
+    selbow = _runtime.select(no_link_elbow, t56, -t58)
+    del t58
+    t59 = c_straight * celbow + s_straight * selbow
     R1_11 = T11 * c_x_theta7 - T12 * s_x_theta7
-    free6 = reach <= t20
-    t59 = s_z * 2.0
-    t60 = c_straight * selbow - s_straight * celbow
+    t60 = _runtime.VANISHING * size
+    free6 = reach <= t60
+    t61 = s_z * 2.0
+    t62 = c_straight * selbow - s_straight * celbow
     del celbow, selbow
-    t61 = d5 - a4 * t60 + d3 * t58
-    t62 = reach + t61
-    t63 = reach - t61
-    del t61
-    t64 = np.maximum(reach * 1.52587890625e-05, np.minimum(reach * 0.25, t37 * 8.0))
-    del t37
-    t65 = reach * t64
-    del t64
-    t66 = _runtime.VANISHING * _runtime.VANISHING * (reach * reach)
-    tangent6 = np.abs(t62 * t63) - t65 <= t66
-    v_x = a5 - a4 * t58 - d3 * t60
-    t67 = np.abs(v_x)
-    t68 = np.maximum(0.0, -((height6 - t67) * (height6 + t67)))
-    below6 = np.maximum(t62, 0.0)
-    above6 = np.maximum(t63, 0.0)
-    t69 = below6 * above6
-    held6 = _runtime.select(t67 < reach, t68, t69)
-    del t67, t68
-    kept6 = _runtime.select(tangent6, np.sqrt(held6), np.sqrt(t69))
-    del t69
-    t70 = below6 - above6
-    span6 = _runtime.select(tangent6, np.sqrt(4.0 * held6 + t70 * t70), below6 + above6)
+    t63 = d5 - a4 * t62 + d3 * t59
+    t64 = reach + t63
+    t65 = reach - t63
+    del t63
+    t66 = np.maximum(reach * 1.52587890625e-05, np.minimum(reach * 0.25, t20 * 8.0))
+    del t20
+    t67 = reach * t66
+    del t66
+    t68 = _runtime.VANISHING * _runtime.VANISHING * (reach * reach)
+    tangent6 = np.abs(t64 * t65) - t67 <= t68
+    v_x = a5 - a4 * t59 - d3 * t62
+    t69 = np.abs(v_x)
+    t70 = np.maximum(0.0, -((height6 - t69) * (height6 + t69)))
+    below6 = np.maximum(t64, 0.0)
+    above6 = np.maximum(t65, 0.0)
+    t71 = below6 * above6
+    held6 = _runtime.select(t69 < reach, t70, t71)
+    del t69, t70
+    kept6 = _runtime.select(tangent6, np.sqrt(held6), np.sqrt(t71))
+    del t71
+    t72 = below6 - above6
+    span6 = _runtime.select(tangent6, np.sqrt(4.0 * held6 + t72 * t72), below6 + above6)
     del above6, below6, held6
-    t71 = 1.0 / (reach * span6)
+    t73 = 1.0 / (reach * span6)
     del span6
-    t72 = t59 * kept6 * t71
-    t73 = t71 * (u_x * t70)
-    s6 = _runtime.select(free6, 0.0, t72 - t73)
-    t74 = u_x * 2.0
-    t75 = t71 * (t74 * kept6)
+    t74 = t61 * kept6 * t73
+    t75 = t73 * (u_x * t72)
+    s6 = _runtime.select(free6, 0.0, t74 - t75)
+    t76 = u_x * 2.0
+    t77 = t73 * (t76 * kept6)
     del kept6
-    t76 = t71 * (s_z * t70)
-    del t70, t71
-    c6 = _runtime.select(free6, 1.0, t75 + t76)
+    t78 = t73 * (s_z * t72)
+    del t72, t73
+    c6 = _runtime.select(free6, 1.0, t77 + t78)
     R2_13 = R1_11 * s6 - T13 * c6
-    t77 = np.sqrt(v_x * v_x)
+    t79 = np.sqrt(v_x * v_x)
     w_x = u_x * c6 + s_z * s6
-    t78 = np.sqrt(t12 + w_x * w_x)
-    on_axis_5 = np.minimum(t77, t78) <= t20
+    t80 = np.sqrt(t12 + w_x * w_x)
+    on_axis_5 = np.minimum(t79, t80) <= t60
     dot_5 = v_x * w_x
     del w_x
-    t79 = w_y * v_x
-    t80 = t79 * t79
-    t81 = 1.0 / np.sqrt(t80 + dot_5 * dot_5)
-    c5 = _runtime.select(on_axis_5, 1.0, dot_5 * t81)
+    t81 = w_y * v_x
+    t82 = t81 * t81
+    t83 = 1.0 / np.sqrt(t82 + dot_5 * dot_5)
+    c5 = _runtime.select(on_axis_5, 1.0, dot_5 * t83)
     del dot_5
     R2_11 = R1_11 * c6 + T13 * s6
     R1_13 = T11 * s_x_theta7 + T12 * c_x_theta7
-    t82 = _runtime.select(on_axis_5, 0.0, t79 * t81)
-    del t81
-    R3_11 = c5 * R2_11 - R1_13 * t82
-    R4_13 = t58 * R2_13 + t60 * R3_11
+    t84 = _runtime.select(on_axis_5, 0.0, t81 * t83)
+    del t83
+    R3_11 = c5 * R2_11 - R1_13 * t84
+    R4_13 = t59 * R2_13 + t62 * R3_11
     R1_21 = T21 * c_x_theta7 - T22 * s_x_theta7
     R2_23 = R1_21 * s6 - T23 * c6
     R2_21 = R1_21 * c6 + T23 * s6
     R1_23 = T21 * s_x_theta7 + T22 * c_x_theta7
-    R3_21 = c5 * R2_21 - R1_23 * t82
-    R4_23 = t58 * R2_23 + t60 * R3_21
+    R3_21 = c5 * R2_21 - R1_23 * t84
+    R4_23 = t59 * R2_23 + t62 * R3_21
     h_wrist = np.sqrt(R4_13 * R4_13 + R4_23 * R4_23)
-    t83 = _runtime.VANISHING * 16.0
-    aligned_wrist = h_wrist <= t83
-    t84 = 1.0 / h_wrist
+    t85 = _runtime.VANISHING * 16.0
+    aligned_wrist = h_wrist <= t85
+    t86 = 1.0 / h_wrist
     del h_wrist
-    s_wrist = _runtime.select(aligned_wrist, 0.0, R4_23 * t84)
-    c_wrist = _runtime.select(aligned_wrist, 1.0, R4_13 * t84)
-    del t84
-    t85 = np.arctan2(s_wrist, c_wrist)
-    t86 = np.isfinite(d1) & np.isfinite(d3) & np.isfinite(a4) & np.isfinite(a5) & np.isfinite(d5) & np.isfinite(a7) & np.isfinite(d7)
-    t87 = t86 & (0.0 <= d3) & (0.0 <= a4) & (0.0 <= a5)
+    s_wrist = _runtime.select(aligned_wrist, 0.0, R4_23 * t86)
+    c_wrist = _runtime.select(aligned_wrist, 1.0, R4_13 * t86)
     del t86
-    t88 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34) & np.isfinite(x_theta7)
-    t89 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t90 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
-    t91 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
-    t92 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t93 = t87 & (0.0 <= d5) & t88 & t89 & t90 & t91 & (t92 <= _runtime.ROTATION)
-    del t87, t88, t89, t90, t91, t92
-    t94 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t95 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t96 = t93 & (t94 <= _runtime.ROTATION) & t95 & (np.abs(T41) <= _runtime.ROTATION)
-    del t93, t94, t95
-    t97 = t96 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
-    del t96
-    t98 = t97 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
-    del t97
-    invalid = np.logical_not(t98)
+    t87 = np.arctan2(s_wrist, c_wrist)
+    t88 = np.isfinite(d1) & np.isfinite(d3) & np.isfinite(a4) & np.isfinite(a5) & np.isfinite(d5) & np.isfinite(a7) & np.isfinite(d7)
+    t89 = t88 & (0.0 <= d3) & (0.0 <= a4) & (0.0 <= a5)
+    del t88
+    t90 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34) & np.isfinite(x_theta7)
+    t91 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t92 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t93 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t94 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t95 = t89 & (0.0 <= d5) & t90 & t91 & t92 & t93 & (t94 <= _runtime.ROTATION)
+    del t89, t90, t91, t92, t93, t94
+    t96 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t97 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t98 = t95 & (t96 <= _runtime.ROTATION) & t97 & (np.abs(T41) <= _runtime.ROTATION)
+    del t95, t96, t97
+    t99 = t98 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
     del t98
-    t99 = _runtime.FEASIBILITY * (size * 0.5)
+    t100 = t99 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    del t99
+    invalid = np.logical_not(t100)
+    del t100
+    t101 = _runtime.FEASIBILITY * (size * 0.5)
     del size
-    t100 = (-t99 <= t14) & (-t99 <= t17) & (-t99 <= t18)
+    t102 = (-t101 <= t14) & (-t101 <= t17) & (-t101 <= t18)
     del t14, t17, t18
-    t101 = t100 & (-t99 <= t62) & (-t99 <= t63)
-    del t62, t63
-    t102 = np.abs(_runtime.select(tangent6, t78 - t77, 0.0))
-    del t78
-    unreachable = np.logical_not(t101 & (t102 <= t99))
-    del t102
-    t103 = _runtime.poison(invalid | unreachable)
+    t103 = t102 & (-t101 <= t64) & (-t101 <= t65)
+    del t64, t65
+    t104 = np.abs(_runtime.select(tangent6, t80 - t79, 0.0))
+    del t80
+    unreachable = np.logical_not(t103 & (t104 <= t101))
+    del t104
+    t105 = _runtime.poison(invalid | unreachable)
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    t104 = t60 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t82)
-    t105 = np.arctan2(R4_13 * c_wrist + R4_23 * s_wrist, t58 * (R1_31 * s6 - T33 * c6) + t104)
-    del R4_13, R4_23, t104
-    t106 = s_wrist * (t60 * R2_13 - t58 * R3_11) - c_wrist * (t60 * R2_23 - t58 * R3_21)
+    t106 = t62 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t84)
+    t107 = np.arctan2(R4_13 * c_wrist + R4_23 * s_wrist, t59 * (R1_31 * s6 - T33 * c6) + t106)
+    del R4_13, R4_23, t106
+    t108 = s_wrist * (t62 * R2_13 - t59 * R3_11) - c_wrist * (t62 * R2_23 - t59 * R3_21)
     del R2_13, R2_23, R3_11, R3_21
-    t107 = s_wrist * (R2_11 * t82 + R1_13 * c5) - c_wrist * (t82 * R2_21 + R1_23 * c5)
+    t109 = s_wrist * (R2_11 * t84 + R1_13 * c5) - c_wrist * (t84 * R2_21 + R1_23 * c5)
     del R2_11, R2_21, c_wrist, s_wrist
-    t108 = np.arctan2(t106, t107)
-    del t106, t107
-    t109 = _runtime.wrap_cut(np.arctan2(t60, t58))
-    t110 = t109 + t103
-    t111 = _runtime.wrap_cut(-np.arctan2(t82, c5)) + t103
-    del c5, t82
-    t112 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t103
+    t110 = np.arctan2(t108, t109)
+    del t108, t109
+    t111 = _runtime.wrap_cut(np.arctan2(t62, t59))
+    t112 = t111 + t105
+    t113 = _runtime.wrap_cut(-np.arctan2(t84, c5)) + t105
+    del c5, t84
+    t114 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t105
     del c6, s6
-    t113 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
+    t115 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
     del c_x_theta7, s_x_theta7
-    t114 = t113 + t103
+    t116 = t115 + t105
     flip_wrist = _runtime.select(aligned_wrist, 0.0, 3.141592653589793)
-    t115 = _runtime.select(free6, 0.0, t72 + t73)
-    del t72, t73
-    c6_bent_behind_front = _runtime.select(free6, 1.0, t76 - t75)
-    del t75, t76
-    t116 = R1_11 * t115 + T13 * c6_bent_behind_front
-    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t115
-    t117 = w_x_bent_behind_front * w_x_bent_behind_front
-    t118 = np.sqrt(t12 + t117)
-    del t117
-    on_axis_5_bent_behind_front = np.minimum(t77, t118) <= t20
+    t117 = _runtime.select(free6, 0.0, t74 + t75)
+    del t74, t75
+    c6_bent_behind_front = _runtime.select(free6, 1.0, t78 - t77)
+    del t77, t78
+    t118 = R1_11 * t117 + T13 * c6_bent_behind_front
+    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t117
+    t119 = w_x_bent_behind_front * w_x_bent_behind_front
+    t120 = np.sqrt(t12 + t119)
+    del t119
+    on_axis_5_bent_behind_front = np.minimum(t79, t120) <= t60
     dot_5_bent_behind_front = v_x * w_x_bent_behind_front
     del v_x, w_x_bent_behind_front
-    t119 = dot_5_bent_behind_front * dot_5_bent_behind_front
-    t120 = 1.0 / np.sqrt(t80 + t119)
-    del t119, t80
-    c5_bent_behind_front = _runtime.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t120)
+    t121 = dot_5_bent_behind_front * dot_5_bent_behind_front
+    t122 = 1.0 / np.sqrt(t82 + t121)
+    del t121, t82
+    c5_bent_behind_front = _runtime.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t122)
     del dot_5_bent_behind_front
-    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front - T13 * t115
-    t121 = c5_bent_behind_front * R2_11_bent_behind_front
-    t122 = _runtime.select(on_axis_5_bent_behind_front, 0.0, t79 * t120)
-    del t120, t79
-    R3_11_bent_behind_front = t121 - R1_13 * t122
-    del t121
-    t123 = t58 * t116 - t60 * R3_11_bent_behind_front
-    t124 = R1_21 * t115 + T23 * c6_bent_behind_front
-    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front - T23 * t115
-    t125 = c5_bent_behind_front * R2_21_bent_behind_front
-    R3_21_bent_behind_front = t125 - R1_23 * t122
-    del t125
-    t126 = t58 * t124 - t60 * R3_21_bent_behind_front
-    h_wrist_bent_behind_front = np.sqrt(t123 * t123 + t126 * t126)
-    aligned_wrist_bent_behind_front = h_wrist_bent_behind_front <= t83
-    t127 = 1.0 / h_wrist_bent_behind_front
-    del h_wrist_bent_behind_front
-    t128 = _runtime.select(aligned_wrist_bent_behind_front, 0.0, t126 * t127)
-    c_wrist_bent_behind_front = _runtime.select(aligned_wrist_bent_behind_front, 1.0, -(t123 * t127))
+    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front - T13 * t117
+    t123 = c5_bent_behind_front * R2_11_bent_behind_front
+    t124 = _runtime.select(on_axis_5_bent_behind_front, 0.0, t81 * t122)
+    del t122, t81
+    R3_11_bent_behind_front = t123 - R1_13 * t124
+    del t123
+    t125 = t59 * t118 - t62 * R3_11_bent_behind_front
+    t126 = R1_21 * t117 + T23 * c6_bent_behind_front
+    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front - T23 * t117
+    t127 = c5_bent_behind_front * R2_21_bent_behind_front
+    R3_21_bent_behind_front = t127 - R1_23 * t124
     del t127
-    t129 = np.arctan2(t128, c_wrist_bent_behind_front)
-    t130 = np.abs(_runtime.select(tangent6, t118 - t77, 0.0))
-    del t118, t77, tangent6
-    unreachable_2 = np.logical_not(t101 & (t130 <= t99))
-    del t101, t130
-    t131 = _runtime.poison(invalid | unreachable_2)
-    t132 = t123 * c_wrist_bent_behind_front - t126 * t128
-    del t123, t126
-    t133 = c5_bent_behind_front * (R1_31 * c6_bent_behind_front - T33 * t115)
-    t134 = t58 * (R1_31 * t115 + T33 * c6_bent_behind_front)
-    t135 = np.arctan2(t132, t60 * (t133 - R1_33 * t122) - t134)
-    del t132, t133, t134
-    t136 = t128 * (t60 * t116 + t58 * R3_11_bent_behind_front)
-    del R3_11_bent_behind_front, t116
-    t137 = c_wrist_bent_behind_front * (t60 * t124 + t58 * R3_21_bent_behind_front)
-    del R3_21_bent_behind_front, t124, t58, t60
-    R3_13_bent_behind_front = R2_11_bent_behind_front * t122 + R1_13 * c5_bent_behind_front
+    t128 = t59 * t126 - t62 * R3_21_bent_behind_front
+    h_wrist_bent_behind_front = np.sqrt(t125 * t125 + t128 * t128)
+    aligned_wrist_bent_behind_front = h_wrist_bent_behind_front <= t85
+    t129 = 1.0 / h_wrist_bent_behind_front
+    del h_wrist_bent_behind_front
+    t130 = _runtime.select(aligned_wrist_bent_behind_front, 0.0, t128 * t129)
+    c_wrist_bent_behind_front = _runtime.select(aligned_wrist_bent_behind_front, 1.0, -(t125 * t129))
+    del t129
+    t131 = np.arctan2(t130, c_wrist_bent_behind_front)
+    t132 = np.abs(_runtime.select(tangent6, t120 - t79, 0.0))
+    del t120, t79, tangent6
+    unreachable_2 = np.logical_not(t103 & (t132 <= t101))
+    del t103, t132
+    t133 = _runtime.poison(invalid | unreachable_2)
+    t134 = t125 * c_wrist_bent_behind_front - t128 * t130
+    del t125, t128
+    t135 = c5_bent_behind_front * (R1_31 * c6_bent_behind_front - T33 * t117)
+    t136 = t59 * (R1_31 * t117 + T33 * c6_bent_behind_front)
+    t137 = np.arctan2(t134, t62 * (t135 - R1_33 * t124) - t136)
+    del t134, t135, t136
+    t138 = t130 * (t62 * t118 + t59 * R3_11_bent_behind_front)
+    del R3_11_bent_behind_front, t118
+    t139 = c_wrist_bent_behind_front * (t62 * t126 + t59 * R3_21_bent_behind_front)
+    del R3_21_bent_behind_front, t126, t59, t62
+    R3_13_bent_behind_front = R2_11_bent_behind_front * t124 + R1_13 * c5_bent_behind_front
     del R2_11_bent_behind_front
-    R3_23_bent_behind_front = t122 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front
+    R3_23_bent_behind_front = t124 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front
     del R2_21_bent_behind_front
-    t138 = c_wrist_bent_behind_front * R3_23_bent_behind_front
+    t140 = c_wrist_bent_behind_front * R3_23_bent_behind_front
     del R3_23_bent_behind_front, c_wrist_bent_behind_front
-    t139 = np.arctan2(t136 + t137, -(t128 * R3_13_bent_behind_front + t138))
-    del R3_13_bent_behind_front, t128, t136, t137, t138
-    t140 = t109 + t131
-    del t109
-    t141 = _runtime.wrap_cut(-np.arctan2(t122, c5_bent_behind_front))
-    del c5_bent_behind_front, t122
-    t142 = t141 + t131
-    del t141
-    t143 = _runtime.wrap_cut(-np.arctan2(t115, c6_bent_behind_front))
-    del c6_bent_behind_front, t115
-    t144 = t143 + t131
+    t141 = np.arctan2(t138 + t139, -(t130 * R3_13_bent_behind_front + t140))
+    del R3_13_bent_behind_front, t130, t138, t139, t140
+    t142 = t111 + t133
+    del t111
+    t143 = _runtime.wrap_cut(-np.arctan2(t124, c5_bent_behind_front))
+    del c5_bent_behind_front, t124
+    t144 = t143 + t133
     del t143
-    t145 = t113 + t131
+    t145 = _runtime.wrap_cut(-np.arctan2(t117, c6_bent_behind_front))
+    del c6_bent_behind_front, t117
+    t146 = t145 + t133
+    del t145
+    t147 = t115 + t133
     flip_wrist_bent_behind_back = _runtime.select(aligned_wrist_bent_behind_front, 0.0, 3.141592653589793)
-    t146 = _runtime.wrap(flip_wrist_bent_behind_back - t129)
-    t147 = _runtime.wrap(t139 + flip_wrist_bent_behind_back)
+    t148 = _runtime.wrap(flip_wrist_bent_behind_back - t131)
+    t149 = _runtime.wrap(t141 + flip_wrist_bent_behind_back)
     del flip_wrist_bent_behind_back
-    t148 = t27 - t29
-    del t27, t29
-    t149 = t31 - t32
-    del t31, t32
-    t150 = t34 + t35
-    del t34, t35
-    q__elbow_1_over_ahead_front = _runtime.select(t25, a5 + a4 * t149 - d3 * t150, d3 * t149 - (d5 - a4 * t150))
-    del t149, t150, t25
+    t150 = t29 - t31
+    del t29, t31
+    t151 = t33 - t34
+    del t33, t34
+    t152 = t36 + t37
+    del t36, t37
+    q__elbow_1_over_ahead_front = _runtime.select(t27, a5 + a4 * t151 - d3 * t152, d3 * t151 - (d5 - a4 * t152))
+    del t151, t152, t27
     size__elbow_1_over_ahead_front = np.abs(q__elbow_1_over_ahead_front)
-    t151 = np.minimum(size__elbow_1_over_ahead_front, t39)
-    del t39
-    t152 = size__elbow_1_over_ahead_front - np.maximum(t38, t151)
-    del size__elbow_1_over_ahead_front, t151, t38
-    t153 = t152 * _runtime.sign(q__elbow_1_over_ahead_front)
-    del q__elbow_1_over_ahead_front, t152
-    t154 = t153 - 2.0 * (t42 + t43)
-    del t42, t43
-    inner__elbow_1_over_ahead_front = t148 * t148 - t153 * t154
-    t155 = inner__elbow_1_over_ahead_front < 0.0
-    t156 = np.maximum(0.0, inner__elbow_1_over_ahead_front)
+    t153 = np.minimum(size__elbow_1_over_ahead_front, t40)
+    del t40
+    t154 = size__elbow_1_over_ahead_front - np.maximum(t39, t153)
+    del size__elbow_1_over_ahead_front, t153, t39
+    t155 = t154 * _runtime.sign(q__elbow_1_over_ahead_front)
+    del q__elbow_1_over_ahead_front, t154
+    t156 = t155 - 2.0 * (t43 + t44)
+    del t43, t44
+    inner__elbow_1_over_ahead_front = t150 * t150 - t155 * t156
+    t157 = inner__elbow_1_over_ahead_front < 0.0
+    t158 = np.maximum(0.0, inner__elbow_1_over_ahead_front)
     del inner__elbow_1_over_ahead_front
-    t157 = _runtime.select(t155, t154, t148 - _runtime.sign(-t148) * np.sqrt(t156))
-    del t154, t156
-    t158 = _runtime.select(t155, t148, t153)
-    del t148, t153, t155
-    half__elbow_1_over_ahead_front = _runtime.select(np.abs(t157) <= np.abs(t158), 0.0, t158 / t157)
-    del t157, t158
-    t159 = half__elbow_1_over_ahead_front * half__elbow_1_over_ahead_front
-    t160 = 1.0 / (1.0 + t159)
-    by_s__elbow_1_over_ahead_front = 2.0 * half__elbow_1_over_ahead_front * t160
-    del half__elbow_1_over_ahead_front
-    t161 = lever_elbow * np.abs(by_s__elbow_1_over_ahead_front)
-    del lever_elbow
-    by_c__elbow_1_over_ahead_front = t160 * (1.0 - t159)
+    t159 = _runtime.select(t157, t156, t150 - _runtime.sign(-t150) * np.sqrt(t158))
+    del t156, t158
+    t160 = _runtime.select(t157, t150, t155)
+    del t150, t155, t157
+    half__elbow_1_over_ahead_front = _runtime.select(np.abs(t159) <= np.abs(t160), 0.0, t160 / t159)
     del t159, t160
-    t162 = by_s__elbow_1_over_ahead_front * by_s__elbow_1_over_ahead_front
-    t163 = t162 / (1.0 + np.abs(by_c__elbow_1_over_ahead_front))
-    del t162
-    versine__elbow_1_over_ahead_front = _runtime.select(0.0 < by_c__elbow_1_over_ahead_front, t163, 1.0 - by_c__elbow_1_over_ahead_front)
-    del t163
-    cost__elbow_1_over_ahead_front = t161 + t51 * versine__elbow_1_over_ahead_front
-    del t161, t51, versine__elbow_1_over_ahead_front
-    t164 = cost__elbow_1_over_ahead_front <= whole__elbow_1
-    del cost__elbow_1_over_ahead_front, whole__elbow_1
-    cosine__elbow_1_over_ahead_front = _runtime.select(t164, by_c__elbow_1_over_ahead_front, 1.0)
-    del by_c__elbow_1_over_ahead_front
-    sine__elbow_1_over_ahead_front = _runtime.select(t164, by_s__elbow_1_over_ahead_front, 0.0)
-    del by_s__elbow_1_over_ahead_front, t164
-    t165 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
-    t166 = t24 * cosine__elbow_1_over_ahead_front + t165
+    t161 = half__elbow_1_over_ahead_front * half__elbow_1_over_ahead_front
+    t162 = 1.0 / (1.0 + t161)
+    by_s__elbow_1_over_ahead_front = 2.0 * half__elbow_1_over_ahead_front * t162
+    del half__elbow_1_over_ahead_front
+    t163 = lever_elbow * np.abs(by_s__elbow_1_over_ahead_front)
+    del lever_elbow
+    by_c__elbow_1_over_ahead_front = t162 * (1.0 - t161)
+    del t161, t162
+    t164 = by_s__elbow_1_over_ahead_front * by_s__elbow_1_over_ahead_front
+    t165 = t164 / (1.0 + np.abs(by_c__elbow_1_over_ahead_front))
+    del t164
+    versine__elbow_1_over_ahead_front = _runtime.select(0.0 < by_c__elbow_1_over_ahead_front, t165, 1.0 - by_c__elbow_1_over_ahead_front)
     del t165
-    celbow_over_ahead_front = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t166, t24))
-    del t166, t8
-    t167 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
+    cost__elbow_1_over_ahead_front = t163 + t52 * versine__elbow_1_over_ahead_front
+    del t163, t52, versine__elbow_1_over_ahead_front
+    t166 = cost__elbow_1_over_ahead_front <= whole__elbow_1
+    del cost__elbow_1_over_ahead_front, whole__elbow_1
+    cosine__elbow_1_over_ahead_front = _runtime.select(t166, by_c__elbow_1_over_ahead_front, 1.0)
+    del by_c__elbow_1_over_ahead_front
+    sine__elbow_1_over_ahead_front = _runtime.select(t166, by_s__elbow_1_over_ahead_front, 0.0)
+    del by_s__elbow_1_over_ahead_front, t166
+    t167 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
+    t168 = t26 * cosine__elbow_1_over_ahead_front + t167
+    del t167
+    celbow_over_ahead_front = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t168, t26))
+    del t168, t8
+    t169 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
     del cosine__elbow_1_over_ahead_front
-    t168 = _runtime.select(tangent_elbow, t167 - t24 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
-    del s__elbow_1_over_ahead_front, sine__elbow_1_over_ahead_front, t167, t24, tangent_elbow
-    selbow_over_ahead_front = _runtime.select(no_link_elbow, t55, t168)
-    del t168, t55
-    t169 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
-    t170 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
+    t170 = _runtime.select(tangent_elbow, t169 - t26 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
+    del s__elbow_1_over_ahead_front, sine__elbow_1_over_ahead_front, t169, t26, tangent_elbow
+    selbow_over_ahead_front = _runtime.select(no_link_elbow, t56, t170)
+    del t170, t56
+    t171 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
+    t172 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
     del c_straight, celbow_over_ahead_front, s_straight, selbow_over_ahead_front
-    t171 = d5 - a4 * t170 + d3 * t169
-    t172 = reach + t171
-    t173 = reach - t171
-    del t171
-    tangent6_over_ahead_front = np.abs(t172 * t173) - t65 <= t66
-    del t65, t66
-    v_x_over_ahead_front = a5 - a4 * t169 - d3 * t170
-    t174 = np.abs(v_x_over_ahead_front)
-    t175 = np.maximum(0.0, -((height6 - t174) * (height6 + t174)))
+    t173 = d5 - a4 * t172 + d3 * t171
+    t174 = reach + t173
+    t175 = reach - t173
+    del t173
+    tangent6_over_ahead_front = np.abs(t174 * t175) - t67 <= t68
+    del t67, t68
+    v_x_over_ahead_front = a5 - a4 * t171 - d3 * t172
+    t176 = np.abs(v_x_over_ahead_front)
+    t177 = np.maximum(0.0, -((height6 - t176) * (height6 + t176)))
     del height6
-    below6_over_ahead_front = np.maximum(t172, 0.0)
-    above6_over_ahead_front = np.maximum(t173, 0.0)
-    t176 = below6_over_ahead_front * above6_over_ahead_front
-    held6_over_ahead_front = _runtime.select(t174 < reach, t175, t176)
-    del t174, t175
-    kept6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, np.sqrt(held6_over_ahead_front), np.sqrt(t176))
-    del t176
-    t177 = below6_over_ahead_front - above6_over_ahead_front
-    t178 = np.sqrt(4.0 * held6_over_ahead_front + t177 * t177)
+    below6_over_ahead_front = np.maximum(t174, 0.0)
+    above6_over_ahead_front = np.maximum(t175, 0.0)
+    t178 = below6_over_ahead_front * above6_over_ahead_front
+    held6_over_ahead_front = _runtime.select(t176 < reach, t177, t178)
+    del t176, t177
+    kept6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, np.sqrt(held6_over_ahead_front), np.sqrt(t178))
+    del t178
+    t179 = below6_over_ahead_front - above6_over_ahead_front
+    t180 = np.sqrt(4.0 * held6_over_ahead_front + t179 * t179)
     del held6_over_ahead_front
     width6_over_ahead_front = below6_over_ahead_front + above6_over_ahead_front
     del above6_over_ahead_front, below6_over_ahead_front
-    span6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, t178, width6_over_ahead_front)
-    del t178, width6_over_ahead_front
-    t179 = 1.0 / (reach * span6_over_ahead_front)
+    span6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, t180, width6_over_ahead_front)
+    del t180, width6_over_ahead_front
+    t181 = 1.0 / (reach * span6_over_ahead_front)
     del reach, span6_over_ahead_front
-    t180 = t59 * kept6_over_ahead_front * t179
-    del t59
-    t181 = t179 * (u_x * t177)
-    s6_over_ahead_front = _runtime.select(free6, 0.0, t180 - t181)
-    t182 = t179 * (t74 * kept6_over_ahead_front)
-    del kept6_over_ahead_front, t74
-    t183 = t179 * (s_z * t177)
-    del t177, t179
-    c6_over_ahead_front = _runtime.select(free6, 1.0, t182 + t183)
+    t182 = t61 * kept6_over_ahead_front * t181
+    del t61
+    t183 = t181 * (u_x * t179)
+    s6_over_ahead_front = _runtime.select(free6, 0.0, t182 - t183)
+    t184 = t181 * (t76 * kept6_over_ahead_front)
+    del kept6_over_ahead_front, t76
+    t185 = t181 * (s_z * t179)
+    del t179, t181
+    c6_over_ahead_front = _runtime.select(free6, 1.0, t184 + t185)
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
-    t184 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    t186 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
     w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
-    t185 = t12 + w_x_over_ahead_front * w_x_over_ahead_front
-    t186 = np.sqrt(t185)
-    del t185
-    on_axis_5_over_ahead_front = np.minimum(t184, t186) <= t20
+    t187 = t12 + w_x_over_ahead_front * w_x_over_ahead_front
+    t188 = np.sqrt(t187)
+    del t187
+    on_axis_5_over_ahead_front = np.minimum(t186, t188) <= t60
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
     del w_x_over_ahead_front
-    t187 = w_y * v_x_over_ahead_front
+    t189 = w_y * v_x_over_ahead_front
     del w_y
-    t188 = t187 * t187
-    t189 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t190 = 1.0 / np.sqrt(t188 + t189)
-    del t189
-    c5_over_ahead_front = _runtime.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t190)
+    t190 = t189 * t189
+    t191 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t192 = 1.0 / np.sqrt(t190 + t191)
+    del t191
+    c5_over_ahead_front = _runtime.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t192)
     del dot_5_over_ahead_front
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    t191 = _runtime.select(on_axis_5_over_ahead_front, 0.0, t187 * t190)
-    del t190
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t191
-    R4_13_over_ahead_front = t169 * R2_13_over_ahead_front + t170 * R3_11_over_ahead_front
-    t192 = R4_13_over_ahead_front * R4_13_over_ahead_front
+    t193 = _runtime.select(on_axis_5_over_ahead_front, 0.0, t189 * t192)
+    del t192
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t193
+    R4_13_over_ahead_front = t171 * R2_13_over_ahead_front + t172 * R3_11_over_ahead_front
+    t194 = R4_13_over_ahead_front * R4_13_over_ahead_front
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t191
-    R4_23_over_ahead_front = t169 * R2_23_over_ahead_front + t170 * R3_21_over_ahead_front
-    t193 = R4_23_over_ahead_front * R4_23_over_ahead_front
-    h_wrist_over_ahead_front = np.sqrt(t192 + t193)
-    del t192, t193
-    aligned_wrist_over_ahead_front = h_wrist_over_ahead_front <= t83
-    t194 = 1.0 / h_wrist_over_ahead_front
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t193
+    R4_23_over_ahead_front = t171 * R2_23_over_ahead_front + t172 * R3_21_over_ahead_front
+    t195 = R4_23_over_ahead_front * R4_23_over_ahead_front
+    h_wrist_over_ahead_front = np.sqrt(t194 + t195)
+    del t194, t195
+    aligned_wrist_over_ahead_front = h_wrist_over_ahead_front <= t85
+    t196 = 1.0 / h_wrist_over_ahead_front
     del h_wrist_over_ahead_front
-    s_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front * t194)
-    c_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front * t194)
-    del t194
-    t195 = np.arctan2(s_wrist_over_ahead_front, c_wrist_over_ahead_front)
-    t196 = t100 & (-t99 <= t172) & (-t99 <= t173)
-    del t100, t172, t173
-    t197 = _runtime.select(tangent6_over_ahead_front, t186 - t184, 0.0)
-    del t186
-    unreachable_3 = np.logical_not(t196 & (np.abs(t197) <= t99))
-    del t197
-    t198 = _runtime.poison(invalid | unreachable_3)
-    t199 = R4_13_over_ahead_front * c_wrist_over_ahead_front
+    s_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front * t196)
+    c_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front * t196)
+    del t196
+    t197 = np.arctan2(s_wrist_over_ahead_front, c_wrist_over_ahead_front)
+    t198 = t102 & (-t101 <= t174) & (-t101 <= t175)
+    del t102, t174, t175
+    t199 = _runtime.select(tangent6_over_ahead_front, t188 - t186, 0.0)
+    del t188
+    unreachable_3 = np.logical_not(t198 & (np.abs(t199) <= t101))
+    del t199
+    t200 = _runtime.poison(invalid | unreachable_3)
+    t201 = R4_13_over_ahead_front * c_wrist_over_ahead_front
     del R4_13_over_ahead_front
-    t200 = R4_23_over_ahead_front * s_wrist_over_ahead_front
+    t202 = R4_23_over_ahead_front * s_wrist_over_ahead_front
     del R4_23_over_ahead_front
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front - T33 * c6_over_ahead_front
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front + T33 * s6_over_ahead_front
-    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t191
+    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t193
     del R2_31_over_ahead_front
-    R4_33_over_ahead_front = t169 * R2_33_over_ahead_front + t170 * R3_31_over_ahead_front
+    R4_33_over_ahead_front = t171 * R2_33_over_ahead_front + t172 * R3_31_over_ahead_front
     del R2_33_over_ahead_front, R3_31_over_ahead_front
-    t201 = np.arctan2(t199 + t200, R4_33_over_ahead_front)
-    del R4_33_over_ahead_front, t199, t200
-    t202 = t170 * R2_13_over_ahead_front - t169 * R3_11_over_ahead_front
+    t203 = np.arctan2(t201 + t202, R4_33_over_ahead_front)
+    del R4_33_over_ahead_front, t201, t202
+    t204 = t172 * R2_13_over_ahead_front - t171 * R3_11_over_ahead_front
     del R2_13_over_ahead_front, R3_11_over_ahead_front
-    t203 = t170 * R2_23_over_ahead_front - t169 * R3_21_over_ahead_front
+    t205 = t172 * R2_23_over_ahead_front - t171 * R3_21_over_ahead_front
     del R2_23_over_ahead_front, R3_21_over_ahead_front
-    t204 = s_wrist_over_ahead_front * t202 - c_wrist_over_ahead_front * t203
-    del t202, t203
-    R3_13_over_ahead_front = R2_11_over_ahead_front * t191 + R1_13 * c5_over_ahead_front
+    t206 = s_wrist_over_ahead_front * t204 - c_wrist_over_ahead_front * t205
+    del t204, t205
+    R3_13_over_ahead_front = R2_11_over_ahead_front * t193 + R1_13 * c5_over_ahead_front
     del R2_11_over_ahead_front
-    t205 = s_wrist_over_ahead_front * R3_13_over_ahead_front
+    t207 = s_wrist_over_ahead_front * R3_13_over_ahead_front
     del R3_13_over_ahead_front, s_wrist_over_ahead_front
-    R3_23_over_ahead_front = t191 * R2_21_over_ahead_front + R1_23 * c5_over_ahead_front
+    R3_23_over_ahead_front = t193 * R2_21_over_ahead_front + R1_23 * c5_over_ahead_front
     del R2_21_over_ahead_front
-    t206 = c_wrist_over_ahead_front * R3_23_over_ahead_front
+    t208 = c_wrist_over_ahead_front * R3_23_over_ahead_front
     del R3_23_over_ahead_front, c_wrist_over_ahead_front
-    t207 = np.arctan2(t204, t205 - t206)
-    del t204, t205, t206
-    t208 = _runtime.wrap_cut(np.arctan2(t170, t169))
-    t209 = t208 + t198
-    t210 = _runtime.wrap_cut(-np.arctan2(t191, c5_over_ahead_front))
-    del c5_over_ahead_front, t191
-    t211 = t210 + t198
-    del t210
-    t212 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
-    del c6_over_ahead_front, s6_over_ahead_front
-    t213 = _runtime.wrap_cut(t212) + t198
+    t209 = np.arctan2(t206, t207 - t208)
+    del t206, t207, t208
+    t210 = _runtime.wrap_cut(np.arctan2(t172, t171))
+    t211 = t210 + t200
+    t212 = _runtime.wrap_cut(-np.arctan2(t193, c5_over_ahead_front))
+    del c5_over_ahead_front, t193
+    t213 = t212 + t200
     del t212
-    t214 = t113 + t198
+    t214 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
+    del c6_over_ahead_front, s6_over_ahead_front
+    t215 = _runtime.wrap_cut(t214) + t200
+    del t214
+    t216 = t115 + t200
     flip_wrist_over_ahead_back = _runtime.select(aligned_wrist_over_ahead_front, 0.0, 3.141592653589793)
-    t215 = _runtime.wrap(t195 + flip_wrist_over_ahead_back)
-    t216 = _runtime.wrap(t207 + flip_wrist_over_ahead_back)
+    t217 = _runtime.wrap(t197 + flip_wrist_over_ahead_back)
+    t218 = _runtime.wrap(t209 + flip_wrist_over_ahead_back)
     del flip_wrist_over_ahead_back
-    t217 = _runtime.select(free6, 0.0, t180 + t181)
-    del t180, t181
-    c6_over_behind_front = _runtime.select(free6, 1.0, t183 - t182)
+    t219 = _runtime.select(free6, 0.0, t182 + t183)
     del t182, t183
-    t218 = R1_11 * t217 + T13 * c6_over_behind_front
-    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t217
+    c6_over_behind_front = _runtime.select(free6, 1.0, t185 - t184)
+    del t184, t185
+    t220 = R1_11 * t219 + T13 * c6_over_behind_front
+    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t219
     del s_z, u_x
-    t219 = w_x_over_behind_front * w_x_over_behind_front
-    t220 = np.sqrt(t12 + t219)
-    del t12, t219
-    on_axis_5_over_behind_front = np.minimum(t184, t220) <= t20
-    del t20
+    t221 = w_x_over_behind_front * w_x_over_behind_front
+    t222 = np.sqrt(t12 + t221)
+    del t12, t221
+    on_axis_5_over_behind_front = np.minimum(t186, t222) <= t60
+    del t60
     dot_5_over_behind_front = v_x_over_ahead_front * w_x_over_behind_front
     del v_x_over_ahead_front, w_x_over_behind_front
-    t221 = dot_5_over_behind_front * dot_5_over_behind_front
-    t222 = 1.0 / np.sqrt(t188 + t221)
-    del t188, t221
-    c5_over_behind_front = _runtime.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t222)
+    t223 = dot_5_over_behind_front * dot_5_over_behind_front
+    t224 = 1.0 / np.sqrt(t190 + t223)
+    del t190, t223
+    c5_over_behind_front = _runtime.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t224)
     del dot_5_over_behind_front
-    R2_11_over_behind_front = R1_11 * c6_over_behind_front - T13 * t217
+    R2_11_over_behind_front = R1_11 * c6_over_behind_front - T13 * t219
     del R1_11
-    t223 = c5_over_behind_front * R2_11_over_behind_front
-    t224 = _runtime.select(on_axis_5_over_behind_front, 0.0, t187 * t222)
-    del t187, t222
-    R3_11_over_behind_front = t223 - R1_13 * t224
-    del t223
-    t225 = t169 * t218 - t170 * R3_11_over_behind_front
-    t226 = R1_21 * t217 + T23 * c6_over_behind_front
-    R2_21_over_behind_front = R1_21 * c6_over_behind_front - T23 * t217
+    t225 = c5_over_behind_front * R2_11_over_behind_front
+    t226 = _runtime.select(on_axis_5_over_behind_front, 0.0, t189 * t224)
+    del t189, t224
+    R3_11_over_behind_front = t225 - R1_13 * t226
+    del t225
+    t227 = t171 * t220 - t172 * R3_11_over_behind_front
+    t228 = R1_21 * t219 + T23 * c6_over_behind_front
+    R2_21_over_behind_front = R1_21 * c6_over_behind_front - T23 * t219
     del R1_21
-    t227 = c5_over_behind_front * R2_21_over_behind_front
-    R3_21_over_behind_front = t227 - R1_23 * t224
-    del t227
-    t228 = t169 * t226 - t170 * R3_21_over_behind_front
-    h_wrist_over_behind_front = np.sqrt(t225 * t225 + t228 * t228)
-    aligned_wrist_over_behind_front = h_wrist_over_behind_front <= t83
-    del t83
-    t229 = 1.0 / h_wrist_over_behind_front
-    del h_wrist_over_behind_front
-    t230 = _runtime.select(aligned_wrist_over_behind_front, 0.0, t228 * t229)
-    c_wrist_over_behind_front = _runtime.select(aligned_wrist_over_behind_front, 1.0, -(t225 * t229))
+    t229 = c5_over_behind_front * R2_21_over_behind_front
+    R3_21_over_behind_front = t229 - R1_23 * t226
     del t229
-    t231 = np.arctan2(t230, c_wrist_over_behind_front)
-    t232 = _runtime.select(tangent6_over_ahead_front, t220 - t184, 0.0)
-    del t184, t220, tangent6_over_ahead_front
-    unreachable_4 = np.logical_not(t196 & (np.abs(t232) <= t99))
-    del t196, t232, t99
-    t233 = _runtime.poison(invalid | unreachable_4)
-    t234 = t225 * c_wrist_over_behind_front - t228 * t230
-    del t225, t228
-    t235 = c5_over_behind_front * (R1_31 * c6_over_behind_front - T33 * t217)
-    t236 = t169 * (R1_31 * t217 + T33 * c6_over_behind_front)
+    t230 = t171 * t228 - t172 * R3_21_over_behind_front
+    h_wrist_over_behind_front = np.sqrt(t227 * t227 + t230 * t230)
+    aligned_wrist_over_behind_front = h_wrist_over_behind_front <= t85
+    del t85
+    t231 = 1.0 / h_wrist_over_behind_front
+    del h_wrist_over_behind_front
+    t232 = _runtime.select(aligned_wrist_over_behind_front, 0.0, t230 * t231)
+    c_wrist_over_behind_front = _runtime.select(aligned_wrist_over_behind_front, 1.0, -(t227 * t231))
+    del t231
+    t233 = np.arctan2(t232, c_wrist_over_behind_front)
+    t234 = _runtime.select(tangent6_over_ahead_front, t222 - t186, 0.0)
+    del t186, t222, tangent6_over_ahead_front
+    unreachable_4 = np.logical_not(t198 & (np.abs(t234) <= t101))
+    del t101, t198, t234
+    t235 = _runtime.poison(invalid | unreachable_4)
+    t236 = t227 * c_wrist_over_behind_front - t230 * t232
+    del t227, t230
+    t237 = c5_over_behind_front * (R1_31 * c6_over_behind_front - T33 * t219)
+    t238 = t171 * (R1_31 * t219 + T33 * c6_over_behind_front)
     del R1_31
-    t237 = np.arctan2(t234, t170 * (t235 - R1_33 * t224) - t236)
-    del R1_33, t234, t235, t236
-    t238 = t230 * (t170 * t218 + t169 * R3_11_over_behind_front)
-    del R3_11_over_behind_front, t218
-    t239 = c_wrist_over_behind_front * (t170 * t226 + t169 * R3_21_over_behind_front)
-    del R3_21_over_behind_front, t169, t170, t226
-    R3_13_over_behind_front = R2_11_over_behind_front * t224 + R1_13 * c5_over_behind_front
+    t239 = np.arctan2(t236, t172 * (t237 - R1_33 * t226) - t238)
+    del R1_33, t236, t237, t238
+    t240 = t232 * (t172 * t220 + t171 * R3_11_over_behind_front)
+    del R3_11_over_behind_front, t220
+    t241 = c_wrist_over_behind_front * (t172 * t228 + t171 * R3_21_over_behind_front)
+    del R3_21_over_behind_front, t171, t172, t228
+    R3_13_over_behind_front = R2_11_over_behind_front * t226 + R1_13 * c5_over_behind_front
     del R1_13, R2_11_over_behind_front
-    R3_23_over_behind_front = t224 * R2_21_over_behind_front + R1_23 * c5_over_behind_front
+    R3_23_over_behind_front = t226 * R2_21_over_behind_front + R1_23 * c5_over_behind_front
     del R1_23, R2_21_over_behind_front
-    t240 = c_wrist_over_behind_front * R3_23_over_behind_front
+    t242 = c_wrist_over_behind_front * R3_23_over_behind_front
     del R3_23_over_behind_front, c_wrist_over_behind_front
-    t241 = np.arctan2(t238 + t239, -(t230 * R3_13_over_behind_front + t240))
-    del R3_13_over_behind_front, t230, t238, t239, t240
-    t242 = t208 + t233
-    del t208
-    t243 = _runtime.wrap_cut(-np.arctan2(t224, c5_over_behind_front))
-    del c5_over_behind_front, t224
-    t244 = t243 + t233
-    del t243
-    t245 = _runtime.wrap_cut(-np.arctan2(t217, c6_over_behind_front))
-    del c6_over_behind_front, t217
-    t246 = t245 + t233
+    t243 = np.arctan2(t240 + t241, -(t232 * R3_13_over_behind_front + t242))
+    del R3_13_over_behind_front, t232, t240, t241, t242
+    t244 = t210 + t235
+    del t210
+    t245 = _runtime.wrap_cut(-np.arctan2(t226, c5_over_behind_front))
+    del c5_over_behind_front, t226
+    t246 = t245 + t235
     del t245
-    t247 = t113 + t233
-    del t113
+    t247 = _runtime.wrap_cut(-np.arctan2(t219, c6_over_behind_front))
+    del c6_over_behind_front, t219
+    t248 = t247 + t235
+    del t247
+    t249 = t115 + t235
+    del t115
     flip_wrist_over_behind_back = _runtime.select(aligned_wrist_over_behind_front, 0.0, 3.141592653589793)
-    t248 = _runtime.wrap(flip_wrist_over_behind_back - t231)
-    t249 = _runtime.wrap(t241 + flip_wrist_over_behind_back)
+    t250 = _runtime.wrap(flip_wrist_over_behind_back - t233)
+    t251 = _runtime.wrap(t243 + flip_wrist_over_behind_back)
     del flip_wrist_over_behind_back
-    t250 = no_link_elbow | free6
+    t252 = no_link_elbow | free6
     del free6, no_link_elbow
-    t251 = _runtime.status(invalid, unreachable, t250 | on_axis_5 | aligned_wrist)
+    t253 = _runtime.status(invalid, unreachable, t252 | on_axis_5 | aligned_wrist)
     del aligned_wrist, on_axis_5, unreachable
-    t252 = t250 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
+    t254 = t252 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
     del aligned_wrist_bent_behind_front, on_axis_5_bent_behind_front
-    t253 = _runtime.status(invalid, unreachable_2, t252)
-    del t252, unreachable_2
-    t254 = t250 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
+    t255 = _runtime.status(invalid, unreachable_2, t254)
+    del t254, unreachable_2
+    t256 = t252 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
     del aligned_wrist_over_ahead_front, on_axis_5_over_ahead_front
-    t255 = _runtime.status(invalid, unreachable_3, t254)
-    del t254, unreachable_3
-    t256 = t250 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
-    del aligned_wrist_over_behind_front, on_axis_5_over_behind_front, t250
-    t257 = _runtime.status(invalid, unreachable_4, t256)
-    del invalid, t256, unreachable_4
+    t257 = _runtime.status(invalid, unreachable_3, t256)
+    del t256, unreachable_3
+    t258 = t252 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
+    del aligned_wrist_over_behind_front, on_axis_5_over_behind_front, t252
+    t259 = _runtime.status(invalid, unreachable_4, t258)
+    del invalid, t258, unreachable_4
     return (
-        _runtime.wrap_cut(t85) + t103,
-        _runtime.wrap_cut(t105) + t103,
-        _runtime.wrap_cut(t108) + t103,
-        t110,
-        t111,
+        _runtime.wrap_cut(t87) + t105,
+        _runtime.wrap_cut(t107) + t105,
+        _runtime.wrap_cut(t110) + t105,
         t112,
+        t113,
         t114,
-        _runtime.wrap(t85 + flip_wrist) + t103,
-        _runtime.wrap_cut(-t105) + t103,
-        _runtime.wrap(t108 + flip_wrist) + t103,
-        t110,
-        t111,
+        t116,
+        _runtime.wrap(t87 + flip_wrist) + t105,
+        _runtime.wrap_cut(-t107) + t105,
+        _runtime.wrap(t110 + flip_wrist) + t105,
         t112,
+        t113,
         t114,
-        _runtime.wrap_cut(-t129) + t131,
-        _runtime.wrap_cut(-t135) + t131,
-        _runtime.wrap_cut(t139) + t131,
-        t140,
+        t116,
+        _runtime.wrap_cut(-t131) + t133,
+        _runtime.wrap_cut(-t137) + t133,
+        _runtime.wrap_cut(t141) + t133,
         t142,
         t144,
-        t145,
-        t146 + t131,
-        _runtime.wrap_cut(t135) + t131,
-        t147 + t131,
-        t140,
+        t146,
+        t147,
+        t148 + t133,
+        _runtime.wrap_cut(t137) + t133,
+        t149 + t133,
         t142,
         t144,
-        t145,
-        _runtime.wrap_cut(t195) + t198,
-        _runtime.wrap_cut(t201) + t198,
-        _runtime.wrap_cut(t207) + t198,
-        t209,
+        t146,
+        t147,
+        _runtime.wrap_cut(t197) + t200,
+        _runtime.wrap_cut(t203) + t200,
+        _runtime.wrap_cut(t209) + t200,
         t211,
         t213,
-        t214,
-        t215 + t198,
-        _runtime.wrap_cut(-t201) + t198,
-        t216 + t198,
-        t209,
+        t215,
+        t216,
+        t217 + t200,
+        _runtime.wrap_cut(-t203) + t200,
+        t218 + t200,
         t211,
         t213,
-        t214,
-        _runtime.wrap_cut(-t231) + t233,
-        _runtime.wrap_cut(-t237) + t233,
-        _runtime.wrap_cut(t241) + t233,
-        t242,
+        t215,
+        t216,
+        _runtime.wrap_cut(-t233) + t235,
+        _runtime.wrap_cut(-t239) + t235,
+        _runtime.wrap_cut(t243) + t235,
         t244,
         t246,
-        t247,
-        t248 + t233,
-        _runtime.wrap_cut(t237) + t233,
-        t249 + t233,
-        t242,
+        t248,
+        t249,
+        t250 + t235,
+        _runtime.wrap_cut(t239) + t235,
+        t251 + t235,
         t244,
         t246,
-        t247,
-        t251,
-        t251,
+        t248,
+        t249,
         t253,
         t253,
         t255,
         t255,
         t257,
         t257,
+        t259,
+        t259,
     )
 
 
@@ -1772,7 +1776,7 @@ def _ik_common(
     t13 = upper - fore
     t14 = t13 + far
     t15 = far - t13
-    del far, t13
+    del t13
     t16 = np.maximum(t14, 0.0) * np.maximum(t15, 0.0)
     t17 = 1.0 / (t4 * (t12 + t16))
     t18 = (t4 * t12 - t4 * t16) * t17
@@ -1858,319 +1862,332 @@ def _ik_common(
     t56 = _runtime.FEASIBILITY * (size * 0.5)
     t57 = (-t56 <= t11) & (-t56 <= t14) & (-t56 <= t15)
     del t11, t14, t15
-    t58 = np.abs(0.0) <= t56
-    unreachable = np.logical_not(t57 & (-t56 <= t28) & (-t56 <= t27) & t58)
-    t59 = _runtime.poison(invalid | unreachable)
+    t58 = t57 & (-t56 <= t28) & (-t56 <= t27)
+    t59 = np.abs(0.0) <= t56
+    t60 = t58 & t59
+    unreachable = np.logical_not(t60)
+    t61 = _runtime.poison(invalid | unreachable)
     h_wrist = np.sqrt(t41 * t41 + t40 * t40)
-    t60 = 1.0 / h_wrist
-    t61 = t41 * t60
-    t62 = t40 * t60
-    del t60
+    t62 = 1.0 / h_wrist
+    t63 = t41 * t62
+    t64 = t40 * t62
+    del t62
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    t63 = t25 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t39)
-    t64 = np.arctan2(t41 * t61 + t40 * t62, t63 - t21 * (R1_31 * s6 - T33 * c6))
-    del t40, t41, t63
-    t65 = t61 * (t25 * R2_23 + t21 * R3_21) - t62 * (t25 * R2_13 + t21 * R3_11)
+    t65 = t25 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t39)
+    t66 = np.arctan2(t41 * t63 + t40 * t64, t65 - t21 * (R1_31 * s6 - T33 * c6))
+    del t40, t41, t65
+    t67 = t63 * (t25 * R2_23 + t21 * R3_21) - t64 * (t25 * R2_13 + t21 * R3_11)
     del R2_13, R2_23, R3_11, R3_21
-    t66 = t61 * (R2_21 * t39 + R1_23 * c5) - t62 * (t39 * R2_11 + R1_13 * c5)
-    del R2_11, R2_21, c5, t39, t61, t62
-    t67 = np.arctan2(t65, t66)
-    del t65, t66
-    t68 = _runtime.wrap_cut(np.arctan2(t25, -t21)) + t59
-    t69 = _runtime.wrap_cut(-np.arctan2(t36, dot_5)) + t59
+    t68 = t63 * (R2_21 * t39 + R1_23 * c5) - t64 * (t39 * R2_11 + R1_13 * c5)
+    del R2_11, R2_21, c5, t39, t63, t64
+    t69 = np.arctan2(t67, t68)
+    del t67, t68
+    t70 = _runtime.wrap_cut(np.arctan2(t25, -t21)) + t61
+    t71 = _runtime.wrap_cut(-np.arctan2(t36, dot_5)) + t61
     del dot_5
-    t70 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t59
+    t72 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t61
     del c6, s6
-    t71 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
+    t73 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
     del c_x_theta7, s_x_theta7
-    t72 = t71 + t59
-    t73 = t30 - t32
+    t74 = t73 + t61
+    t75 = t30 - t32
     del t30, t32
-    t74 = t34 + t35
+    t76 = t34 + t35
     del t34, t35
-    t75 = R1_21 * t73 - T23 * t74
-    t76 = u_x * t74 + s_z * t73
-    t77 = v_x * t76
-    t78 = 1.0 / np.sqrt(t37 + t77 * t77)
+    t77 = R1_21 * t75 - T23 * t76
+    t78 = u_x * t76 + s_z * t75
+    t79 = v_x * t78
+    t80 = 1.0 / np.sqrt(t37 + t79 * t79)
     del t37
-    t79 = t77 * t78
-    t80 = R1_21 * t74 + T23 * t73
-    t81 = t36 * t78
-    del t78
-    R3_21_bent_behind_front = t79 * t80 - R1_23 * t81
-    t82 = t21 * t75 + t25 * R3_21_bent_behind_front
-    t83 = R1_11 * t73 - T13 * t74
-    t84 = R1_11 * t74 + T13 * t73
-    R3_11_bent_behind_front = t79 * t84 - R1_13 * t81
-    t85 = t21 * t83 + t25 * R3_11_bent_behind_front
-    t86 = np.arctan2(t82, t85)
-    h_wrist_bent_behind_front = np.sqrt(t85 * t85 + t82 * t82)
-    t87 = 1.0 / h_wrist_bent_behind_front
-    c_wrist_bent_behind_front = t85 * t87
-    t88 = t82 * t87
-    del t87
-    t89 = -(t85 * c_wrist_bent_behind_front + t82 * t88)
-    del t82, t85
-    R3_31_bent_behind_front = t79 * (R1_31 * t74 + T33 * t73) - R1_33 * t81
-    R4_33_bent_behind_front = t21 * (R1_31 * t73 - T33 * t74) + t25 * R3_31_bent_behind_front
+    t81 = t79 * t80
+    t82 = R1_21 * t76 + T23 * t75
+    t83 = t36 * t80
+    del t80
+    R3_21_bent_behind_front = t81 * t82 - R1_23 * t83
+    t84 = t21 * t77 + t25 * R3_21_bent_behind_front
+    t85 = R1_11 * t75 - T13 * t76
+    t86 = R1_11 * t76 + T13 * t75
+    R3_11_bent_behind_front = t81 * t86 - R1_13 * t83
+    t87 = t21 * t85 + t25 * R3_11_bent_behind_front
+    t88 = np.arctan2(t84, t87)
+    h_wrist_bent_behind_front = np.sqrt(t87 * t87 + t84 * t84)
+    t89 = 1.0 / h_wrist_bent_behind_front
+    c_wrist_bent_behind_front = t87 * t89
+    t90 = t84 * t89
+    del t89
+    t91 = -(t87 * c_wrist_bent_behind_front + t84 * t90)
+    del t84, t87
+    R3_31_bent_behind_front = t81 * (R1_31 * t76 + T33 * t75) - R1_33 * t83
+    R4_33_bent_behind_front = t21 * (R1_31 * t75 - T33 * t76) + t25 * R3_31_bent_behind_front
     del R3_31_bent_behind_front
-    t90 = np.arctan2(t89, R4_33_bent_behind_front)
-    del R4_33_bent_behind_front, t89
-    t91 = c_wrist_bent_behind_front * (t25 * t75 - t21 * R3_21_bent_behind_front)
-    del R3_21_bent_behind_front, t75
-    t92 = t88 * (t25 * t83 - t21 * R3_11_bent_behind_front)
-    del R3_11_bent_behind_front, t21, t25, t83
-    t93 = c_wrist_bent_behind_front * (t80 * t81 + R1_23 * t79)
-    del c_wrist_bent_behind_front, t80
-    t94 = np.arctan2(t91 - t92, t93 - t88 * (t81 * t84 + R1_13 * t79))
-    del t79, t81, t84, t88, t91, t92, t93
-    t95 = _runtime.wrap_cut(-np.arctan2(t36, -t77)) + t59
-    del t36, t77
-    t96 = _runtime.wrap_cut(-np.arctan2(t73, -t74)) + t59
-    del t73, t74
-    t97 = t19 - t20
+    t92 = np.arctan2(t91, R4_33_bent_behind_front)
+    del R4_33_bent_behind_front, t91
+    t93 = c_wrist_bent_behind_front * (t25 * t77 - t21 * R3_21_bent_behind_front)
+    del R3_21_bent_behind_front, t77
+    t94 = t90 * (t25 * t85 - t21 * R3_11_bent_behind_front)
+    del R3_11_bent_behind_front, t21, t25, t85
+    t95 = c_wrist_bent_behind_front * (t82 * t83 + R1_23 * t81)
+    del c_wrist_bent_behind_front, t82
+    t96 = np.arctan2(t93 - t94, t95 - t90 * (t83 * t86 + R1_13 * t81))
+    del t81, t83, t86, t90, t93, t94, t95
+    t97 = _runtime.wrap_cut(-np.arctan2(t36, -t79)) + t61
+    del t36, t79
+    t98 = _runtime.wrap_cut(-np.arctan2(t75, -t76)) + t61
+    del t75, t76
+    t99 = t19 - t20
     del t19, t20
-    t98 = t23 + t24
+    t100 = t23 + t24
     del t23, t24
-    t99 = d5 - a4 * t98 - d3 * t97
-    t100 = reach - t99
-    above6_over_ahead_front = np.maximum(t100, 0.0)
-    t101 = reach + t99
-    del t99
-    below6_over_ahead_front = np.maximum(t101, 0.0)
-    t102 = above6_over_ahead_front * below6_over_ahead_front
-    root6_over_ahead_front = np.sqrt(t102)
-    del t102
+    t101 = d5 - a4 * t100 - d3 * t99
+    t102 = reach - t101
+    above6_over_ahead_front = np.maximum(t102, 0.0)
+    t103 = reach + t101
+    del t101
+    below6_over_ahead_front = np.maximum(t103, 0.0)
+    t104 = above6_over_ahead_front * below6_over_ahead_front
+    root6_over_ahead_front = np.sqrt(t104)
+    del t104
     width6_over_ahead_front = above6_over_ahead_front + below6_over_ahead_front
-    t103 = 1.0 / (reach * width6_over_ahead_front)
+    t105 = 1.0 / (reach * width6_over_ahead_front)
     del width6_over_ahead_front
-    t104 = t22 * root6_over_ahead_front * t103
+    t106 = t22 * root6_over_ahead_front * t105
     del t22
-    t105 = above6_over_ahead_front - below6_over_ahead_front
+    t107 = above6_over_ahead_front - below6_over_ahead_front
     del above6_over_ahead_front, below6_over_ahead_front
-    t106 = t103 * (u_x * t105)
-    s6_over_ahead_front = t104 + t106
-    t107 = t103 * (t33 * root6_over_ahead_front)
+    t108 = t105 * (u_x * t107)
+    s6_over_ahead_front = t106 + t108
+    t109 = t105 * (t33 * root6_over_ahead_front)
     del root6_over_ahead_front, t33
-    t108 = t103 * (s_z * t105)
-    del t103, t105
-    c6_over_ahead_front = t107 - t108
+    t110 = t105 * (s_z * t107)
+    del t105, t107
+    c6_over_ahead_front = t109 - t110
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
-    v_x_over_ahead_front = a5 + a4 * t97 - d3 * t98
+    v_x_over_ahead_front = a5 + a4 * t99 - d3 * t100
     w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
-    t109 = w_y * v_x_over_ahead_front
+    t111 = w_y * v_x_over_ahead_front
     del w_y
-    t110 = t109 * t109
-    t111 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t112 = 1.0 / np.sqrt(t110 + t111)
-    del t111
-    c5_over_ahead_front = dot_5_over_ahead_front * t112
+    t112 = t111 * t111
+    t113 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t114 = 1.0 / np.sqrt(t112 + t113)
+    del t113
+    c5_over_ahead_front = dot_5_over_ahead_front * t114
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    t113 = t109 * t112
-    del t112
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t113
-    t114 = t97 * R2_23_over_ahead_front - t98 * R3_21_over_ahead_front
+    t115 = t111 * t114
+    del t114
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t115
+    t116 = t99 * R2_23_over_ahead_front - t100 * R3_21_over_ahead_front
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t113
-    t115 = t97 * R2_13_over_ahead_front - t98 * R3_11_over_ahead_front
-    t116 = np.arctan2(t114, -t115)
-    unreachable_2 = np.logical_not(t57 & (-t56 <= t101) & (-t56 <= t100) & t58)
-    del t56, t57, t58
-    t117 = _runtime.poison(invalid | unreachable_2)
-    h_wrist_over_ahead_front = np.sqrt(t115 * t115 + t114 * t114)
-    t118 = 1.0 / h_wrist_over_ahead_front
-    t119 = t115 * t118
-    t120 = t114 * t118
-    del t118
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t115
+    t117 = t99 * R2_13_over_ahead_front - t100 * R3_11_over_ahead_front
+    t118 = np.arctan2(t116, -t117)
+    t119 = t57 & (-t56 <= t103) & (-t56 <= t102)
+    del t56
+    t120 = t119 & t59
+    del t59
+    unreachable_2 = np.logical_not(t120)
+    t121 = _runtime.poison(invalid | unreachable_2)
+    h_wrist_over_ahead_front = np.sqrt(t117 * t117 + t116 * t116)
+    t122 = 1.0 / h_wrist_over_ahead_front
+    t123 = t117 * t122
+    t124 = t116 * t122
+    del t122
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front + T33 * s6_over_ahead_front
-    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t113
+    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t115
     del R2_31_over_ahead_front
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front - T33 * c6_over_ahead_front
-    R4_33_over_ahead_front = t98 * R3_31_over_ahead_front - t97 * R2_33_over_ahead_front
+    R4_33_over_ahead_front = t100 * R3_31_over_ahead_front - t99 * R2_33_over_ahead_front
     del R2_33_over_ahead_front, R3_31_over_ahead_front
-    t121 = np.arctan2(t115 * t119 + t114 * t120, R4_33_over_ahead_front)
-    del R4_33_over_ahead_front, t114, t115
-    t122 = t98 * R2_23_over_ahead_front + t97 * R3_21_over_ahead_front
+    t125 = np.arctan2(t117 * t123 + t116 * t124, R4_33_over_ahead_front)
+    del R4_33_over_ahead_front, t116, t117
+    t126 = t100 * R2_23_over_ahead_front + t99 * R3_21_over_ahead_front
     del R2_23_over_ahead_front, R3_21_over_ahead_front
-    t123 = t98 * R2_13_over_ahead_front + t97 * R3_11_over_ahead_front
+    t127 = t100 * R2_13_over_ahead_front + t99 * R3_11_over_ahead_front
     del R2_13_over_ahead_front, R3_11_over_ahead_front
-    R3_23_over_ahead_front = R2_21_over_ahead_front * t113 + R1_23 * c5_over_ahead_front
+    R3_23_over_ahead_front = R2_21_over_ahead_front * t115 + R1_23 * c5_over_ahead_front
     del R2_21_over_ahead_front
-    R3_13_over_ahead_front = t113 * R2_11_over_ahead_front + R1_13 * c5_over_ahead_front
-    del R2_11_over_ahead_front, c5_over_ahead_front, t113
-    t124 = t119 * R3_23_over_ahead_front - t120 * R3_13_over_ahead_front
+    R3_13_over_ahead_front = t115 * R2_11_over_ahead_front + R1_13 * c5_over_ahead_front
+    del R2_11_over_ahead_front, c5_over_ahead_front, t115
+    t128 = t123 * R3_23_over_ahead_front - t124 * R3_13_over_ahead_front
     del R3_13_over_ahead_front, R3_23_over_ahead_front
-    t125 = np.arctan2(t119 * t122 - t120 * t123, t124)
-    del t119, t120, t122, t123, t124
-    t126 = _runtime.wrap_cut(np.arctan2(t98, -t97)) + t117
-    t127 = _runtime.wrap_cut(-np.arctan2(t109, dot_5_over_ahead_front))
+    t129 = np.arctan2(t123 * t126 - t124 * t127, t128)
+    del t123, t124, t126, t127, t128
+    t130 = _runtime.wrap_cut(np.arctan2(t100, -t99)) + t121
+    t131 = _runtime.wrap_cut(-np.arctan2(t111, dot_5_over_ahead_front))
     del dot_5_over_ahead_front
-    t128 = t127 + t117
-    del t127
-    t129 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
+    t132 = t131 + t121
+    del t131
+    t133 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
     del c6_over_ahead_front, s6_over_ahead_front
-    t130 = _runtime.wrap_cut(t129) + t117
-    del t129
-    t131 = t71 + t117
-    del t71
-    t132 = _runtime.wrap(3.141592653589793 - t116) + t117
-    t133 = _runtime.wrap(3.141592653589793 + t125) + t117
-    t134 = t104 - t106
-    del t104, t106
-    t135 = t107 + t108
-    del t107, t108
-    t136 = R1_21 * t134 - T23 * t135
-    t137 = u_x * t135 + s_z * t134
+    t134 = _runtime.wrap_cut(t133) + t121
+    del t133
+    t135 = t73 + t121
+    del t73
+    t136 = _runtime.wrap(3.141592653589793 - t118) + t121
+    t137 = _runtime.wrap(3.141592653589793 + t129) + t121
+    t138 = t106 - t108
+    del t106, t108
+    t139 = t109 + t110
+    del t109, t110
+    t140 = R1_21 * t138 - T23 * t139
+    t141 = u_x * t139 + s_z * t138
     del s_z, u_x
-    t138 = v_x_over_ahead_front * t137
-    t139 = 1.0 / np.sqrt(t110 + t138 * t138)
-    del t110
-    t140 = t138 * t139
-    t141 = R1_21 * t135 + T23 * t134
+    t142 = v_x_over_ahead_front * t141
+    t143 = 1.0 / np.sqrt(t112 + t142 * t142)
+    del t112
+    t144 = t142 * t143
+    t145 = R1_21 * t139 + T23 * t138
     del R1_21
-    t142 = t109 * t139
-    del t139
-    R3_21_over_behind_front = t140 * t141 - R1_23 * t142
-    t143 = t97 * t136 + t98 * R3_21_over_behind_front
-    t144 = R1_11 * t134 - T13 * t135
-    t145 = R1_11 * t135 + T13 * t134
+    t146 = t111 * t143
+    del t143
+    R3_21_over_behind_front = t144 * t145 - R1_23 * t146
+    t147 = t99 * t140 + t100 * R3_21_over_behind_front
+    t148 = R1_11 * t138 - T13 * t139
+    t149 = R1_11 * t139 + T13 * t138
     del R1_11
-    R3_11_over_behind_front = t140 * t145 - R1_13 * t142
-    t146 = t97 * t144 + t98 * R3_11_over_behind_front
-    t147 = np.arctan2(t143, t146)
-    h_wrist_over_behind_front = np.sqrt(t146 * t146 + t143 * t143)
-    t148 = 1.0 / h_wrist_over_behind_front
-    c_wrist_over_behind_front = t146 * t148
-    t149 = t143 * t148
-    del t148
-    t150 = t146 * c_wrist_over_behind_front + t143 * t149
-    del t143, t146
-    R3_31_over_behind_front = t140 * (R1_31 * t135 + T33 * t134) - R1_33 * t142
+    R3_11_over_behind_front = t144 * t149 - R1_13 * t146
+    t150 = t99 * t148 + t100 * R3_11_over_behind_front
+    t151 = np.arctan2(t147, t150)
+    h_wrist_over_behind_front = np.sqrt(t150 * t150 + t147 * t147)
+    t152 = 1.0 / h_wrist_over_behind_front
+    c_wrist_over_behind_front = t150 * t152
+    t153 = t147 * t152
+    del t152
+    t154 = t150 * c_wrist_over_behind_front + t147 * t153
+    del t147, t150
+    R3_31_over_behind_front = t144 * (R1_31 * t139 + T33 * t138) - R1_33 * t146
     del R1_33
-    R4_33_over_behind_front = t97 * (R1_31 * t134 - T33 * t135) + t98 * R3_31_over_behind_front
+    R4_33_over_behind_front = t99 * (R1_31 * t138 - T33 * t139) + t100 * R3_31_over_behind_front
     del R1_31, R3_31_over_behind_front
-    t151 = np.arctan2(-t150, R4_33_over_behind_front)
-    del R4_33_over_behind_front, t150
-    t152 = c_wrist_over_behind_front * (t98 * t136 - t97 * R3_21_over_behind_front)
-    del R3_21_over_behind_front, t136
-    t153 = t149 * (t98 * t144 - t97 * R3_11_over_behind_front)
-    del R3_11_over_behind_front, t144, t97, t98
-    t154 = c_wrist_over_behind_front * (t141 * t142 + R1_23 * t140)
-    del R1_23, c_wrist_over_behind_front, t141
-    t155 = np.arctan2(t152 - t153, t154 - t149 * (t142 * t145 + R1_13 * t140))
-    del R1_13, t140, t142, t145, t149, t152, t153, t154
-    t156 = _runtime.wrap_cut(-np.arctan2(t109, -t138)) + t117
-    del t109, t138
-    t157 = _runtime.wrap_cut(-np.arctan2(t134, -t135)) + t117
-    del t134, t135
-    t158 = _runtime.wrap(3.141592653589793 + t147) + t117
-    t159 = _runtime.wrap(3.141592653589793 + t155) + t117
-    t160 = _runtime.status(invalid, unreachable, np.False_)
+    t155 = np.arctan2(-t154, R4_33_over_behind_front)
+    del R4_33_over_behind_front, t154
+    t156 = c_wrist_over_behind_front * (t100 * t140 - t99 * R3_21_over_behind_front)
+    del R3_21_over_behind_front, t140
+    t157 = t153 * (t100 * t148 - t99 * R3_11_over_behind_front)
+    del R3_11_over_behind_front, t100, t148, t99
+    t158 = c_wrist_over_behind_front * (t145 * t146 + R1_23 * t144)
+    del R1_23, c_wrist_over_behind_front, t145
+    t159 = np.arctan2(t156 - t157, t158 - t153 * (t146 * t149 + R1_13 * t144))
+    del R1_13, t144, t146, t149, t153, t156, t157, t158
+    t160 = _runtime.wrap_cut(-np.arctan2(t111, -t142)) + t121
+    del t111, t142
+    t161 = _runtime.wrap_cut(-np.arctan2(t138, -t139)) + t121
+    del t138, t139
+    t162 = _runtime.wrap(3.141592653589793 + t151) + t121
+    t163 = _runtime.wrap(3.141592653589793 + t159) + t121
+    t164 = _runtime.status(invalid, unreachable, np.False_)
     del unreachable
-    t161 = _runtime.status(invalid, unreachable_2, np.False_)
+    t165 = _runtime.status(invalid, unreachable_2, np.False_)
     del invalid, unreachable_2
-    t162 = _runtime.VANISHING * size
+    t166 = size * _runtime.ROUNDING
+    t167 = lever_elbow - (t166 * 0.00390625 + far * 0.00390625)
+    del lever_elbow
     no_link_elbow = upper * fore <= _runtime.VANISHING * (t5 * t5)
     del fore, t5, upper
-    t163 = (lever_elbow - size * 0.00390625 <= t162) | no_link_elbow
-    del lever_elbow, no_link_elbow
-    t164 = np.minimum(reach * 0.25, size * _runtime.ROUNDING * 8.0)
+    t168 = (t167 <= _runtime.VANISHING * (t166 + far)) | no_link_elbow
+    del far, no_link_elbow, t167
+    t169 = np.maximum(reach * 1.52587890625e-05, np.minimum(reach * 0.25, t166 * 8.0))
+    del t166
+    t170 = reach * t169
+    del t169
+    t171 = _runtime.VANISHING * _runtime.VANISHING * (reach * reach)
+    t172 = (t57 & t168) | (t58 & (np.abs(t27 * t28) - t170 <= t171))
+    del t168, t27, t28, t57
+    t173 = _runtime.VANISHING * size
     del size
-    t165 = reach * np.maximum(reach * 1.52587890625e-05, t164)
-    del t164
-    t166 = _runtime.VANISHING * _runtime.VANISHING * (reach * reach)
-    t167 = t163 | (np.abs(t27 * t28) - t165 <= t166) | (reach <= t162)
-    del reach, t163, t27, t28
-    t168 = np.sqrt(v_x * v_x)
+    t174 = np.sqrt(v_x * v_x)
     del v_x
-    on_axis_5 = np.minimum(t168, np.sqrt(t9 + w_x * w_x)) <= t162
+    on_axis_5 = np.minimum(t174, np.sqrt(t9 + w_x * w_x)) <= t173
     del w_x
-    t169 = _runtime.VANISHING * 16.0
-    on_axis_5_bent_behind_front = np.minimum(t168, np.sqrt(t9 + t76 * t76)) <= t162
-    del t168, t76
-    t170 = t167 | on_axis_5 | (h_wrist <= t169) | on_axis_5_bent_behind_front
-    del h_wrist, on_axis_5, on_axis_5_bent_behind_front, t167
-    t171 = t170 | (h_wrist_bent_behind_front <= t169) | (np.abs(t100 * t101) - t165 <= t166)
-    del h_wrist_bent_behind_front, t100, t101, t165, t166, t170
-    t172 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    t175 = _runtime.VANISHING * 16.0
+    on_axis_5_bent_behind_front = np.minimum(t174, np.sqrt(t9 + t78 * t78)) <= t173
+    del t174, t78
+    t176 = on_axis_5 | (h_wrist <= t175) | on_axis_5_bent_behind_front
+    del h_wrist, on_axis_5, on_axis_5_bent_behind_front
+    t177 = t60 & (t176 | (h_wrist_bent_behind_front <= t175))
+    del h_wrist_bent_behind_front, t176, t60
+    t178 = t172 | ((t58 | t119) & (reach <= t173)) | t177
+    del reach, t172, t177, t58
+    t179 = t178 | (t119 & (np.abs(t102 * t103) - t170 <= t171))
+    del t102, t103, t119, t170, t171, t178
+    t180 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
     del v_x_over_ahead_front
-    t173 = t9 + w_x_over_ahead_front * w_x_over_ahead_front
+    t181 = t9 + w_x_over_ahead_front * w_x_over_ahead_front
     del w_x_over_ahead_front
-    t174 = t171 | (np.minimum(t172, np.sqrt(t173)) <= t162)
-    del t171, t173
-    on_axis_5_over_behind_front = np.minimum(t172, np.sqrt(t9 + t137 * t137)) <= t162
-    del t137, t162, t172, t9
-    t175 = t174 | (h_wrist_over_ahead_front <= t169) | on_axis_5_over_behind_front
-    del h_wrist_over_ahead_front, on_axis_5_over_behind_front, t174
+    t182 = (np.minimum(t180, np.sqrt(t181)) <= t173) | (h_wrist_over_ahead_front <= t175)
+    del h_wrist_over_ahead_front, t181
+    on_axis_5_over_behind_front = np.minimum(t180, np.sqrt(t9 + t141 * t141)) <= t173
+    del t141, t173, t180, t9
+    t183 = t182 | on_axis_5_over_behind_front | (h_wrist_over_behind_front <= t175)
+    del h_wrist_over_behind_front, on_axis_5_over_behind_front, t175, t182
     return (
-        _runtime.wrap_cut(-t42) + t59,
-        _runtime.wrap_cut(t64) + t59,
-        _runtime.wrap_cut(t67) + t59,
-        t68,
-        t69,
+        _runtime.wrap_cut(-t42) + t61,
+        _runtime.wrap_cut(t66) + t61,
+        _runtime.wrap_cut(t69) + t61,
         t70,
+        t71,
         t72,
-        _runtime.wrap(3.141592653589793 - t42) + t59,
-        _runtime.wrap_cut(-t64) + t59,
-        _runtime.wrap(3.141592653589793 + t67) + t59,
-        t68,
-        t69,
+        t74,
+        _runtime.wrap(3.141592653589793 - t42) + t61,
+        _runtime.wrap_cut(-t66) + t61,
+        _runtime.wrap(3.141592653589793 + t69) + t61,
         t70,
+        t71,
         t72,
-        _runtime.wrap_cut(t86) + t59,
-        _runtime.wrap_cut(-t90) + t59,
-        _runtime.wrap_cut(t94) + t59,
-        t68,
-        t95,
-        t96,
-        t72,
-        _runtime.wrap(3.141592653589793 + t86) + t59,
-        _runtime.wrap_cut(t90) + t59,
-        _runtime.wrap(3.141592653589793 + t94) + t59,
-        t68,
-        t95,
-        t96,
-        t72,
-        _runtime.wrap_cut(-t116) + t117,
-        _runtime.wrap_cut(t121) + t117,
-        _runtime.wrap_cut(t125) + t117,
-        t126,
-        t128,
+        t74,
+        _runtime.wrap_cut(t88) + t61,
+        _runtime.wrap_cut(-t92) + t61,
+        _runtime.wrap_cut(t96) + t61,
+        t70,
+        t97,
+        t98,
+        t74,
+        _runtime.wrap(3.141592653589793 + t88) + t61,
+        _runtime.wrap_cut(t92) + t61,
+        _runtime.wrap(3.141592653589793 + t96) + t61,
+        t70,
+        t97,
+        t98,
+        t74,
+        _runtime.wrap_cut(-t118) + t121,
+        _runtime.wrap_cut(t125) + t121,
+        _runtime.wrap_cut(t129) + t121,
         t130,
-        t131,
         t132,
-        _runtime.wrap_cut(-t121) + t117,
-        t133,
-        t126,
-        t128,
+        t134,
+        t135,
+        t136,
+        _runtime.wrap_cut(-t125) + t121,
+        t137,
         t130,
-        t131,
-        _runtime.wrap_cut(t147) + t117,
-        _runtime.wrap_cut(-t151) + t117,
-        _runtime.wrap_cut(t155) + t117,
-        t126,
-        t156,
-        t157,
-        t131,
-        t158,
-        _runtime.wrap_cut(t151) + t117,
-        t159,
-        t126,
-        t156,
-        t157,
-        t131,
-        t160,
-        t160,
-        t160,
+        t132,
+        t134,
+        t135,
+        _runtime.wrap_cut(t151) + t121,
+        _runtime.wrap_cut(-t155) + t121,
+        _runtime.wrap_cut(t159) + t121,
+        t130,
         t160,
         t161,
+        t135,
+        t162,
+        _runtime.wrap_cut(t155) + t121,
+        t163,
+        t130,
+        t160,
         t161,
-        t161,
-        t161,
-        t175 | (h_wrist_over_behind_front <= t169),
+        t135,
+        t164,
+        t164,
+        t164,
+        t164,
+        t165,
+        t165,
+        t165,
+        t165,
+        t179 | (t120 & t183),
     )
 
 

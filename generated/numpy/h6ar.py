@@ -14,7 +14,7 @@
 #   singularities: 32 compare and select, 43 add, 4 divide, 64 multiply, 5 sincos, 3 sqrt
 #   ik: 725 compare and select, 539 add, 29 atan2, 104 divide, 812 multiply, 1 reduce to a turn, 3
 #     sincos, 54 sqrt
-#   ik where nothing vanishes: 250 compare and select, 174 add, 16 atan2, 15 divide, 196 multiply,
+#   ik where nothing vanishes: 264 compare and select, 174 add, 16 atan2, 15 divide, 196 multiply,
 #     1 reduce to a turn, 3 sincos, 25 sqrt
 #   wrist_length: 21 compare and select, 6 add, 1 divide, 7 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
@@ -3297,7 +3297,7 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t42 = square - t40 * t40
     del square
     t43 = t32 & (-t34 <= t38) & (-t41 <= t42)
-    del t32, t34, t41
+    del t34, t41
     t44 = d * 0.25 + np.abs(higher) * 0.25 + np.abs(ahead) * 0.25
     play = t44 + far_apart + lengths * 0.00048828125
     del far_apart, t44
@@ -3357,61 +3357,61 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del stheta2A
     t68 = t66 - t67
     margin_alpha = t54 - np.abs(v_1 * t65 - v_2 * t68)
+    t69 = t43 & (t45 <= margin_alpha)
     play_beta = L1 * play
-    t69 = -(_runtime.FEASIBILITY * play_beta)
+    t70 = -(_runtime.FEASIBILITY * play_beta)
     margin_beta = t54 - np.abs(-(L1 * t68))
-    t70 = t43 & (t45 <= margin_alpha) & (t69 <= margin_beta)
-    t71 = -(_runtime.FEASIBILITY * play)
+    t71 = t69 & (t70 <= margin_beta)
+    t72 = -(_runtime.FEASIBILITY * play)
     sigma_uv = _runtime.sign(-whole_alpha)
     del whole_alpha
-    t72 = v_1 * sigma_uv
+    t73 = v_1 * sigma_uv
     part_y = sigma_uv * t68
     del t68
-    t73 = -(t72 + part_y)
-    t74 = t71 <= t73
-    t75 = part_y - t72
+    t74 = -(t73 + part_y)
+    t75 = t72 <= t74
+    t76 = part_y - t73
     del part_y
-    t76 = t71 <= t75
-    t77 = -(_runtime.FEASIBILITY * (32.0 * play))
-    t78 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
-    below_beta_0 = np.maximum(t73, t78)
-    del t73
-    above_beta_0 = np.maximum(t75, t78)
-    del t75
-    t79 = 1.0 / (below_beta_0 + above_beta_0)
-    t80 = (below_beta_0 - above_beta_0) * t79
-    t81 = t65 - v_2 * t80
+    t77 = t72 <= t76
+    t78 = t71 & t75 & t77
+    t79 = -(_runtime.FEASIBILITY * (32.0 * play))
+    t80 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
+    below_beta_0 = np.maximum(t74, t80)
+    del t74
+    above_beta_0 = np.maximum(t76, t80)
+    del t76
+    t81 = 1.0 / (below_beta_0 + above_beta_0)
+    t82 = (below_beta_0 - above_beta_0) * t81
+    t83 = t65 - v_2 * t82
     del t65
-    left_along = L1 - np.abs(t81)
-    t82 = t70 & t74 & t76 & t74 & t76 & (t77 <= left_along)
-    del t70
-    t83 = L1 + t81
-    t84 = L1 - t81
-    del t81
-    t85 = t82 & t74 & t76 & (t77 <= t83) & (t77 <= t84)
-    del t74, t76, t82
-    unreachable = np.logical_not(t85)
-    del t85
-    t86 = _runtime.poison(invalid | unreachable)
-    t87 = np.arctan2(up, -out_rear_elbow_up)
-    below_alpha = np.maximum(t83, t78)
+    left_along = L1 - np.abs(t83)
+    t84 = t78 & t75 & t77 & (t79 <= left_along) & t75 & t77
+    del t75, t77
+    t85 = L1 + t83
+    t86 = L1 - t83
     del t83
-    above_alpha = np.maximum(t84, t78)
+    unreachable = np.logical_not(t84 & (t79 <= t85) & (t79 <= t86))
     del t84
-    t88 = 1.0 / (below_alpha + above_alpha)
-    t89 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
-    t90 = np.arctan2((below_alpha - above_alpha) * t88, t88 * t89)
-    del above_alpha, below_alpha, t88, t89
-    t91 = 2.0 * np.sqrt(above_beta_0) * np.sqrt(below_beta_0)
+    t87 = _runtime.poison(invalid | unreachable)
+    t88 = np.arctan2(up, -out_rear_elbow_up)
+    below_alpha = np.maximum(t85, t80)
+    del t85
+    above_alpha = np.maximum(t86, t80)
+    del t86
+    t89 = 1.0 / (below_alpha + above_alpha)
+    t90 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t91 = np.arctan2((below_alpha - above_alpha) * t89, t89 * t90)
+    del above_alpha, below_alpha, t89, t90
+    t92 = 2.0 * np.sqrt(above_beta_0) * np.sqrt(below_beta_0)
     del above_beta_0, below_beta_0
-    t92 = t90 - np.arctan2(t80, t79 * t91)
-    del t79, t80, t91
-    t93 = np.arctan2(t50, t48)
+    t93 = t91 - np.arctan2(t82, t81 * t92)
+    del t81, t82, t92
+    t94 = np.arctan2(t50, t48)
     del t48, t50
-    t94 = np.arctan2(L_2W, a_3W)
+    t95 = np.arctan2(L_2W, a_3W)
     del L_2W, a_3W
-    t95 = t93 - t94
-    t96 = _runtime.wrap(principal_pitch)
+    t96 = t94 - t95
+    t97 = _runtime.wrap(principal_pitch)
     del principal_pitch
     c_relative_front_elbow_down = t49 - t51
     del t49, t51
@@ -3419,310 +3419,316 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t52, t53
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t97 = np.abs(whole_alpha_front_elbow_down)
+    t98 = np.abs(whole_alpha_front_elbow_down)
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
     del c_relative_front_elbow_down, s_relative_front_elbow_down
     out_front_elbow_down = t58 + t59
     del t58, t59
-    t98 = t56 - t57
+    t99 = t56 - t57
     del t56, t57
-    t99 = out_front_elbow_down * out_front_elbow_down + t98 * t98
-    t100 = 1.0 / np.sqrt(t99)
-    del t99
-    ctheta2A_front_elbow_down = out_front_elbow_down * t100
-    t101 = ahead * ctheta2A_front_elbow_down
-    t102 = t98 * t100
+    t100 = out_front_elbow_down * out_front_elbow_down + t99 * t99
+    t101 = 1.0 / np.sqrt(t100)
     del t100
-    t103 = higher * t102
-    p_1_front_elbow_down = t101 - t103
-    t104 = ahead * t102
-    del ahead, t102
-    t105 = higher * ctheta2A_front_elbow_down
+    ctheta2A_front_elbow_down = out_front_elbow_down * t101
+    t102 = ahead * ctheta2A_front_elbow_down
+    t103 = t99 * t101
+    del t101
+    t104 = higher * t103
+    p_1_front_elbow_down = t102 - t104
+    t105 = ahead * t103
+    del ahead, t103
+    t106 = higher * ctheta2A_front_elbow_down
     del ctheta2A_front_elbow_down, higher
-    t106 = t104 + t105
-    t107 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t106
-    margin_alpha_front_elbow_down = t97 - np.abs(t107)
-    del t107
-    margin_beta_front_elbow_down = t97 - np.abs(L1 * p_1_front_elbow_down)
-    t108 = t43 & (t45 <= margin_alpha_front_elbow_down) & (t69 <= margin_beta_front_elbow_down)
+    t107 = t105 + t106
+    t108 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t107
+    margin_alpha_front_elbow_down = t98 - np.abs(t108)
+    del t108
+    t109 = t43 & (t45 <= margin_alpha_front_elbow_down)
+    margin_beta_front_elbow_down = t98 - np.abs(L1 * p_1_front_elbow_down)
+    t110 = t109 & (t70 <= margin_beta_front_elbow_down)
     sigma_uv_front_elbow_down = _runtime.sign(-whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
-    t109 = sigma_uv_front_elbow_down * p_1_front_elbow_down
+    t111 = sigma_uv_front_elbow_down * p_1_front_elbow_down
     del p_1_front_elbow_down
-    t110 = v_1_front_elbow_down * sigma_uv_front_elbow_down
-    t111 = t109 - t110
-    t112 = t71 <= t111
-    t113 = -(t110 + t109)
-    del t109
-    t114 = t71 <= t113
-    below_beta_0_front_elbow_down = np.maximum(t111, t78)
+    t112 = v_1_front_elbow_down * sigma_uv_front_elbow_down
+    t113 = t111 - t112
+    t114 = t72 <= t113
+    t115 = -(t112 + t111)
     del t111
-    above_beta_0_front_elbow_down = np.maximum(t113, t78)
+    t116 = t72 <= t115
+    t117 = t110 & t114 & t116
+    below_beta_0_front_elbow_down = np.maximum(t113, t80)
     del t113
-    t115 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
-    total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
-    t116 = 1.0 / total_beta_0_front_elbow_down
-    del total_beta_0_front_elbow_down
-    t117 = t115 * t116
+    above_beta_0_front_elbow_down = np.maximum(t115, t80)
     del t115
-    along_u_front_elbow_down = t106 + v_2_front_elbow_down * t117
-    del t106
+    t118 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
+    t119 = 1.0 / total_beta_0_front_elbow_down
+    del total_beta_0_front_elbow_down
+    t120 = t118 * t119
+    del t118
+    along_u_front_elbow_down = t107 + v_2_front_elbow_down * t120
+    del t107
     left_along_front_elbow_down = L1 - np.abs(-along_u_front_elbow_down)
-    t118 = t108 & t112 & t114 & t112 & t114 & (t77 <= left_along_front_elbow_down)
-    del t108
-    t119 = L1 - along_u_front_elbow_down
-    t120 = L1 + along_u_front_elbow_down
+    t121 = t117 & t114 & t116 & (t79 <= left_along_front_elbow_down)
+    t122 = L1 - along_u_front_elbow_down
+    t123 = L1 + along_u_front_elbow_down
     del along_u_front_elbow_down
-    t121 = t118 & t112 & t114 & (t77 <= t119) & (t77 <= t120)
-    del t112, t114, t118
-    unreachable_2 = np.logical_not(t121)
-    del t121
-    t122 = _runtime.poison(invalid | unreachable_2)
-    t123 = np.arctan2(-t98, out_front_elbow_down)
-    below_alpha_front_elbow_down = np.maximum(t119, t78)
-    del t119
-    above_alpha_front_elbow_down = np.maximum(t120, t78)
-    del t120
-    t124 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t124 = t121 & t114 & t116 & (t79 <= t122) & (t79 <= t123)
+    del t114, t116, t121
+    unreachable_2 = np.logical_not(t124)
+    del t124
+    t125 = _runtime.poison(invalid | unreachable_2)
+    t126 = np.arctan2(-t99, out_front_elbow_down)
+    below_alpha_front_elbow_down = np.maximum(t122, t80)
+    del t122
+    above_alpha_front_elbow_down = np.maximum(t123, t80)
+    del t123
+    t127 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t125 = 1.0 / total_alpha_front_elbow_down
+    t128 = 1.0 / total_alpha_front_elbow_down
     del total_alpha_front_elbow_down
-    t126 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t129 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t127 = np.arctan2(t124 * t125, t125 * t126)
-    del t124, t125, t126
-    t128 = t93 + t94
-    del t93, t94
-    t129 = 2.0 * np.sqrt(above_beta_0_front_elbow_down) * np.sqrt(below_beta_0_front_elbow_down)
+    t130 = np.arctan2(t127 * t128, t128 * t129)
+    del t127, t128, t129
+    t131 = t94 + t95
+    del t94, t95
+    t132 = 2.0 * np.sqrt(above_beta_0_front_elbow_down) * np.sqrt(below_beta_0_front_elbow_down)
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t130 = t127 - np.arctan2(t117, t116 * t129)
-    del t116, t117, t129
-    t131 = _runtime.wrap(-(t13 + t12))
+    t133 = t130 - np.arctan2(t120, t119 * t132)
+    del t119, t120, t132
+    t134 = _runtime.wrap(-(t13 + t12))
     del t12, t13
-    t132 = t66 + t67
+    t135 = t66 + t67
     del t66, t67
-    t133 = t62 - t64
+    t136 = t62 - t64
     del t62, t64
-    t134 = v_2_front_elbow_down * t132 + v_1_front_elbow_down * t133
+    t137 = v_2_front_elbow_down * t135 + v_1_front_elbow_down * t136
     del v_1_front_elbow_down
-    margin_alpha_rear_elbow_up = t97 - np.abs(t134)
-    del t134
-    margin_beta_rear_elbow_up = t97 - np.abs(L1 * t132)
-    del t97
-    t135 = t43 & (t45 <= margin_alpha_rear_elbow_up) & (t69 <= margin_beta_rear_elbow_up)
-    t136 = sigma_uv_front_elbow_down * t132
-    del sigma_uv_front_elbow_down, t132
-    t137 = t136 - t110
-    t138 = t71 <= t137
-    t139 = -(t110 + t136)
-    del t136
-    t140 = t71 <= t139
-    below_beta_0_rear_elbow_up = np.maximum(t137, t78)
+    margin_alpha_rear_elbow_up = t98 - np.abs(t137)
     del t137
-    above_beta_0_rear_elbow_up = np.maximum(t139, t78)
-    del t139
-    t141 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
-    total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
-    t142 = 1.0 / total_beta_0_rear_elbow_up
-    del total_beta_0_rear_elbow_up
-    t143 = t141 * t142
+    t138 = t43 & (t45 <= margin_alpha_rear_elbow_up)
+    margin_beta_rear_elbow_up = t98 - np.abs(L1 * t135)
+    del t98
+    t139 = t138 & (t70 <= margin_beta_rear_elbow_up)
+    t140 = sigma_uv_front_elbow_down * t135
+    del sigma_uv_front_elbow_down, t135
+    t141 = t140 - t112
+    t142 = t72 <= t141
+    t143 = -(t112 + t140)
+    del t140
+    t144 = t72 <= t143
+    t145 = t139 & t142 & t144
+    below_beta_0_rear_elbow_up = np.maximum(t141, t80)
     del t141
-    t144 = t133 - v_2_front_elbow_down * t143
-    del t133
-    left_along_rear_elbow_up = L1 - np.abs(t144)
-    t145 = t135 & t138 & t140 & t138 & t140 & (t77 <= left_along_rear_elbow_up)
-    del t135
-    t146 = L1 + t144
-    t147 = L1 - t144
-    del t144
-    t148 = t145 & t138 & t140 & (t77 <= t146) & (t77 <= t147)
-    del t138, t140, t145
-    unreachable_3 = np.logical_not(t148)
-    del t148
-    t149 = _runtime.poison(invalid | unreachable_3)
-    t150 = np.arctan2(up, out_rear_elbow_up)
-    del out_rear_elbow_up, up
-    below_alpha_rear_elbow_up = np.maximum(t146, t78)
+    above_beta_0_rear_elbow_up = np.maximum(t143, t80)
+    del t143
+    t146 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
+    t147 = 1.0 / total_beta_0_rear_elbow_up
+    del total_beta_0_rear_elbow_up
+    t148 = t146 * t147
     del t146
-    above_alpha_rear_elbow_up = np.maximum(t147, t78)
-    del t147
-    t151 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t149 = t136 - v_2_front_elbow_down * t148
+    del t136
+    left_along_rear_elbow_up = L1 - np.abs(t149)
+    t150 = t145 & t142 & t144 & (t79 <= left_along_rear_elbow_up)
+    t151 = L1 + t149
+    t152 = L1 - t149
+    del t149
+    t153 = t150 & t142 & t144 & (t79 <= t151) & (t79 <= t152)
+    del t142, t144, t150
+    unreachable_3 = np.logical_not(t153)
+    del t153
+    t154 = _runtime.poison(invalid | unreachable_3)
+    t155 = np.arctan2(up, out_rear_elbow_up)
+    del out_rear_elbow_up, up
+    below_alpha_rear_elbow_up = np.maximum(t151, t80)
+    del t151
+    above_alpha_rear_elbow_up = np.maximum(t152, t80)
+    del t152
+    t156 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t152 = 1.0 / total_alpha_rear_elbow_up
+    t157 = 1.0 / total_alpha_rear_elbow_up
     del total_alpha_rear_elbow_up
-    t153 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t158 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t154 = np.arctan2(t151 * t152, t152 * t153)
-    del t151, t152, t153
-    t155 = 2.0 * np.sqrt(above_beta_0_rear_elbow_up) * np.sqrt(below_beta_0_rear_elbow_up)
+    t159 = np.arctan2(t156 * t157, t157 * t158)
+    del t156, t157, t158
+    t160 = 2.0 * np.sqrt(above_beta_0_rear_elbow_up) * np.sqrt(below_beta_0_rear_elbow_up)
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t156 = t154 - np.arctan2(t143, t142 * t155)
-    del t142, t143, t155
-    t157 = t101 + t103
-    del t101, t103
-    t158 = t104 - t105
-    del t104, t105
-    margin_alpha_rear_elbow_down = t54 - np.abs(-(v_2 * t157 + v_1 * t158))
+    t161 = t159 - np.arctan2(t148, t147 * t160)
+    del t147, t148, t160
+    t162 = t102 + t104
+    del t102, t104
+    t163 = t105 - t106
+    del t105, t106
+    margin_alpha_rear_elbow_down = t54 - np.abs(-(v_2 * t162 + v_1 * t163))
     del v_1
-    margin_beta_rear_elbow_down = t54 - np.abs(-(L1 * t157))
+    t164 = t43 & (t45 <= margin_alpha_rear_elbow_down)
+    del t45
+    margin_beta_rear_elbow_down = t54 - np.abs(-(L1 * t162))
     del t54
-    t159 = t43 & (t45 <= margin_alpha_rear_elbow_down) & (t69 <= margin_beta_rear_elbow_down)
-    del t43, t45, t69
-    part_y_rear_elbow_down = sigma_uv * t157
-    del sigma_uv, t157
-    t160 = -(t72 + part_y_rear_elbow_down)
-    t161 = t71 <= t160
-    t162 = part_y_rear_elbow_down - t72
+    t165 = t164 & (t70 <= margin_beta_rear_elbow_down)
+    del t70
+    part_y_rear_elbow_down = sigma_uv * t162
+    del sigma_uv, t162
+    t166 = -(t73 + part_y_rear_elbow_down)
+    t167 = t72 <= t166
+    t168 = part_y_rear_elbow_down - t73
     del part_y_rear_elbow_down
-    t163 = t71 <= t162
-    del t71
-    below_beta_0_rear_elbow_down = np.maximum(t160, t78)
-    del t160
-    above_beta_0_rear_elbow_down = np.maximum(t162, t78)
-    del t162
-    t164 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
-    total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
-    t165 = 1.0 / total_beta_0_rear_elbow_down
-    del total_beta_0_rear_elbow_down
-    t166 = t164 * t165
-    del t164
-    along_u_rear_elbow_down = t158 + v_2 * t166
-    del t158
-    left_along_rear_elbow_down = L1 - np.abs(-along_u_rear_elbow_down)
-    t167 = t159 & t161 & t163 & t161 & t163 & (t77 <= left_along_rear_elbow_down)
-    del t159
-    t168 = L1 - along_u_rear_elbow_down
-    t169 = L1 + along_u_rear_elbow_down
-    del along_u_rear_elbow_down
-    t170 = t167 & t161 & t163 & (t77 <= t168) & (t77 <= t169)
-    del t161, t163, t167, t77
-    unreachable_4 = np.logical_not(t170)
-    del t170
-    t171 = _runtime.poison(invalid | unreachable_4)
-    t172 = np.arctan2(-t98, -out_front_elbow_down)
-    del out_front_elbow_down, t98
-    below_alpha_rear_elbow_down = np.maximum(t168, t78)
+    t169 = t72 <= t168
+    del t72
+    t170 = t165 & t167 & t169
+    below_beta_0_rear_elbow_down = np.maximum(t166, t80)
+    del t166
+    above_beta_0_rear_elbow_down = np.maximum(t168, t80)
     del t168
-    above_alpha_rear_elbow_down = np.maximum(t169, t78)
-    del t169, t78
-    t173 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t171 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
+    t172 = 1.0 / total_beta_0_rear_elbow_down
+    del total_beta_0_rear_elbow_down
+    t173 = t171 * t172
+    del t171
+    along_u_rear_elbow_down = t163 + v_2 * t173
+    del t163
+    left_along_rear_elbow_down = L1 - np.abs(-along_u_rear_elbow_down)
+    t174 = t170 & t167 & t169 & (t79 <= left_along_rear_elbow_down)
+    t175 = L1 - along_u_rear_elbow_down
+    t176 = L1 + along_u_rear_elbow_down
+    del along_u_rear_elbow_down
+    t177 = t174 & t167 & t169 & (t79 <= t175) & (t79 <= t176)
+    del t167, t169, t174, t79
+    unreachable_4 = np.logical_not(t177)
+    del t177
+    t178 = _runtime.poison(invalid | unreachable_4)
+    t179 = np.arctan2(-t99, -out_front_elbow_down)
+    del out_front_elbow_down, t99
+    below_alpha_rear_elbow_down = np.maximum(t175, t80)
+    del t175
+    above_alpha_rear_elbow_down = np.maximum(t176, t80)
+    del t176, t80
+    t180 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t174 = 1.0 / total_alpha_rear_elbow_down
+    t181 = 1.0 / total_alpha_rear_elbow_down
     del total_alpha_rear_elbow_down
-    t175 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t182 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t176 = np.arctan2(t173 * t174, t174 * t175)
-    del t173, t174, t175
-    t177 = 2.0 * np.sqrt(above_beta_0_rear_elbow_down) * np.sqrt(below_beta_0_rear_elbow_down)
+    t183 = np.arctan2(t180 * t181, t181 * t182)
+    del t180, t181, t182
+    t184 = 2.0 * np.sqrt(above_beta_0_rear_elbow_down) * np.sqrt(below_beta_0_rear_elbow_down)
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t178 = t176 - np.arctan2(t166, t165 * t177)
-    del t165, t166, t177
-    t179 = 1.0 <= _runtime.DETERMINED
-    t180 = (wrist <= al * _runtime.DETERMINED) | t179 | t179
-    del t179, wrist
-    t181 = t180 | (1.0 <= 0.0) | (lengths <= _runtime.DETERMINED * lengths)
-    del t180
-    t182 = _runtime.status(invalid, unreachable_2, t181)
+    t185 = t183 - np.arctan2(t173, t172 * t184)
+    del t172, t173, t184
+    t186 = 1.0 <= _runtime.DETERMINED
+    t187 = (wrist <= al * _runtime.DETERMINED) | t186 | t186
+    del t186, wrist
+    t188 = t187 | (1.0 <= 0.0) | (lengths <= _runtime.DETERMINED * lengths)
+    del t187
+    t189 = _runtime.status(invalid, unreachable_2, t188)
     del unreachable_2
-    t183 = _runtime.status(invalid, unreachable_3, t181)
+    t190 = _runtime.status(invalid, unreachable_3, t188)
     del unreachable_3
-    t184 = _runtime.status(invalid, unreachable_4, t181)
+    t191 = _runtime.status(invalid, unreachable_4, t188)
     del unreachable_4
-    t185 = h * slack
+    t192 = h * slack
     del slack
-    tangent = 4.0 * root * t35 - t185 * 0.00390625 <= _runtime.VANISHING * t185
-    del t185
-    t186 = tangent | (h <= _runtime.VANISHING * lengths)
+    tangent = 4.0 * root * t35 - t192 * 0.00390625 <= _runtime.VANISHING * t192
+    del t192
+    t193 = tangent | (h <= _runtime.VANISHING * lengths)
     del h, lengths, tangent
-    t187 = t186 | (L1 * fore <= _runtime.VANISHING * t36)
-    del t186, t36
-    t188 = _runtime.VANISHING * t35
+    t194 = _runtime.VANISHING * t35
     del t35
-    t189 = t187 | (np.abs(t37) + np.abs(root) <= t188) | (fore <= t188)
-    del fore, root, t187, t188, t37
-    t190 = np.maximum(-(margin_alpha * 9.094947017729282e-13), margin_alpha)
+    t195 = (L1 * fore <= _runtime.VANISHING * t36) | (np.abs(t37) + np.abs(root) <= t194)
+    del root, t36, t37
+    t196 = np.maximum(-(margin_alpha * 9.094947017729282e-13), margin_alpha)
     del margin_alpha
-    t191 = _runtime.VANISHING * play_alpha
+    t197 = _runtime.VANISHING * play_alpha
     del play_alpha
-    t192 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
+    t198 = margin_alpha_front_elbow_down * 9.094947017729282e-13
+    t199 = np.maximum(-t198, margin_alpha_front_elbow_down)
+    del margin_alpha_front_elbow_down, t198
+    t200 = t195 | (fore <= t194) | (t196 <= t197) | (t199 <= t197)
+    del fore, t194, t195, t196, t199
+    t201 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t202 = np.maximum(-t201, margin_alpha_rear_elbow_up)
+    del margin_alpha_rear_elbow_up, t201
+    t203 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t204 = np.maximum(-t203, margin_alpha_rear_elbow_down)
+    del margin_alpha_rear_elbow_down, t203
+    t205 = t43 & (t200 | (t202 <= t197) | (t204 <= t197))
+    del t197, t200, t202, t204, t43
+    t206 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
     del margin_beta
-    t193 = _runtime.VANISHING * play_beta
+    t207 = _runtime.VANISHING * play_beta
     del play_beta
-    parallel = -t72 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
-    del t72, v_2
-    t194 = t189 | (t190 <= t191) | (t192 <= t193) | parallel
-    del parallel, t189, t190, t192
-    t195 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    parallel = -t73 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
+    del t73, v_2
+    t208 = (t32 & t193) | t205 | (t69 & (t206 <= t207)) | ((t71 | t165) & parallel)
+    del parallel, t165, t193, t205, t206, t32, t69, t71
+    t209 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
     del left_along
-    t196 = _runtime.VANISHING * play
+    t210 = _runtime.VANISHING * play
     del play
-    t197 = margin_alpha_front_elbow_down * 9.094947017729282e-13
-    t198 = np.maximum(-t197, margin_alpha_front_elbow_down)
-    del margin_alpha_front_elbow_down, t197
-    t199 = margin_beta_front_elbow_down * 9.094947017729282e-13
-    t200 = np.maximum(-t199, margin_beta_front_elbow_down)
-    del margin_beta_front_elbow_down, t199
-    t201 = t194 | (t195 <= t196) | (t198 <= t191) | (t200 <= t193)
-    del t194, t195, t198, t200
-    t202 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
+    t211 = margin_beta_front_elbow_down * 9.094947017729282e-13
+    t212 = np.maximum(-t211, margin_beta_front_elbow_down)
+    del margin_beta_front_elbow_down, t211
+    t213 = t208 | (t78 & (t209 <= t210)) | (t109 & (t212 <= t207))
+    del t109, t208, t209, t212, t78
+    t214 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
     del v_2_front_elbow_down
-    t203 = left_along_front_elbow_down * 9.094947017729282e-13
-    t204 = np.maximum(-t203, left_along_front_elbow_down)
-    del left_along_front_elbow_down, t203
-    t205 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t206 = np.maximum(-t205, margin_alpha_rear_elbow_up)
-    del margin_alpha_rear_elbow_up, t205
-    t207 = t201 | (-t110 <= t202) | (t204 <= t196) | (t206 <= t191)
-    del t110, t201, t202, t204, t206
-    t208 = margin_beta_rear_elbow_up * 9.094947017729282e-13
-    spent_beta_rear_elbow_up = np.maximum(-t208, margin_beta_rear_elbow_up) <= t193
-    del margin_beta_rear_elbow_up, t208
-    t209 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t209, left_along_rear_elbow_up) <= t196
-    del left_along_rear_elbow_up, t209
-    t210 = t207 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up
-    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t207
-    t211 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t212 = np.maximum(-t211, margin_alpha_rear_elbow_down)
-    del margin_alpha_rear_elbow_down, t211
-    t213 = margin_beta_rear_elbow_down * 9.094947017729282e-13
-    t214 = np.maximum(-t213, margin_beta_rear_elbow_down)
-    del margin_beta_rear_elbow_down, t213
-    t215 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t216 = np.maximum(-t215, left_along_rear_elbow_down)
-    del left_along_rear_elbow_down, t215
-    t217 = t210 | (t212 <= t191) | (t214 <= t193) | (t216 <= t196)
-    del t191, t193, t196, t210, t212, t214, t216
+    t215 = left_along_front_elbow_down * 9.094947017729282e-13
+    t216 = np.maximum(-t215, left_along_front_elbow_down)
+    del left_along_front_elbow_down, t215
+    t217 = t213 | ((t110 | t139) & (-t112 <= t214)) | (t117 & (t216 <= t210))
+    del t110, t112, t117, t139, t213, t214, t216
+    t218 = margin_beta_rear_elbow_up * 9.094947017729282e-13
+    spent_beta_rear_elbow_up = np.maximum(-t218, margin_beta_rear_elbow_up) <= t207
+    del margin_beta_rear_elbow_up, t218
+    t219 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t219, left_along_rear_elbow_up) <= t210
+    del left_along_rear_elbow_up, t219
+    t220 = t217 | (t138 & spent_beta_rear_elbow_up) | (t145 & spent_along_rear_elbow_up)
+    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t138, t145, t217
+    t221 = margin_beta_rear_elbow_down * 9.094947017729282e-13
+    t222 = np.maximum(-t221, margin_beta_rear_elbow_down)
+    del margin_beta_rear_elbow_down, t221
+    t223 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t224 = np.maximum(-t223, left_along_rear_elbow_down)
+    del left_along_rear_elbow_down, t223
+    t225 = t220 | (t164 & (t222 <= t207)) | (t170 & (t224 <= t210))
+    del t164, t170, t207, t210, t220, t222, t224
     return (
-        t14 + t86,
-        _runtime.wrap(t87 - t90) + t86,
-        _runtime.wrap(t92 - t95) + t86,
-        _runtime.wrap(t87 + t90) + t86,
-        _runtime.wrap(-(t95 + t92)) + t86,
-        t96 + t86,
-        t14 + t122,
-        _runtime.wrap(t123 - t127) + t122,
-        _runtime.wrap(t128 + t130) + t122,
-        _runtime.wrap(t123 + t127) + t122,
-        _runtime.wrap(t128 - t130) + t122,
-        t96 + t122,
-        t131 + t149,
-        _runtime.wrap(t150 - t154) + t149,
-        _runtime.wrap(t128 + t156) + t149,
-        _runtime.wrap(t150 + t154) + t149,
-        _runtime.wrap(t128 - t156) + t149,
-        t96 + t149,
-        t131 + t171,
-        _runtime.wrap(t172 - t176) + t171,
-        _runtime.wrap(t178 - t95) + t171,
-        _runtime.wrap(t172 + t176) + t171,
-        _runtime.wrap(-(t95 + t178)) + t171,
-        t96 + t171,
-        _runtime.status(invalid, unreachable, t181),
-        t182,
-        t183,
-        t184,
-        t217,
+        t14 + t87,
+        _runtime.wrap(t88 - t91) + t87,
+        _runtime.wrap(t93 - t96) + t87,
+        _runtime.wrap(t88 + t91) + t87,
+        _runtime.wrap(-(t96 + t93)) + t87,
+        t97 + t87,
+        t14 + t125,
+        _runtime.wrap(t126 - t130) + t125,
+        _runtime.wrap(t131 + t133) + t125,
+        _runtime.wrap(t126 + t130) + t125,
+        _runtime.wrap(t131 - t133) + t125,
+        t97 + t125,
+        t134 + t154,
+        _runtime.wrap(t155 - t159) + t154,
+        _runtime.wrap(t131 + t161) + t154,
+        _runtime.wrap(t155 + t159) + t154,
+        _runtime.wrap(t131 - t161) + t154,
+        t97 + t154,
+        t134 + t178,
+        _runtime.wrap(t179 - t183) + t178,
+        _runtime.wrap(t185 - t96) + t178,
+        _runtime.wrap(t179 + t183) + t178,
+        _runtime.wrap(-(t96 + t185)) + t178,
+        t97 + t178,
+        _runtime.status(invalid, unreachable, t188),
+        t189,
+        t190,
+        t191,
+        t225,
     )
 
 

@@ -14,7 +14,7 @@
 #   singularities: 55 compare and select, 91 add, 13 divide, 153 multiply, 5 sincos, 6 sqrt
 #   ik: 866 compare and select, 643 add, 28 atan2, 96 divide, 983 multiply, 1 reduce to a turn, 3
 #     sincos, 42 sqrt
-#   ik where nothing vanishes: 285 compare and select, 263 add, 23 atan2, 17 divide, 362 multiply,
+#   ik where nothing vanishes: 304 compare and select, 263 add, 23 atan2, 17 divide, 362 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
 #   wrist_length: 22 compare and select, 7 add, 1 divide, 11 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
@@ -4225,705 +4225,701 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t23, t3
     t25 = (-_runtime.FEASIBILITY <= c_phi) & (-t24 <= t6)
     del t6
+    t26 = t25 & (-t24 <= t7)
+    del t24, t25, t7
     lengths = L1 + d1 + d + loff + lp + t5 + t20
     del t20, t5
     base = d * t4
     del t4
-    t26 = 1.0 / c_phi
-    t_phi = s_phi * t26
+    t27 = 1.0 / c_phi
+    t_phi = s_phi * t27
     t_psi = s_psi / c_psi
     far_apart = np.abs(base * t_phi) * 0.001953125 + np.abs(t_psi * base) * 0.001953125
     del base
     slack = lengths * 0.25 + far_apart
-    t27 = -(_runtime.FEASIBILITY * slack)
-    t28 = t25 & (-t24 <= t7) & (t27 <= t12) & (t27 <= t11)
-    del t11, t12, t24, t25, t27, t7
-    t29 = L1 * 2.0
+    t28 = -(_runtime.FEASIBILITY * slack)
+    t29 = t26 & (t28 <= t12) & (t28 <= t11)
+    del t11, t12, t28
+    t30 = L1 * 2.0
     L_2W = L2 + c_psi * t9
     del c_psi
     a_3W = a3 + c_phi * t1 + s_phi * s_psi * t9
     del c_phi, s_phi, s_psi, t1, t9
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t30 = 2.0 * fore
-    t31 = -(_runtime.FEASIBILITY * ((t29 + t30) * slack))
-    t32 = L1 + fore
-    t33 = t32 * t32
-    t34 = z - d1
-    square = t34 * t34 + root * root
-    t35 = t33 - square
-    t36 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t37 = L1 - fore
-    t38 = _runtime.FEASIBILITY * ((t36 + 2.0 * np.abs(t37)) * slack)
-    del t36
-    t39 = square - t37 * t37
+    t31 = 2.0 * fore
+    t32 = -(_runtime.FEASIBILITY * ((t30 + t31) * slack))
+    t33 = L1 + fore
+    t34 = t33 * t33
+    t35 = z - d1
+    square = t35 * t35 + root * root
+    t36 = t34 - square
+    t37 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t38 = L1 - fore
+    t39 = _runtime.FEASIBILITY * ((t37 + 2.0 * np.abs(t38)) * slack)
+    del t37
+    t40 = square - t38 * t38
     del square
-    t40 = t28 & (t31 <= t35) & (-t38 <= t39)
-    del t28, t31, t38
+    t41 = t29 & (t32 <= t36) & (-t39 <= t40)
+    del t32, t39
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
     play = d * 0.25 + lengths * 0.00048828125 + far_apart
     del far_apart
     play_right = size * play
     del play
-    t41 = -(_runtime.FEASIBILITY * play_right)
-    t42 = size * size
-    M = np.maximum(t39, 0.0)
-    del t39
-    N = np.maximum(t35, 0.0)
-    del t35
-    t43 = 1.0 / (M + N)
-    s_bend_front_elbow_down_alike = t43 * (2.0 * np.sqrt(M * N))
-    t44 = fore * s_bend_front_elbow_down_alike
-    t45 = root * t44
-    ahead_1 = t37 + t30 * M * t43
-    del t30, t37
-    t46 = t34 * ahead_1
-    up = t45 + t46
-    t47 = t34 * t44
-    del t44
-    t48 = root * ahead_1
+    t42 = -(_runtime.FEASIBILITY * play_right)
+    t43 = size * size
+    M = np.maximum(t40, 0.0)
+    del t40
+    N = np.maximum(t36, 0.0)
+    del t36
+    t44 = 1.0 / (M + N)
+    s_bend_front_elbow_down_alike = t44 * (2.0 * np.sqrt(M * N))
+    t45 = fore * s_bend_front_elbow_down_alike
+    t46 = root * t45
+    ahead_1 = t38 + t31 * M * t44
+    del t31, t38
+    t47 = t35 * ahead_1
+    up = t46 + t47
+    t48 = t35 * t45
+    del t45
+    t49 = root * ahead_1
     del ahead_1
-    t49 = t47 - t48
-    t50 = 1.0 / np.sqrt(t49 * t49 + up * up)
-    stheta2A = up * t50
+    t50 = t48 - t49
+    t51 = 1.0 / np.sqrt(t50 * t50 + up * up)
+    stheta2A = up * t51
     del up
     elbow_21 = L1 * stheta2A
-    t51 = 1.0 / fore
-    c_lag = a_3W * t51
+    t52 = 1.0 / fore
+    c_lag = a_3W * t52
     del a_3W
-    c_bend = t43 * (M - N)
-    del M, N, t43
-    t52 = c_lag * c_bend
-    s_lag = L_2W * t51
-    del L_2W, t51
-    t53 = s_lag * s_bend_front_elbow_down_alike
-    c_relative = t52 + t53
-    t54 = t49 * t50
-    del t49, t50
-    t55 = s_lag * c_bend
+    c_bend = t44 * (M - N)
+    del M, N, t44
+    t53 = c_lag * c_bend
+    s_lag = L_2W * t52
+    del L_2W, t52
+    t54 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t53 + t54
+    t55 = t50 * t51
+    del t50, t51
+    t56 = s_lag * c_bend
     del c_bend, s_lag
-    t56 = c_lag * s_bend_front_elbow_down_alike
+    t57 = c_lag * s_bend_front_elbow_down_alike
     del c_lag, s_bend_front_elbow_down_alike
-    s_relative = t55 - t56
-    t57 = c_relative * t54 + s_relative * stheta2A
-    stheta23A = c_relative * stheta2A - s_relative * t54
-    point_21 = elbow_21 + L2 * t57 + a3 * stheta23A
-    shift_21 = d * (t26 * (t_psi * t57) - t_phi * stheta23A)
+    s_relative = t56 - t57
+    t58 = c_relative * t55 + s_relative * stheta2A
+    stheta23A = c_relative * stheta2A - s_relative * t55
+    point_21 = elbow_21 + L2 * t58 + a3 * stheta23A
+    shift_21 = d * (t27 * (t_psi * t58) - t_phi * stheta23A)
     h_right_0 = point_21 + shift_21
-    t58 = L1 * t54
-    t59 = t58 - L2 * stheta23A + a3 * t57
-    shift_11 = d * (t_phi * t57 + t26 * (t_psi * stheta23A))
-    del stheta23A, t57
-    t60 = t59 - shift_11
-    t61 = h_right_0 * h_right_0 + t60 * t60
+    t59 = L1 * t55
+    t60 = t59 - L2 * stheta23A + a3 * t58
+    shift_11 = d * (t_phi * t58 + t27 * (t_psi * stheta23A))
+    del stheta23A, t58
+    t61 = t60 - shift_11
+    t62 = h_right_0 * h_right_0 + t61 * t61
     gap = shift_11 * shift_11 + shift_21 * shift_21
-    t62 = gap * gap
-    t63 = L1 - fore_arm
-    t64 = t63 * t63
+    t63 = gap * gap
+    t64 = L1 - fore_arm
+    t65 = t64 * t64
     straight_mid = L2 * s_relative + a3 * c_relative
-    t65 = 0.0 <= straight_mid
+    t66 = 0.0 <= straight_mid
     large_mid = fore_arm + np.abs(straight_mid)
     del straight_mid
-    t66 = L2 * c_relative - a3 * s_relative
-    small_mid = t66 * t66 / large_mid
-    M_mid = t29 * _runtime.select(t65, large_mid, small_mid)
-    t67 = M_mid + gap
-    t68 = 2.0 * t59 * shift_11 - 2.0 * point_21 * shift_21
-    farther_right = _runtime.select(t42 * t61 < t62, t61 - t64, t67 - t68)
-    del t61
-    N_mid = t29 * _runtime.select(t65, small_mid, large_mid)
-    del large_mid, small_mid, t65
-    t69 = N_mid - gap
-    nearer_right = t68 + t69
+    t67 = L2 * c_relative - a3 * s_relative
+    small_mid = t67 * t67 / large_mid
+    M_mid = t30 * _runtime.select(t66, large_mid, small_mid)
+    t68 = M_mid + gap
+    t69 = 2.0 * t60 * shift_11 - 2.0 * point_21 * shift_21
+    farther_right = _runtime.select(t43 * t62 < t63, t62 - t65, t68 - t69)
+    del t62
+    N_mid = t30 * _runtime.select(t66, small_mid, large_mid)
+    del large_mid, small_mid, t66
+    t70 = N_mid - gap
+    nearer_right = t69 + t70
     margin_right = np.minimum(farther_right, nearer_right)
+    t71 = t41 & (t42 <= margin_right)
     h_left_0 = point_21 - shift_21
     del point_21, shift_21
-    t70 = t59 + shift_11
-    del shift_11, t59
-    t71 = h_left_0 * h_left_0 + t70 * t70
-    farther_left = _runtime.select(t42 * t71 < t62, t71 - t64, t67 + t68)
-    del t62, t67, t71
-    nearer_left = t69 - t68
-    del t68, t69
+    t72 = t60 + shift_11
+    del shift_11, t60
+    t73 = h_left_0 * h_left_0 + t72 * t72
+    farther_left = _runtime.select(t43 * t73 < t63, t73 - t65, t68 + t69)
+    del t63, t68, t73
+    nearer_left = t70 - t69
+    del t69, t70
     margin_left = np.minimum(farther_left, nearer_left)
-    t72 = t40 & (t41 <= margin_right) & (t41 <= margin_left)
-    t73 = t72 & (t41 <= nearer_right) & (t41 <= farther_right)
-    del t72
-    t74 = t73 & (t41 <= nearer_left) & (t41 <= farther_left)
-    del t73
-    unreachable = np.logical_not(t74)
+    t74 = t71 & (t42 <= margin_left) & (t42 <= nearer_right)
+    t75 = t74 & (t42 <= farther_right)
     del t74
-    t75 = _runtime.poison(invalid | unreachable)
-    t76 = t15 + t75
-    t77 = 2.0 * fore_arm
-    t78 = L1 * fore_arm
-    t79 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t78))
-    M_right = np.maximum(farther_right, t79)
+    t76 = t75 & (t42 <= nearer_left) & (t42 <= farther_left)
+    unreachable = np.logical_not(t76)
+    t77 = _runtime.poison(invalid | unreachable)
+    t78 = t15 + t77
+    t79 = 2.0 * fore_arm
+    t80 = L1 * fore_arm
+    t81 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t80))
+    M_right = np.maximum(farther_right, t81)
     del farther_right
-    N_right = np.maximum(nearer_right, t79)
+    N_right = np.maximum(nearer_right, t81)
     del nearer_right
-    t80 = 1.0 / (M_right + N_right)
-    ahead_1_right = t63 + t77 * M_right * t80
-    sigma_right = _runtime.sign(-t66)
-    del t66
-    t81 = 2.0 * sigma_right
-    t82 = np.sqrt(M_right * N_right)
-    t83 = fore_arm * (t80 * (t81 * t82))
-    del t80
-    t84 = np.arctan2(h_right_0 * ahead_1_right + t60 * t83, h_right_0 * t83 - t60 * ahead_1_right)
-    del ahead_1_right, t83
-    t85 = _runtime.wrap_cut(t84) + t75
-    del t84
-    t86 = np.arctan2(L2, a3)
-    t87 = sigma_right * np.arctan2(2.0 * t82, M_right - N_right)
-    del M_right, N_right, t82
-    t88 = _runtime.wrap(t86 + t87) + t75
-    del t87
+    t82 = 1.0 / (M_right + N_right)
+    ahead_1_right = t64 + t79 * M_right * t82
+    sigma_right = _runtime.sign(-t67)
+    del t67
+    t83 = 2.0 * sigma_right
+    t84 = np.sqrt(M_right * N_right)
+    t85 = fore_arm * (t82 * (t83 * t84))
+    del t82
+    t86 = np.arctan2(h_right_0 * ahead_1_right + t61 * t85, h_right_0 * t85 - t61 * ahead_1_right)
+    del ahead_1_right, t85
+    t87 = _runtime.wrap_cut(t86) + t77
+    del t86
+    t88 = np.arctan2(L2, a3)
+    t89 = sigma_right * np.arctan2(2.0 * t84, M_right - N_right)
+    del M_right, N_right, t84
+    t90 = _runtime.wrap(t88 + t89) + t77
+    del t89
     M_left = np.maximum(farther_left, 0.0)
     del farther_left
     N_left = np.maximum(nearer_left, 0.0)
     del nearer_left
-    t89 = 1.0 / (M_left + N_left)
-    ahead_1_left = t63 + t77 * M_left * t89
-    t90 = h_left_0 * ahead_1_left
-    t91 = np.sqrt(M_left * N_left)
-    t92 = fore_arm * (t89 * (t81 * t91))
-    del t89
-    t93 = t70 * t92
-    t94 = h_left_0 * t92
-    del t92
-    t95 = t70 * ahead_1_left
+    t91 = 1.0 / (M_left + N_left)
+    ahead_1_left = t64 + t79 * M_left * t91
+    t92 = h_left_0 * ahead_1_left
+    t93 = np.sqrt(M_left * N_left)
+    t94 = fore_arm * (t91 * (t83 * t93))
+    del t91
+    t95 = t72 * t94
+    t96 = h_left_0 * t94
+    del t94
+    t97 = t72 * ahead_1_left
     del ahead_1_left
-    t96 = _runtime.wrap_cut(np.arctan2(t90 + t93, t94 - t95))
-    t97 = sigma_right * np.arctan2(2.0 * t91, M_left - N_left)
-    del M_left, N_left, t91
-    t98 = _runtime.wrap(principal_pitch)
+    t98 = _runtime.wrap_cut(np.arctan2(t92 + t95, t96 - t97))
+    t99 = sigma_right * np.arctan2(2.0 * t93, M_left - N_left)
+    del M_left, N_left, t93
+    t100 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    t99 = t98 + t75
-    t100 = _runtime.wrap_cut(np.arctan2(t90 - t93, -(t95 + t94)))
-    del t90, t93, t94, t95
-    t101 = t45 - t46
-    del t45, t46
-    out_front_elbow_down_alike = t47 + t48
-    del t47, t48
-    t102 = out_front_elbow_down_alike * out_front_elbow_down_alike
-    t103 = 1.0 / np.sqrt(t102 + t101 * t101)
-    del t102
-    t104 = t101 * t103
-    del t101
-    t105 = L1 * t104
-    c_relative_front_elbow_down_alike = t52 - t53
-    del t52, t53
-    ctheta2A_front_elbow_down_alike = out_front_elbow_down_alike * t103
-    del out_front_elbow_down_alike, t103
-    t106 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    s_relative_front_elbow_down_alike = t55 + t56
-    del t55, t56
-    ctheta23A_front_elbow_down_alike = t106 + s_relative_front_elbow_down_alike * t104
-    del t106
-    t107 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    t108 = c_relative_front_elbow_down_alike * t104 - t107
-    del t107
-    t109 = t105 + L2 * ctheta23A_front_elbow_down_alike + a3 * t108
-    t110 = t26 * (t_psi * ctheta23A_front_elbow_down_alike)
-    t111 = d * (t110 - t_phi * t108)
-    del t110
-    t112 = t109 + t111
+    t101 = t100 + t77
+    t102 = _runtime.wrap_cut(np.arctan2(t92 - t95, -(t97 + t96)))
+    del t92, t95, t96, t97
+    t103 = t46 - t47
+    del t46, t47
+    out_front_elbow_down_alike = t48 + t49
+    del t48, t49
+    t104 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t105 = 1.0 / np.sqrt(t104 + t103 * t103)
+    del t104
+    t106 = t103 * t105
+    del t103
+    t107 = L1 * t106
+    c_relative_front_elbow_down_alike = t53 - t54
+    del t53, t54
+    ctheta2A_front_elbow_down_alike = out_front_elbow_down_alike * t105
+    del out_front_elbow_down_alike, t105
+    t108 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    s_relative_front_elbow_down_alike = t56 + t57
+    del t56, t57
+    ctheta23A_front_elbow_down_alike = t108 + s_relative_front_elbow_down_alike * t106
+    del t108
+    t109 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t110 = c_relative_front_elbow_down_alike * t106 - t109
+    del t109
+    t111 = t107 + L2 * ctheta23A_front_elbow_down_alike + a3 * t110
+    t112 = t27 * (t_psi * ctheta23A_front_elbow_down_alike)
+    t113 = d * (t112 - t_phi * t110)
+    del t112
+    t114 = t111 + t113
     elbow_11_front_elbow_down_alike = L1 * ctheta2A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = elbow_11_front_elbow_down_alike - L2 * t108 + a3 * ctheta23A_front_elbow_down_alike
-    t113 = t_phi * ctheta23A_front_elbow_down_alike + t26 * (t_psi * t108)
-    del ctheta23A_front_elbow_down_alike, t108
-    t114 = d * t113
-    del t113
-    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t114
-    t115 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t116 = t112 * t112 + t115
+    point_11_front_elbow_down_alike = elbow_11_front_elbow_down_alike - L2 * t110 + a3 * ctheta23A_front_elbow_down_alike
+    t115 = t_phi * ctheta23A_front_elbow_down_alike + t27 * (t_psi * t110)
+    del ctheta23A_front_elbow_down_alike, t110
+    t116 = d * t115
     del t115
-    gap_front_elbow_down_alike = t114 * t114 + t111 * t111
-    t117 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t116
+    t117 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t118 = t114 * t114 + t117
+    del t117
+    gap_front_elbow_down_alike = t116 * t116 + t113 * t113
+    t119 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
     straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
-    t118 = 0.0 <= straight_mid_front_elbow_down_alike
+    t120 = 0.0 <= straight_mid_front_elbow_down_alike
     large_mid_front_elbow_down_alike = fore_arm + np.abs(straight_mid_front_elbow_down_alike)
     del straight_mid_front_elbow_down_alike
-    t119 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
-    small_mid_front_elbow_down_alike = t119 * t119 / large_mid_front_elbow_down_alike
-    t120 = _runtime.select(t118, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
-    M_mid_front_elbow_down_alike = t29 * t120
-    del t120
-    t121 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
-    t122 = 2.0 * point_11_front_elbow_down_alike * t114 - 2.0 * t109 * t111
-    farther_right_front_elbow_down_alike = _runtime.select(t42 * t116 < t117, t116 - t64, t121 - t122)
-    del t116
-    t123 = _runtime.select(t118, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
-    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t118
-    N_mid_front_elbow_down_alike = t29 * t123
-    del t123, t29
-    t124 = N_mid_front_elbow_down_alike - gap_front_elbow_down_alike
-    nearer_right_front_elbow_down_alike = t122 + t124
+    t121 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    small_mid_front_elbow_down_alike = t121 * t121 / large_mid_front_elbow_down_alike
+    t122 = _runtime.select(t120, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    M_mid_front_elbow_down_alike = t30 * t122
+    del t122
+    t123 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
+    t124 = 2.0 * point_11_front_elbow_down_alike * t116 - 2.0 * t111 * t113
+    farther_right_front_elbow_down_alike = _runtime.select(t43 * t118 < t119, t118 - t65, t123 - t124)
+    del t118
+    t125 = _runtime.select(t120, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t120
+    N_mid_front_elbow_down_alike = t30 * t125
+    del t125, t30
+    t126 = N_mid_front_elbow_down_alike - gap_front_elbow_down_alike
+    nearer_right_front_elbow_down_alike = t124 + t126
     margin_right_front_elbow_down_alike = np.minimum(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
-    t125 = t40 & (t41 <= margin_right_front_elbow_down_alike)
-    t126 = t109 - t111
-    del t109, t111
-    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t114
-    del point_11_front_elbow_down_alike, t114
-    t127 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t128 = t126 * t126 + t127
-    del t127
-    farther_left_front_elbow_down_alike = _runtime.select(t42 * t128 < t117, t128 - t64, t121 + t122)
-    del t117, t121, t128
-    nearer_left_front_elbow_down_alike = t124 - t122
-    del t122, t124
-    margin_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, nearer_left_front_elbow_down_alike)
-    t129 = t125 & (t41 <= margin_left_front_elbow_down_alike)
-    del t125
-    t130 = t129 & (t41 <= nearer_right_front_elbow_down_alike)
+    t127 = t41 & (t42 <= margin_right_front_elbow_down_alike)
+    t128 = t111 - t113
+    del t111, t113
+    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t116
+    del point_11_front_elbow_down_alike, t116
+    t129 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t130 = t128 * t128 + t129
     del t129
-    t131 = t130 & (t41 <= farther_right_front_elbow_down_alike)
-    del t130
-    t132 = t131 & (t41 <= nearer_left_front_elbow_down_alike)
+    farther_left_front_elbow_down_alike = _runtime.select(t43 * t130 < t119, t130 - t65, t123 + t124)
+    del t119, t123, t130
+    nearer_left_front_elbow_down_alike = t126 - t124
+    del t124, t126
+    margin_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, nearer_left_front_elbow_down_alike)
+    t131 = t127 & (t42 <= margin_left_front_elbow_down_alike)
+    t132 = t131 & (t42 <= nearer_right_front_elbow_down_alike)
     del t131
-    t133 = t132 & (t41 <= farther_left_front_elbow_down_alike)
+    t133 = t132 & (t42 <= farther_right_front_elbow_down_alike)
     del t132
-    unreachable_2 = np.logical_not(t133)
-    del t133
-    t134 = _runtime.poison(invalid | unreachable_2)
-    t135 = t15 + t134
+    t134 = t133 & (t42 <= nearer_left_front_elbow_down_alike)
+    t135 = t134 & (t42 <= farther_left_front_elbow_down_alike)
+    del t134
+    unreachable_2 = np.logical_not(t135)
+    t136 = _runtime.poison(invalid | unreachable_2)
+    t137 = t15 + t136
     del t15
-    M_right_front_elbow_down_alike = np.maximum(farther_right_front_elbow_down_alike, t79)
+    M_right_front_elbow_down_alike = np.maximum(farther_right_front_elbow_down_alike, t81)
     del farther_right_front_elbow_down_alike
-    N_right_front_elbow_down_alike = np.maximum(nearer_right_front_elbow_down_alike, t79)
+    N_right_front_elbow_down_alike = np.maximum(nearer_right_front_elbow_down_alike, t81)
     del nearer_right_front_elbow_down_alike
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t136 = 1.0 / whole_right_front_elbow_down_alike
+    t138 = 1.0 / whole_right_front_elbow_down_alike
     del whole_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = t63 + t77 * M_right_front_elbow_down_alike * t136
-    sigma_right_front_elbow_down_alike = _runtime.sign(-t119)
-    del t119
-    t137 = 2.0 * sigma_right_front_elbow_down_alike
-    t138 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
-    t139 = np.sqrt(t138)
+    ahead_1_right_front_elbow_down_alike = t64 + t79 * M_right_front_elbow_down_alike * t138
+    sigma_right_front_elbow_down_alike = _runtime.sign(-t121)
+    del t121
+    t139 = 2.0 * sigma_right_front_elbow_down_alike
+    t140 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
+    t141 = np.sqrt(t140)
+    del t140
+    t142 = fore_arm * (t138 * (t139 * t141))
     del t138
-    t140 = fore_arm * (t136 * (t137 * t139))
-    del t136
-    t141 = t112 * ahead_1_right_front_elbow_down_alike + r_right_0_front_elbow_down_alike * t140
-    t142 = r_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t143 = t114 * ahead_1_right_front_elbow_down_alike + r_right_0_front_elbow_down_alike * t142
+    t144 = r_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
     del ahead_1_right_front_elbow_down_alike
-    t143 = _runtime.wrap_cut(np.arctan2(-t141, t142 - t112 * t140))
-    del t140, t141, t142
-    t144 = t143 + t134
-    del t143
-    t145 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
+    t145 = _runtime.wrap_cut(np.arctan2(-t143, t144 - t114 * t142))
+    del t142, t143, t144
+    t146 = t145 + t136
+    del t145
+    t147 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
     del M_right_front_elbow_down_alike, N_right_front_elbow_down_alike
-    t146 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t139, t145)
-    del t139, t145
-    t147 = _runtime.wrap(t86 + t146) + t134
-    del t146
+    t148 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t141, t147)
+    del t141, t147
+    t149 = _runtime.wrap(t88 + t148) + t136
+    del t148
     M_left_front_elbow_down_alike = np.maximum(farther_left_front_elbow_down_alike, 0.0)
     del farther_left_front_elbow_down_alike
     N_left_front_elbow_down_alike = np.maximum(nearer_left_front_elbow_down_alike, 0.0)
     del nearer_left_front_elbow_down_alike
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t148 = 1.0 / whole_left_front_elbow_down_alike
+    t150 = 1.0 / whole_left_front_elbow_down_alike
     del whole_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = t63 + t77 * M_left_front_elbow_down_alike * t148
-    t149 = t126 * ahead_1_left_front_elbow_down_alike
-    t150 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
-    t151 = np.sqrt(t150)
-    del t150
-    t152 = fore_arm * (t148 * (t137 * t151))
-    del t148
-    t153 = r_left_0_front_elbow_down_alike * t152
-    t154 = r_left_0_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    del ahead_1_left_front_elbow_down_alike
-    t155 = t126 * t152
+    ahead_1_left_front_elbow_down_alike = t64 + t79 * M_left_front_elbow_down_alike * t150
+    t151 = t128 * ahead_1_left_front_elbow_down_alike
+    t152 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
+    t153 = np.sqrt(t152)
     del t152
-    t156 = _runtime.wrap_cut(np.arctan2(-(t149 + t153), t154 - t155))
-    t157 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
+    t154 = fore_arm * (t150 * (t139 * t153))
+    del t150
+    t155 = r_left_0_front_elbow_down_alike * t154
+    t156 = r_left_0_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    del ahead_1_left_front_elbow_down_alike
+    t157 = t128 * t154
+    del t154
+    t158 = _runtime.wrap_cut(np.arctan2(-(t151 + t155), t156 - t157))
+    t159 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
     del M_left_front_elbow_down_alike, N_left_front_elbow_down_alike
-    t158 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t151, t157)
-    del t151, t157
-    t159 = t98 + t134
-    t160 = _runtime.wrap_cut(np.arctan2(t153 - t149, t154 + t155))
-    del t149, t153, t154, t155
-    t161 = _runtime.wrap(-(t14 + t13))
+    t160 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t153, t159)
+    del t153, t159
+    t161 = t100 + t136
+    t162 = _runtime.wrap_cut(np.arctan2(t155 - t151, t156 + t157))
+    del t151, t155, t156, t157
+    t163 = _runtime.wrap(-(t14 + t13))
     del t13, t14
-    t162 = c_relative_front_elbow_down_alike * t54 - s_relative_front_elbow_down_alike * stheta2A
-    stheta23A_rear_elbow_up_alike = c_relative_front_elbow_down_alike * stheta2A + s_relative_front_elbow_down_alike * t54
-    del c_relative_front_elbow_down_alike, s_relative_front_elbow_down_alike, stheta2A, t54
-    point_21_rear_elbow_up_alike = elbow_21 - L2 * t162 + a3 * stheta23A_rear_elbow_up_alike
+    t164 = c_relative_front_elbow_down_alike * t55 - s_relative_front_elbow_down_alike * stheta2A
+    stheta23A_rear_elbow_up_alike = c_relative_front_elbow_down_alike * stheta2A + s_relative_front_elbow_down_alike * t55
+    del c_relative_front_elbow_down_alike, s_relative_front_elbow_down_alike, stheta2A, t55
+    point_21_rear_elbow_up_alike = elbow_21 - L2 * t164 + a3 * stheta23A_rear_elbow_up_alike
     del elbow_21
-    t163 = t26 * (t_psi * t162) + t_phi * stheta23A_rear_elbow_up_alike
-    t164 = d * t163
-    del t163
-    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t164
-    t165 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
-    t166 = t58 + L2 * stheta23A_rear_elbow_up_alike + a3 * t162
-    del t58
-    t167 = t26 * (t_psi * stheta23A_rear_elbow_up_alike)
+    t165 = t27 * (t_psi * t164) + t_phi * stheta23A_rear_elbow_up_alike
+    t166 = d * t165
+    del t165
+    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t166
+    t167 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    t168 = t59 + L2 * stheta23A_rear_elbow_up_alike + a3 * t164
+    del t59
+    t169 = t27 * (t_psi * stheta23A_rear_elbow_up_alike)
     del stheta23A_rear_elbow_up_alike
-    t168 = d * (t_phi * t162 - t167)
-    del t162, t167
-    r_right_0_rear_elbow_up_alike = t166 - t168
-    t169 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    t170 = t165 + t169
-    del t165, t169
-    gap_rear_elbow_up_alike = t168 * t168 + t164 * t164
-    t171 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t172 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
-    t173 = 2.0 * t166 * t168 + 2.0 * point_21_rear_elbow_up_alike * t164
-    farther_right_rear_elbow_up_alike = _runtime.select(t42 * t170 < t171, t170 - t64, t172 - t173)
-    del t170
-    t174 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
+    t170 = d * (t_phi * t164 - t169)
+    del t164, t169
+    r_right_0_rear_elbow_up_alike = t168 - t170
+    t171 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t172 = t167 + t171
+    del t167, t171
+    gap_rear_elbow_up_alike = t170 * t170 + t166 * t166
+    t173 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t174 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
+    t175 = 2.0 * t168 * t170 + 2.0 * point_21_rear_elbow_up_alike * t166
+    farther_right_rear_elbow_up_alike = _runtime.select(t43 * t172 < t173, t172 - t65, t174 - t175)
+    del t172
+    t176 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
     del N_mid_front_elbow_down_alike
-    nearer_right_rear_elbow_up_alike = t173 + t174
+    nearer_right_rear_elbow_up_alike = t175 + t176
     margin_right_rear_elbow_up_alike = np.minimum(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
-    t175 = t40 & (t41 <= margin_right_rear_elbow_up_alike)
-    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t164
-    del point_21_rear_elbow_up_alike, t164
-    t176 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = t166 + t168
-    del t166, t168
-    t177 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    t178 = t176 + t177
-    del t176, t177
-    farther_left_rear_elbow_up_alike = _runtime.select(t42 * t178 < t171, t178 - t64, t172 + t173)
-    del t171, t172, t178
-    nearer_left_rear_elbow_up_alike = t174 - t173
-    del t173, t174
+    t177 = t41 & (t42 <= margin_right_rear_elbow_up_alike)
+    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t166
+    del point_21_rear_elbow_up_alike, t166
+    t178 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = t168 + t170
+    del t168, t170
+    t179 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    t180 = t178 + t179
+    del t178, t179
+    farther_left_rear_elbow_up_alike = _runtime.select(t43 * t180 < t173, t180 - t65, t174 + t175)
+    del t173, t174, t180
+    nearer_left_rear_elbow_up_alike = t176 - t175
+    del t175, t176
     margin_left_rear_elbow_up_alike = np.minimum(farther_left_rear_elbow_up_alike, nearer_left_rear_elbow_up_alike)
-    t179 = t175 & (t41 <= margin_left_rear_elbow_up_alike)
-    del t175
-    t180 = t179 & (t41 <= nearer_right_rear_elbow_up_alike)
-    del t179
-    t181 = t180 & (t41 <= farther_right_rear_elbow_up_alike)
-    del t180
-    t182 = t181 & (t41 <= nearer_left_rear_elbow_up_alike)
+    t181 = t177 & (t42 <= margin_left_rear_elbow_up_alike)
+    t182 = t181 & (t42 <= nearer_right_rear_elbow_up_alike)
     del t181
-    t183 = t182 & (t41 <= farther_left_rear_elbow_up_alike)
+    t183 = t182 & (t42 <= farther_right_rear_elbow_up_alike)
     del t182
-    unreachable_3 = np.logical_not(t183)
-    del t183
-    t184 = _runtime.poison(invalid | unreachable_3)
-    t185 = t161 + t184
-    M_right_rear_elbow_up_alike = np.maximum(farther_right_rear_elbow_up_alike, t79)
+    t184 = t183 & (t42 <= nearer_left_rear_elbow_up_alike)
+    t185 = t184 & (t42 <= farther_left_rear_elbow_up_alike)
+    del t184
+    unreachable_3 = np.logical_not(t185)
+    t186 = _runtime.poison(invalid | unreachable_3)
+    t187 = t163 + t186
+    M_right_rear_elbow_up_alike = np.maximum(farther_right_rear_elbow_up_alike, t81)
     del farther_right_rear_elbow_up_alike
-    N_right_rear_elbow_up_alike = np.maximum(nearer_right_rear_elbow_up_alike, t79)
+    N_right_rear_elbow_up_alike = np.maximum(nearer_right_rear_elbow_up_alike, t81)
     del nearer_right_rear_elbow_up_alike
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t186 = 1.0 / whole_right_rear_elbow_up_alike
+    t188 = 1.0 / whole_right_rear_elbow_up_alike
     del whole_right_rear_elbow_up_alike
-    ahead_1_right_rear_elbow_up_alike = t63 + t77 * M_right_rear_elbow_up_alike * t186
-    t187 = h_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    t188 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
-    t189 = np.sqrt(t188)
+    ahead_1_right_rear_elbow_up_alike = t64 + t79 * M_right_rear_elbow_up_alike * t188
+    t189 = h_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t190 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
+    t191 = np.sqrt(t190)
+    del t190
+    t192 = fore_arm * (t188 * (t139 * t191))
     del t188
-    t190 = fore_arm * (t186 * (t137 * t189))
-    del t186
-    t191 = r_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t193 = r_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
     del ahead_1_right_rear_elbow_up_alike
-    t192 = np.arctan2(t187 - r_right_0_rear_elbow_up_alike * t190, t191 + h_right_0_rear_elbow_up_alike * t190)
-    del t187, t190, t191
-    t193 = _runtime.wrap_cut(t192) + t184
-    del t192
-    t194 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
+    t194 = np.arctan2(t189 - r_right_0_rear_elbow_up_alike * t192, t193 + h_right_0_rear_elbow_up_alike * t192)
+    del t189, t192, t193
+    t195 = _runtime.wrap_cut(t194) + t186
+    del t194
+    t196 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
     del M_right_rear_elbow_up_alike, N_right_rear_elbow_up_alike
-    t195 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t189, t194)
-    del t189, t194
-    t196 = _runtime.wrap(t86 + t195) + t184
-    del t195
+    t197 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t191, t196)
+    del t191, t196
+    t198 = _runtime.wrap(t88 + t197) + t186
+    del t197
     M_left_rear_elbow_up_alike = np.maximum(farther_left_rear_elbow_up_alike, 0.0)
     del farther_left_rear_elbow_up_alike
     N_left_rear_elbow_up_alike = np.maximum(nearer_left_rear_elbow_up_alike, 0.0)
     del nearer_left_rear_elbow_up_alike
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t197 = 1.0 / whole_left_rear_elbow_up_alike
+    t199 = 1.0 / whole_left_rear_elbow_up_alike
     del whole_left_rear_elbow_up_alike
-    ahead_1_left_rear_elbow_up_alike = t63 + t77 * M_left_rear_elbow_up_alike * t197
-    t198 = h_left_0_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t199 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
-    t200 = np.sqrt(t199)
-    del t199
-    t201 = fore_arm * (t197 * (t137 * t200))
-    del t137, t197
-    t202 = r_left_0_rear_elbow_up_alike * t201
-    t203 = r_left_0_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    del ahead_1_left_rear_elbow_up_alike
-    t204 = h_left_0_rear_elbow_up_alike * t201
+    ahead_1_left_rear_elbow_up_alike = t64 + t79 * M_left_rear_elbow_up_alike * t199
+    t200 = h_left_0_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t201 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
+    t202 = np.sqrt(t201)
     del t201
-    t205 = _runtime.wrap_cut(np.arctan2(t198 - t202, t203 + t204))
-    t206 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
+    t203 = fore_arm * (t199 * (t139 * t202))
+    del t139, t199
+    t204 = r_left_0_rear_elbow_up_alike * t203
+    t205 = r_left_0_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    del ahead_1_left_rear_elbow_up_alike
+    t206 = h_left_0_rear_elbow_up_alike * t203
+    del t203
+    t207 = _runtime.wrap_cut(np.arctan2(t200 - t204, t205 + t206))
+    t208 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
     del M_left_rear_elbow_up_alike, N_left_rear_elbow_up_alike
-    t207 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t200, t206)
-    del sigma_right_front_elbow_down_alike, t200, t206
-    t208 = t98 + t184
-    t209 = _runtime.wrap_cut(np.arctan2(t198 + t202, t203 - t204))
-    del t198, t202, t203, t204
-    t210 = c_relative * ctheta2A_front_elbow_down_alike - s_relative * t104
-    t211 = c_relative * t104 + s_relative * ctheta2A_front_elbow_down_alike
-    del c_relative, ctheta2A_front_elbow_down_alike, s_relative, t104
-    t212 = t105 - L2 * t210 + a3 * t211
-    del t105
-    shift_21_rear_elbow_down_alike = d * (t26 * (t_psi * t210) + t_phi * t211)
-    t213 = t212 - shift_21_rear_elbow_down_alike
-    t214 = elbow_11_front_elbow_down_alike + L2 * t211 + a3 * t210
+    t209 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t202, t208)
+    del sigma_right_front_elbow_down_alike, t202, t208
+    t210 = t100 + t186
+    t211 = _runtime.wrap_cut(np.arctan2(t200 + t204, t205 - t206))
+    del t200, t204, t205, t206
+    t212 = c_relative * ctheta2A_front_elbow_down_alike - s_relative * t106
+    t213 = c_relative * t106 + s_relative * ctheta2A_front_elbow_down_alike
+    del c_relative, ctheta2A_front_elbow_down_alike, s_relative, t106
+    t214 = t107 - L2 * t212 + a3 * t213
+    del t107
+    shift_21_rear_elbow_down_alike = d * (t27 * (t_psi * t212) + t_phi * t213)
+    t215 = t214 - shift_21_rear_elbow_down_alike
+    t216 = elbow_11_front_elbow_down_alike + L2 * t213 + a3 * t212
     del elbow_11_front_elbow_down_alike
-    shift_11_rear_elbow_down_alike = d * (t_phi * t210 - t26 * (t_psi * t211))
-    del t210, t211, t26, t_phi, t_psi
-    t215 = t214 - shift_11_rear_elbow_down_alike
-    t216 = t213 * t213 + t215 * t215
-    t217 = shift_11_rear_elbow_down_alike * shift_11_rear_elbow_down_alike
-    t218 = shift_21_rear_elbow_down_alike * shift_21_rear_elbow_down_alike
-    gap_rear_elbow_down_alike = t217 + t218
-    del t217, t218
-    t219 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t220 = M_mid + gap_rear_elbow_down_alike
-    t221 = 2.0 * t214 * shift_11_rear_elbow_down_alike + 2.0 * t212 * shift_21_rear_elbow_down_alike
-    farther_right_rear_elbow_down_alike = _runtime.select(t42 * t216 < t219, t216 - t64, t220 - t221)
-    del t216
-    t222 = N_mid - gap_rear_elbow_down_alike
+    shift_11_rear_elbow_down_alike = d * (t_phi * t212 - t27 * (t_psi * t213))
+    del t212, t213, t27, t_phi, t_psi
+    t217 = t216 - shift_11_rear_elbow_down_alike
+    t218 = t215 * t215 + t217 * t217
+    t219 = shift_11_rear_elbow_down_alike * shift_11_rear_elbow_down_alike
+    t220 = shift_21_rear_elbow_down_alike * shift_21_rear_elbow_down_alike
+    gap_rear_elbow_down_alike = t219 + t220
+    del t219, t220
+    t221 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t222 = M_mid + gap_rear_elbow_down_alike
+    t223 = 2.0 * t216 * shift_11_rear_elbow_down_alike + 2.0 * t214 * shift_21_rear_elbow_down_alike
+    farther_right_rear_elbow_down_alike = _runtime.select(t43 * t218 < t221, t218 - t65, t222 - t223)
+    del t218
+    t224 = N_mid - gap_rear_elbow_down_alike
     del N_mid
-    nearer_right_rear_elbow_down_alike = t221 + t222
+    nearer_right_rear_elbow_down_alike = t223 + t224
     margin_right_rear_elbow_down_alike = np.minimum(farther_right_rear_elbow_down_alike, nearer_right_rear_elbow_down_alike)
-    t223 = t40 & (t41 <= margin_right_rear_elbow_down_alike)
-    del t40
-    t224 = t212 + shift_21_rear_elbow_down_alike
-    del shift_21_rear_elbow_down_alike, t212
-    t225 = t214 + shift_11_rear_elbow_down_alike
-    del shift_11_rear_elbow_down_alike, t214
-    t226 = t224 * t224 + t225 * t225
-    farther_left_rear_elbow_down_alike = _runtime.select(t42 * t226 < t219, t226 - t64, t220 + t221)
-    del t219, t220, t226
-    nearer_left_rear_elbow_down_alike = t222 - t221
-    del t221, t222
+    t225 = t41 & (t42 <= margin_right_rear_elbow_down_alike)
+    t226 = t214 + shift_21_rear_elbow_down_alike
+    del shift_21_rear_elbow_down_alike, t214
+    t227 = t216 + shift_11_rear_elbow_down_alike
+    del shift_11_rear_elbow_down_alike, t216
+    t228 = t226 * t226 + t227 * t227
+    farther_left_rear_elbow_down_alike = _runtime.select(t43 * t228 < t221, t228 - t65, t222 + t223)
+    del t221, t222, t228
+    nearer_left_rear_elbow_down_alike = t224 - t223
+    del t223, t224
     margin_left_rear_elbow_down_alike = np.minimum(farther_left_rear_elbow_down_alike, nearer_left_rear_elbow_down_alike)
-    t227 = t223 & (t41 <= margin_left_rear_elbow_down_alike)
-    del t223
-    t228 = t227 & (t41 <= nearer_right_rear_elbow_down_alike)
-    del t227
-    t229 = t228 & (t41 <= farther_right_rear_elbow_down_alike)
-    del t228
-    t230 = t229 & (t41 <= nearer_left_rear_elbow_down_alike)
+    t229 = t225 & (t42 <= margin_left_rear_elbow_down_alike)
+    t230 = t229 & (t42 <= nearer_right_rear_elbow_down_alike)
     del t229
-    t231 = t230 & (t41 <= farther_left_rear_elbow_down_alike)
-    del t230, t41
-    unreachable_4 = np.logical_not(t231)
-    del t231
-    t232 = _runtime.poison(invalid | unreachable_4)
-    t233 = t161 + t232
-    del t161
-    M_right_rear_elbow_down_alike = np.maximum(farther_right_rear_elbow_down_alike, t79)
+    t231 = t230 & (t42 <= farther_right_rear_elbow_down_alike)
+    del t230
+    t232 = t231 & (t42 <= nearer_left_rear_elbow_down_alike)
+    t233 = t232 & (t42 <= farther_left_rear_elbow_down_alike)
+    del t232, t42
+    unreachable_4 = np.logical_not(t233)
+    t234 = _runtime.poison(invalid | unreachable_4)
+    t235 = t163 + t234
+    del t163
+    M_right_rear_elbow_down_alike = np.maximum(farther_right_rear_elbow_down_alike, t81)
     del farther_right_rear_elbow_down_alike
-    N_right_rear_elbow_down_alike = np.maximum(nearer_right_rear_elbow_down_alike, t79)
-    del nearer_right_rear_elbow_down_alike, t79
+    N_right_rear_elbow_down_alike = np.maximum(nearer_right_rear_elbow_down_alike, t81)
+    del nearer_right_rear_elbow_down_alike, t81
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t234 = 1.0 / whole_right_rear_elbow_down_alike
+    t236 = 1.0 / whole_right_rear_elbow_down_alike
     del whole_right_rear_elbow_down_alike
-    t235 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
-    t236 = np.sqrt(t235)
-    del t235
-    t237 = fore_arm * (t234 * (t81 * t236))
-    ahead_1_right_rear_elbow_down_alike = t63 + t77 * M_right_rear_elbow_down_alike * t234
-    del t234
-    up_right_rear_elbow_down_alike = t215 * t237 - t213 * ahead_1_right_rear_elbow_down_alike
-    t238 = t215 * ahead_1_right_rear_elbow_down_alike + t213 * t237
-    del ahead_1_right_rear_elbow_down_alike, t237
-    t239 = np.arctan2(up_right_rear_elbow_down_alike, -t238)
-    del t238, up_right_rear_elbow_down_alike
-    t240 = _runtime.wrap_cut(t239) + t232
-    del t239
-    t241 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
+    t237 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
+    t238 = np.sqrt(t237)
+    del t237
+    t239 = fore_arm * (t236 * (t83 * t238))
+    ahead_1_right_rear_elbow_down_alike = t64 + t79 * M_right_rear_elbow_down_alike * t236
+    del t236
+    up_right_rear_elbow_down_alike = t217 * t239 - t215 * ahead_1_right_rear_elbow_down_alike
+    t240 = t217 * ahead_1_right_rear_elbow_down_alike + t215 * t239
+    del ahead_1_right_rear_elbow_down_alike, t239
+    t241 = np.arctan2(up_right_rear_elbow_down_alike, -t240)
+    del t240, up_right_rear_elbow_down_alike
+    t242 = _runtime.wrap_cut(t241) + t234
+    del t241
+    t243 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
     del M_right_rear_elbow_down_alike, N_right_rear_elbow_down_alike
-    t242 = t86 + sigma_right * np.arctan2(2.0 * t236, t241)
-    del t236, t241
-    t243 = _runtime.wrap(t242) + t232
-    del t242
+    t244 = t88 + sigma_right * np.arctan2(2.0 * t238, t243)
+    del t238, t243
+    t245 = _runtime.wrap(t244) + t234
+    del t244
     M_left_rear_elbow_down_alike = np.maximum(farther_left_rear_elbow_down_alike, 0.0)
     del farther_left_rear_elbow_down_alike
     N_left_rear_elbow_down_alike = np.maximum(nearer_left_rear_elbow_down_alike, 0.0)
     del nearer_left_rear_elbow_down_alike
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t244 = 1.0 / whole_left_rear_elbow_down_alike
+    t246 = 1.0 / whole_left_rear_elbow_down_alike
     del whole_left_rear_elbow_down_alike
-    t245 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
-    t246 = np.sqrt(t245)
-    del t245
-    t247 = fore_arm * (t244 * (t81 * t246))
-    del t81
-    t248 = t225 * t247
-    ahead_1_left_rear_elbow_down_alike = t63 + t77 * M_left_rear_elbow_down_alike * t244
-    del t244, t63, t77
-    t249 = t224 * ahead_1_left_rear_elbow_down_alike
-    t250 = t225 * ahead_1_left_rear_elbow_down_alike
-    del ahead_1_left_rear_elbow_down_alike
-    t251 = t224 * t247
+    t247 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
+    t248 = np.sqrt(t247)
     del t247
-    t252 = _runtime.wrap_cut(np.arctan2(t248 - t249, -(t250 + t251)))
-    t253 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
+    t249 = fore_arm * (t246 * (t83 * t248))
+    del t83
+    t250 = t227 * t249
+    ahead_1_left_rear_elbow_down_alike = t64 + t79 * M_left_rear_elbow_down_alike * t246
+    del t246, t64, t79
+    t251 = t226 * ahead_1_left_rear_elbow_down_alike
+    t252 = t227 * ahead_1_left_rear_elbow_down_alike
+    del ahead_1_left_rear_elbow_down_alike
+    t253 = t226 * t249
+    del t249
+    t254 = _runtime.wrap_cut(np.arctan2(t250 - t251, -(t252 + t253)))
+    t255 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
     del M_left_rear_elbow_down_alike, N_left_rear_elbow_down_alike
-    t254 = sigma_right * np.arctan2(2.0 * t246, t253)
-    del sigma_right, t246, t253
-    t255 = t98 + t232
-    del t98
-    t256 = _runtime.wrap_cut(np.arctan2(-(t249 + t248), t251 - t250))
-    del t248, t249, t250, t251
+    t256 = sigma_right * np.arctan2(2.0 * t248, t255)
+    del sigma_right, t248, t255
+    t257 = t100 + t234
+    del t100
+    t258 = _runtime.wrap_cut(np.arctan2(-(t251 + t250), t253 - t252))
+    del t250, t251, t252, t253
     over = np.maximum(d * 64.0, lengths)
-    t257 = over * over
+    t259 = over * over
     del over
-    square_mid = t64 + M_mid
-    t258 = t257 * M_mid * square_mid
+    square_mid = t65 + M_mid
+    t260 = t259 * M_mid * square_mid
     del M_mid
-    t259 = _runtime.DETERMINED * _runtime.DETERMINED
-    t260 = 4096.0 * (t42 * t42)
-    t261 = t42 * t259
-    t262 = square_mid <= t261
+    t261 = _runtime.DETERMINED * _runtime.DETERMINED
+    t262 = 4096.0 * (t43 * t43)
+    t263 = t43 * t261
+    t264 = square_mid <= t263
     del square_mid
-    t263 = wrist <= al * _runtime.DETERMINED
-    t264 = 1.0 <= 0.0
-    t265 = (t258 <= t259 * (t260 * gap)) | t262 | t263 | t264
+    t265 = wrist <= al * _runtime.DETERMINED
+    t266 = 1.0 <= 0.0
+    t267 = (t260 <= t261 * (t262 * gap)) | t264 | t265 | t266
     del gap
-    t266 = _runtime.status(invalid, unreachable, t265)
-    del t265, unreachable
-    square_mid_front_elbow_down_alike = t64 + M_mid_front_elbow_down_alike
-    del t64
-    t267 = t257 * M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
-    del M_mid_front_elbow_down_alike, t257
-    t268 = t267 <= t259 * (t260 * gap_front_elbow_down_alike)
+    t268 = _runtime.status(invalid, unreachable, t267)
+    del t267, unreachable
+    square_mid_front_elbow_down_alike = t65 + M_mid_front_elbow_down_alike
+    del t65
+    t269 = t259 * M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    del M_mid_front_elbow_down_alike, t259
+    t270 = t269 <= t261 * (t262 * gap_front_elbow_down_alike)
     del gap_front_elbow_down_alike
-    t269 = square_mid_front_elbow_down_alike <= t261
-    del square_mid_front_elbow_down_alike, t261
-    t270 = _runtime.status(invalid, unreachable_2, t268 | t269 | t263 | t264)
-    del t268, unreachable_2
-    t271 = t267 <= t259 * (t260 * gap_rear_elbow_up_alike)
-    del gap_rear_elbow_up_alike, t267
-    t272 = _runtime.status(invalid, unreachable_3, t271 | t269 | t263 | t264)
-    del t269, t271, unreachable_3
-    t273 = t258 <= t259 * (t260 * gap_rear_elbow_down_alike)
-    del gap_rear_elbow_down_alike, t258, t259, t260
-    t274 = _runtime.status(invalid, unreachable_4, t273 | t262 | t263 | t264)
-    del invalid, t262, t263, t264, t273, unreachable_4
+    t271 = square_mid_front_elbow_down_alike <= t263
+    del square_mid_front_elbow_down_alike, t263
+    t272 = _runtime.status(invalid, unreachable_2, t270 | t271 | t265 | t266)
+    del t270, unreachable_2
+    t273 = t269 <= t261 * (t262 * gap_rear_elbow_up_alike)
+    del gap_rear_elbow_up_alike, t269
+    t274 = _runtime.status(invalid, unreachable_3, t273 | t271 | t265 | t266)
+    del t271, t273, unreachable_3
+    t275 = t260 <= t261 * (t262 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t260, t261, t262
+    t276 = _runtime.status(invalid, unreachable_4, t275 | t264 | t265 | t266)
+    del invalid, t264, t265, t266, t275, unreachable_4
     stretched = wrist - al * 0.0009765625 <= al * _runtime.VANISHING
     del wrist
-    t275 = h * slack
+    t277 = h * slack
     del slack
-    tangent = 4.0 * root * t32 - t275 * 0.00390625 <= _runtime.VANISHING * t275
-    del t275
-    t276 = stretched | tangent | (h <= _runtime.VANISHING * lengths)
-    del h, lengths, stretched, tangent
-    t277 = t276 | (L1 * fore <= _runtime.VANISHING * t33)
-    del t276, t33
-    t278 = _runtime.VANISHING * t32
-    del t32
-    t279 = t277 | (np.abs(t34) + np.abs(root) <= t278) | (fore <= t278)
-    del fore, root, t277, t278, t34
-    t280 = np.maximum(-(margin_right * 9.094947017729282e-13), margin_right)
+    tangent = 4.0 * root * t33 - t277 * 0.00390625 <= _runtime.VANISHING * t277
+    del t277
+    t278 = tangent | (h <= _runtime.VANISHING * lengths)
+    del h, lengths, tangent
+    t279 = _runtime.VANISHING * t33
+    del t33
+    t280 = (L1 * fore <= _runtime.VANISHING * t34) | (np.abs(t35) + np.abs(root) <= t279)
+    del root, t34, t35
+    t281 = np.maximum(-(margin_right * 9.094947017729282e-13), margin_right)
     del margin_right
-    t281 = _runtime.VANISHING * play_right
+    t282 = _runtime.VANISHING * play_right
     del play_right
-    t282 = np.maximum(-(margin_left * 9.094947017729282e-13), margin_left)
+    t283 = margin_right_front_elbow_down_alike * 9.094947017729282e-13
+    t284 = np.maximum(-t283, margin_right_front_elbow_down_alike)
+    del margin_right_front_elbow_down_alike, t283
+    t285 = t280 | (fore <= t279) | (t281 <= t282) | (t284 <= t282)
+    del fore, t279, t280, t281, t284
+    t286 = margin_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t287 = np.maximum(-t286, margin_right_rear_elbow_up_alike)
+    del margin_right_rear_elbow_up_alike, t286
+    t288 = margin_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t289 = np.maximum(-t288, margin_right_rear_elbow_down_alike)
+    del margin_right_rear_elbow_down_alike, t288
+    t290 = t41 & (t285 | (t287 <= t282) | (t289 <= t282))
+    del t285, t287, t289, t41
+    t291 = np.maximum(-(margin_left * 9.094947017729282e-13), margin_left)
     del margin_left
-    t283 = t279 | (t280 <= t281) | (t282 <= t281) | (t78 <= _runtime.VANISHING * t42)
-    del t279, t280, t282, t42, t78
-    t284 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    t285 = t283 | (np.abs(h_right_0) + np.abs(-t60) <= t284)
-    del h_right_0, t283, t60
-    t286 = t285 | (fore_arm <= _runtime.VANISHING * size)
-    del fore_arm, size, t285
-    t287 = t286 | (np.abs(h_left_0) + np.abs(-t70) <= t284)
-    del h_left_0, t286, t70
-    t288 = margin_right_front_elbow_down_alike * 9.094947017729282e-13
-    t289 = np.maximum(-t288, margin_right_front_elbow_down_alike)
-    del margin_right_front_elbow_down_alike, t288
-    t290 = margin_left_front_elbow_down_alike * 9.094947017729282e-13
-    t291 = np.maximum(-t290, margin_left_front_elbow_down_alike)
-    del margin_left_front_elbow_down_alike, t290
-    t292 = np.abs(-t112) + np.abs(r_right_0_front_elbow_down_alike)
-    del r_right_0_front_elbow_down_alike, t112
-    t293 = t287 | (t289 <= t281) | (t291 <= t281) | (t292 <= t284)
-    del t287, t289, t291, t292
-    t294 = np.abs(-t126) + np.abs(r_left_0_front_elbow_down_alike)
-    del r_left_0_front_elbow_down_alike, t126
-    t295 = margin_right_rear_elbow_up_alike * 9.094947017729282e-13
-    t296 = np.maximum(-t295, margin_right_rear_elbow_up_alike)
-    del margin_right_rear_elbow_up_alike, t295
-    t297 = margin_left_rear_elbow_up_alike * 9.094947017729282e-13
-    t298 = np.maximum(-t297, margin_left_rear_elbow_up_alike)
-    del margin_left_rear_elbow_up_alike, t297
-    t299 = t293 | (t294 <= t284) | (t296 <= t281) | (t298 <= t281)
-    del t293, t294, t296, t298
-    t300 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
+    t292 = (t26 & stretched) | (t29 & t278) | t290 | (t71 & (t291 <= t282))
+    del stretched, t26, t278, t29, t290, t291, t71
+    t293 = (t80 <= _runtime.VANISHING * t43) | (fore_arm <= _runtime.VANISHING * size)
+    del size, t43, t80
+    t294 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    del fore_arm
+    t295 = t75 & (np.abs(h_right_0) + np.abs(-t61) <= t294)
+    del h_right_0, t61
+    t296 = t292 | ((t75 | t133 | t183 | t231) & t293) | t295
+    del t292, t293, t295, t75
+    t297 = t76 & (np.abs(h_left_0) + np.abs(-t72) <= t294)
+    del h_left_0, t72, t76
+    t298 = margin_left_front_elbow_down_alike * 9.094947017729282e-13
+    t299 = np.maximum(-t298, margin_left_front_elbow_down_alike)
+    del margin_left_front_elbow_down_alike, t298
+    t300 = np.abs(-t114) + np.abs(r_right_0_front_elbow_down_alike)
+    del r_right_0_front_elbow_down_alike, t114
+    t301 = t296 | t297 | (t127 & (t299 <= t282)) | (t133 & (t300 <= t294))
+    del t127, t133, t296, t297, t299, t300
+    t302 = np.abs(-t128) + np.abs(r_left_0_front_elbow_down_alike)
+    del r_left_0_front_elbow_down_alike, t128
+    t303 = margin_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t304 = np.maximum(-t303, margin_left_rear_elbow_up_alike)
+    del margin_left_rear_elbow_up_alike, t303
+    t305 = t301 | (t135 & (t302 <= t294)) | (t177 & (t304 <= t282))
+    del t135, t177, t301, t302, t304
+    t306 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
     del h_right_0_rear_elbow_up_alike, r_right_0_rear_elbow_up_alike
-    t301 = np.abs(h_left_0_rear_elbow_up_alike) + np.abs(r_left_0_rear_elbow_up_alike)
+    t307 = np.abs(h_left_0_rear_elbow_up_alike) + np.abs(r_left_0_rear_elbow_up_alike)
     del h_left_0_rear_elbow_up_alike, r_left_0_rear_elbow_up_alike
-    t302 = margin_right_rear_elbow_down_alike * 9.094947017729282e-13
-    t303 = np.maximum(-t302, margin_right_rear_elbow_down_alike)
-    del margin_right_rear_elbow_down_alike, t302
-    t304 = t299 | (t300 <= t284) | (t301 <= t284) | (t303 <= t281)
-    del t299, t300, t301, t303
-    t305 = margin_left_rear_elbow_down_alike * 9.094947017729282e-13
-    t306 = np.maximum(-t305, margin_left_rear_elbow_down_alike)
-    del margin_left_rear_elbow_down_alike, t305
-    t307 = t304 | (t306 <= t281) | (np.abs(-t213) + np.abs(-t215) <= t284)
-    del t213, t215, t281, t304, t306
-    t308 = t307 | (np.abs(-t224) + np.abs(-t225) <= t284)
-    del t224, t225, t284, t307
+    t308 = t305 | (t183 & (t306 <= t294)) | (t185 & (t307 <= t294))
+    del t183, t185, t305, t306, t307
+    t309 = margin_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t310 = np.maximum(-t309, margin_left_rear_elbow_down_alike)
+    del margin_left_rear_elbow_down_alike, t309
+    t311 = t231 & (np.abs(-t215) + np.abs(-t217) <= t294)
+    del t215, t217, t231
+    t312 = t233 & (np.abs(-t226) + np.abs(-t227) <= t294)
+    del t226, t227, t233, t294
     return (
-        t76,
-        t85,
-        t88,
-        t96 + t75,
-        _runtime.wrap(t86 + t97) + t75,
-        t99,
-        t76,
-        t85,
-        t88,
-        t100 + t75,
-        _runtime.wrap(t86 - t97) + t75,
-        t99,
-        t135,
-        t144,
-        t147,
-        t156 + t134,
-        _runtime.wrap(t86 + t158) + t134,
-        t159,
-        t135,
-        t144,
-        t147,
-        t160 + t134,
-        _runtime.wrap(t86 - t158) + t134,
-        t159,
-        t185,
-        t193,
-        t196,
-        t205 + t184,
-        _runtime.wrap(t86 + t207) + t184,
-        t208,
-        t185,
-        t193,
-        t196,
-        t209 + t184,
-        _runtime.wrap(t86 - t207) + t184,
-        t208,
-        t233,
-        t240,
-        t243,
-        t252 + t232,
-        _runtime.wrap(t86 + t254) + t232,
-        t255,
-        t233,
-        t240,
-        t243,
-        t256 + t232,
-        _runtime.wrap(t86 - t254) + t232,
-        t255,
-        t266,
-        t266,
-        t270,
-        t270,
+        t78,
+        t87,
+        t90,
+        t98 + t77,
+        _runtime.wrap(t88 + t99) + t77,
+        t101,
+        t78,
+        t87,
+        t90,
+        t102 + t77,
+        _runtime.wrap(t88 - t99) + t77,
+        t101,
+        t137,
+        t146,
+        t149,
+        t158 + t136,
+        _runtime.wrap(t88 + t160) + t136,
+        t161,
+        t137,
+        t146,
+        t149,
+        t162 + t136,
+        _runtime.wrap(t88 - t160) + t136,
+        t161,
+        t187,
+        t195,
+        t198,
+        t207 + t186,
+        _runtime.wrap(t88 + t209) + t186,
+        t210,
+        t187,
+        t195,
+        t198,
+        t211 + t186,
+        _runtime.wrap(t88 - t209) + t186,
+        t210,
+        t235,
+        t242,
+        t245,
+        t254 + t234,
+        _runtime.wrap(t88 + t256) + t234,
+        t257,
+        t235,
+        t242,
+        t245,
+        t258 + t234,
+        _runtime.wrap(t88 - t256) + t234,
+        t257,
+        t268,
+        t268,
         t272,
         t272,
         t274,
         t274,
-        t308,
+        t276,
+        t276,
+        t308 | (t225 & (t310 <= t282)) | t311 | t312,
     )
 
 

@@ -3,29 +3,29 @@
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 50 compare and select, 53 add, 2 divide, 78 multiply, 1 sqrt
-#   fk where nothing vanishes: 30 compare and select, 46 add, 1 divide, 55 multiply, 1 sqrt
+#   fk where nothing vanishes: 31 compare and select, 46 add, 1 divide, 55 multiply, 1 sqrt
 #   skeleton: 49 compare and select, 127 add, 2 divide, 80 multiply, 1 sqrt
-#   skeleton where nothing vanishes: 29 compare and select, 120 add, 1 divide, 57 multiply, 1 sqrt
+#   skeleton where nothing vanishes: 30 compare and select, 120 add, 1 divide, 57 multiply, 1 sqrt
 #   jacobian_parallel: 49 compare and select, 71 add, 2 divide, 78 multiply, 1 sqrt
-#   jacobian_parallel where nothing vanishes: 29 compare and select, 64 add, 1 divide, 55
+#   jacobian_parallel where nothing vanishes: 30 compare and select, 64 add, 1 divide, 55
 #     multiply, 1 sqrt
 #   jacobian_serial: 45 compare and select, 47 add, 2 divide, 65 multiply, 1 sqrt
-#   jacobian_serial where nothing vanishes: 29 compare and select, 40 add, 1 divide, 45 multiply,
+#   jacobian_serial where nothing vanishes: 30 compare and select, 40 add, 1 divide, 45 multiply,
 #     1 sqrt
 #   jacobian: 49 compare and select, 91 add, 20 divide, 129 multiply, 1 sqrt
-#   jacobian where nothing vanishes: 29 compare and select, 84 add, 19 divide, 106 multiply, 1
+#   jacobian where nothing vanishes: 30 compare and select, 84 add, 19 divide, 106 multiply, 1
 #     sqrt
 #   determinant: 45 compare and select, 43 add, 4 divide, 70 multiply, 1 sqrt
-#   determinant where nothing vanishes: 29 compare and select, 36 add, 3 divide, 50 multiply, 1
+#   determinant where nothing vanishes: 30 compare and select, 36 add, 3 divide, 50 multiply, 1
 #     sqrt
 #   singularities: 45 compare and select, 49 add, 2 divide, 66 multiply, 1 sqrt
-#   singularities where nothing vanishes: 29 compare and select, 42 add, 1 divide, 46 multiply, 1
+#   singularities where nothing vanishes: 30 compare and select, 42 add, 1 divide, 46 multiply, 1
 #     sqrt
 #   condition_number: 49 compare and select, 107 add, 4 divide, 148 multiply, 3 sqrt
-#   condition_number where nothing vanishes: 29 compare and select, 100 add, 3 divide, 125
+#   condition_number where nothing vanishes: 30 compare and select, 100 add, 3 divide, 125
 #     multiply, 3 sqrt
 #   constraint: 49 compare and select, 65 add, 2 divide, 108 multiply, 1 sqrt
-#   constraint where nothing vanishes: 29 compare and select, 58 add, 1 divide, 85 multiply, 1
+#   constraint where nothing vanishes: 30 compare and select, 58 add, 1 divide, 85 multiply, 1
 #     sqrt
 #   ik: 60 compare and select, 63 add, 49 multiply, 6 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 13 multiply, 3 sqrt
@@ -293,7 +293,6 @@ def _fk_common(rho1, rho2, rho3, f, e, l):
     t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t12)
     del t12
     unreachable = np.logical_not(t19)
-    del t19
     t20 = _runtime.poison(invalid | unreachable)
     t21 = t9 * (t1 * t3 + t4 * t7) - c3_y * 0.5
     t22 = t6 * h
@@ -312,6 +311,8 @@ def _fk_common(rho1, rho2, rho3, f, e, l):
     del t28
     t29 = (u_u <= t27) | (u_u + v_v <= t27) | slim | (product_2 <= t26 * (t17 * u_u))
     del product_2, slim, t17, t26, t27, u_u, v_v
+    t30 = t29 | (t19 & (slack <= _runtime.VANISHING * t18))
+    del slack, t18, t19, t29
     return (
         t10 - t13 + t20,
         t21 + t22 + t20,
@@ -321,7 +322,7 @@ def _fk_common(rho1, rho2, rho3, f, e, l):
         -(t24 + t23) + t20,
         t25,
         t25,
-        t29 | (slack <= _runtime.VANISHING * t18),
+        t30,
     )
 
 
@@ -701,7 +702,7 @@ def _skeleton_common(rho1, rho2, rho3, f, e, l):
     del t15
     t22 = (np.abs(0.0) <= t4 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t5) <= t21)
     t23 = _runtime.poison(np.logical_not(t3) | np.logical_not(t22))
-    del t22, t3
+    del t3
     t24 = f + t23
     t25 = 0.0 + t23
     t26 = rho1 + t23
@@ -778,6 +779,8 @@ def _skeleton_common(rho1, rho2, rho3, f, e, l):
     del t72
     t73 = (u_u <= t71) | (u_u + v_v <= t71) | slim | (product_2 <= t70 * (t4 * u_u))
     del product_2, slim, t4, t70, t71, u_u, v_v
+    t74 = t73 | (t22 & (slack <= _runtime.VANISHING * t5))
+    del slack, t22, t5, t73
     return (
         t24,
         t25,
@@ -911,7 +914,7 @@ def _skeleton_common(rho1, rho2, rho3, f, e, l):
         c1_x - t62 + t23,
         t64,
         t65,
-        t73 | (slack <= _runtime.VANISHING * t5),
+        t74,
     )
 
 
@@ -1117,7 +1120,7 @@ def _jacobian_parallel_common(rho1, rho2, rho3, f, e, l):
     t20 = (np.abs(0.0) <= t18 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t19) <= t12)
     del t12
     t21 = _runtime.poison(np.logical_not(t17) | np.logical_not(t20))
-    del t17, t20
+    del t17
     t22 = t9 * (t1 * t3 + t4 * t7) - c3_y * 0.5
     t23 = t6 * h
     A_12 = t22 + t23
@@ -1144,6 +1147,8 @@ def _jacobian_parallel_common(rho1, rho2, rho3, f, e, l):
     del t33
     t34 = (u_u <= t32) | (u_u + v_v <= t32) | slim | (product_2 <= t31 * (t18 * u_u))
     del product_2, slim, t18, t31, t32, u_u, v_v
+    t35 = t34 | (t20 & (slack <= _runtime.VANISHING * t19))
+    del slack, t19, t20, t34
     return (
         -t14 + t21,
         A_12 + t21,
@@ -1163,7 +1168,7 @@ def _jacobian_parallel_common(rho1, rho2, rho3, f, e, l):
         t30,
         A_12_above - c3_y + t21,
         t5 - t29 + t21,
-        t34 | (slack <= _runtime.VANISHING * t19),
+        t35,
     )
 
 
@@ -1340,7 +1345,7 @@ def _jacobian_serial_common(rho1, rho2, rho3, f, e, l):
     t20 = (np.abs(0.0) <= t18 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t19) <= t12)
     del t12
     t21 = _runtime.poison(np.logical_not(t17) | np.logical_not(t20))
-    del t17, t20
+    del t17
     t22 = t10 + t13
     del t10, t13
     v_v = t2 * t2 + t11
@@ -1352,6 +1357,8 @@ def _jacobian_serial_common(rho1, rho2, rho3, f, e, l):
     del t25
     t26 = (u_u + v_v <= t24) | (u_u <= t24) | slim | (product_2 <= t23 * (t18 * u_u))
     del product_2, slim, t18, t23, t24, u_u, v_v
+    t27 = t26 | (t20 & (slack <= _runtime.VANISHING * t19))
+    del slack, t19, t20, t26
     return (
         -t14 + t21,
         t3 - t14 + t21,
@@ -1359,7 +1366,7 @@ def _jacobian_serial_common(rho1, rho2, rho3, f, e, l):
         -t22 + t21,
         t3 - t22 + t21,
         t2 - t22 + t21,
-        t26 | (slack <= _runtime.VANISHING * t19),
+        t27,
     )
 
 
@@ -1607,7 +1614,7 @@ def _jacobian_common(rho1, rho2, rho3, f, e, l):
     t23 = (np.abs(0.0) <= t21 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t22) <= t12)
     del t12
     t24 = _runtime.poison(np.logical_not(t20) | np.logical_not(t23))
-    del t20, t23
+    del t20
     t25 = t14 * (A_22 * A_33 + A_23 * t17) / Delta + t24
     t26 = A_23 * (A_12 * A_33 - t14 * t17) / Delta + t24
     t27 = -(A_33 * (A_12 * A_23 + t14 * A_22) / Delta) + t24
@@ -1661,6 +1668,8 @@ def _jacobian_common(rho1, rho2, rho3, f, e, l):
     del t51
     t52 = (u_u + v_v <= t50) | (u_u <= t50) | slim | (product_2 <= t49 * (t21 * u_u))
     del product_2, slim, t21, t49, t50, u_u, v_v
+    t53 = t52 | (t23 & (slack <= _runtime.VANISHING * t22))
+    del slack, t22, t23, t52
     return (
         t25,
         t26,
@@ -1680,7 +1689,7 @@ def _jacobian_common(rho1, rho2, rho3, f, e, l):
         t45 / Delta + t24,
         t47,
         -t48 + t24,
-        t52 | (slack <= _runtime.VANISHING * t22),
+        t53,
     )
 
 
@@ -1864,7 +1873,7 @@ def _determinant_common(rho1, rho2, rho3, f, e, l):
     t20 = (np.abs(0.0) <= t18 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t19) <= t12)
     del t12
     t21 = _runtime.poison(np.logical_not(t17) | np.logical_not(t20))
-    del t17, t20
+    del t17
     t22 = t10 + t13
     del t10, t13
     t23 = -(t22 * (t3 - t22) * (t2 - t22) / Delta) + t21
@@ -1878,10 +1887,12 @@ def _determinant_common(rho1, rho2, rho3, f, e, l):
     del t26
     t27 = (u_u + v_v <= t25) | (u_u <= t25) | slim | (product_2 <= t24 * (t18 * u_u))
     del product_2, slim, t18, t24, t25, u_u, v_v
+    t28 = t27 | (t20 & (slack <= _runtime.VANISHING * t19))
+    del slack, t19, t20, t27
     return (
         t14 * (t3 - t14) * (t2 - t14) / Delta + t21,
         t23,
-        t27 | (slack <= _runtime.VANISHING * t19),
+        t28,
     )
 
 
@@ -2064,7 +2075,7 @@ def _singularities_common(rho1, rho2, rho3, f, e, l):
     t20 = (np.abs(0.0) <= t18 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t19) <= t12)
     del t12
     t21 = _runtime.poison(np.logical_not(t17) | np.logical_not(t20))
-    del t17, t20
+    del t17
     Delta = product_2 * h
     del h
     t22 = t10 + t13
@@ -2078,6 +2089,8 @@ def _singularities_common(rho1, rho2, rho3, f, e, l):
     del t25
     t26 = (u_u + v_v <= t24) | (u_u <= t24) | slim | (product_2 <= t23 * (t18 * u_u))
     del product_2, slim, t18, t23, t24, u_u, v_v
+    t27 = t26 | (t20 & (slack <= _runtime.VANISHING * t19))
+    del slack, t19, t20, t26
     return (
         -t14 + t21,
         t3 - t14 + t21,
@@ -2087,7 +2100,7 @@ def _singularities_common(rho1, rho2, rho3, f, e, l):
         t3 - t22 + t21,
         t2 - t22 + t21,
         Delta + t21,
-        t26 | (slack <= _runtime.VANISHING * t19),
+        t27,
     )
 
 
@@ -2375,7 +2388,7 @@ def _condition_number_common(rho1, rho2, rho3, f, e, l):
     t43 = (np.abs(0.0) <= t41 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t42) <= t12)
     del t12
     t44 = _runtime.poison(np.logical_not(t40) | np.logical_not(t43))
-    del t40, t43
+    del t40
     t45 = t10 - t13
     del t10, t13
     A_12_above = t15 - t16
@@ -2424,10 +2437,12 @@ def _condition_number_common(rho1, rho2, rho3, f, e, l):
     del t65
     t66 = (u_u <= t64) | (u_u + v_v <= t64) | slim | (product_2 <= t63 * (t41 * u_u))
     del product_2, slim, t41, t63, t64, u_u, v_v
+    t67 = t66 | (t43 & (slack <= _runtime.VANISHING * t42))
+    del slack, t42, t43, t66
     return (
         np.sqrt(t36) / t37 + t44,
         np.sqrt(t49 * (t61 + t62 * t62)) / t37 + t44,
-        t66 | (slack <= _runtime.VANISHING * t42),
+        t67,
     )
 
 
@@ -2652,7 +2667,7 @@ def _constraint_common(rho1, rho2, rho3, f, e, l):
     t29 = (np.abs(0.0) <= t27 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t28) <= t12)
     del t12
     t30 = _runtime.poison(np.logical_not(t26) | np.logical_not(t29))
-    del t26, t29
+    del t26
     t31 = t10 - t13
     del t10, t13
     t32 = t15 + t16
@@ -2680,10 +2695,12 @@ def _constraint_common(rho1, rho2, rho3, f, e, l):
     del t40
     t41 = (u_u <= t39) | (u_u + v_v <= t39) | slim | (product_2 <= t38 * (t27 * u_u))
     del product_2, slim, t27, t38, t39, u_u, v_v
+    t42 = t41 | (t29 & (slack <= _runtime.VANISHING * t28))
+    del slack, t28, t29, t41
     return (
         t23 + A_23 * t22 * (c3_y - A_12) + t30,
         t37 + t30,
-        t41 | (slack <= _runtime.VANISHING * t28),
+        t42,
     )
 
 

@@ -13,7 +13,7 @@
 #   jacobian_space: 49 add, 90 multiply, 5 sincos
 #   jacobian_body: 33 add, 70 multiply, 5 sincos
 #   ik: 201 compare and select, 200 add, 22 atan2, 18 divide, 248 multiply, 13 sqrt
-#   ik where nothing vanishes: 128 compare and select, 170 add, 22 atan2, 12 divide, 199 multiply,
+#   ik where nothing vanishes: 133 compare and select, 170 add, 22 atan2, 12 divide, 199 multiply,
 #     11 sqrt
 """Industrial six-axis arm (OPW).
 
@@ -1477,7 +1477,6 @@ def _ik_common(
     t33 = r_elbow - t31
     t34 = t26 & (t25 <= t30) & (t25 <= t32) & (t25 <= t33)
     unreachable = np.logical_not(t34)
-    del t34
     t35 = _runtime.poison(invalid | unreachable)
     t36 = _runtime.wrap_cut(np.arctan2(-t8, c_1_1)) + t35
     t37 = 1.0 / r_elbow
@@ -1595,9 +1594,8 @@ def _ik_common(
     t94 = r_elbow_backward_up_noflip - t31
     del t31
     t95 = t26 & (t25 <= t92) & (t25 <= t93) & (t25 <= t94)
-    del t25, t26
+    del t25
     unreachable_2 = np.logical_not(t95)
-    del t95
     t96 = _runtime.poison(invalid | unreachable_2)
     t97 = t90 + t96
     del t90
@@ -1721,15 +1719,17 @@ def _ik_common(
     t165 = size * _runtime.VANISHING
     t166 = (h1 <= t165) | (root1 - size * 0.00390625 <= t165)
     del h1, root1, size
-    t167 = t166 | (r_elbow <= t165) | (c2 * f <= _runtime.VANISHING * (t27 * t27))
-    del f, r_elbow, t166, t27
-    t168 = _runtime.VANISHING * 16.0
-    t169 = t167 | (h_wrist <= t168) | (h_wrist_facing_down_noflip <= t168)
-    del h_wrist, h_wrist_facing_down_noflip, t167
-    t170 = t169 | (r_elbow_backward_up_noflip <= t165) | (h_wrist_backward_up_noflip <= t168)
-    del h_wrist_backward_up_noflip, r_elbow_backward_up_noflip, t165, t169
-    t171 = t170 | (h_wrist_backward_down_noflip <= t168)
-    del h_wrist_backward_down_noflip, t168, t170
+    t167 = _runtime.VANISHING * 16.0
+    t168 = (r_elbow <= t165) | (h_wrist <= t167) | (h_wrist_facing_down_noflip <= t167)
+    del h_wrist, h_wrist_facing_down_noflip, r_elbow
+    t169 = (t34 | t95) & (c2 * f <= _runtime.VANISHING * (t27 * t27))
+    del f, t27
+    t170 = (r_elbow_backward_up_noflip <= t165) | (h_wrist_backward_up_noflip <= t167)
+    del h_wrist_backward_up_noflip, r_elbow_backward_up_noflip, t165
+    t171 = t170 | (h_wrist_backward_down_noflip <= t167)
+    del h_wrist_backward_down_noflip, t167, t170
+    t172 = (t26 & t166) | (t34 & t168) | t169 | (t95 & t171)
+    del t166, t168, t169, t171, t26, t34, t95
     return (
         t36,
         t49,
@@ -1787,7 +1787,7 @@ def _ik_common(
         t164,
         t164,
         t164,
-        t171,
+        t172,
     )
 
 

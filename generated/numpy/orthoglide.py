@@ -3,28 +3,28 @@
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 46 compare and select, 43 add, 2 divide, 71 multiply, 1 sqrt
-#   fk where nothing vanishes: 26 compare and select, 27 add, 1 divide, 41 multiply, 1 sqrt
+#   fk where nothing vanishes: 27 compare and select, 27 add, 1 divide, 41 multiply, 1 sqrt
 #   skeleton: 45 compare and select, 74 add, 2 divide, 72 multiply, 1 sqrt
-#   skeleton where nothing vanishes: 25 compare and select, 58 add, 1 divide, 42 multiply, 1 sqrt
+#   skeleton where nothing vanishes: 26 compare and select, 58 add, 1 divide, 42 multiply, 1 sqrt
 #   jacobian_parallel: 45 compare and select, 54 add, 2 divide, 71 multiply, 1 sqrt
-#   jacobian_parallel where nothing vanishes: 25 compare and select, 38 add, 1 divide, 41
+#   jacobian_parallel where nothing vanishes: 26 compare and select, 38 add, 1 divide, 41
 #     multiply, 1 sqrt
 #   jacobian_serial: 45 compare and select, 46 add, 2 divide, 71 multiply, 1 sqrt
-#   jacobian_serial where nothing vanishes: 25 compare and select, 30 add, 1 divide, 41 multiply,
+#   jacobian_serial where nothing vanishes: 26 compare and select, 30 add, 1 divide, 41 multiply,
 #     1 sqrt
 #   jacobian: 45 compare and select, 78 add, 20 divide, 114 multiply, 1 sqrt
-#   jacobian where nothing vanishes: 25 compare and select, 62 add, 19 divide, 84 multiply, 1 sqrt
+#   jacobian where nothing vanishes: 26 compare and select, 62 add, 19 divide, 84 multiply, 1 sqrt
 #   determinant: 45 compare and select, 42 add, 4 divide, 76 multiply, 1 sqrt
-#   determinant where nothing vanishes: 25 compare and select, 26 add, 3 divide, 46 multiply, 1
+#   determinant where nothing vanishes: 26 compare and select, 26 add, 3 divide, 46 multiply, 1
 #     sqrt
 #   singularities: 45 compare and select, 48 add, 2 divide, 72 multiply, 1 sqrt
-#   singularities where nothing vanishes: 25 compare and select, 32 add, 1 divide, 42 multiply, 1
+#   singularities where nothing vanishes: 26 compare and select, 32 add, 1 divide, 42 multiply, 1
 #     sqrt
 #   condition_number: 45 compare and select, 94 add, 4 divide, 129 multiply, 3 sqrt
-#   condition_number where nothing vanishes: 25 compare and select, 78 add, 3 divide, 99 multiply,
+#   condition_number where nothing vanishes: 26 compare and select, 78 add, 3 divide, 99 multiply,
 #     3 sqrt
 #   constraint: 45 compare and select, 46 add, 2 divide, 79 multiply, 1 sqrt
-#   constraint where nothing vanishes: 25 compare and select, 30 add, 1 divide, 49 multiply, 1
+#   constraint where nothing vanishes: 26 compare and select, 30 add, 1 divide, 49 multiply, 1
 #     sqrt
 #   ik: 56 compare and select, 45 add, 45 multiply, 6 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 5 multiply, 3 sqrt
@@ -259,7 +259,6 @@ def _fk_common(rho1, rho2, rho3, L):
     t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t4)
     del t4
     unreachable = np.logical_not(t10)
-    del t10
     t11 = _runtime.poison(invalid | unreachable)
     t12 = m_y * h
     t13 = t3 * (rho1 * product_z) - rho2 * 0.5
@@ -278,6 +277,8 @@ def _fk_common(rho1, rho2, rho3, L):
     del t19
     t20 = (u_u <= t18) | (u_u + v_v <= t18) | slim | (product_2 <= t17 * (u_u * t8))
     del product_2, slim, t17, t18, t8, u_u, v_v
+    t21 = t20 | (t10 & (slack <= _runtime.VANISHING * t9))
+    del slack, t10, t20, t9
     return (
         t5 + t6 + t11,
         t12 - t13 + t11,
@@ -287,7 +288,7 @@ def _fk_common(rho1, rho2, rho3, L):
         t14 - t15 + t11,
         t16,
         t16,
-        t20 | (slack <= _runtime.VANISHING * t9),
+        t21,
     )
 
 
@@ -588,7 +589,7 @@ def _skeleton_common(rho1, rho2, rho3, L):
     t7 = L * L - u_u * (1.0 + t5 * 2.0 * t6) * 0.25
     t8 = (np.abs(0.0) <= t2 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t3) <= t7)
     t9 = _runtime.poison(invalid | np.logical_not(t8))
-    del invalid, t8
+    del invalid
     t10 = 0.0 + t9
     t11 = rho1 + t9
     t12 = L * 0.0625
@@ -632,6 +633,8 @@ def _skeleton_common(rho1, rho2, rho3, L):
     del t34
     t35 = (u_u <= t33) | (u_u + v_v <= t33) | slim | (product_2 <= t32 * (u_u * t2))
     del product_2, slim, t2, t32, t33, u_u, v_v
+    t36 = t35 | (t8 & (slack <= _runtime.VANISHING * t3))
+    del slack, t3, t35, t8
     return (
         t10,
         t10,
@@ -747,7 +750,7 @@ def _skeleton_common(rho1, rho2, rho3, L):
         t28,
         t31,
         t30,
-        t35 | (slack <= _runtime.VANISHING * t3),
+        t36,
     )
 
 
@@ -943,7 +946,7 @@ def _jacobian_parallel_common(rho1, rho2, rho3, L):
     t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t4)
     del t4
     t11 = _runtime.poison(invalid | np.logical_not(t10))
-    del invalid, t10
+    del invalid
     t12 = m_y * h
     t13 = t3 * (rho1 * product_z) - rho2 * 0.5
     A_12 = t12 - t13
@@ -973,6 +976,8 @@ def _jacobian_parallel_common(rho1, rho2, rho3, L):
     del t26
     t27 = (u_u <= t25) | (u_u + v_v <= t25) | slim | (product_2 <= t24 * (u_u * t8))
     del product_2, slim, t24, t25, t8, u_u, v_v
+    t28 = t27 | (t10 & (slack <= _runtime.VANISHING * t9))
+    del slack, t10, t27, t9
     return (
         A_11 + t11,
         t14,
@@ -992,7 +997,7 @@ def _jacobian_parallel_common(rho1, rho2, rho3, L):
         t23,
         t21,
         A_13_inner - rho3 + t11,
-        t27 | (slack <= _runtime.VANISHING * t9),
+        t28,
     )
 
 
@@ -1158,7 +1163,7 @@ def _jacobian_serial_common(rho1, rho2, rho3, L):
     t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t4)
     del t4
     t11 = _runtime.poison(invalid | np.logical_not(t10))
-    del invalid, t10
+    del invalid
     t12 = m_y * h
     t13 = t3 * (rho1 * product_z) - rho2 * 0.5
     t14 = t3 * (rho1 * m_y + rho2 * product_x)
@@ -1174,6 +1179,8 @@ def _jacobian_serial_common(rho1, rho2, rho3, L):
     del t18
     t19 = (u_u <= t17) | (u_u + v_v <= t17) | slim | (product_2 <= t16 * (u_u * t8))
     del product_2, slim, t16, t17, t8, u_u, v_v
+    t20 = t19 | (t10 & (slack <= _runtime.VANISHING * t9))
+    del slack, t10, t19, t9
     return (
         t5 - t6 + t11,
         t12 - t13 - rho2 + t11,
@@ -1181,7 +1188,7 @@ def _jacobian_serial_common(rho1, rho2, rho3, L):
         -(t5 + t6) + t11,
         -(rho2 + (t12 + t13)) + t11,
         t14 - t15 - rho3 + t11,
-        t19 | (slack <= _runtime.VANISHING * t9),
+        t20,
     )
 
 
@@ -1399,7 +1406,7 @@ def _jacobian_common(rho1, rho2, rho3, L):
     t19 = (np.abs(0.0) <= t17 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t18) <= t4)
     del t4
     t20 = _runtime.poison(invalid | np.logical_not(t19))
-    del invalid, t19
+    del invalid
     A_21 = rho1 + A_11
     t21 = t9 * A_21
     t22 = t12 * A_21
@@ -1425,6 +1432,8 @@ def _jacobian_common(rho1, rho2, rho3, L):
     del t34
     t35 = (u_u <= t33) | (u_u + v_v <= t33) | slim | (product_2 <= t32 * (u_u * t17))
     del product_2, slim, t17, t32, t33, u_u, v_v
+    t36 = t35 | (t19 & (slack <= _runtime.VANISHING * t18))
+    del slack, t18, t19, t35
     return (
         -(A_11 * (t13 - t14 * t15) / Delta) + t20,
         -(t15 * (t13 + t14 * t12) / Delta) + t20,
@@ -1444,7 +1453,7 @@ def _jacobian_common(rho1, rho2, rho3, L):
         t31,
         -(t28 * (t30 + t23 * t25) / Delta) + t20,
         t27 * (t30 + t23 * t28) / Delta + t20,
-        t35 | (slack <= _runtime.VANISHING * t18),
+        t36,
     )
 
 
@@ -1621,7 +1630,7 @@ def _determinant_common(rho1, rho2, rho3, L):
     t15 = (np.abs(0.0) <= t13 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t14) <= t5)
     del t5
     t16 = _runtime.poison(invalid | np.logical_not(t15))
-    del invalid, t15
+    del invalid
     t17 = (rho3 - (t3 - t6)) * (t7 + t8) * (rho2 + (t9 + t10))
     del t10, t3, t6, t7, t8, t9
     t18 = _runtime.VANISHING * _runtime.VANISHING
@@ -1633,10 +1642,12 @@ def _determinant_common(rho1, rho2, rho3, L):
     del t20
     t21 = (u_u <= t19) | (u_u + v_v <= t19) | slim | (product_2 <= t18 * (u_u * t13))
     del product_2, slim, t13, t18, t19, u_u, v_v
+    t22 = t21 | (t15 & (slack <= _runtime.VANISHING * t14))
+    del slack, t14, t15, t21
     return (
         t11 / Delta + t16,
         t17 / Delta + t16,
-        t21 | (slack <= _runtime.VANISHING * t14),
+        t22,
     )
 
 
@@ -1805,7 +1816,7 @@ def _singularities_common(rho1, rho2, rho3, L):
     t10 = (np.abs(0.0) <= t8 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t9) <= t4)
     del t4
     t11 = _runtime.poison(invalid | np.logical_not(t10))
-    del invalid, t10
+    del invalid
     t12 = m_y * h
     t13 = t3 * (rho1 * product_z) - rho2 * 0.5
     t14 = t3 * (rho1 * m_y + rho2 * product_x)
@@ -1823,6 +1834,8 @@ def _singularities_common(rho1, rho2, rho3, L):
     del t18
     t19 = (u_u <= t17) | (u_u + v_v <= t17) | slim | (product_2 <= t16 * (u_u * t8))
     del product_2, slim, t16, t17, t8, u_u, v_v
+    t20 = t19 | (t10 & (slack <= _runtime.VANISHING * t9))
+    del slack, t10, t19, t9
     return (
         t5 - t6 + t11,
         t12 - t13 - rho2 + t11,
@@ -1832,7 +1845,7 @@ def _singularities_common(rho1, rho2, rho3, L):
         -(rho2 + (t12 + t13)) + t11,
         t14 - t15 - rho3 + t11,
         -Delta + t11,
-        t19 | (slack <= _runtime.VANISHING * t9),
+        t20,
     )
 
 
@@ -2109,7 +2122,7 @@ def _condition_number_common(rho1, rho2, rho3, L):
     t38 = (np.abs(0.0) <= t36 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t37) <= t5)
     del t5
     t39 = _runtime.poison(invalid | np.logical_not(t38))
-    del invalid, t38
+    del invalid
     t40 = t3 - t6
     del t3, t6
     t41 = t40 * t40
@@ -2156,10 +2169,12 @@ def _condition_number_common(rho1, rho2, rho3, L):
     del t66
     t67 = (u_u <= t65) | (u_u + v_v <= t65) | slim | (product_2 <= t64 * (u_u * t36))
     del product_2, slim, t36, t64, t65, u_u, v_v
+    t68 = t67 | (t38 & (slack <= _runtime.VANISHING * t37))
+    del slack, t37, t38, t67
     return (
         np.sqrt(t33) / t34 + t39,
         np.sqrt(t63) / t34 + t39,
-        t67 | (slack <= _runtime.VANISHING * t37),
+        t68,
     )
 
 
@@ -2348,7 +2363,7 @@ def _constraint_common(rho1, rho2, rho3, L):
     t17 = (np.abs(0.0) <= t15 * _runtime.FEASIBILITY) & (-(_runtime.FEASIBILITY * t16) <= t5)
     del t5
     t18 = _runtime.poison(invalid | np.logical_not(t17))
-    del invalid, t17
+    del invalid
     t19 = t3 - t6
     del t3, t6
     t20 = t11 + t12
@@ -2366,10 +2381,12 @@ def _constraint_common(rho1, rho2, rho3, L):
     del t25
     t26 = (u_u <= t24) | (u_u + v_v <= t24) | slim | (product_2 <= t23 * (u_u * t15))
     del product_2, slim, t15, t23, t24, u_u, v_v
+    t27 = t26 | (t17 & (slack <= _runtime.VANISHING * t16))
+    del slack, t16, t17, t26
     return (
         t13 + t18,
         t22 + t18,
-        t26 | (slack <= _runtime.VANISHING * t16),
+        t27,
     )
 
 

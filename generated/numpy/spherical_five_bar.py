@@ -3,25 +3,25 @@
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 75 compare and select, 65 add, 4 divide, 112 multiply, 7 sincos, 4 sqrt
-#   fk where nothing vanishes: 47 compare and select, 58 add, 4 divide, 87 multiply, 7 sincos, 4
+#   fk where nothing vanishes: 48 compare and select, 58 add, 4 divide, 87 multiply, 7 sincos, 4
 #     sqrt
 #   skeleton: 74 compare and select, 77 add, 5 divide, 111 multiply, 7 sincos, 4 sqrt
-#   skeleton where nothing vanishes: 46 compare and select, 70 add, 4 divide, 87 multiply, 7
+#   skeleton where nothing vanishes: 47 compare and select, 70 add, 4 divide, 87 multiply, 7
 #     sincos, 4 sqrt
 #   jacobian_parallel: 74 compare and select, 86 add, 5 divide, 111 multiply, 7 sincos, 4 sqrt
-#   jacobian_parallel where nothing vanishes: 46 compare and select, 79 add, 4 divide, 87
+#   jacobian_parallel where nothing vanishes: 47 compare and select, 79 add, 4 divide, 87
 #     multiply, 7 sincos, 4 sqrt
 #   jacobian_serial: 74 compare and select, 72 add, 5 divide, 123 multiply, 7 sincos, 4 sqrt
-#   jacobian_serial where nothing vanishes: 46 compare and select, 65 add, 4 divide, 99 multiply,
+#   jacobian_serial where nothing vanishes: 47 compare and select, 65 add, 4 divide, 99 multiply,
 #     7 sincos, 4 sqrt
 #   jacobian: 74 compare and select, 98 add, 17 divide, 160 multiply, 7 sincos, 4 sqrt
-#   jacobian where nothing vanishes: 46 compare and select, 91 add, 16 divide, 136 multiply, 7
+#   jacobian where nothing vanishes: 47 compare and select, 91 add, 16 divide, 136 multiply, 7
 #     sincos, 4 sqrt
 #   singularities: 74 compare and select, 74 add, 5 divide, 124 multiply, 7 sincos, 4 sqrt
-#   singularities where nothing vanishes: 46 compare and select, 67 add, 4 divide, 100 multiply, 7
+#   singularities where nothing vanishes: 47 compare and select, 67 add, 4 divide, 100 multiply, 7
 #     sincos, 4 sqrt
 #   condition_number: 74 compare and select, 114 add, 13 divide, 169 multiply, 7 sincos, 8 sqrt
-#   condition_number where nothing vanishes: 46 compare and select, 107 add, 12 divide, 145
+#   condition_number where nothing vanishes: 47 compare and select, 107 add, 12 divide, 145
 #     multiply, 7 sincos, 8 sqrt
 #   ik: 107 compare and select, 78 add, 4 atan2, 8 divide, 110 multiply, 5 sincos, 7 sqrt
 #   workspace_contains: 53 compare and select, 26 add, 3 divide, 36 multiply, 5 sincos, 5 sqrt
@@ -408,36 +408,39 @@ def _fk_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     t30 = _runtime.FEASIBILITY * (r * (r + r * 2.2737367544323206e-13) * 0.5)
     t31 = (t29 <= t14) & (t29 <= t11) & (t29 <= t12) & (-t30 <= t21)
     del t11, t12, t14, t21, t29
-    unreachable = np.logical_not(t31 & (-t30 <= t22))
+    t32 = t31 & (-t30 <= t22)
     del t22, t30, t31
-    t32 = _runtime.poison(invalid | unreachable)
-    t33 = (t6 * m_z - t7 * product_x) * Y - (c1_y - t5 * X)
-    t34 = t8 * h
-    t35 = m_z * h
+    unreachable = np.logical_not(t32)
+    t33 = _runtime.poison(invalid | unreachable)
+    t34 = (t6 * m_z - t7 * product_x) * Y - (c1_y - t5 * X)
+    t35 = t8 * h
+    t36 = m_z * h
     del h, m_z
-    t36 = (t6 * t8 + t5 * product_x) * Y - (c1_z - t7 * X)
+    t37 = (t6 * t8 + t5 * product_x) * Y - (c1_z - t7 * X)
     del X, Y, product_x, t5, t6, t7, t8
-    t37 = _runtime.status(invalid, unreachable, np.False_)
+    t38 = _runtime.status(invalid, unreachable, np.False_)
     del invalid, unreachable
-    t38 = _runtime.VANISHING * _runtime.VANISHING
-    t39 = t17 * t38
+    t39 = _runtime.VANISHING * _runtime.VANISHING
+    t40 = t17 * t39
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     del c1_x, c1_y, c1_z
-    t40 = u_u * v_v
-    slim = product_2 - t40 * 0.000244140625 <= _runtime.VANISHING * t40
-    del t40
-    t41 = (u_u <= t39) | (u_u + v_v <= t39) | slim | (product_2 <= t38 * (t17 * u_u))
-    del product_2, slim, t38, t39, u_u, v_v
+    t41 = u_u * v_v
+    slim = product_2 - t41 * 0.000244140625 <= _runtime.VANISHING * t41
+    del t41
+    t42 = (u_u <= t40) | (u_u + v_v <= t40) | slim | (product_2 <= t39 * (t17 * u_u))
+    del product_2, slim, t39, t40, u_u, v_v
+    t43 = t42 | (t32 & (both <= _runtime.VANISHING * t17))
+    del both, t17, t32, t42
     return (
-        t23 + t24 + t32,
-        -(t33 + t34) + t32,
-        t35 - t36 + t32,
-        t23 - t24 + t32,
-        t34 - t33 + t32,
-        -(t36 + t35) + t32,
-        t37,
-        t37,
-        t41 | (both <= _runtime.VANISHING * t17),
+        t23 + t24 + t33,
+        -(t34 + t35) + t33,
+        t36 - t37 + t33,
+        t23 - t24 + t33,
+        t35 - t34 + t33,
+        -(t37 + t36) + t33,
+        t38,
+        t38,
+        t43,
     )
 
 
@@ -817,23 +820,23 @@ def _skeleton_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del t18, t20, t21, t5
     t34 = t31 + t26
     del t26, t31
-    failed = np.logical_not(t4) | np.logical_not(t33 & (t23 <= t34))
-    del t23, t33, t4
-    t35 = _runtime.poison(failed)
-    del failed
-    t36 = 0.0 + t35
-    t37 = c1_x + t35
-    t38 = c1_y + t35
-    t39 = c1_z + t35
-    t40 = t11 + t35
+    t35 = t33 & (t23 <= t34)
+    del t23, t33
+    t36 = _runtime.poison(np.logical_not(t4) | np.logical_not(t35))
+    del t4
+    t37 = 0.0 + t36
+    t38 = c1_x + t36
+    t39 = c1_y + t36
+    t40 = c1_z + t36
+    t41 = t11 + t36
     del t11
-    t41 = t15 + t35
+    t42 = t15 + t36
     del t15
-    t42 = -t12 + t35
+    t43 = -t12 + t36
     del t12
-    t43 = c2_y + t35
+    t44 = c2_y + t36
     del c2_y
-    t44 = c2_z + t35
+    t45 = c2_z + t36
     del c2_z
     X = over_a * along
     del along
@@ -846,62 +849,64 @@ def _skeleton_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del rho
     Y = part * over_a * half * (upper - lower)
     del over_a
-    t45 = t13 * X - (t16 * m_z + t17 * t24) * Y
+    t46 = t13 * X - (t16 * m_z + t17 * t24) * Y
     h = part * (2.0 * half * np.sqrt(upper * lower))
     del half, lower, part, upper
-    t46 = product_x * h
-    t47 = t16 * X + (t13 * m_z - t17 * product_x) * Y
-    t48 = t24 * h
-    t49 = t17 * X + (t13 * t24 + t16 * product_x) * Y
+    t47 = product_x * h
+    t48 = t16 * X + (t13 * m_z - t17 * product_x) * Y
+    t49 = t24 * h
+    t50 = t17 * X + (t13 * t24 + t16 * product_x) * Y
     del X, Y, product_x, t13, t16, t17, t24
-    t50 = m_z * h
+    t51 = m_z * h
     del h, m_z
-    t51 = _runtime.VANISHING * _runtime.VANISHING
-    t52 = t27 * t51
+    t52 = _runtime.VANISHING * _runtime.VANISHING
+    t53 = t27 * t52
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    t53 = u_u * v_v
-    slim = product_2 - t53 * 0.000244140625 <= _runtime.VANISHING * t53
-    del t53
-    t54 = (u_u <= t52) | (u_u + v_v <= t52) | slim | (product_2 <= t51 * (t27 * u_u))
-    del product_2, slim, t51, t52, u_u, v_v
+    t54 = u_u * v_v
+    slim = product_2 - t54 * 0.000244140625 <= _runtime.VANISHING * t54
+    del t54
+    t55 = (u_u <= t53) | (u_u + v_v <= t53) | slim | (product_2 <= t52 * (t27 * u_u))
+    del product_2, slim, t52, t53, u_u, v_v
+    t56 = t55 | (t35 & (both <= _runtime.VANISHING * t27))
+    del both, t27, t35, t55
     return (
-        t36,
-        t36,
-        t36,
         t37,
-        t36,
-        t36,
+        t37,
+        t37,
+        t38,
+        t37,
         t37,
         t38,
         t39,
         t40,
         t41,
-        t36,
         t42,
+        t37,
         t43,
         t44,
-        c1_x - (t45 - t46) + t35,
-        c1_y - (t47 + t48) + t35,
-        c1_z - (t49 - t50) + t35,
-        t36,
-        t36,
-        t36,
+        t45,
+        c1_x - (t46 - t47) + t36,
+        c1_y - (t48 + t49) + t36,
+        c1_z - (t50 - t51) + t36,
         t37,
-        t36,
-        t36,
+        t37,
+        t37,
+        t38,
+        t37,
         t37,
         t38,
         t39,
         t40,
         t41,
-        t36,
         t42,
+        t37,
         t43,
         t44,
-        c1_x - (t45 + t46) + t35,
-        c1_y - (t47 - t48) + t35,
-        c1_z - (t49 + t50) + t35,
-        t54 | (both <= _runtime.VANISHING * t27),
+        t45,
+        c1_x - (t46 + t47) + t36,
+        c1_y - (t48 - t49) + t36,
+        c1_z - (t50 + t51) + t36,
+        t56,
     )
 
 
@@ -1245,52 +1250,54 @@ def _jacobian_parallel_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, b
     del t31
     t33 = (t30 <= t14) & (t30 <= t11) & (t30 <= t12) & (t32 <= t21)
     del t11, t12, t14, t21, t30
-    failed = np.logical_not(t29) | np.logical_not(t33 & (t32 <= t22))
-    del t22, t29, t32, t33
-    t34 = _runtime.poison(failed)
-    del failed
-    t35 = t6 * X + (t4 * m_z - t7 * product_x) * Y
-    t36 = t8 * h
-    t37 = t35 + t36
-    t38 = t7 * X + (t4 * t8 + t6 * product_x) * Y
+    t34 = t33 & (t32 <= t22)
+    del t22, t32, t33
+    t35 = _runtime.poison(np.logical_not(t29) | np.logical_not(t34))
+    del t29
+    t36 = t6 * X + (t4 * m_z - t7 * product_x) * Y
+    t37 = t8 * h
+    t38 = t36 + t37
+    t39 = t7 * X + (t4 * t8 + t6 * product_x) * Y
     del X, Y, product_x, t8
-    t39 = m_z * h
+    t40 = m_z * h
     del h, m_z
-    t40 = t38 - t39
-    t41 = t23 + t24
+    t41 = t39 - t40
+    t42 = t23 + t24
     del t23, t24
-    t42 = t35 - t36
-    del t35, t36
-    t43 = t38 + t39
-    del t38, t39
-    t44 = _runtime.VANISHING * _runtime.VANISHING
-    t45 = t18 * t44
+    t43 = t36 - t37
+    del t36, t37
+    t44 = t39 + t40
+    del t39, t40
+    t45 = _runtime.VANISHING * _runtime.VANISHING
+    t46 = t18 * t45
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    t46 = u_u * v_v
-    slim = product_2 - t46 * 0.000244140625 <= _runtime.VANISHING * t46
-    del t46
-    t47 = (u_u <= t45) | (u_u + v_v <= t45) | slim | (product_2 <= t44 * (t18 * u_u))
-    del product_2, slim, t44, t45, u_u, v_v
+    t47 = u_u * v_v
+    slim = product_2 - t47 * 0.000244140625 <= _runtime.VANISHING * t47
+    del t47
+    t48 = (u_u <= t46) | (u_u + v_v <= t46) | slim | (product_2 <= t45 * (t18 * u_u))
+    del product_2, slim, t45, t46, u_u, v_v
+    t49 = t48 | (t34 & (both <= _runtime.VANISHING * t18))
+    del both, t18, t34, t48
     return (
-        c1_x - t25 + t34,
-        c1_y - t37 + t34,
-        c1_z - t40 + t34,
-        -t25 + t34,
-        -t37 + t34,
-        -t40 + t34,
-        t4 - t25 + t34,
-        t6 - t37 + t34,
-        t7 - t40 + t34,
-        c1_x - t41 + t34,
-        c1_y - t42 + t34,
-        c1_z - t43 + t34,
-        -t41 + t34,
-        -t42 + t34,
-        -t43 + t34,
-        t4 - t41 + t34,
-        t6 - t42 + t34,
-        t7 - t43 + t34,
-        t47 | (both <= _runtime.VANISHING * t18),
+        c1_x - t25 + t35,
+        c1_y - t38 + t35,
+        c1_z - t41 + t35,
+        -t25 + t35,
+        -t38 + t35,
+        -t41 + t35,
+        t4 - t25 + t35,
+        t6 - t38 + t35,
+        t7 - t41 + t35,
+        c1_x - t42 + t35,
+        c1_y - t43 + t35,
+        c1_z - t44 + t35,
+        -t42 + t35,
+        -t43 + t35,
+        -t44 + t35,
+        t4 - t42 + t35,
+        t6 - t43 + t35,
+        t7 - t44 + t35,
+        t49,
     )
 
 
@@ -1628,40 +1635,42 @@ def _jacobian_serial_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     del t33
     t35 = (t32 <= t14) & (t32 <= t11) & (t32 <= t12) & (t34 <= t21)
     del t11, t12, t14, t21, t32
-    failed = np.logical_not(t31) | np.logical_not(t35 & (t34 <= t22))
-    del t22, t31, t34, t35
-    t36 = _runtime.poison(failed)
-    del failed
-    t37 = s_gamma * c2_z
+    t36 = t35 & (t34 <= t22)
+    del t22, t34, t35
+    t37 = _runtime.poison(np.logical_not(t31) | np.logical_not(t36))
+    del t31
+    t38 = s_gamma * c2_z
     del s_gamma
-    t38 = t7 * X - (t5 * m_z - t6 * t8) * Y
+    t39 = t7 * X - (t5 * m_z - t6 * t8) * Y
     del X, Y, m_z, t8
-    t39 = product_x * h
+    t40 = product_x * h
     del h, product_x
-    t40 = c_gamma * c2_z
+    t41 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t37 * (t7 - (t38 - t39)) - t40 * (t5 - t25) - t4 * (t6 - A_13)
-    t41 = t23 - t24
+    B_22 = t38 * (t7 - (t39 - t40)) - t41 * (t5 - t25) - t4 * (t6 - A_13)
+    t42 = t23 - t24
     del t23, t24
     A_13_below = t26 - t27
     del t26, t27
-    B_22_below = t37 * (t7 - (t38 + t39)) - t40 * (t5 - t41) - t4 * (t6 - A_13_below)
-    del t37, t38, t39, t4, t40, t5, t6, t7
-    t42 = _runtime.VANISHING * _runtime.VANISHING
-    t43 = t18 * t42
+    B_22_below = t38 * (t7 - (t39 + t40)) - t41 * (t5 - t42) - t4 * (t6 - A_13_below)
+    del t38, t39, t4, t40, t41, t5, t6, t7
+    t43 = _runtime.VANISHING * _runtime.VANISHING
+    t44 = t18 * t43
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     del c1_x
-    t44 = u_u * v_v
-    slim = product_2 - t44 * 0.000244140625 <= _runtime.VANISHING * t44
-    del t44
-    t45 = (u_u <= t43) | (u_u + v_v <= t43) | slim | (product_2 <= t42 * (t18 * u_u))
-    del product_2, slim, t42, t43, u_u, v_v
+    t45 = u_u * v_v
+    slim = product_2 - t45 * 0.000244140625 <= _runtime.VANISHING * t45
+    del t45
+    t46 = (u_u <= t44) | (u_u + v_v <= t44) | slim | (product_2 <= t43 * (t18 * u_u))
+    del product_2, slim, t43, t44, u_u, v_v
+    t47 = t46 | (t36 & (both <= _runtime.VANISHING * t18))
+    del both, t18, t36, t46
     return (
-        c1_z * t25 + c1_y * A_13 + t36,
-        B_22 + t36,
-        c1_z * t41 + c1_y * A_13_below + t36,
-        B_22_below + t36,
-        t45 | (both <= _runtime.VANISHING * t18),
+        c1_z * t25 + c1_y * A_13 + t37,
+        B_22 + t37,
+        c1_z * t42 + c1_y * A_13_below + t37,
+        B_22_below + t37,
+        t47,
     )
 
 
@@ -2056,83 +2065,85 @@ def _jacobian_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del t34
     t36 = (t33 <= t14) & (t33 <= t11) & (t33 <= t12) & (t35 <= t21)
     del t11, t12, t14, t21, t33
-    failed = np.logical_not(t32) | np.logical_not(t36 & (t35 <= t22))
-    del t22, t32, t35, t36
-    t37 = _runtime.poison(failed)
-    del failed
-    t38 = B_11 * (A_02 * t28 + A_03 * A_22) / Delta + t37
-    t39 = s_gamma * c2_z
+    t37 = t36 & (t35 <= t22)
+    del t22, t35, t36
+    t38 = _runtime.poison(np.logical_not(t32) | np.logical_not(t37))
+    del t32
+    t39 = B_11 * (A_02 * t28 + A_03 * A_22) / Delta + t38
+    t40 = s_gamma * c2_z
     del s_gamma
-    t40 = t7 * X - (t5 * m_z - t6 * t8) * Y
+    t41 = t7 * X - (t5 * m_z - t6 * t8) * Y
     del X, Y, m_z, t8
-    t41 = product_x * h
+    t42 = product_x * h
     del h, product_x
-    t42 = t40 - t41
-    A_21 = t7 - t42
-    t43 = c_gamma * c2_z
+    t43 = t41 - t42
+    A_21 = t7 - t43
+    t44 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t39 * A_21 - t43 * A_22 - t4 * t28
-    t44 = B_22 * (A_13 * A_02 + t25 * A_03) / Delta + t37
-    A_01 = c1_x - t42
-    t45 = -(B_11 * (t28 * A_01 + A_03 * A_21) / Delta) + t37
+    B_22 = t40 * A_21 - t44 * A_22 - t4 * t28
+    t45 = B_22 * (A_13 * A_02 + t25 * A_03) / Delta + t38
+    A_01 = c1_x - t43
+    t46 = -(B_11 * (t28 * A_01 + A_03 * A_21) / Delta) + t38
     del t28
-    t46 = -(B_22 * (A_13 * A_01 + A_03 * t42) / Delta) + t37
+    t47 = -(B_22 * (A_13 * A_01 + A_03 * t43) / Delta) + t38
     del A_03, A_13
-    t47 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
+    t48 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
     del A_21, A_22, B_11
-    t48 = -(B_22 * (t25 * A_01 - A_02 * t42) / Delta) + t37
-    del A_01, A_02, B_22, t25, t42
-    t49 = t23 - t24
+    t49 = -(B_22 * (t25 * A_01 - A_02 * t43) / Delta) + t38
+    del A_01, A_02, B_22, t25, t43
+    t50 = t23 - t24
     del t23, t24
     A_13_below = t26 - t27
     del t26, t27
-    B_11_below = c1_z * t49 + c1_y * A_13_below
-    A_02_below = c1_y - t49
-    t50 = t6 - A_13_below
+    B_11_below = c1_z * t50 + c1_y * A_13_below
+    A_02_below = c1_y - t50
+    t51 = t6 - A_13_below
     del t6
     A_03_below = c1_z + A_13_below
-    A_22_below = t5 - t49
+    A_22_below = t5 - t50
     del t5
-    t51 = B_11_below * (A_02_below * t50 + A_03_below * A_22_below)
-    t52 = t40 + t41
-    del t40, t41
-    A_21_below = t7 - t52
+    t52 = B_11_below * (A_02_below * t51 + A_03_below * A_22_below)
+    t53 = t41 + t42
+    del t41, t42
+    A_21_below = t7 - t53
     del t7
-    B_22_below = t39 * A_21_below - t43 * A_22_below - t4 * t50
-    del t39, t4, t43
-    t53 = B_22_below * (A_13_below * A_02_below + t49 * A_03_below)
-    A_01_below = c1_x - t52
-    t54 = B_11_below * (t50 * A_01_below + A_03_below * A_21_below)
-    del t50
-    t55 = B_22_below * (A_13_below * A_01_below + A_03_below * t52)
+    B_22_below = t40 * A_21_below - t44 * A_22_below - t4 * t51
+    del t4, t40, t44
+    t54 = B_22_below * (A_13_below * A_02_below + t50 * A_03_below)
+    A_01_below = c1_x - t53
+    t55 = B_11_below * (t51 * A_01_below + A_03_below * A_21_below)
+    del t51
+    t56 = B_22_below * (A_13_below * A_01_below + A_03_below * t53)
     del A_03_below, A_13_below
-    t56 = A_22_below * A_01_below - A_02_below * A_21_below
+    t57 = A_22_below * A_01_below - A_02_below * A_21_below
     del A_21_below, A_22_below
-    t57 = B_22_below * (t49 * A_01_below - A_02_below * t52)
-    del A_01_below, A_02_below, B_22_below, t49, t52
-    t58 = _runtime.VANISHING * _runtime.VANISHING
-    t59 = t18 * t58
+    t58 = B_22_below * (t50 * A_01_below - A_02_below * t53)
+    del A_01_below, A_02_below, B_22_below, t50, t53
+    t59 = _runtime.VANISHING * _runtime.VANISHING
+    t60 = t18 * t59
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     del c1_x, c1_y, c1_z
-    t60 = u_u * v_v
-    slim = product_2 - t60 * 0.000244140625 <= _runtime.VANISHING * t60
-    del t60
-    t61 = (u_u <= t59) | (u_u + v_v <= t59) | slim | (product_2 <= t58 * (t18 * u_u))
-    del product_2, slim, t58, t59, u_u, v_v
+    t61 = u_u * v_v
+    slim = product_2 - t61 * 0.000244140625 <= _runtime.VANISHING * t61
+    del t61
+    t62 = (u_u <= t60) | (u_u + v_v <= t60) | slim | (product_2 <= t59 * (t18 * u_u))
+    del product_2, slim, t59, t60, u_u, v_v
+    t63 = t62 | (t37 & (both <= _runtime.VANISHING * t18))
+    del both, t18, t37, t62
     return (
-        t38,
-        t44,
+        t39,
         t45,
         t46,
-        t47 + t37,
-        t48,
-        -(t51 / Delta) + t37,
-        -(t53 / Delta) + t37,
-        t54 / Delta + t37,
-        t55 / Delta + t37,
-        B_11_below * t56 / Delta + t37,
-        t57 / Delta + t37,
-        t61 | (both <= _runtime.VANISHING * t18),
+        t47,
+        t48 + t38,
+        t49,
+        -(t52 / Delta) + t38,
+        -(t54 / Delta) + t38,
+        t55 / Delta + t38,
+        t56 / Delta + t38,
+        B_11_below * t57 / Delta + t38,
+        t58 / Delta + t38,
+        t63,
     )
 
 
@@ -2474,44 +2485,46 @@ def _singularities_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     del t33
     t35 = (t32 <= t14) & (t32 <= t11) & (t32 <= t12) & (t34 <= t21)
     del t11, t12, t14, t21, t32
-    failed = np.logical_not(t31) | np.logical_not(t35 & (t34 <= t22))
-    del t22, t31, t34, t35
-    t36 = _runtime.poison(failed)
-    del failed
-    t37 = s_gamma * c2_z
+    t36 = t35 & (t34 <= t22)
+    del t22, t34, t35
+    t37 = _runtime.poison(np.logical_not(t31) | np.logical_not(t36))
+    del t31
+    t38 = s_gamma * c2_z
     del s_gamma
-    t38 = t7 * X - (t5 * m_z - t6 * t8) * Y
+    t39 = t7 * X - (t5 * m_z - t6 * t8) * Y
     del X, Y, m_z, t8
-    t39 = product_x * h
+    t40 = product_x * h
     del product_x
-    t40 = c_gamma * c2_z
+    t41 = c_gamma * c2_z
     del c2_z, c_gamma
-    B_22 = t37 * (t7 - (t38 - t39)) - t40 * (t5 - t25) - t4 * (t6 - A_13)
+    B_22 = t38 * (t7 - (t39 - t40)) - t41 * (t5 - t25) - t4 * (t6 - A_13)
     Delta = product_2 * h
     del h
-    t41 = t23 - t24
+    t42 = t23 - t24
     del t23, t24
     A_13_below = t26 - t27
     del t26, t27
-    B_22_below = t37 * (t7 - (t38 + t39)) - t40 * (t5 - t41) - t4 * (t6 - A_13_below)
-    del t37, t38, t39, t4, t40, t5, t6, t7
-    t42 = _runtime.VANISHING * _runtime.VANISHING
-    t43 = t18 * t42
+    B_22_below = t38 * (t7 - (t39 + t40)) - t41 * (t5 - t42) - t4 * (t6 - A_13_below)
+    del t38, t39, t4, t40, t41, t5, t6, t7
+    t43 = _runtime.VANISHING * _runtime.VANISHING
+    t44 = t18 * t43
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     del c1_x
-    t44 = u_u * v_v
-    slim = product_2 - t44 * 0.000244140625 <= _runtime.VANISHING * t44
-    del t44
-    t45 = (u_u <= t43) | (u_u + v_v <= t43) | slim | (product_2 <= t42 * (t18 * u_u))
-    del product_2, slim, t42, t43, u_u, v_v
+    t45 = u_u * v_v
+    slim = product_2 - t45 * 0.000244140625 <= _runtime.VANISHING * t45
+    del t45
+    t46 = (u_u <= t44) | (u_u + v_v <= t44) | slim | (product_2 <= t43 * (t18 * u_u))
+    del product_2, slim, t43, t44, u_u, v_v
+    t47 = t46 | (t36 & (both <= _runtime.VANISHING * t18))
+    del both, t18, t36, t46
     return (
-        c1_z * t25 + c1_y * A_13 + t36,
-        B_22 + t36,
-        Delta + t36,
-        c1_z * t41 + c1_y * A_13_below + t36,
-        B_22_below + t36,
-        -Delta + t36,
-        t45 | (both <= _runtime.VANISHING * t18),
+        c1_z * t25 + c1_y * A_13 + t37,
+        B_22 + t37,
+        Delta + t37,
+        c1_z * t42 + c1_y * A_13_below + t37,
+        B_22_below + t37,
+        -Delta + t37,
+        t47,
     )
 
 
@@ -2963,70 +2976,72 @@ def _condition_number_common(theta1, theta2, r, gamma, alpha1, alpha2, beta1, be
     del t45
     t47 = (t44 <= t14) & (t44 <= t11) & (t44 <= t12) & (t46 <= t21)
     del t11, t12, t14, t21, t44
-    failed = np.logical_not(t43) | np.logical_not(t47 & (t46 <= t22))
-    del t22, t43, t46, t47
-    t48 = _runtime.poison(failed)
-    del failed
-    t49 = t23 + t24
+    t48 = t47 & (t46 <= t22)
+    del t22, t46, t47
+    t49 = _runtime.poison(np.logical_not(t43) | np.logical_not(t48))
+    del t43
+    t50 = t23 + t24
     del t23, t24
-    A_01_below = c1_x - t49
-    t50 = t26 - t27
+    A_01_below = c1_x - t50
+    t51 = t26 - t27
     del t26, t27
-    A_02_below = c1_y - t50
-    t51 = A_01_below * A_01_below + A_02_below * A_02_below
-    t52 = t29 + t30
+    A_02_below = c1_y - t51
+    t52 = A_01_below * A_01_below + A_02_below * A_02_below
+    t53 = t29 + t30
     del t29, t30
-    A_03_below = c1_z - t52
-    strut_below = np.sqrt(t51 + A_03_below * A_03_below)
-    del t51
+    A_03_below = c1_z - t53
+    strut_below = np.sqrt(t52 + A_03_below * A_03_below)
+    del t52
     radial_x_below = A_01_below / strut_below
     del A_01_below
     radial_y_below = A_02_below / strut_below
     del A_02_below
     radial_z_below = A_03_below / strut_below
     del A_03_below
-    t53 = t49 * radial_x_below + t50 * radial_y_below + t52 * radial_z_below
-    t54 = t49 - radial_x_below * t53
-    t55 = t50 - radial_y_below * t53
-    t56 = t52 - radial_z_below * t53
-    del t53
-    square1_below = t54 * t54 + t55 * t55 + t56 * t56
-    A_21_below = t4 - t49
-    del t4, t49
-    A_22_below = t6 - t50
-    del t50, t6
-    t57 = radial_x_below * A_21_below + radial_y_below * A_22_below
-    A_23_below = t7 - t52
-    del t52, t7
-    off2_below = t57 + radial_z_below * A_23_below
-    del t57
+    t54 = t50 * radial_x_below + t51 * radial_y_below + t53 * radial_z_below
+    t55 = t50 - radial_x_below * t54
+    t56 = t51 - radial_y_below * t54
+    t57 = t53 - radial_z_below * t54
+    del t54
+    square1_below = t55 * t55 + t56 * t56 + t57 * t57
+    A_21_below = t4 - t50
+    del t4, t50
+    A_22_below = t6 - t51
+    del t51, t6
+    t58 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    A_23_below = t7 - t53
+    del t53, t7
+    off2_below = t58 + radial_z_below * A_23_below
+    del t58
     t2_x_below = A_21_below - radial_x_below * off2_below
     del A_21_below, radial_x_below
     t2_y_below = A_22_below - radial_y_below * off2_below
     del A_22_below, radial_y_below
-    t58 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t59 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
     t2_z_below = A_23_below - radial_z_below * off2_below
     del A_23_below, off2_below, radial_z_below
-    square2_below = t58 + t2_z_below * t2_z_below
-    del t58
-    t59 = square1_below - square2_below
-    t60 = t54 * t2_x_below + t55 * t2_y_below + t56 * t2_z_below
-    del t2_x_below, t2_y_below, t2_z_below, t54, t55, t56
-    t61 = square1_below + square2_below + np.sqrt(t59 * t59 + 4.0 * (t60 * t60))
-    del square1_below, square2_below, t59, t60
-    t62 = _runtime.VANISHING * _runtime.VANISHING
-    t63 = t18 * t62
+    square2_below = t59 + t2_z_below * t2_z_below
+    del t59
+    t60 = square1_below - square2_below
+    t61 = t55 * t2_x_below + t56 * t2_y_below + t57 * t2_z_below
+    del t2_x_below, t2_y_below, t2_z_below, t55, t56, t57
+    t62 = square1_below + square2_below + np.sqrt(t60 * t60 + 4.0 * (t61 * t61))
+    del square1_below, square2_below, t60, t61
+    t63 = _runtime.VANISHING * _runtime.VANISHING
+    t64 = t18 * t63
     v_v = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
     del c1_x, c1_y, c1_z
-    t64 = u_u * v_v
-    slim = product_2 - t64 * 0.000244140625 <= _runtime.VANISHING * t64
-    del t64
-    t65 = (u_u <= t63) | (u_u + v_v <= t63) | slim | (product_2 <= t62 * (t18 * u_u))
-    del product_2, slim, t62, t63, u_u, v_v
+    t65 = u_u * v_v
+    slim = product_2 - t65 * 0.000244140625 <= _runtime.VANISHING * t65
+    del t65
+    t66 = (u_u <= t64) | (u_u + v_v <= t64) | slim | (product_2 <= t63 * (t18 * u_u))
+    del product_2, slim, t63, t64, u_u, v_v
+    t67 = t66 | (t48 & (both <= _runtime.VANISHING * t18))
+    del both, t18, t48, t66
     return (
-        strut * t38 / t39 + t48,
-        strut_below * t61 / t39 + t48,
-        t65 | (both <= _runtime.VANISHING * t18),
+        strut * t38 / t39 + t49,
+        strut_below * t62 / t39 + t49,
+        t67,
     )
 
 

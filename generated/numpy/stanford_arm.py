@@ -12,7 +12,7 @@
 #   jacobian_space: 14 add, 43 multiply, 4 sincos
 #   jacobian_body: 14 add, 41 multiply, 4 sincos
 #   ik: 105 compare and select, 111 add, 16 atan2, 6 divide, 115 multiply, 8 sqrt
-#   ik where nothing vanishes: 79 compare and select, 95 add, 16 atan2, 4 divide, 90 multiply, 6
+#   ik where nothing vanishes: 80 compare and select, 95 add, 16 atan2, 4 divide, 90 multiply, 6
 #     sqrt
 """Stanford arm.
 
@@ -1019,166 +1019,169 @@ def _ik_common(
     size = np.abs(d2) + np.sqrt(t23 + t1)
     del t1
     t24 = -(_runtime.FEASIBILITY * size)
-    unreachable = np.logical_not((t24 <= t2) & (t24 <= t3))
+    t25 = (t24 <= t2) & (t24 <= t3)
     del t2, t24, t3
-    t25 = _runtime.poison(invalid | unreachable)
-    t26 = _runtime.wrap_cut(np.arctan2(s1, -t11)) + t25
-    t27 = np.arctan2(root1, T34)
-    t28 = t27 + t25
+    unreachable = np.logical_not(t25)
+    t26 = _runtime.poison(invalid | unreachable)
+    t27 = _runtime.wrap_cut(np.arctan2(s1, -t11)) + t26
+    t28 = np.arctan2(root1, T34)
+    t29 = t28 + t26
     r_boom = np.sqrt(t23 + root1 * root1)
     del t23
-    t29 = r_boom + t25
-    t30 = T13 * s1 + T23 * t11
-    t31 = 1.0 / r_boom
-    s2 = root1 * t31
-    t32 = T33 * s2
-    c2 = T34 * t31
-    del t31
-    t33 = T13 * t11 - T23 * s1
-    t34 = t32 + c2 * t33
-    t35 = np.arctan2(t30, -t34)
-    h_wrist = np.sqrt(t30 * t30 + t34 * t34)
-    t36 = 1.0 / h_wrist
-    t37 = t30 * t36
-    c_wrist_right_back_noflip = t34 * t36
-    del t36
-    t38 = t30 * t37 + t34 * c_wrist_right_back_noflip
-    t39 = T33 * c2
-    R2_33 = t39 - s2 * t33
-    del t33
-    t40 = np.arctan2(t38, R2_33)
-    t41 = c_wrist_right_back_noflip * (T11 * s1 + T21 * t11)
-    t42 = T31 * s2
-    t43 = t41 - t37 * (t42 + c2 * (T11 * t11 - T21 * s1))
-    del t41
-    t44 = c_wrist_right_back_noflip * (T12 * s1 + T22 * t11)
+    t30 = r_boom + t26
+    t31 = T13 * s1 + T23 * t11
+    t32 = 1.0 / r_boom
+    s2 = root1 * t32
+    t33 = T33 * s2
+    c2 = T34 * t32
+    del t32
+    t34 = T13 * t11 - T23 * s1
+    t35 = t33 + c2 * t34
+    t36 = np.arctan2(t31, -t35)
+    h_wrist = np.sqrt(t31 * t31 + t35 * t35)
+    t37 = 1.0 / h_wrist
+    t38 = t31 * t37
+    c_wrist_right_back_noflip = t35 * t37
+    del t37
+    t39 = t31 * t38 + t35 * c_wrist_right_back_noflip
+    t40 = T33 * c2
+    R2_33 = t40 - s2 * t34
+    del t34
+    t41 = np.arctan2(t39, R2_33)
+    t42 = c_wrist_right_back_noflip * (T11 * s1 + T21 * t11)
+    t43 = T31 * s2
+    t44 = t42 - t38 * (t43 + c2 * (T11 * t11 - T21 * s1))
+    del t42
+    t45 = c_wrist_right_back_noflip * (T12 * s1 + T22 * t11)
     del c_wrist_right_back_noflip
-    t45 = T32 * s2
-    t46 = t44 - t37 * (t45 + c2 * (T12 * t11 - T22 * s1))
-    del s1, t11, t37, t44
-    t47 = np.arctan2(-t43, t46)
-    t48 = np.arctan2(root1, -T34)
+    t46 = T32 * s2
+    t47 = t45 - t38 * (t46 + c2 * (T12 * t11 - T22 * s1))
+    del s1, t11, t38, t45
+    t48 = np.arctan2(-t44, t47)
+    t49 = np.arctan2(root1, -T34)
     del root1
-    t49 = _runtime.wrap_cut(-t48) + t25
-    t50 = -r_boom + t25
-    t51 = np.arctan2(t30, t34)
-    del t30, t34
-    t52 = np.arctan2(t38, -R2_33)
-    del R2_33, t38
-    t53 = np.arctan2(t43, -t46)
-    del t43, t46
+    t50 = _runtime.wrap_cut(-t49) + t26
+    t51 = -r_boom + t26
+    t52 = np.arctan2(t31, t35)
+    del t31, t35
+    t53 = np.arctan2(t39, -R2_33)
+    del R2_33, t39
+    t54 = np.arctan2(t44, -t47)
+    del t44, t47
     s1_left_out_noflip = t6 - t8
     del t6, t8
-    t54 = t9 + t10
+    t55 = t9 + t10
     del t10, t9
-    t55 = _runtime.wrap_cut(np.arctan2(s1_left_out_noflip, -t54))
-    t56 = t55 + t25
-    del t55
-    t57 = _runtime.wrap_cut(-t27) + t25
-    del t27
-    t58 = T13 * s1_left_out_noflip + T23 * t54
-    t59 = T13 * t54 - T23 * s1_left_out_noflip
-    R2_13_left_out_noflip = t32 - c2 * t59
-    del t32
-    t60 = np.arctan2(t58, R2_13_left_out_noflip)
-    t61 = R2_13_left_out_noflip * R2_13_left_out_noflip
-    h_wrist_left_out_noflip = np.sqrt(t58 * t58 + t61)
-    del t61
-    t62 = 1.0 / h_wrist_left_out_noflip
-    t63 = t58 * t62
-    c_wrist_left_out_noflip = R2_13_left_out_noflip * t62
+    t56 = _runtime.wrap_cut(np.arctan2(s1_left_out_noflip, -t55))
+    t57 = t56 + t26
+    del t56
+    t58 = _runtime.wrap_cut(-t28) + t26
+    del t28
+    t59 = T13 * s1_left_out_noflip + T23 * t55
+    t60 = T13 * t55 - T23 * s1_left_out_noflip
+    R2_13_left_out_noflip = t33 - c2 * t60
+    del t33
+    t61 = np.arctan2(t59, R2_13_left_out_noflip)
+    t62 = R2_13_left_out_noflip * R2_13_left_out_noflip
+    h_wrist_left_out_noflip = np.sqrt(t59 * t59 + t62)
     del t62
-    t64 = R2_13_left_out_noflip * c_wrist_left_out_noflip
-    t65 = t58 * t63 + t64
-    del t64
-    R2_33_left_out_noflip = t39 + s2 * t59
-    del s2, t39, t59
-    t66 = np.arctan2(t65, R2_33_left_out_noflip)
-    t67 = c_wrist_left_out_noflip * (T11 * s1_left_out_noflip + T21 * t54)
-    R2_11_left_out_noflip = t42 - c2 * (T11 * t54 - T21 * s1_left_out_noflip)
-    del t42
-    t68 = t67 - t63 * R2_11_left_out_noflip
-    del R2_11_left_out_noflip, t67
-    t69 = c_wrist_left_out_noflip * (T12 * s1_left_out_noflip + T22 * t54)
+    t63 = 1.0 / h_wrist_left_out_noflip
+    t64 = t59 * t63
+    c_wrist_left_out_noflip = R2_13_left_out_noflip * t63
+    del t63
+    t65 = R2_13_left_out_noflip * c_wrist_left_out_noflip
+    t66 = t59 * t64 + t65
+    del t65
+    R2_33_left_out_noflip = t40 + s2 * t60
+    del s2, t40, t60
+    t67 = np.arctan2(t66, R2_33_left_out_noflip)
+    t68 = c_wrist_left_out_noflip * (T11 * s1_left_out_noflip + T21 * t55)
+    R2_11_left_out_noflip = t43 - c2 * (T11 * t55 - T21 * s1_left_out_noflip)
+    del t43
+    t69 = t68 - t64 * R2_11_left_out_noflip
+    del R2_11_left_out_noflip, t68
+    t70 = c_wrist_left_out_noflip * (T12 * s1_left_out_noflip + T22 * t55)
     del c_wrist_left_out_noflip
-    R2_12_left_out_noflip = t45 - c2 * (T12 * t54 - T22 * s1_left_out_noflip)
-    del c2, s1_left_out_noflip, t45, t54
-    t70 = t69 - t63 * R2_12_left_out_noflip
-    del R2_12_left_out_noflip, t63, t69
-    t71 = np.arctan2(t68, -t70)
-    t72 = t48 + t25
-    del t48
-    t73 = np.arctan2(t58, -R2_13_left_out_noflip)
-    del R2_13_left_out_noflip, t58
-    t74 = np.arctan2(t65, -R2_33_left_out_noflip)
-    del R2_33_left_out_noflip, t65
-    t75 = np.arctan2(-t68, t70)
-    del t68, t70
-    t76 = _runtime.status(invalid, unreachable, np.False_)
+    R2_12_left_out_noflip = t46 - c2 * (T12 * t55 - T22 * s1_left_out_noflip)
+    del c2, s1_left_out_noflip, t46, t55
+    t71 = t70 - t64 * R2_12_left_out_noflip
+    del R2_12_left_out_noflip, t64, t70
+    t72 = np.arctan2(t69, -t71)
+    t73 = t49 + t26
+    del t49
+    t74 = np.arctan2(t59, -R2_13_left_out_noflip)
+    del R2_13_left_out_noflip, t59
+    t75 = np.arctan2(t66, -R2_33_left_out_noflip)
+    del R2_33_left_out_noflip, t66
+    t76 = np.arctan2(-t69, t71)
+    del t69, t71
+    t77 = _runtime.status(invalid, unreachable, np.False_)
     del invalid, unreachable
-    t77 = _runtime.VANISHING * size
+    t78 = _runtime.VANISHING * size
     del size
-    t78 = _runtime.VANISHING * 16.0
-    t79 = (h1 <= t77) | (r_boom <= t77) | (h_wrist <= t78)
-    del h1, h_wrist, r_boom, t77
+    t79 = _runtime.VANISHING * 16.0
+    t80 = (h1 <= t78) | (r_boom <= t78) | (h_wrist <= t79)
+    del h1, h_wrist, r_boom, t78
+    t81 = t25 & (t80 | (h_wrist_left_out_noflip <= t79))
+    del h_wrist_left_out_noflip, t25, t79, t80
     return (
-        t26,
-        t28,
+        t27,
         t29,
-        _runtime.wrap_cut(-t35) + t25,
-        _runtime.wrap_cut(t40) + t25,
-        _runtime.wrap_cut(-t47) + t25,
-        t26,
-        t28,
+        t30,
+        _runtime.wrap_cut(-t36) + t26,
+        _runtime.wrap_cut(t41) + t26,
+        _runtime.wrap_cut(-t48) + t26,
+        t27,
         t29,
-        _runtime.wrap(3.141592653589793 - t35) + t25,
-        _runtime.wrap_cut(-t40) + t25,
-        _runtime.wrap(3.141592653589793 - t47) + t25,
-        t26,
-        t49,
+        t30,
+        _runtime.wrap(3.141592653589793 - t36) + t26,
+        _runtime.wrap_cut(-t41) + t26,
+        _runtime.wrap(3.141592653589793 - t48) + t26,
+        t27,
         t50,
-        _runtime.wrap_cut(-t51) + t25,
-        _runtime.wrap_cut(t52) + t25,
-        _runtime.wrap_cut(-t53) + t25,
-        t26,
-        t49,
+        t51,
+        _runtime.wrap_cut(-t52) + t26,
+        _runtime.wrap_cut(t53) + t26,
+        _runtime.wrap_cut(-t54) + t26,
+        t27,
         t50,
-        _runtime.wrap(3.141592653589793 - t51) + t25,
-        _runtime.wrap_cut(-t52) + t25,
-        _runtime.wrap(3.141592653589793 - t53) + t25,
-        t56,
+        t51,
+        _runtime.wrap(3.141592653589793 - t52) + t26,
+        _runtime.wrap_cut(-t53) + t26,
+        _runtime.wrap(3.141592653589793 - t54) + t26,
         t57,
-        t29,
-        _runtime.wrap_cut(-t60) + t25,
-        _runtime.wrap_cut(t66) + t25,
-        _runtime.wrap_cut(-t71) + t25,
-        t56,
+        t58,
+        t30,
+        _runtime.wrap_cut(-t61) + t26,
+        _runtime.wrap_cut(t67) + t26,
+        _runtime.wrap_cut(-t72) + t26,
         t57,
-        t29,
-        _runtime.wrap(3.141592653589793 - t60) + t25,
-        _runtime.wrap_cut(-t66) + t25,
-        _runtime.wrap(3.141592653589793 - t71) + t25,
-        t56,
-        t72,
-        t50,
-        _runtime.wrap_cut(-t73) + t25,
-        _runtime.wrap_cut(t74) + t25,
-        _runtime.wrap_cut(-t75) + t25,
-        t56,
-        t72,
-        t50,
-        _runtime.wrap(3.141592653589793 - t73) + t25,
-        _runtime.wrap_cut(-t74) + t25,
-        _runtime.wrap(3.141592653589793 - t75) + t25,
-        t76,
-        t76,
-        t76,
-        t76,
-        t76,
-        t76,
-        t76,
-        t76,
-        t79 | (h_wrist_left_out_noflip <= t78),
+        t58,
+        t30,
+        _runtime.wrap(3.141592653589793 - t61) + t26,
+        _runtime.wrap_cut(-t67) + t26,
+        _runtime.wrap(3.141592653589793 - t72) + t26,
+        t57,
+        t73,
+        t51,
+        _runtime.wrap_cut(-t74) + t26,
+        _runtime.wrap_cut(t75) + t26,
+        _runtime.wrap_cut(-t76) + t26,
+        t57,
+        t73,
+        t51,
+        _runtime.wrap(3.141592653589793 - t74) + t26,
+        _runtime.wrap_cut(-t75) + t26,
+        _runtime.wrap(3.141592653589793 - t76) + t26,
+        t77,
+        t77,
+        t77,
+        t77,
+        t77,
+        t77,
+        t77,
+        t77,
+        t81,
     )
 
 

@@ -11,7 +11,7 @@
 #   jacobian_space: 29 add, 57 multiply, 5 sincos
 #   jacobian_body: 27 add, 58 multiply, 5 sincos
 #   ik: 2239 compare and select, 1783 add, 32 atan2, 311 divide, 3046 multiply, 210 sqrt
-#   ik where nothing vanishes: 154 compare and select, 183 add, 30 atan2, 15 divide, 220 multiply,
+#   ik where nothing vanishes: 163 compare and select, 183 add, 30 atan2, 15 divide, 220 multiply,
 #     12 sqrt
 """UR-type arm (three parallel axes).
 
@@ -6930,7 +6930,6 @@ def _ik_common(
     t40 = r_elbow - t38
     t41 = t27 & (t26 <= t37) & (t26 <= t39) & (t26 <= t40)
     unreachable = np.logical_not(t41)
-    del t41
     t42 = _runtime.poison(invalid | unreachable)
     t43 = t11 + t42
     t44 = 1.0 / r_elbow
@@ -7009,7 +7008,6 @@ def _ik_common(
     t80 = r_elbow_left_flip_up - t38
     t81 = t27 & (t26 <= t78) & (t26 <= t79) & (t26 <= t80)
     unreachable_2 = np.logical_not(t81)
-    del t81
     t82 = _runtime.poison(invalid | unreachable_2)
     t83 = t11 + t82
     del t11
@@ -7101,7 +7099,6 @@ def _ik_common(
     t123 = r_elbow_right_noflip_up - t38
     t124 = t27 & (t26 <= t121) & (t26 <= t122) & (t26 <= t123)
     unreachable_3 = np.logical_not(t124)
-    del t124
     t125 = _runtime.poison(invalid | unreachable_3)
     t126 = t114 + t125
     t127 = 1.0 / r_elbow_right_noflip_up
@@ -7186,9 +7183,8 @@ def _ik_common(
     t166 = r_elbow_right_flip_up - t38
     del t38
     t167 = t27 & (t26 <= t164) & (t26 <= t165) & (t26 <= t166)
-    del t26, t27
+    del t26
     unreachable_4 = np.logical_not(t167)
-    del t167
     t168 = _runtime.poison(invalid | unreachable_4)
     t169 = t114 + t168
     del t114
@@ -7270,16 +7266,20 @@ def _ik_common(
     del size
     t208 = t205 | (h_wrist <= t206) | (root1 * h_wrist - t207 <= t204)
     del h_wrist, t205
-    no_link_elbow = L2 * L3 <= _runtime.VANISHING * (full_1_1 * full_1_1)
-    del full_1_1
-    t209 = t208 | (r_elbow <= t204) | no_link_elbow | (r_elbow_left_flip_up <= t204)
-    del no_link_elbow, r_elbow, r_elbow_left_flip_up, t208
     close_right_noflip_up = root1 * h_wrist_right_noflip_up - t207 <= t204
     del root1, t207
-    t210 = t209 | (h_wrist_right_noflip_up <= t206) | close_right_noflip_up
-    del close_right_noflip_up, h_wrist_right_noflip_up, t206, t209
-    t211 = t210 | (r_elbow_right_noflip_up <= t204) | (r_elbow_right_flip_up <= t204)
-    del r_elbow_right_flip_up, r_elbow_right_noflip_up, t204, t210
+    t209 = t208 | (h_wrist_right_noflip_up <= t206) | close_right_noflip_up
+    del close_right_noflip_up, h_wrist_right_noflip_up, t206, t208
+    no_link_elbow = L2 * L3 <= _runtime.VANISHING * (full_1_1 * full_1_1)
+    del full_1_1
+    t210 = (t27 & t209) | (t41 & (r_elbow <= t204)) | ((t41 | t81 | t124 | t167) & no_link_elbow)
+    del no_link_elbow, r_elbow, t209, t27, t41
+    t211 = t210 | (t81 & (r_elbow_left_flip_up <= t204))
+    del r_elbow_left_flip_up, t210, t81
+    t212 = t211 | (t124 & (r_elbow_right_noflip_up <= t204))
+    del r_elbow_right_noflip_up, t124, t211
+    t213 = t212 | (t167 & (r_elbow_right_flip_up <= t204))
+    del r_elbow_right_flip_up, t167, t204, t212
     return (
         t43,
         t56,
@@ -7337,7 +7337,7 @@ def _ik_common(
         t202,
         t203,
         t203,
-        t211,
+        t213,
     )
 
 

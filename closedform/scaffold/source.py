@@ -25,6 +25,10 @@ class _Source(StrPrinter):  # type: ignore[misc]
     def _print_cos(self, expr: Any) -> str:
         return "given.c" if expr.args[0] == GIVEN else f"cos({self._print(expr.args[0])})"
 
+    def _print_tan(self, expr: Any) -> str:
+        """The printed code has no tangents."""
+        return f"(sin({self._print(expr.args[0])})/cos({self._print(expr.args[0])}))"
+
     def _print_Symbol(self, expr: Any) -> str:
         if not NAME.fullmatch(expr.name):
             raise ValueError(f"{expr.name!r} is not a name in Python")

@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sympy as sp
-from arms import OK, SINGULAR, UNREACHABLE, link, misses
+from arms import OK, SINGULAR, UNREACHABLE, misses
 from chains import arm, printed, solved
+from proposals import forward
 from sympy import pi
 
 from closedform.emit.backends.latex.article import document
@@ -25,16 +26,6 @@ APART = {
         [(H, -pi / 2, 1), (1, pi / 2, H), (0, 0, 1), *GANTRY], "t1 t2 t3 d4 d5 d6",
     ),
 }  # fmt: skip
-
-
-def forward(rows: list, q: np.ndarray) -> np.ndarray:
-    """The product of the motions of a table, in plain numbers."""
-    T = np.eye(4)
-    for k, (a, alpha, d, *theta) in enumerate(rows):
-        motion = link(float(a), float(alpha), 0.0, theta[0] * np.ones(len(q)) if theta else q[:, k])
-        motion[..., 2, 3] = q[:, k] if theta else float(d)
-        T = T @ motion
-    return T
 
 
 LEVEL = {

@@ -7,8 +7,8 @@ import pytest
 import sympy as sp
 from arms import OK, SINGULAR, misses
 from chains import arm, printed, solved
+from proposals import forward
 from sympy import pi
-from test_decoupled import forward
 
 from closedform.proof.prove import prove
 from closedform.scaffold.chains.chainlinks import singles

@@ -1,18 +1,15 @@
 """Joints that turn about one direction or slide, and others beside them: SCARA arms, jib cranes."""
 
-from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 import sympy as sp
-from arms import OK, SINGULAR, UNREACHABLE, misses, newton
-from chains import arm, printed, solved
+from arms import UNREACHABLE
+from chains import arm
+from proposals import Proposals, names
 from sympy import pi
-from test_decoupled import forward
 
-from closedform.proof.prove import prove
 from closedform.scaffold.chains.propose import NoChainError, propose
 
 A, B, C, D = (sp.Rational(n, 100) for n in (5, 40, 35, 11))
@@ -145,25 +142,7 @@ ARMS = {
 }  # fmt: skip
 
 
-def names(rows: list) -> str:
-    return " ".join(f"{'d' if len(row) == 4 else 't'}{k}" for k, row in enumerate(rows, 1))
-
-
-@cache
-def made(name: str, folder: Path) -> Any:
-    rows, structure, branches = ARMS[name]
-    d, serial = arm(rows, names(rows))
-    found = propose(serial)
-    assert found.structure == structure
-    solved(d, serial, found.source)
-    assert prove(d).inverses[0].branches == found.branches == branches
-    serial.export(d)
-    return printed(d, folder)
-
-
-def pose(name: str, q: np.ndarray) -> np.ndarray:
-    rows = [[None if e is None else float(e) for e in row] for row in ARMS[name][0]]
-    return forward(rows, q)
+PROPOSALS = Proposals(ARMS)
 
 
 @pytest.fixture(scope="module")
@@ -171,58 +150,26 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("one_direction")
 
 
-def gaps(name: str, answers: np.ndarray, q: np.ndarray) -> np.ndarray:
-    turns = np.array([len(row) == 3 for row in ARMS[name][0]])
-    off = np.where(turns, np.angle(np.exp(1j * (answers - q))), answers - q)
-    return np.abs(off).max(axis=-1)
-
-
-def postures(name: str, rng: np.random.Generator) -> np.ndarray:
-    """Random ones, and others with joints near and at multiples of a quarter or a sixth turn.
-
-    Among them are some of a crane whose turret and link are both at their limits.
-    """
-    rows = ARMS[name][0]
-    q = rng.uniform(-3, 3, (3000, len(rows)))
-    near = rng.choice([0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3], q.shape)
-    special = rng.integers(-6, 7, q.shape) * np.pi / rng.choice([2, 6], q.shape) + near
-    return np.where((rng.random(q.shape) < 0.5) & (np.arange(3000) > 500)[:, None], special, q)
-
-
 @pytest.mark.parametrize("name", ARMS)
 def test_every_pose_of_the_arm_is_reached(name: str, folder: Path) -> None:
-    q = postures(name, np.random.default_rng(1))
-    T = pose(name, q)
-    answers, status = made(name, folder).ik(T)
-    reached = pose(name, answers.reshape(-1, q.shape[1])).reshape(*answers.shape[:2], 4, 4)
-    assert max(misses(reached, T, status)) < 4e-12
-    assert np.isin(status, (OK, SINGULAR)).any(axis=1).all()
-    assert np.nanmin(gaps(name, answers, q[:, None])[:500], axis=1).max() < 1e-8
+    PROPOSALS.reach_every_pose(name, folder)
 
 
 @pytest.mark.parametrize("name", ARMS)
 def test_newton_finds_no_other_posture(name: str, folder: Path) -> None:
-    rng = np.random.default_rng(2)
-    for T in pose(name, rng.uniform(-1, 1, (4, len(ARMS[name][0])))):
-        answers, status = made(name, folder).ik(T[None])
-        there = answers[0][np.isin(status[0], (OK, SINGULAR))]
-        starts = rng.uniform(-np.pi, np.pi, (200, there.shape[1]))
-        found = newton(lambda q: pose(name, q), T, starts)
-        assert len(found) > 10
-        away = gaps(name, found[:, None], there[None])
-        assert away.min(axis=1).max() < 1e-6 and away.min(axis=0).max() < 1e-6
+    PROPOSALS.are_all(name, folder)
 
 
 @pytest.mark.parametrize("name", [name for name in ARMS if len(ARMS[name][0]) == 5])
 def test_other_poses_are_out_of_reach(name: str, folder: Path) -> None:
     rng = np.random.default_rng(3)
-    T = pose(name, rng.uniform(-3, 3, (50, 5)))
+    T = PROPOSALS.pose(name, rng.uniform(-3, 3, (50, 5)))
     turned = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0], [0.48, 0.64, 0.6]])
     if "one more" in ARMS[name][1]:  # its slides reach any position
         T[:, :3, :3] = T[:, :3, :3] @ turned
     else:
         T[:, :3, 3] += 1e-6 * (T[:, :3, 2] if "tool" in name else np.array([0, 0, 1]))
-    assert (made(name, folder).ik(T).status == UNREACHABLE).all()
+    assert (PROPOSALS.made(name, folder).ik(T).status == UNREACHABLE).all()
 
 
 def test_a_slide_that_reaches_only_in_some_postures_is_named() -> None:

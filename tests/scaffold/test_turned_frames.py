@@ -146,3 +146,24 @@ def test_a_level_tool_may_be_turned_by_any_angle(base: sp.Expr, tool: str) -> No
     serial = from_dh(d, [*rows, (0, 0, 0, turned)])
     solved(d, serial, propose(serial).source)
     assert prove(d).inverses[0].branches == 2
+
+
+def test_axes_that_meet_at_an_angle_without_roots(tmp_path: Path) -> None:
+    """The point where they meet holds the tangent of this angle, which no code can compute."""
+    rows = [
+        ("0 0 0.05", "0 0 0", "0 0 1"),
+        ("0.02 0 0.01", "0 0.174532925199433 0", "1 0 0"),
+        ("0 0 0.05", "0 0 0", "1 0 0"),
+        ("0 0 0.03", "0 0 0", "1 0 0"),
+    ]
+    joints = "".join(
+        f'<joint name="q{k}" type="revolute"><parent link="l{k}"/><child link="l{k + 1}"/>'
+        f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{axis}"/></joint>'
+        for k, (xyz, rpy, axis) in enumerate(rows)
+    )
+    urdf = tmp_path / "bent_finger.urdf"
+    urdf.write_text(f'<robot name="bent">{joints}</robot>', "utf-8")
+    script = new("bent_finger", "urdf", urdf, search=InverseSearch(fault=fault))
+    assert script.structure == "axes 2 and 3 parallel, and 1 joint that turns the tool"
+    assert "sin(angle1)/cos(angle1)" in script.text
+    assert "the parameter angle1 = 0.174532925199433 rad" in "".join(script.notes)

@@ -216,10 +216,14 @@ class Slides:
             self._vector("p", f"p - {one.joint}_*{source(self.sense[one.number] * a)}", "p2")
             turned = self._level(two, three, u)
             return Solved("a slide and two links", [("", one.end), *turned])
+        if not parallel(two) and a[2] == 0:
+            return self._slide_across(one, two, three, a)
         self.maker.require(
             not parallel(two) and two.shift.is_zero_matrix,
-            f"axes {two.number} and {three.number} are not parallel and do not meet",
-            "After a slide two axes have to be parallel, or meet.",
+            f"the slide is not normal to axis {two.number}, and axes {two.number} and "
+            f"{three.number} are not parallel and do not meet",
+            "After a slide that is not normal to the next axis, two axes have to be parallel, or "
+            "meet.",
         )
         size = sp.sqrt(sp.simplify(u.dot(u)))
         across = sp.sqrt(p.cross(a).dot(p.cross(a)))
@@ -233,7 +237,32 @@ class Slides:
         turned = [("", one.end), (second, two.end), (third, three.end)]
         return Solved("a slide and two joints", turned)
 
+    def _slide_across(self, one: Single, two: Single, three: Single, a: sp.Matrix) -> Solved:
+        """A slide normal to the second axis: how far the point is along it gives the third joint.
+
+        What is normal to both gives the second.
+        """
+        p, m, g = point("p"), Z.cross(a), _simple(two.end.T * Z)
+        carried = (
+            f"{source(two.shift)} + {times(two.end, f'(turned({{}}) * {source(three.shift)})')}"
+        )
+        self._far_enough(carried.format("pair"), m.dot(p), (two.shift, three.shift))
+        third = self._turned_by(three, three.shift, g, p[2] - two.shift[2], "links")
+        self._vector("to_end", carried.format(third))
+        second = self._turned_by(two, point("to_end"), m, m.dot(p))
+        self._vector("q", f"p - turned({second}) * to_end")
+        self._slide(one, a.dot(point("q")))
+        turned = [("", one.end), (second, two.end), (third, three.end)]
+        return Solved("a slide across a turret and a joint", turned)
+
     # What they have in common
+
+    def _far_enough(self, vector: str, least: Any, parts: Sequence[sp.Matrix]) -> None:
+        """Name the goal that a vector, the sum of others, is so far from the z axis."""
+        farthest = sum((sp.sqrt(sp.simplify(v.dot(v))) for v in parts), sp.S.Zero)
+        self.maker.add(f"far = ik.let('far', {source(sp.Abs(least) + farthest)})")
+        lengths = f"{source(sp.Abs(least) + sp.Symbol('far'))}, far"
+        self.maker.add(f"links = Links(lambda pair: {vector}, {lengths})")
 
     def _level(self, one: Single, two: Single, t: sp.Matrix) -> list[tuple[str, sp.Matrix]]:
         """Two links in the plane that is normal to their axes."""
@@ -280,7 +309,7 @@ class Slides:
         pair = self.by_axis(joint, n, value) if p == "p" else ""
         return pair or self._equation(joint, (*turning(n, at), value))
 
-    def _turned_by(self, joint: Single, v: Any, n: sp.Matrix, c: Any) -> str:
+    def _turned_by(self, joint: Single, v: Any, n: sp.Matrix, c: Any, toward: str = "") -> str:
         """Solve a joint that turns the vector ``v`` until it reaches ``c`` along ``n``."""
         a, b = (sp.simplify(e) for e in turning(v, n))
         self.maker.require(
@@ -288,12 +317,13 @@ class Slides:
             f"joint {joint.number} does not move the point across its slides",
             "A link beside its axis is needed there.",
         )
-        return self._equation(joint, (a, b, c - sp.simplify(n[2] * v[2])))
+        return self._equation(joint, (a, b, c - sp.simplify(n[2] * v[2])), toward)
 
-    def _equation(self, joint: Single, sides: tuple[Any, Any, Any]) -> str:
+    def _equation(self, joint: Single, sides: tuple[Any, Any, Any], toward: str = "") -> str:
         pair = f"pair{joint.number}"
         shown = ", ".join(source(e) for e in sides)
-        self.maker.solve("turn", f"{self.angle(joint)}, ({shown}), {SIDE}", pair, 2)
+        more = f", toward={toward}" if toward else ""
+        self.maker.solve("turn", f"{self.angle(joint)}, ({shown}), {SIDE}{more}", pair, 2)
         self.maker.levers.append(f"{pair}.lever/ik.size")
         self.maker.solved_as[joint.number] = (self.angle(joint), pair, sp.S.Zero)
         return pair

@@ -202,8 +202,14 @@ def _is_simple(term: sp.Expr) -> bool:
 
 
 def decimal(value: sp.Expr) -> str:
-    """A number as exact text, or to 20 digits if it is not rational."""
-    return str(value) if value.is_Rational else str(value.evalf(20))
+    """A number as exact text, in decimals if they end; to 20 digits if it is not rational."""
+    if not value.is_Rational:
+        return str(value.evalf(20))
+    places = next((k for k in range(1, 31) if 10**k % value.q == 0), 0)
+    if value.is_Integer or not places:
+        return str(value)
+    digits = f"{abs(value.p) * 10**places // value.q:0{places + 1}d}"
+    return f"{'-' if value < 0 else ''}{digits[:-places]}.{digits[-places:]}"
 
 
 __all__ = [

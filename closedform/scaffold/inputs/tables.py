@@ -73,9 +73,8 @@ LINES = {
     "R_inverse", "R_rest", "R_last", "R_between", "R_before", "R_shoulder",
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
     "play", "radius_to_target", "radius_to_end", "lever", "past", "seen_across",
-    "missed_by", "pair_at", "aimed", "off_axis", "below_one", "carried", "squares",
-    "less", "more", "less_behind", "more_behind", "behind", "far", "tilt", "offset",
-    "at_end", "seen",
+    "missed_by", "pair_at", "aimed", "off_axis", "below_one", "carried", "squares", "at_end",
+    "less", "more", "less_behind", "more_behind", "behind", "far", "tilt", "offset", "seen",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""
@@ -300,13 +299,14 @@ def _declare(table: Table, angles: exact.Angles) -> None:
     """Declare each angle that got a name as a parameter."""
     for angle, symbol in angles.named.items():
         where, value = angles.places[angle], exact.decimal(angle)
+        shown = value if angle.is_Rational else angle
         table.parameters[symbol.name] = {
             "value": value,
             "unit": "rad",
-            "meaning": f"the angle {angle} of the table",
+            "meaning": f"the angle {shown} of the table",
         }
         table.notes.append(
-            f"{where}: the cosine of {angle} has no short form with square roots, so this angle "
+            f"{where}: the cosine of {shown} has no short form with square roots, so this angle "
             f"is the parameter {symbol.name} = {value} rad"
         )
 

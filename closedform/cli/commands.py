@@ -290,13 +290,15 @@ def new_command(options: argparse.Namespace) -> None:
         raise CommandError(
             "--modified is for --from dh; the other files have one convention only", 2
         )
-    if (options.base or options.tool or options.ignore) and kind not in ("urdf", "mjcf"):
-        raise CommandError("--base, --tool and --ignore are for a URDF or MJCF file", 2)
+    of_tree = options.base or options.tool or options.ignore or options.hold
+    if of_tree and kind not in ("urdf", "mjcf"):
+        raise CommandError("--base, --tool, --ignore and --hold are for a URDF or MJCF file", 2)
     _require_extra()
     from closedform.pipeline import trial
     from closedform.scaffold.inputs.tree import Choice
     from closedform.scaffold.new import InverseSearch, check_name, new
 
+    hold = {name: value or "0" for name, _, value in (j.partition("=") for j in options.hold)}
     try:
         check_name(options.name)
         target = options.output / f"{options.name}.py"
@@ -312,7 +314,7 @@ def new_command(options: argparse.Namespace) -> None:
                 kind,
                 path,
                 modified=options.modified,
-                choice=Choice(options.base, options.tool, options.ignore),
+                choice=Choice(options.base, options.tool, options.ignore, hold),
                 search=search,
             )
     except (ValueError, TypeError) as error:

@@ -95,6 +95,13 @@ def new_options(parser: argparse.ArgumentParser) -> None:
         help="in such a file, lengths up to this one count as 0",
     )
     parser.add_argument(
+        "--hold",
+        metavar="JOINT[=VALUE]",
+        action="append",
+        default=[],
+        help="in such a file, a joint that becomes a parameter, 0 by default; can be repeated",
+    )
+    parser.add_argument(
         "--modified", action="store_true", help="the dh table is in Craig's (proximal) convention"
     )
     parser.add_argument(

@@ -205,7 +205,7 @@ class Chain:
             if symbol in self.values and not (rest := sp.expand(total - value)).has(*self.joints):
                 total = symbol + rest
         total = self.by_angles(total)
-        fixed = {a: Pair(sp.sin(a), sp.cos(a)) for a in total.atoms(sp.atan2)}
+        fixed = {a: Pair(sp.sin(a), sp.cos(a)) for a in total.atoms(sp.atan2, sp.atan)}
         pair = self.pair_of(total, fixed)
         if pair is None:
             raise ShapeError(

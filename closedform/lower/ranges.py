@@ -53,7 +53,7 @@ class Ranges:
         value = constant_of(node)
         if value is not None:
             multiple = 2 * sp.sympify(value, strict=True) / sp.pi
-            return _point(Fraction(int(multiple), 2)) if multiple.is_Integer else None
+            return Fraction(int(sp.floor(multiple)), 2), Fraction(int(sp.ceiling(multiple)), 2)
         if node.op == "atan2":
             y, x = node.args
             high = Fraction(1, 2) if self.positive(x) else Fraction(1)
@@ -157,7 +157,3 @@ class Ranges:
                 return {sum(values) for values in product(*known)}
             case _:
                 return {prod(values) for values in product(*known)}
-
-
-def _point(value: Fraction) -> Range:
-    return value, value

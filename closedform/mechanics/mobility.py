@@ -82,8 +82,8 @@ def singular_everywhere(
     held = (
         f".  If it is built so, like an arm on a lift that its links can replace, hold one of "
         f"these joints: in a DH table, a line such as '# {found[0]} = 0.1 m: held', with rad for a "
-        f"joint that turns, makes it a parameter; of a URDF file take the part after it, with "
-        f"--base"
+        f"joint that turns, makes it a parameter; of a URDF or MJCF file do so with --hold "
+        f"JOINT, such as --hold {found[0]}, or take the part after it, with --base"
     )
     return SingularEverywhereError(
         f"{name}: the arm is singular everywhere: its Jacobian has rank {rank}, not "

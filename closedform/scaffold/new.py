@@ -247,11 +247,13 @@ def _script(head: Sequence[str], inverse: _Inverse) -> str:
 
 
 def _negative(table: Table) -> list[str]:
-    """The parameters that may be negative: angles, and those whose value is."""
+    """The parameters that may be negative: angles, slides that are held, those whose value is."""
     return [
         n
         for n, given in table.parameters.items()
-        if given.get("value", "1").startswith("-") or given.get("unit") == "rad"
+        if given.get("value", "1").startswith("-")
+        or given.get("unit") == "rad"
+        or "signed" in given
     ]
 
 

@@ -36,6 +36,8 @@ ANGLES = {
     "of a square": (sp.atan2(x**2, y), None),
     "times a sign": (sp.Piecewise((1, x >= 0), (-1, True)) * upper, "wrap_cut"),
     "more than a turn": (3 * upper, "wrap"),
+    "with a constant": (quarter + sp.atan(32) - sp.pi / 2, None),
+    "with a constant that may lead beyond": (upper + sp.atan(32), "wrap"),
 }
 
 

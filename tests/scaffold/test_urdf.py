@@ -287,7 +287,7 @@ def test_the_command(ur5: Path, tmp_path: Path, capsys: pytest.CaptureFixture[st
     found = capsys.readouterr()
     assert "8 branches" in found.out and "taken for pi/2" in found.err
     assert main(["new", "b", "--from", "dh", str(ur5), "--tool", "w1"]) == 2
-    assert "--base, --tool and --ignore are for a URDF or MJCF file" in capsys.readouterr().err
+    assert "--tool, --ignore and --hold are for a URDF or MJCF file" in capsys.readouterr().err
 
 
 def test_a_tilted_mount_stays_apart_from_the_arm(ur5: Path) -> None:

@@ -87,7 +87,7 @@ def _require_few(arm: Serial) -> None:
             f"it has {len(names)} joints, and a pose determines six; up to seven are solved, with "
             f"one of them given",
             f"Give values to {more - 1} of them, or to {more}: {_held(singles(arm).joints[0])}  "
-            f"Of a URDF file take the part between two links, with --base and --tool.  "
+            f"Of such a file you may take the part between two links, with --base and --tool.  "
             f"Otherwise use a numeric inverse, such as that of Pinocchio.",
         )
 
@@ -133,7 +133,8 @@ def _held(single: Single) -> str:
     """How to give a value to a joint."""
     return (
         f"in a DH table, a line such as '# {single.joint} = 0.1 {'m' if single.slides else 'rad'}: "
-        f"held' makes a joint a parameter, an input of all printed functions."
+        f"held' makes a joint a parameter, an input of all printed functions; for a URDF or MJCF "
+        f"file --hold {single.joint} does so."
     )
 
 

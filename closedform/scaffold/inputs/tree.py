@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import sympy as sp
@@ -18,6 +18,7 @@ import sympy as sp
 from closedform.mechanics.frames import exponential, homogeneous, rotation
 from closedform.model.functions import real
 from closedform.scaffold.inputs.exact import orthonormal, turned_on, unit_vector, without_squares
+from closedform.scaffold.inputs.held import held
 from closedform.scaffold.inputs.joints import MOVING, Joint, Mimic, couple, led, symbol_of
 from closedform.scaffold.inputs.tables import (
     JOINTS,
@@ -49,12 +50,14 @@ CIRCLE = "the links form a circle; closed loops are written with --from loop"
 class Choice:
     """The links between which the chain is read; ``ignore`` is a length that counts as 0.
 
-    By default the chain leads from the root to the only end that has joints before it.
+    By default the chain leads from the root to the only end that has joints before it.  ``hold``
+    has the values of joints that are held, as text.
     """
 
     base: str = ""
     tool: str = ""
     ignore: float = 0.0
+    hold: Mapping[str, str] = field(default_factory=dict)
 
 
 DEFAULT = Choice()
@@ -72,6 +75,7 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
     table.doubt = _doubt(chain)
     if not choice.tool:
         table.doubt = f"{table.doubt}  {_gripper(chain)}".strip()
+    chain = held(chain, choice.hold, table, file)
     found = [_Placed.of(chain, table, Displacement.of(as_written), file)]
     if len(found[0].angles) > 1:  # sines of several angles are slow: joints may turn them back
         found.append(_Placed.of(chain, table, Displacement.of(as_written), file, offsets=True))
@@ -254,7 +258,8 @@ def _unit(axis: sp.Matrix, frame: sp.Matrix, table: Table, where: str) -> sp.Mat
 
 
 def _size(value: sp.Matrix) -> float:
-    return math.sqrt(sum(float(e.evalf(30)) ** 2 for e in value))
+    still = dict.fromkeys(value.free_symbols, sp.S.Zero)
+    return math.sqrt(sum(float(e.xreplace(still).evalf(30)) ** 2 for e in value))
 
 
 def _units(chain: Sequence[Joint], file: str) -> list[str]:
@@ -478,7 +483,7 @@ def _product(a: sp.Matrix, b: sp.Matrix) -> sp.Matrix:
 
 def _meant_turns(place: sp.Matrix, where: str, notes: list[str]) -> sp.Matrix:
     """A pose with the multiples of pi/12 to which angles add up, as 2.7549 and 0.3867 do."""
-    held = place.atoms(sp.sin, sp.cos)
-    sums = sorted({f.args[0] for f in held}, key=sp.default_sort_key)
+    numbers = {f for f in place.atoms(sp.sin, sp.cos) if not f.free_symbols}
+    sums = sorted({f.args[0] for f in numbers}, key=sp.default_sort_key)
     meant = {a: meant_angle(a, f"{where}, together with the turns before it", notes) for a in sums}
-    return place.xreplace({f: f.func(meant[f.args[0]]) for f in held})
+    return place.xreplace({f: f.func(meant[f.args[0]]) for f in numbers})

@@ -17,10 +17,13 @@ from sympy import atan2
 
 from closedform.model.functions import Program, choose
 from closedform.model.pair import Pair
-from closedform.model.tolerances import HALF_DIGITS, ROUNDING
+from closedform.model.tolerances import HALF_DIGITS
 
-LOOSE = ROUNDING / 4
-"""How much of the target may be missed before it counts as more than rounding of the answer."""
+LOOSE = HALF_DIGITS**2 / 4
+"""How much of the target may be missed before it counts as more than rounding of the answer.
+
+It is well below what a target may miss, in single precision too, where rounding is not.
+"""
 FAR = 64 * HALF_DIGITS
 """The largest step.  The error that remains is of the order of its square, and is compared.
 

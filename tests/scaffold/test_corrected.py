@@ -28,6 +28,7 @@ from closedform.scaffold.new import new
 QUARTER = np.pi / 2
 # rows of a, alpha, d, theta; the slide is the joint d3
 ROLLING = [(0, QUARTER, 0.1), (0.306, 0, 0), (0, QUARTER, 0), (0, -QUARTER, 0.3), (0, 0, 0.1)]
+TELESCOPE = [(0, -QUARTER, 1.8), (0.1, QUARTER, 0), (0, 0, 0.4), (0, 0, None)]
 POLAR = [(0, -QUARTER, 0.4), (0, QUARTER, 0.15), (0, 0, None), (0, 0, 0.1)]
 NEAR = 10.0 ** np.arange(-9, -2.5, 0.5)
 
@@ -116,6 +117,14 @@ def test_a_slide_that_is_long_beside_the_links_in_single_precision(tmp_path: Pat
     q = np.random.default_rng(4).uniform(-3, 3, (400, 4))
     q[:, 2] = np.random.default_rng(5).uniform(5, 50, 400)
     status = module.ik(pose(POLAR, q).astype(np.float32)).status
+    assert np.isin(status, (OK, SINGULAR)).any(axis=-1).all()
+
+
+def test_a_short_link_in_single_precision(tmp_path: Path) -> None:
+    """What it lost was more than a target may miss, but not enough to be corrected."""
+    module = arm(TELESCOPE, tmp_path, printed_array)
+    q = np.random.default_rng(4).uniform(-3, 3, (400, 4))
+    status = module.ik(pose(TELESCOPE, q).astype(np.float32)).status
     assert np.isin(status, (OK, SINGULAR)).any(axis=-1).all()
 
 

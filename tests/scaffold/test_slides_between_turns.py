@@ -1,15 +1,18 @@
-"""Slides among joints that turn, where no three neighbours meet or are parallel: rails, C-arms."""
+"""Slides among joints that turn: rails, and booms beside which no two axes meet."""
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 import sympy as sp
+from arms import UNREACHABLE
 from proposals import Proposals
 from sympy import pi
 
 A, B, C, D = (sp.Rational(n, 100) for n in (5, 40, 35, 11))
 WRIST = [(0, -pi / 2, B), (0, pi / 2, 0), (0, 0, 0)]
 ACROSS = "spherical wrist, a slide across a turret and a joint"
+TWO = "a turret, two slides and two joints whose axes pass each other"
 ARMS = {
     "turret on a rail": (
         [(0, pi / 2, None, pi / 2), (A, pi / 2, D), (B, pi / 2, A), *WRIST], ACROSS, 8,
@@ -21,6 +24,51 @@ ARMS = {
         [(0, -pi / 2, D), (0, pi / 2, 0), (B, pi / 2, A), (B, pi / 2, A), (A, pi / 2, D),
          (0, 0, None, 0)],
         "spherical shoulder, a slide across a turret and a joint", 8,
+    ),
+    "camera crane, whose head is offset": (
+        [(0, pi / 2, D), (A, pi / 2, 0), (0, -pi / 2, None, 0), (0, pi / 2, 0), (A, pi / 2, D),
+         (0, 0, D)],
+        "axes 2 and 4 parallel, a slide between, 5 and 6 skew", 8,
+    ),
+    "crane whose boom and head are offset": (
+        [(A, pi / 2, D), (D, pi / 2, 0), (0, -pi / 2, None, 0), (C, pi / 3, A), (A, pi / 4, D),
+         (0, 0, D)],
+        "axes 2 and 4 parallel, a slide between, 5 and 6 skew", 8,
+    ),
+    "crane from the tool": (
+        [(A, pi / 4, D), (A, pi / 3, D), (C, pi / 2, A), (0, -pi / 2, None, 0), (D, pi / 2, A),
+         (0, 0, D)],
+        "axes 5 and 3 parallel, a slide between, 2 and 1 skew", 8,
+    ),
+    "boom at the base, before skew axes": (
+        [(D, pi / 2, 0), (0, -pi / 2, None, 0), (C, pi / 2, A), (A, pi / 2, D), (A, pi / 3, D),
+         (0, 0, D)],
+        "axes 1 and 3 parallel, a slide between, 4, 5 and 6 skew", 8,
+    ),
+    "boom at the base, before axes of which the last meet": (
+        [(D, pi / 2, 0), (0, -pi / 2, None, 0), (C, pi / 2, A), (A, pi / 2, D), (0, pi / 2, D),
+         (0, 0, D)],
+        "axes 1 and 3 parallel, a slide between, 5 and 6 meet", 8,
+    ),
+    "boom at the base, before axes of which the first meet": (
+        [(D, pi / 2, 0), (0, -pi / 2, None, 0), (C, pi / 2, A), (0, pi / 2, D), (A, pi / 2, D),
+         (0, 0, D)],
+        "axes 1 and 3 parallel, a slide between, 4 and 5 meet", 8,
+    ),
+    "C-arm": (
+        [(0, 0, D), (0, -pi / 2, None, 0), (0, 0, None, pi / 2), (A, pi / 2, D), (A, 0, D)], TWO, 2,
+    ),
+    "C-arm on a lift": (
+        [(0, 0, None, 0), (A, -pi / 2, D), (0, 0, None, 0), (A, pi / 2, D), (A, 0, D)], TWO, 2,
+    ),
+    "C-arm from the tool": (
+        [(A, pi / 2, D), (A, pi / 3, D), (0, pi / 2, None, 0), (0, -pi / 4, None, 0), (0, 0, D)],
+        TWO, 2,
+    ),
+    "C-arm whose slides and axes lean": (
+        [(A, 0, D), (0, pi / 3, None, pi / 2), (0, pi / 3, None, pi / 6), (A, pi / 3, D),
+         (A, 0, D)],
+        TWO, 2,
     ),
 }  # fmt: skip
 PROPOSALS = Proposals(ARMS)
@@ -39,3 +87,11 @@ def test_every_pose_of_the_arm_is_reached(name: str, folder: Path) -> None:
 @pytest.mark.parametrize("name", ARMS)
 def test_newton_finds_no_other_posture(name: str, folder: Path) -> None:
     PROPOSALS.are_all(name, folder)
+
+
+@pytest.mark.parametrize("name", [name for name in ARMS if len(ARMS[name][0]) == 5])
+def test_other_poses_are_out_of_reach(name: str, folder: Path) -> None:
+    T = PROPOSALS.pose(name, np.random.default_rng(3).uniform(-3, 3, (50, 5)))
+    turned = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0], [0.48, 0.64, 0.6]])
+    T[:, :3, :3] = T[:, :3, :3] @ turned
+    assert (PROPOSALS.made(name, folder).ik(T).status == UNREACHABLE).all()

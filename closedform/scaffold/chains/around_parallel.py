@@ -26,6 +26,8 @@ from closedform.scaffold.chains.subproblems import SubproblemMaker
 from closedform.scaffold.chains.wrists import Carried, is_normal
 from closedform.scaffold.source import source
 
+FAR = sp.Symbol("far")
+"""No point is farther from another one; the chain has a name for it if a slide may reach it."""
 SHORT = sp.Rational(1, 1000)
 """Of the sum of the lengths of an arm: a chain that divides by less loses too many digits."""
 
@@ -37,10 +39,14 @@ class Beside:
     The equations say that ``Rz(a) w`` and ``Rz(a) s``, seen along ``toward``, are as far along the
     three axes as what joint c turns: each of ``ends``, seen along ``Rz(c) seen``, and a constant.
     The target is ``p`` and ``M`` before the last joint turns.
+
+    The second of the three may be a slide across the others, which are turned to one frame; then
+    ``least`` is how near the slide comes to the first axis, and no point is farther than ``far``.
     """
 
     arm: Singles
     start: int
+    least: sp.Expr | None = None
 
     @property
     def group(self) -> tuple[Single, ...]:
@@ -135,7 +141,9 @@ class Beside:
 
     @property
     def reaches(self) -> tuple[sp.Expr, sp.Expr]:
-        """The lengths of the two links."""
+        """The lengths of the two links; with a slide, of links that reach as much."""
+        if self.least is not None:
+            return self.least + FAR, FAR
         one, two = (norm(joint.shift[:2, 0]) for joint in self.group[:2])
         return one, two
 
@@ -145,16 +153,22 @@ class Beside:
 
     def told(self, others: str) -> str:
         numbers = [joint.number for joint in (*self.group, *self.others)]
-        return "axes {}, {} and {} parallel, ".format(*numbers) + others.format(*numbers[3:])
+        named = "axes {}, {} and {} parallel, "
+        if self.least is not None:
+            named = "axes {0} and {2} parallel, a slide between, "
+        return named.format(*numbers) + others.format(*numbers[3:])
 
 
 @dataclass
 class AroundParallelMaker(SubproblemMaker):
     """Writes the lines for three parallel axes beside which no two neighbours meet."""
 
+    least: sp.Expr | None = None
+    """That of :class:`Beside`."""
+
     def around_parallel(self, arm: Singles, start: int) -> str:
         """The three axes are those from ``start`` on: 0 or 1."""
-        beside = Beside(arm, start)
+        beside = Beside(arm, start, self.least)
         a, b, c = beside.others
         pairs = [(beside.group[2], a), *([(c, beside.group[0])] if start else [])]
         for one, other in pairs:
@@ -303,7 +317,10 @@ class AroundParallelMaker(SubproblemMaker):
 
     def _two_links_less(self, beside: Beside) -> None:
         self.vector("q", f"q - turned({self.lifted}) * to_end", "q_links")
-        one, two, _ = beside.group
+        self.links_to_q(*beside.group[:2])
+
+    def links_to_q(self, one: Single, two: Single) -> None:
+        """Solve the first two of the three joints for the point ``q``, which they carry."""
         links = [joint.shift[:2, 0] for joint in (one, two)]
         self.two_links([one.turn, two.turn], links, "q[0]", "q[1]")
 

@@ -122,6 +122,9 @@ class Block:
 class OneDirectionMaker(SixMaker):
     """Writes the lines for such joints, and others after them or on both sides."""
 
+    sliding: Block | None = None
+    """Two joints that turn and a slide between, where a chain for three parallel axes is taken."""
+
     def in_one_direction(self, arm: Singles, count: int) -> str:
         """The first ``count`` joints turn about one direction, or slide."""
         met = arm.met(count, 2)
@@ -186,6 +189,54 @@ class OneDirectionMaker(SixMaker):
         self.vector("q", f"{q} - turned({self.lifted}) * {source(goal.constant)}", "q_end")
         self._one_link(block)
         return f"a turn, {self._told(found, block, (five, six))}"
+
+    def with_slide_between(self, arm: Singles, start: int) -> str:
+        """A slide between two parallel axes, across them: with a link beside it, it reaches most.
+
+        So the chains for three parallel axes hold, with links that reach as much.
+        """
+        one, slide, two = arm.joints[start : start + 3]
+        others = [j for j in arm.joints if j not in (one, slide, two)]
+        self.require(
+            slide.slides and not any(j.slides for j in (one, two, *others)),
+            f"joint {slide.number} is not its only slide",
+            "A slide between two parallel axes needs other joints that turn.",
+        )
+        self.sliding = block = self._block((one, slide, two))
+        self.require(
+            block.across[0][2][2] == 0,
+            f"its slide leans to axes {one.number} and {two.number}",
+            "A slide between two parallel axes has to be normal to them.",
+        )
+        (self.least,) = block.reach
+        still = {"turn": sp.S.Zero, "shift": sp.zeros(3, 1), "end": sp.eye(3)}
+        ends = (sp.eye(3), block.end)
+        turns = [
+            replace(joint, turn=turn, shift=level.shift, end=end)
+            for joint, turn, level, end in zip(
+                (one, two), block.turns, block.levels[1:], ends, strict=True
+            )
+        ]
+        joints = [*arm.joints]
+        joints[start : start + 3] = turns[0], replace(slide, **still), turns[1]
+        view = replace(arm, joints=tuple(joints))
+        return self.around_parallel(view, 1) if start else self.parallel_first(view)
+
+    def centre(self, arm: Singles) -> str:
+        """Name the point ``p`` where the last axes meet, and return the name of the rotation."""
+        R = super().centre(arm)
+        if self.sliding is not None:
+            shifts = [joint.shift for joint in arm.joints]
+            farthest = sum((sp.sqrt(sp.simplify(v.dot(v))) for v in shifts), sp.S.Zero)
+            self.add(f"far = ik.let('far', sqrt(p.dot(p)) + {source(farthest)})")
+        return R
+
+    def links_to_q(self, one: Single, two: Single) -> None:
+        """Solve the first two of three joints for the point ``q``, which they carry."""
+        if self.sliding is None:
+            super().links_to_q(one, two)
+        else:
+            self._one_link(self.sliding)
 
     def in_one_direction_of_five(self, arm: Singles) -> str:
         """The same with one joint after them: where its axis is free, it points the first joint."""

@@ -29,6 +29,7 @@ from closedform.scaffold.chains.one_direction import OneDirectionMaker
 from closedform.scaffold.chains.proposal import NoChainError, Proposal, Tried
 from closedform.scaffold.chains.six import SixMaker
 from closedform.scaffold.chains.subproblems import SubproblemMaker
+from closedform.scaffold.chains.two_slides import TwoSlidesMaker
 from closedform.scaffold.source import GIVEN
 
 
@@ -294,6 +295,9 @@ def _five_in_one_direction(arm: Serial, whole: Singles) -> Iterator[_Candidate]:
                 yield _Candidate(
                     f"{which}{ONE_WAY}{seen}{moved}", maker, partial(solve, maker, view)
                 )
+            slides = TwoSlidesMaker(arm)
+            write = partial(slides.two_slides, view)
+            yield _Candidate(f"a turret and two slides{seen}{moved}", slides, write)
 
 
 def _met(whole: Singles, pairs: Sequence[tuple[int, int]]) -> Singles:
@@ -360,6 +364,14 @@ OF_FIVE: tuple[tuple[str, _Solve], ...] = (
 WITH_SLIDES: tuple[tuple[str, _Solve], ...] = (
     (f"four joints{ONE_WAY}", partial(OneDirectionMaker.in_one_direction, count=4)),
     (f"three joints in the middle{ONE_WAY}", OneDirectionMaker.in_one_direction_between),
+    (
+        "a slide between two parallel joints in the middle",
+        partial(OneDirectionMaker.with_slide_between, start=1),
+    ),
+    (
+        "a slide between two parallel joints at the end",
+        partial(OneDirectionMaker.with_slide_between, start=0),
+    ),
 )
 """Chains of six joints that have no wrist and no shoulder, from the base and from the tool."""
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from closedform.scaffold.chains.around_parallel import AroundParallelMaker
+from closedform.scaffold.chains.around_parallel import AroundParallelMaker, Beside
 from closedform.scaffold.chains.chainlinks import Single, Singles, parallel
 from closedform.scaffold.chains.ellipse import folds
 from closedform.scaffold.chains.maker import (
@@ -94,7 +94,7 @@ class SixMaker(AroundParallelMaker):
         place = times(one.end.T, f"(turned({{}}).T * p - {source(one.shift)})")
         goal = TurnGoal(
             [lift, five, six],
-            _lengths(two, three),
+            Beside(arm, 1).lengths,
             place,
             self.last_axis(arm, left),
             constant=w,
@@ -107,8 +107,7 @@ class SixMaker(AroundParallelMaker):
         self._reach(goal, q, f"{pair}.lever")
         self.orientation([lift, five, six], M)
         self.vector("q", f"{q} - turned({self.lifted}) * {source(w)}", "q2")
-        u, v = two.shift, three.shift
-        self.two_links([two.turn, three.turn], [u[:2, 0], v[:2, 0]], "q[0]", "q[1]")
+        self.links_to_q(two, three)
         names = [j.number for j in (two, three, four, five, six)]
         return "axes {}, {} and {} parallel, {} and {} meet".format(*names)
 
@@ -137,7 +136,7 @@ class SixMaker(AroundParallelMaker):
             offset = f"{source(three.shift)} + {{}} * {source(s)}"
             goal = TurnGoal(
                 wrist=[lift, five, six],
-                lengths=_lengths(one, two),
+                lengths=Beside(found, 0, self.least).lengths,
                 point="p",
                 axis=f"({M})[:, 2]",
                 offset=offset.format(before),
@@ -157,7 +156,7 @@ class SixMaker(AroundParallelMaker):
             place = f"p - M * turned({{}}).T * {source(t)}"
             goal = TurnGoal(
                 [lift, four, five],
-                _lengths(one, two),
+                Beside(found, 0, self.least).lengths,
                 place,
                 f"M * turned({{}}).T * {source(five.end.T * Z)}",
                 constant=three.shift,
@@ -170,11 +169,10 @@ class SixMaker(AroundParallelMaker):
             self.orientation([lift, four, five], "left1")
             self.vector("to_end", source(three.shift))
         self.vector("q", f"p - turned({self.lifted}) * to_end")
-        u, v = one.shift, two.shift
-        self.two_links([one.turn, two.turn], [u[:2, 0], v[:2, 0]], "q[0]", "q[1]")
+        self.links_to_q(one, two)
         meeting = (five, six) if at_end is not None else (four, five)
-        names = [j.number for j in (one, two, three, *meeting)]
-        return "axes {}, {} and {} parallel, {} and {} meet".format(*names)
+        text = "{} and {} meet" if meeting[0] is four else "{1} and {2} meet"
+        return Beside(found, 0, self.least).told(text)
 
     def meeting_middle(self, arm: Singles) -> str:
         """Axes 2, 3 and 4 meet in a point, and axes 5 and 6 meet."""
@@ -345,10 +343,6 @@ class SixMaker(AroundParallelMaker):
             "axes {}, {} and {} are not parallel".format(*numbers),
             "This chain needs three parallel axes.",
         )
-
-
-def _lengths(*links: Single) -> list[str]:
-    return [source(norm(link.shift[:2, 0])) for link in links]
 
 
 __all__ = ["SixMaker", "TurnGoal"]

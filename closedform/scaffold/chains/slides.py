@@ -216,7 +216,7 @@ class Slides:
             self._vector("p", f"p - {one.joint}_*{source(self.sense[one.number] * a)}", "p2")
             turned = self._level(two, three, u)
             return Solved("a slide and two links", [("", one.end), *turned])
-        if not parallel(two) and a[2] == 0:
+        if not parallel(two) and a[2] == 0 and not two.shift.is_zero_matrix:
             return self._slide_across(one, two, three, a)
         self.maker.require(
             not parallel(two) and two.shift.is_zero_matrix,

@@ -72,7 +72,7 @@ LINES = {
     "both_links", "on_ellipse",
     "R_inverse", "R_rest", "R_last", "R_between", "R_before", "R_shoulder",
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
-    "play", "radius_to_target", "radius_to_end", "lever", "past", "seen_across",
+    "play", "radius_to_target", "radius_to_end", "lever", "past", "seen_across", "across",
     "missed_by", "pair_at", "aimed", "off_axis", "below_one", "carried", "squares", "at_end",
     "less", "more", "less_behind", "more_behind", "behind", "far", "tilt", "offset", "seen",
 }  # fmt: skip

@@ -12,6 +12,7 @@ from sympy import pi
 A, B, C, D = (sp.Rational(n, 100) for n in (5, 40, 35, 11))
 WRIST = [(0, -pi / 2, B), (0, pi / 2, 0), (0, 0, 0)]
 ACROSS = "spherical wrist, a slide across a turret and a joint"
+BASE = [(0, pi / 2, None, pi / 2)] * 2
 TWO = "a turret, two slides and two joints whose axes pass each other"
 ARMS = {
     "turret on a rail": (
@@ -55,6 +56,29 @@ ARMS = {
          (0, 0, D)],
         "axes 1 and 3 parallel, a slide between, 4 and 5 meet", 8,
     ),
+    "mobile base with parallel joints": (
+        [*BASE, (A, pi / 2, D), (B, 0, A), (C, pi / 2, 0), (0, 0, D)],
+        "two slides beside axis 3, 4 and 5 parallel", 4,
+    ),
+    "mobile base with an offset wrist": (
+        [*BASE, (A, pi / 2, D), (B, pi / 3, A), (C, pi / 2, A), (0, 0, D)],
+        "two slides beside axis 3, 4, 5 and 6 skew", 4,
+    ),
+    "table of a machine tool, from the tool": (
+        [(0, pi / 2, D), (A, pi / 3, C), (A, pi / 2, C), (B, pi / 2, D), (0, pi / 2, None, pi / 2),
+         (0, 0, None, 0)],
+        "two slides beside axis 4, 2 and 1 meet", 4,
+    ),
+    "slides after a turn in the middle": (
+        [(A, pi / 2, D), (B, -pi / 2, 0), (0, pi / 2, None, pi / 2), (0, 0, None, pi / 2),
+         (A, pi / 2, D), (A, 0, D)],
+        "two slides beside axis 2, 5 and 6 skew", 4,
+    ),
+    "slides before a turn in the middle": (
+        [(A, pi / 3, D), (0, pi / 2, None, pi / 2), (0, pi / 2, None, pi / 2), (B, pi / 3, A),
+         (A, pi / 4, C), (0, 0, D)],
+        "two slides beside axis 4, 5 and 6 skew", 4,
+    ),
     "C-arm": (
         [(0, 0, D), (0, -pi / 2, None, 0), (0, 0, None, pi / 2), (A, pi / 2, D), (A, 0, D)], TWO, 2,
     ),
@@ -68,6 +92,18 @@ ARMS = {
     "C-arm whose slides and axes lean": (
         [(A, 0, D), (0, pi / 3, None, pi / 2), (0, pi / 3, None, pi / 6), (A, pi / 3, D),
          (A, 0, D)],
+        TWO, 2,
+    ),
+    "gantry of two slides with a tilt": (
+        [*BASE, (A, pi / 2, D), (A, pi / 2, C), (0, 0, D)], TWO, 2,
+    ),
+    "lift with a telescope and a tilt": (
+        [(0, -pi / 2, None, 0), (0, pi / 2, None, 0), (0, pi / 2, D), (A, pi / 2, C), (0, 0, D)],
+        TWO, 2,
+    ),
+    "oblique slides from the tool": (
+        [(A, pi / 2, 0), (A, pi / 2, D), (A, pi / 3, C), (0, pi / 3, None, pi / 2),
+         (0, 0, None, 0)],
         TWO, 2,
     ),
 }  # fmt: skip

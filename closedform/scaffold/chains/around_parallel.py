@@ -40,8 +40,9 @@ class Beside:
     three axes as what joint c turns: each of ``ends``, seen along ``Rz(c) seen``, and a constant.
     The target is ``p`` and ``M`` before the last joint turns.
 
-    The second of the three may be a slide across the others, which are turned to one frame; then
-    ``least`` is how near the slide comes to the first axis, and no point is farther than ``far``.
+    The second of the three may be a slide across the others, or the first two of them, turned to
+    one frame; then ``least`` is how near a slide comes to the first axis, and no point is farther
+    than ``far``.
     """
 
     arm: Singles
@@ -155,7 +156,9 @@ class Beside:
         numbers = [joint.number for joint in (*self.group, *self.others)]
         named = "axes {}, {} and {} parallel, "
         if self.least is not None:
+            slides = sum(joint.slides for joint in self.group)
             named = "axes {0} and {2} parallel, a slide between, "
+            named = "two slides beside axis {2}, " if slides == 2 else named
         return named.format(*numbers) + others.format(*numbers[3:])
 
 

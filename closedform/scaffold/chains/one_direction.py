@@ -123,7 +123,7 @@ class OneDirectionMaker(SixMaker):
     """Writes the lines for such joints, and others after them or on both sides."""
 
     sliding: Block | None = None
-    """Two joints that turn and a slide between, where a chain for three parallel axes is taken."""
+    """Joints that slide and turn in one plane, where a chain for three parallel axes is taken."""
 
     def in_one_direction(self, arm: Singles, count: int) -> str:
         """The first ``count`` joints turn about one direction, or slide."""
@@ -190,37 +190,47 @@ class OneDirectionMaker(SixMaker):
         self._one_link(block)
         return f"a turn, {self._told(found, block, (five, six))}"
 
-    def with_slide_between(self, arm: Singles, start: int) -> str:
-        """A slide between two parallel axes, across them: with a link beside it, it reaches most.
+    def with_slides(self, arm: Singles, start: int) -> str:
+        """A slide between two parallel axes, or two slides beside one axis, all across them.
 
-        So the chains for three parallel axes hold, with links that reach as much.
+        They reach most points, or all.  So the chains for three parallel axes hold, with links that
+        reach as much.
         """
-        one, slide, two = arm.joints[start : start + 3]
-        others = [j for j in arm.joints if j not in (one, slide, two)]
+        group = arm.joints[start : start + 3]
         self.require(
-            slide.slides and not any(j.slides for j in (one, two, *others)),
-            f"joint {slide.number} is not its only slide",
-            "A slide between two parallel axes needs other joints that turn.",
+            not any(joint.slides for joint in arm.joints if joint not in group),
+            "it has slides elsewhere",
+            "Beside slides and turns of one plane, the other joints have to turn.",
         )
-        self.sliding = block = self._block((one, slide, two))
+        self.sliding = block = self._block(group, (1, 2))
+        ((level, *_), *_) = block.across
         self.require(
-            block.across[0][2][2] == 0,
-            f"its slide leans to axes {one.number} and {two.number}",
-            "A slide between two parallel axes has to be normal to them.",
+            not any(axis[2] for *_, axis in block.slides) and (level == 1 or len(block.turns) == 1),
+            "its slides are not between two parallel axes and across them, or two beside one",
+            "Other slides in one plane have no known chain where the other axes are skew.",
         )
-        (self.least,) = block.reach
+        self.least = block.reach[0] if len(block.turns) == 2 else sp.S.Zero
         still = {"turn": sp.S.Zero, "shift": sp.zeros(3, 1), "end": sp.eye(3)}
-        ends = (sp.eye(3), block.end)
+        free = [replace(joint, **still) for joint in group if joint.slides]
+        ends = [sp.eye(3), block.end][-len(block.turns) :]
         turns = [
             replace(joint, turn=turn, shift=level.shift, end=end)
             for joint, turn, level, end in zip(
-                (one, two), block.turns, block.levels[1:], ends, strict=True
+                (j for j in group if not j.slides), block.turns, block.levels[1:], ends, strict=True
             )
         ]
-        joints = [*arm.joints]
-        joints[start : start + 3] = turns[0], replace(slide, **still), turns[1]
-        view = replace(arm, joints=tuple(joints))
-        return self.around_parallel(view, 1) if start else self.parallel_first(view)
+        joints, lead = [*arm.joints], arm.lead
+        joints[start : start + 3] = [*turns[:-1], *free, turns[-1]]
+        moved = sp.eye(4)
+        moved[:3, :3], moved[:3, 3] = block.lead, block.lead * block.levels[0].shift
+        if start:
+            one = joints[start - 1]
+            shift, end = one.shift + one.end * moved[:3, 3], one.end * block.lead
+            joints[start - 1] = replace(one, shift=_simple(shift), end=_simple(end))
+        else:
+            lead = _simple(lead * moved)
+        view = replace(arm, joints=tuple(joints), lead=lead)
+        return self.parallel_middle(view) if start else self.parallel_first(view)
 
     def centre(self, arm: Singles) -> str:
         """Name the point ``p`` where the last axes meet, and return the name of the rotation."""
@@ -235,8 +245,10 @@ class OneDirectionMaker(SixMaker):
         """Solve the first two of three joints for the point ``q``, which they carry."""
         if self.sliding is None:
             super().links_to_q(one, two)
-        else:
+        elif len(self.sliding.turns) == 2:
             self._one_link(self.sliding)
+        else:
+            self._slides_alone(self.sliding)
 
     def in_one_direction_of_five(self, arm: Singles) -> str:
         """The same with one joint after them: where its axis is free, it points the first joint."""

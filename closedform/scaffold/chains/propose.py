@@ -365,12 +365,12 @@ WITH_SLIDES: tuple[tuple[str, _Solve], ...] = (
     (f"four joints{ONE_WAY}", partial(OneDirectionMaker.in_one_direction, count=4)),
     (f"three joints in the middle{ONE_WAY}", OneDirectionMaker.in_one_direction_between),
     (
-        "a slide between two parallel joints in the middle",
-        partial(OneDirectionMaker.with_slide_between, start=1),
+        "slides and turns of one plane in the middle",
+        partial(OneDirectionMaker.with_slides, start=1),
     ),
     (
-        "a slide between two parallel joints at the end",
-        partial(OneDirectionMaker.with_slide_between, start=0),
+        "slides and turns of one plane at the end",
+        partial(OneDirectionMaker.with_slides, start=0),
     ),
 )
 """Chains of six joints that have no wrist and no shoulder, from the base and from the tool."""

@@ -94,7 +94,7 @@ class SixMaker(AroundParallelMaker):
         place = times(one.end.T, f"(turned({{}}).T * p - {source(one.shift)})")
         goal = TurnGoal(
             [lift, five, six],
-            Beside(arm, 1).lengths,
+            Beside(arm, 1, self.least).lengths,
             place,
             self.last_axis(arm, left),
             constant=w,
@@ -108,8 +108,7 @@ class SixMaker(AroundParallelMaker):
         self.orientation([lift, five, six], M)
         self.vector("q", f"{q} - turned({self.lifted}) * {source(w)}", "q2")
         self.links_to_q(two, three)
-        names = [j.number for j in (two, three, four, five, six)]
-        return "axes {}, {} and {} parallel, {} and {} meet".format(*names)
+        return Beside(arm, 1, self.least).told("{} and {} meet")
 
     def parallel_first(self, arm: Singles) -> str:
         """Axes 1, 2 and 3 are parallel, and axes 5 and 6 or 4 and 5 meet."""

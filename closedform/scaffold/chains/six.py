@@ -118,7 +118,11 @@ class SixMaker(AroundParallelMaker):
             "four neighbours are parallel",
             "At most three parallel axes determine each other.",
         )
-        at_end, inside = arm.met(4, 2), arm.met(3, 2)
+        # the direction of two others that are parallel gives a joint, even if axes meet too
+        at_end, inside = (
+            None if parallel(arm.joints[other]) else arm.met(start, 2)
+            for start, other in ((4, 3), (3, 4))
+        )
         found = at_end or inside
         if found is None:
             return self.around_parallel(arm, 0)

@@ -10,7 +10,7 @@ import sympy as sp
 from closedform.algebra.resolvent import Resolvent
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
-from closedform.lemmas.links import degenerate, named
+from closedform.lemmas.links import degenerate
 from closedform.lemmas.pairs import any_pair
 from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.model.functions import Program, choose, real, sign_of
@@ -72,9 +72,9 @@ class OnCircle:
     square: Callable[[Pair], sp.Expr] | None = None
     """The square of the distance less that of the radius, if there is a more accurate form."""
 
-    def missed(self, chain: Chain, pair: Pair, tag: str) -> sp.Symbol:
+    def missed(self, program: Program, pair: Pair, tag: str) -> sp.Symbol:
         """The square of the distance of the point from the origin, less that of the radius."""
-        program, r = chain.program, self.radius
+        r = self.radius
         if self.square is not None:
             return program.let(f"missed_{tag}", self.square(pair))
         x, y = (
@@ -115,18 +115,56 @@ def quartic(
         the name of the sign and what other names end in, by default the number of the joint
     """
     (line, side), program, tag = choices, chain.program, name or label(x)
-    tau, sigma = chain.sign(f"line_{tag}", line), chain.sign(tag, side)
+    signs = chain.sign(f"line_{tag}", line), chain.sign(tag, side)
     letters = zip("pqabe", coefficients, strict=True)
-    p, q, a, b, e = (chain.named(f"{n}_quartic{tag}", value) for n, value in letters)
+    named = [chain.named(f"{n}_quartic{tag}", value) for n, value in letters]
+    free = all(e.free_symbols or e == 0 for e in map(sp.sympify, coefficients[:2]))
+    applied = quartic_in(program, x, named, signs, means, tag=tag, may_be_free=free)
+    (relation,) = applied.relations
+    assert relation.root is not None
+    chain.coefficients.add(relation.root)
+    return applied
+
+
+def quartic_in(
+    program: Program,
+    x: sp.Symbol,
+    coefficients: Sequence[sp.Symbol],
+    signs: tuple[sp.Symbol, sp.Symbol],
+    means: OnCircle,
+    *,
+    tag: str,
+    may_be_free: bool,
+) -> Applied:
+    """The same in a program that is not a chain.
+
+    Parameters
+    ----------
+    program
+        the program that the names and bounds are added to
+    x
+        the angle
+    coefficients
+        names for p, q, a, b and e
+    signs
+        those of the lines, and of the solutions on each
+    means
+        the meaning of the equation: a point is on a circle
+    tag
+        what names end in
+    may_be_free
+        whether p and q may vanish, with all other coefficients
+    """
+    (tau, sigma), (p, q, a, b, e) = signs, coefficients
     size = program.let(f"size_{tag}", sp.sqrt(p**2 + q**2), nonnegative=True)
     free: sp.Basic = sp.false
-    if all(e.free_symbols or e == 0 for e in map(sp.sympify, coefficients[:2])):
+    if may_be_free:
         size, free = _divisor(program, x, size, means.radius, tag)
-    half, behind = _half(chain, p, q, size, tag)
+    half, behind = _half(program, p, q, size, tag)
     A = program.let(f"A_{tag}", (a * half.c + b * half.s) / size)
     B = program.let(f"B_{tag}", (b * half.c - a * half.s) / size)
     E = program.let(f"E_{tag}", e / size)
-    u = chain.named(f"u_{tag}", Resolvent(A, B, E))
+    u = program.let(f"u_{tag}", Resolvent(A, B, E))
     meaning = "the root of the resolvent is between -1 and 1"
     upper = program.bound(f"upper_{tag}", (1 + u) / 2, sp.S.One, meaning)
     lower = program.bound(f"lower_{tag}", (1 - u) / 2, sp.S.One, meaning)
@@ -150,9 +188,10 @@ def quartic(
     falls = program.let(f"falls_{tag}", sigma * sign_of(beside))
     found = (found + half).known_as(program, f"_{tag}_0")
     for step in range(1, POLISHED + 1):
-        found = _polished(chain, found, falls, ((p, q, a, b), means), f"{tag}_{step}")
+        found = _polished(program, found, falls, ((p, q, a, b), means), f"{tag}_{step}")
     found = Pair(choose(free, 0, found.s), choose(free, 1, found.c))
-    pair, names = named(chain, x, found)
+    pair = found.known_as(program, label(x))
+    names = {pair.s: sp.sin(x), pair.c: sp.cos(x)}
     lemma = Lemma(
         "quartic in one angle",
         r"p\cos 2x + q\sin 2x + 2 a\cos x + 2 b\sin x + e = 0 \;\Rightarrow\; "
@@ -191,13 +230,12 @@ def _divisor(
 
 
 def _half(
-    chain: Chain, p: sp.Symbol, q: sp.Symbol, size: sp.Symbol, tag: str
+    program: Program, p: sp.Symbol, q: sp.Symbol, size: sp.Symbol, tag: str
 ) -> tuple[Pair, sp.Symbol]:
     """The pair of half the angle of the vector (p, q) of this size, and whether p is negative.
 
     The cosine is not negative, whichever of both is computed first.
     """
-    program = chain.program
     behind = program.vanishes(f"behind_{tag}", p, 0, "p is not positive")
     large = program.let(f"large_{tag}", sp.sqrt((1 + choose(behind, -p, p) / size) / 2))
     small = program.let(f"small_{tag}", q / size / (2 * large))
@@ -239,7 +277,7 @@ def _part(
 
 
 def _polished(
-    chain: Chain,
+    program: Program,
     found: Pair,
     falls: sp.Symbol,
     equation: tuple[tuple[sp.Symbol, ...], OnCircle],
@@ -250,9 +288,9 @@ def _polished(
     The step solves the equation up to second order, so it works also where two roots nearly meet:
     ``falls`` is 1 for the root at which the point enters the circle.
     """
-    program, ((p, q, a, b), means) = chain.program, equation
+    (p, q, a, b), means = equation
     s, c = found.s, found.c
-    missed = means.missed(chain, found, f"{tag}a")
+    missed = means.missed(program, found, f"{tag}a")
     sine, cosine = 2 * s * c, (c - s) * (c + s)
     rate = program.let(f"rate_{tag}", 2 * (q * cosine - p * sine - a * s + b * c))
     bend = program.let(f"bend_{tag}", -4 * (p * cosine + q * sine) - 2 * (a * c + b * s))
@@ -265,7 +303,7 @@ def _polished(
     t = program.let(f"step_{tag}", choose(still, 0, -above / below))
     unit = program.let(f"unit_{tag}", sp.sqrt(1 + t**2), nonnegative=True)
     ahead = (found + Pair(t / unit, 1 / unit)).known_as(program, f"_{tag}a")
-    after = means.missed(chain, ahead, f"{tag}b")
+    after = means.missed(program, ahead, f"{tag}b")
     closer = program.vanishes(
         f"closer_{tag}",
         sp.Abs(after) - sp.Abs(missed),
@@ -276,4 +314,4 @@ def _polished(
     return pair.known_as(program, f"_{tag}")
 
 
-__all__ = ["OnCircle", "quartic"]
+__all__ = ["OnCircle", "quartic", "quartic_in"]

@@ -14,7 +14,6 @@ from typing import cast
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.amplitude import Amplitude
 from closedform.lemmas.legs import Leg, Naming, cross_in_plane, vector
 from closedform.lemmas.missed import MOVED
 from closedform.lemmas.planes import Flat, Plane, three_planes
@@ -23,11 +22,12 @@ from closedform.loops.hand import check_order, in_space, square
 from closedform.loops.leg_by_leg import SIGN, Choice, LegByLeg, named_in, record_lemma, size_of
 from closedform.loops.modes import NO_MODE, export
 from closedform.loops.skeleton import ANY, Drawing
+from closedform.loops.yaw import yaw_by_amplitude
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Branches, Program, branches, choose, real
-from closedform.model.inverse import Combination, Degenerate, Inverse, Link
+from closedform.model.functions import Branches, Program, branches, real
+from closedform.model.inverse import Combination, Inverse, Link
 from closedform.model.lemma import Lemma
 from closedform.model.pair import Pair
 from closedform.model.step import Step
@@ -226,32 +226,14 @@ def _forward(m: OnRails, choice: Choice, loop: Step) -> _Posture:
     d.assembly_modes = modes.labels
     size = f.let("size", size_of(d, m.legs, d.actuated))
     named = [named_in(f, n, e) for n, e in zip("abc", m.coefficients, strict=True)]
-    start = len(f.body)
-    at = Amplitude.of(
-        f, yaw, (named[0], named[1], named[2]), sigma, scale=lambda _: size / 4, suffix="_turn"
-    )
-    free = f.vanishes("free", at.h, size, "the hand turns freely", (yaw,))
-    root = f.let("root", at.root, nonnegative=True)
-    # not by the differences h - c and h + c, in which a small c is lost
-    length = f.let("length", choose(free, 1, sp.sqrt(named[2] ** 2 + root**2)), nonnegative=True)
-    reach = f.let("reach", choose(free, 1, at.h), nonnegative=True)
-    away = Pair(sigma * root / length, named[2] / length)
-    found = Pair(at.a / reach, at.b / reach) + away
-    pair = Pair(f.let("s", choose(free, 0, found.s)), f.let("c_yaw", choose(free, 1, found.c)))
-    how = r"\sigma\delta,\ (\cos\delta, \sin\delta) = \frac{(c, \sqrt{(h - c)(h + c)})}{h},\ "
-    lemma = at.lemma(sp.atan2(pair.s, pair.c), rf"{how}h = \sqrt{{a^2+b^2}}")
-    case = Degenerate(
-        (free,), dict.fromkeys(named, sp.S.Zero), yaw, f"the {m.flats} do not hold the hand"
-    )
-    means = {pair.s: sp.sin(yaw), pair.c: sp.cos(yaw)}
-    turn = Link(
-        unknowns=(yaw,),
-        equations=lemma.equations,
-        given={},
-        lemma=lemma,
-        body=tuple(f.body[start:]),
-        means=means,
-        degenerate=(case,),
+    turn, pair, root = yaw_by_amplitude(
+        f,
+        yaw,
+        named,
+        sigma,
+        size,
+        missed=lambda _: size / 4,
+        said=f"the {m.flats} do not hold the hand",
     )
     arms = [
         sp.Matrix([named_in(f, f"e{k}_{i}", e) for i, e in zip("xyz", arm, strict=False)])
@@ -287,7 +269,7 @@ def _forward(m: OnRails, choice: Choice, loop: Step) -> _Posture:
         "fk",
         "Position and yaw of the hand in both assembly modes.",
         {"q": d.actuated},
-        {"p": [*hand, lemma[yaw]]},
+        {"p": [*hand, sp.atan2(pair.s, pair.c)]},
         program=f,
         branches=modes,
         result="Positions",

@@ -6,8 +6,9 @@ In space four legs may keep the hand upright; then it turns about the z axis alo
 and the singular sets.  The forward problem leads to an equation of degree 6 in a plane, 8 for a
 hand that is kept upright, or 40, and no ``fk`` is derived.  What depends on the posture is a
 function of the pose and of the joints.  If two of three legs end in one point of the hand, there is
-``fk`` too, see :mod:`closedform.loops.meeting`; also if six legs end in three points, three, two
-and one of them, see :mod:`closedform.loops.three_points`.
+``fk`` too, see :mod:`closedform.loops.meeting`; also on two rails, see
+:mod:`closedform.loops.two_rails`, and if six legs end in three points, three, two and one of them,
+see :mod:`closedform.loops.three_points`.
 """
 
 from __future__ import annotations
@@ -50,6 +51,7 @@ from closedform.loops.platform_legs import (
 )
 from closedform.loops.skeleton import Drawing, points_of
 from closedform.loops.three_points import ThreePoints
+from closedform.loops.two_rails import TwoRails
 from closedform.loops.upright import check_upright, constraint, left_out, state_upright
 from closedform.mechanics.frames import hat, require_pose
 from closedform.mechanics.skeleton import skeleton
@@ -87,9 +89,10 @@ def platform(d: Derivation, legs: Sequence[Leg | Half], *, bars: int = 2) -> Non
     the reach of the legs is limited.
 
     There is also ``fk`` on three rails in a plane, and on four
-    :class:`~closedform.lemmas.planes.Plane` legs in space, with two assembly modes; if two of three
-    legs end in one point of the hand, with four; and if six legs end in three points of it, three,
-    two and one of them, or legs that stretch start so in three points of the ground, with eight.
+    :class:`~closedform.lemmas.planes.Plane` legs in space, with two assembly modes; on two rails,
+    and if two of three legs end in one point of the hand, with four; and if six legs end in three
+    points of it, three, two and one of them, or legs that stretch start so in three points of the
+    ground, with eight.
     Then what depends on the posture is a function of the joints, and there is ``jacobian`` instead
     of ``jacobian_inverse``.
 
@@ -119,7 +122,7 @@ def platform(d: Derivation, legs: Sequence[Leg | Half], *, bars: int = 2) -> Non
     m.d.loop = loop = _close_on_axes(m) if m.axial else _close(m)
     if upright:
         state_upright(m, loop)
-    if solved := Meet.of(m) or ThreePoints.of(m):
+    if solved := TwoRails.of(m) or Meet.of(m) or ThreePoints.of(m):
         d.poles = d.singularities[-1:]
         at = solved.forward(loop)
         _velocity(m, loop)

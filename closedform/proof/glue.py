@@ -32,10 +32,9 @@ import sympy as sp
 
 from closedform.algebra import certificates
 from closedform.algebra.balls import Evaluator
-from closedform.algebra.normal_form import normal
 from closedform.algebra.resolvent import Resolvent
 from closedform.model.expressions import substitute
-from closedform.model.functions import Function, Match, Vanishes, explicit
+from closedform.model.functions import Function, Let, Match, Vanishes, explicit
 from closedform.model.inverse import Combination, Degenerate, Inverse, Link, Rank
 from closedform.proof.determined import random_posture, undetermined
 from closedform.proof.posture import Posture, generic, meanings, outcomes
@@ -73,6 +72,14 @@ def _names(link: Link) -> str:
 
 def _title(link: Link) -> str:
     return f"the lemma {link.lemma.name!r}" if link.lemma else "no lemma"
+
+
+def require_root(root: Expr, value: Expr, made: Mapping[Expr, Expr], place: str) -> None:
+    """Prove that a relation vanishes because its root is defined as a root of it."""
+    defined = made[root]
+    if not isinstance(defined, Resolvent):
+        raise ProofError(f"{place}, does not follow: {root} is not defined as a root")
+    require(value - defined.law(root), (), f"{place}, is not how it is defined")
 
 
 class _Chain:
@@ -165,7 +172,7 @@ class _Chain:
             for relation in link.relations:
                 place = f"{self.where}: {relation.meaning}, which {_title(link)} requires"
                 if relation.root is not None:
-                    self._is_root(relation.root, relation.value, place)
+                    require_root(relation.root, relation.value, self.posture.made, place)
                     continue
                 fault = "does not follow from earlier equations"
                 unknown = [u for u, _ in relation.terms if u not in solved]
@@ -183,13 +190,6 @@ class _Chain:
                 why = "does not follow so" if relation.terms else f"{fault}; say with because="
                 require(substitute(difference, rotation), (), f"{place}, {why}")
             solved[link.unknowns[0]] = link.equations
-
-    def _is_root(self, root: Expr, value: Expr, place: str) -> None:
-        """Prove that a relation vanishes because its root is defined as a root of it."""
-        made = self.posture.made[root]
-        if not isinstance(made, Resolvent):
-            raise ProofError(f"{place}, does not follow: {root} is not defined as a root")
-        require(value - made.law(root), (), f"{place}, is not how it is defined")
 
     def _determines_target(self) -> None:
         """Prove that the equations have no other solution for the target than the image."""
@@ -216,6 +216,7 @@ class _Combined:
     def prove(self) -> None:
         for link in self.inverse.links:
             self._premises_hold(link)
+            self._relations_hold(link)
         self._combines()
         self._is_invertible()
         self._composes_answers()
@@ -235,6 +236,15 @@ class _Combined:
                 for missed in self._in_all_branches(self.known[sign] ** 2 - 1):
                     fault = f"{sign}, a sign of the lemma {lemma.name!r}, is not 1 or -1"
                     require(missed, (), f"{self.where}: {fault}")
+
+    def _relations_hold(self, link: Link) -> None:
+        """Prove that coefficients of a lemma depend on each other as its relations say."""
+        made = {s.symbol: s.value for s in self.function.body if isinstance(s, Let)}
+        for relation in link.relations:
+            place = f"{self.where}: {relation.meaning}, which {_title(link)} requires"
+            if relation.root is None:
+                raise ProofError(f"{place}, is not how it is defined")
+            require_root(relation.root, relation.value, made, place)
 
     def _in_all_branches(self, expr: Expr) -> list[Expr]:
         signs = [s for s in self.function.signs if expr.has(s)]
@@ -260,9 +270,15 @@ class _Combined:
         }
         what = "matrices that combine the equations of lemmas"
         certificates.point(matrix.tolist(), point, what)
-        if not normal(matrix.det()).is_nonzero:
+        det = sp.expand(matrix.det())
+        (ball,) = Evaluator(list(point), [det])(list(point.values()))
+        fault = f"{self.where}: the matrix that combines the lemmas' equations"
+        if ball.contains(0):
+            raise ProofError(f"{fault} is singular")
+        if det.has(*self.inverse.unknowns):
             raise ProofError(
-                f"{self.where}: the matrix that combines the lemmas' equations is singular"
+                f"{fault} depends on what is solved for, and so does its determinant, {det}, which "
+                f"may vanish"
             )
 
     def _composes_answers(self) -> None:

@@ -43,6 +43,20 @@ def test_lemmas_are_combined_to_the_system() -> None:
         prove_inverse(d, wrong)
 
 
+def test_a_factor_that_may_vanish_does_not_combine_lemmas() -> None:
+    """Where it vanishes, the system has solutions that the lemmas do not give."""
+    d, inverse = crank()
+    (t,), (c,), (f,) = inverse.unknowns, inverse.targets, inverse.forward
+    more = dataclasses.replace(
+        inverse,
+        targets=(sp.S.Zero,),
+        forward=(sp.sin(t) * (f - c),),
+        glue=Combination(sp.Matrix([[sp.sin(t)]]), {t: t}),
+    )
+    with pytest.raises(ProofError, match="depends on what is solved for"):
+        prove_inverse(d, more)
+
+
 def test_a_sign_of_a_lemma_is_one_or_minus_one() -> None:
     with pytest.raises(ProofError, match=r"side, a sign of the lemma .*, is not 1 or -1"):
         prove_inverse(*crank(side=2))

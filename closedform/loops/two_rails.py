@@ -140,6 +140,18 @@ class TwoRails:
 
 
 @dataclass(frozen=True)
+class _Turned:
+    """How the yaw is found, the third rod then, and by what its equation was divided."""
+
+    turn: Link
+    pair: Pair
+    rod: sp.Matrix
+    why: str
+    notes: tuple[str, ...]
+    scale: sp.Expr = sp.S.One
+
+
+@dataclass(frozen=True)
 class _Found:
     """What a way of solving gives: the links, the hand and the third rod, in a mode."""
 
@@ -261,9 +273,7 @@ def _on_ellipse(on: TwoRails, f: Program, size: sp.Expr) -> _Found:
     rod = named(f, "rod", means.point(applied.result))
     off = f.let("off", sp.sqrt(square(rod)) - r)
     f.match(off, size * MOVED, "the third leg reaches the hand")
-    return _where_rails_meet(
-        on,
-        f,
+    by = _Turned(
         turn,
         applied.result,
         rod,
@@ -273,8 +283,9 @@ def _on_ellipse(on: TwoRails, f: Program, size: sp.Expr) -> _Found:
         "solutions are where the ellipse meets a circle.  Two lines pass through these points, "
         "each through two of them: the first sign of a mode says which line, and the second one "
         "which point of it.  Then the hand is where both rails meet.",
-        tuple(notes),
+        notes=tuple(notes),
     )
+    return _where_rails_meet(on, f, by)
 
 
 def _on_circle(on: TwoRails, f: Program, size: sp.Expr) -> _Found:
@@ -299,9 +310,7 @@ def _on_circle(on: TwoRails, f: Program, size: sp.Expr) -> _Found:
         said="the third end turns about the near end of its rod",
     )
     rod = named(f, "rod", u + v * pair.c + w * pair.s)
-    return _where_rails_meet(
-        on,
-        f,
+    by = _Turned(
         turn,
         pair,
         rod,
@@ -310,9 +319,10 @@ def _on_circle(on: TwoRails, f: Program, size: sp.Expr) -> _Found:
         "so the far end of this rod is on a circle.  The rod keeps its length, which gives an "
         "equation with two solutions: these are the assembly modes.  Then the hand is where both "
         "rails meet.",
-        ("SINGULAR: the third leg lets the hand turn freely, and yaw = 0 is returned.",),
-        2 * far * (sp.sqrt(square(on.curve[0])) + on.m.legs[on.third].rod + far),
+        notes=("SINGULAR: the third leg lets the hand turn freely, and yaw = 0 is returned.",),
+        scale=2 * far * (sp.sqrt(square(on.curve[0])) + on.m.legs[on.third].rod + far),
     )
+    return _where_rails_meet(on, f, by)
 
 
 def _path(on: TwoRails, f: Program) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
@@ -320,19 +330,10 @@ def _path(on: TwoRails, f: Program) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
     return at, cosine, sine
 
 
-def _where_rails_meet(
-    on: TwoRails,
-    f: Program,
-    turn: Link,
-    pair: Pair,
-    rod: sp.Matrix,
-    why: str,
-    notes: tuple[str, ...],
-    scale: sp.Expr = sp.S.One,
-) -> _Found:
+def _where_rails_meet(on: TwoRails, f: Program, by: _Turned) -> _Found:
     """The rest of the solution if the rails are not parallel."""
     m, (i, j), k = on.m, on.rails, on.third
-    arms = _arms(on, f, pair)
+    arms = _arms(on, f, by.pair)
     ends = [m.legs[n].end() - arms[n] for n in on.rails]
     met = two_rails(f, ends, on.legs, m.position)
     hand = named(f, "hand", sp.Matrix([met.lemma[x] for x in m.position]))
@@ -343,17 +344,17 @@ def _where_rails_meet(
     first, second = on.legs
     matrix = sp.zeros(3, 3)
     matrix[i, 1] = matrix[j, 2] = 1
-    matrix[k, 0] = scale
+    matrix[k, 0] = by.scale
     matrix[k, 1] = total.dot(second.way) / on.across
     matrix[k, 2] = -total.dot(first.way) / on.across
     shift = on.met(m.loop[i], m.loop[j])
     return _Found(
-        links=(turn, met.link),
+        links=(by.turn, met.link),
         matrix=matrix,
-        pair=pair,
+        pair=by.pair,
         hand=hand,
-        rod=rod,
-        why=why,
+        rod=by.rod,
+        why=by.why,
         shown={
             r"\mathbf u": u,
             r"\mathbf v": v,
@@ -362,7 +363,7 @@ def _where_rails_meet(
         proves="The vector along the third rod differs from this by what the loop equations of the "
         "rails miss.",
         equal=tuple(zip(m.rods[k], path + shift, strict=True)),
-        notes=notes,
+        notes=by.notes,
     )
 
 

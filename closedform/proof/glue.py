@@ -32,6 +32,7 @@ import sympy as sp
 
 from closedform.algebra import certificates
 from closedform.algebra.balls import Evaluator
+from closedform.algebra.normal_form import is_zero
 from closedform.algebra.resolvent import Resolvent
 from closedform.model.expressions import substitute
 from closedform.model.functions import Function, Let, Match, Vanishes, explicit
@@ -275,7 +276,8 @@ class _Combined:
         fault = f"{self.where}: the matrix that combines the lemmas' equations"
         if ball.contains(0):
             raise ProofError(f"{fault} is singular")
-        if det.has(*self.inverse.unknowns):
+        home = dict.fromkeys(self.inverse.unknowns, sp.S.Zero)
+        if det.has(*home) and not is_zero(det - det.xreplace(home)):
             raise ProofError(
                 f"{fault} depends on what is solved for, and so does its determinant, {det}, which "
                 f"may vanish"

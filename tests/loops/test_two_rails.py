@@ -182,7 +182,9 @@ def toy(third: str, ways: tuple[tuple[int, int], ...], places: list[tuple]) -> D
     s, t = (d.joint(n, "prismatic", passive=True) for n in "st")
     half, at = Rational(1, 2), (Rational(-1, 3), Rational(1, 4))
     legs = {
-        "crank": lambda e: Crank(q[1], half, half, at, (1, 0), (0, 1), on_hand=e),
+        "crank": lambda e: Crank(
+            q[1], half, half, pivot=at, along=(1, 0), across=(0, 1), on_hand=e
+        ),
         "slide": lambda e: Slide(q[1], half, at, (1, 0), on_hand=e),
         "stretch": lambda e: Stretch(q[1], at, on_hand=e),
     }

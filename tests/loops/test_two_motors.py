@@ -1,5 +1,6 @@
 """Legs with two motors each, a 3-PRPS mechanism, against its drawing."""
 
+import re
 from pathlib import Path
 from types import ModuleType
 
@@ -10,6 +11,7 @@ from places import TESTS
 
 from closedform import Across, Along, Derivation, Paper, Stretch, parallel, platform, real
 from closedform.algebra.shapes import ShapeError
+from closedform.cli.commands import main
 from closedform.scaffold.inputs.tables import TableError
 
 TEXT = (TESTS / "held_out_loops" / "three_prps.toml").read_text("utf-8")
@@ -24,6 +26,20 @@ def prps(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
     assert len(TEXT.splitlines()) < 40
     folder = tmp_path_factory.mktemp("prps")
     return derived("prps", script_of("prps", TEXT, folder), folder, crosscheck=True)
+
+
+def test_the_article_derives_the_sliders_too(tmp_path: Path) -> None:
+    """Their equations give them at once, and were left out."""
+    (tmp_path / "prps.py").write_text(script_of("prps", TEXT, tmp_path), "utf-8")
+    out = tmp_path / "out"
+    derive = ["derive", str(tmp_path / "prps.py"), "-o", str(out), "--backend", "latex"]
+    assert main([*derive, "--no-crosscheck"]) == 0
+    text = (out / "latex" / "prps.tex").read_text("utf-8")
+    sought = re.search(r"The unknowns solved for are (.*?)\.", text, re.DOTALL)
+    assert sought is not None and re.findall(r"[pq]_\{?\d", sought[1]) == [
+        f"{letter}_{{{k}" for k in (1, 2, 3) for letter in "pq"
+    ]
+    assert "0 &= 0" not in text
 
 
 def rotation(r: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ what the lemma gives, and where the answer is not determined.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import sympy as sp
@@ -56,6 +57,7 @@ class Stages:
         self.function, self.inverse = subject.function, subject.inverse
         self.solvings = solvings(self.inverse, subject.solved) if self.inverse else []
         self.steps = list[list[Solving]]()
+        self.solvings = [self.explained(s) for s in self.solvings]
         for solving in self.solvings:
             if all(self.named(e) == 0 for e in solving.equations):
                 continue  # a joint that is given
@@ -73,6 +75,18 @@ class Stages:
 
     def context(self) -> list[dict[str, Any]]:
         return [self.told_stage(k, step) for k, step in enumerate(self.steps, 1)]
+
+    def explained(self, solving: Solving) -> Solving:
+        """The same, where an equation gives an unknown at once, with what the unknown is equal to.
+
+        The algorithm calls its value by the name of the unknown, so that the equation is empty.
+        """
+        equations = list(solving.equations)
+        for i, e in enumerate(equations):
+            found = [u for u in solving.unknowns if u in self.algorithm.values and e.has(u)]
+            if len(found) == 1 and self.named(e) == 0:
+                equations[i] = found[0] - self.algorithm.value(found[0])
+        return replace(solving, equations=tuple(equations))
 
     def are_twins(self, step: Sequence[Solving]) -> bool:
         """Whether a step is told once of two parts that differ in names alone."""

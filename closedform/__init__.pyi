@@ -63,6 +63,7 @@ from closedform.lemmas.tangent import LinksAtHeight as LinksAtHeight
 from closedform.lemmas.tangent import Preferred as Preferred
 from closedform.lemmas.tangent import TwoTurns as TwoTurns
 from closedform.lemmas.three_planes import axes_in_three_planes as axes_in_three_planes
+from closedform.lemmas.through_ball import ThroughBall as ThroughBall
 from closedform.lemmas.triangle import Triangle as Triangle
 from closedform.lemmas.two_link import elbow_squares as elbow_squares
 from closedform.lemmas.two_link import two_link_arm as two_link_arm
@@ -88,6 +89,7 @@ from closedform.loops.hinges import StandingPlane as StandingPlane
 from closedform.loops.hinges import TurningPlane as TurningPlane
 from closedform.loops.hinges import TwoHinges as TwoHinges
 from closedform.loops.linkage import Body as Body
+from closedform.loops.on_balls import on_balls as on_balls
 from closedform.loops.on_pins import Sleeve as Sleeve
 from closedform.loops.on_pins import on_pins as on_pins
 from closedform.loops.on_rod import on_rod as on_rod

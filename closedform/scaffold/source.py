@@ -16,6 +16,10 @@ GIVEN = sp.Symbol("given", real=True)
 """The angle of a joint that is an input of the inverse; in the lines its pair is ``given``."""
 
 
+VARIABLES = {"d": "d_"}
+"""The variables of parameters whose names the script uses itself: d is the derivation."""
+
+
 class _Source(StrPrinter):  # type: ignore[misc]
     """Expressions as Python; a fraction of integers stays exact."""
 
@@ -32,7 +36,7 @@ class _Source(StrPrinter):  # type: ignore[misc]
     def _print_Symbol(self, expr: Any) -> str:
         if not NAME.fullmatch(expr.name):
             raise ValueError(f"{expr.name!r} is not a name in Python")
-        return str(expr.name)
+        return variable(str(expr.name))
 
     def _print_Rational(self, expr: Any) -> str:
         return f"Rational({expr.p}, {expr.q})"
@@ -45,6 +49,11 @@ class _Source(StrPrinter):  # type: ignore[misc]
 def literal(text: str) -> str:
     """A text as a Python literal, in double quotes if it contains none."""
     return repr(text) if '"' in text else f'"{repr(chr(39) + text)[2:]}'
+
+
+def variable(name: str) -> str:
+    """The variable of the script that holds the symbol of this name."""
+    return VARIABLES.get(name, name)
 
 
 def file_name(name: str) -> str:

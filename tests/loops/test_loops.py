@@ -2,6 +2,7 @@
 
 import ast
 import importlib
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -540,6 +541,18 @@ def test_names_that_would_enter_the_script_are_refused(
 ) -> None:
     with pytest.raises(TableError, match=message):
         written(FIVE_BAR.replace("L0 = {", f'"{name}" = {{'), tmp_path)
+
+
+@pytest.mark.parametrize(("old", "name"), [("L0", "d"), ("theta1", "z")])
+def test_a_name_may_be_that_of_the_derivation_or_of_a_coordinate_out_of_the_plane(
+    old: str, name: str, tmp_path: Path
+) -> None:
+    """The script calls the derivation d itself; a hand in a plane has no z."""
+    (tmp_path / "bar.toml").write_text(re.sub(rf"\b{old}\b", name, FIVE_BAR), "utf-8")
+    space: dict = {}
+    exec(compile(new("arm", "loop", tmp_path / "bar.toml").text, "script.py", "exec"), space)
+    names = {str(p.symbol) for p in space["d"].parameters} | {*map(str, space["d"].actuated)}
+    assert name in names and old not in names and "d_" not in names
 
 
 def test_the_name_of_a_file_stays_a_text(tmp_path: Path) -> None:

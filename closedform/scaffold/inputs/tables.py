@@ -19,7 +19,7 @@ from __future__ import annotations
 import csv
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -564,22 +564,26 @@ def _vector(given: Any, where: str) -> list[Any]:
     return [expression(entry, where) for entry in given]
 
 
-def expression(text: Any, where: str) -> Any:
-    """An exact expression; decimals are read as exact fractions."""
+def expression(text: Any, where: str, allowed: Collection[str] = ()) -> Any:
+    """An exact expression; decimals are read as exact fractions.
+
+    The names in ``allowed`` are those of parameters though the script uses them itself.
+    """
     if not isinstance(text, str | int) or isinstance(text, bool):
         raise TableError(f"{where}: {shown(text)} is not a number or formula")
     try:
-        return formula(_plain(text), lambda name: _symbol(name, where))
+        return formula(_plain(text), lambda name: _symbol(name, where, allowed))
     except (FormulaError, TableError) as error:
         if what := instead(_plain(text)):
             raise TableError(f"{where}: cannot read {shown(text)}; {what}") from error
         raise TableError(f"{where}: {str(error).removeprefix(f'{where}: ')}") from error
 
 
-def _symbol(name: str, where: str) -> Any:
+def _symbol(name: str, where: str, allowed: Collection[str]) -> Any:
     if PI.fullmatch(name):
         raise TableError(f"{where}: write pi for the number, instead of {name}")
-    check_table_name(name, where)
+    if name not in allowed:
+        check_table_name(name, where)
     return real(name)
 
 

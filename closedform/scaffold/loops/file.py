@@ -48,10 +48,22 @@ from closedform.scaffold.inputs.tables import (
 )
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 from closedform.scaffold.loops.copies import copy_numbered
+from closedform.scaffold.source import VARIABLES
 
 KINDS = ("revolute", "prismatic", "spherical", "universal")
-USED = {"d", "pi", "real", "coupled", "parallel", "platform", "tripod", "on_rod", "linkage"}
-USED |= {"slotted", "guided", "sliding_linkage", "on_pins"}
+USED = {
+    "d",
+    *VARIABLES.values(),
+    "pi",
+    "real",
+    "coupled",
+    "parallel",
+    "platform",
+    "tripod",
+    "on_rod",
+    "linkage",
+}
+USED |= {"slotted", "guided", "sliding_linkage", "on_pins", "on_balls"}
 USED |= {
     "Derivation",
     "Paper",
@@ -73,6 +85,7 @@ USED |= {
     "Prism",
     "Rail",
     "Sleeve",
+    "ThroughBall",
     "Slide",
     "Sliding",
     "Spindle",
@@ -130,7 +143,7 @@ def _check_names(loop: Loop) -> None:
     """Refuse names that clash, because joints and parameters become variables of the script."""
     if loop.hand not in loop.joints:
         written = {j.name for j in loop.joints.values() if _is_written(loop, j)}
-        for name in TASK:
+        for name in [*AXES[: loop.dimensions], TASK[-1]]:
             if name in written or name in loop.symbols | set(loop.parameters):
                 kind = "joint" if name in written else "parameter"
                 raise loop.error(
@@ -143,7 +156,9 @@ def _check_names(loop: Loop) -> None:
             f'[parameters], such as {untold[0]} = {{value = "0.1", meaning = "what it is"}}'
         )
     for name, given in loop.parameters.items():
-        check_variable(name, f"{loop.file}, [parameters]", taken=name in USED)
+        check_variable(
+            name, f"{loop.file}, [parameters]", taken=name in USED and name not in VARIABLES
+        )
         check_text(f"{loop.file}: {name}", given.get("meaning", ""), given.get("unit", ""))
         if name in loop.joints:
             raise loop.error(f"{name} is a joint and a parameter; rename one of them")
@@ -174,17 +189,19 @@ def _read_bodies(loop: Loop, bodies: Mapping[str, Any]) -> None:
         points: dict[str, sp.Matrix] = {}
         for key, given in body.items():
             if key == "length":
-                loop.rods[name] = expression(given, where)
+                loop.rods[name] = expression(given, where, VARIABLES)
             elif key == "parallelogram":
                 if not isinstance(given, list) or len(given) != loop.dimensions:
                     raise TableError(
                         f"{where}: parallelogram is a vector along its short sides, from one end "
                         f"to the other, with {loop.dimensions} coordinates"
                     )
-                loop.parallelograms[name] = sp.Matrix([expression(e, where) for e in given])
+                loop.parallelograms[name] = sp.Matrix(
+                    [expression(e, where, VARIABLES) for e in given]
+                )
             elif isinstance(given, list):
                 points[_named(key, f"{where}: a point")] = sp.Matrix(
-                    [expression(e, f"{where}, {key}") for e in given]
+                    [expression(e, f"{where}, {key}", VARIABLES) for e in given]
                 )
             else:
                 close = difflib.get_close_matches(key, ("length", "parallelogram"))
@@ -266,7 +283,7 @@ def _axis(loop: Loop, axis: Any, where: str, key: str) -> sp.Matrix | None:
         return None
     if not isinstance(axis, list) or len(axis) != loop.dimensions:
         raise TableError(f"{where}: {key} needs {loop.dimensions} coordinates")
-    return _unit(sp.Matrix([expression(e, where) for e in axis]), where)
+    return _unit(sp.Matrix([expression(e, where, VARIABLES) for e in axis]), where)
 
 
 def _named(name: Any, what: str) -> str:

@@ -289,10 +289,9 @@ class Legs:
                 hand = onto[0].other(block)
                 return (
                     f".  With {joint.name} and {onto[0].name} a ball slides along a line of "
-                    f"{hand}, as in a 3-PSP mechanism.  If three balls hold {hand} on lines in one "
-                    f"plane, they determine this plane, and in it {hand} has two postures on "
-                    f"either side, four in all; this is not supported in space.  In a plane it is "
-                    f"a hand on three pins.  In space write the equations in Python"
+                    f"{hand}, as in a 3-PSP mechanism.  This is supported if three sliders that "
+                    f"are parallel move three such balls, and the three lines meet in {loop.hand}, "
+                    f"which is the hand.  In a plane it is a hand on three pins"
                 )
         return ""
 

@@ -20,6 +20,7 @@ from closedform.scaffold.loops.hinges import hinged
 from closedform.scaffold.loops.idle import without_idle
 from closedform.scaffold.loops.legs import TURNING, UPRIGHT, Legs, LoopLeg
 from closedform.scaffold.loops.linkages import LinkageLines, linkage
+from closedform.scaffold.loops.on_balls import on_balls
 from closedform.scaffold.loops.on_line import on_line
 from closedform.scaffold.loops.on_pins import on_pins
 from closedform.scaffold.loops.on_rod import on_rod
@@ -30,7 +31,7 @@ from closedform.scaffold.loops.spherical import with_arcs
 from closedform.scaffold.loops.spindle import NEEDED, spindle
 from closedform.scaffold.loops.two_arms import two_arms
 from closedform.scaffold.loops.uprights import HINGED, uprights
-from closedform.scaffold.source import file_name, literal
+from closedform.scaffold.source import file_name, literal, variable
 
 UNSAID = "say what it measures"
 BY_HAND = (
@@ -55,6 +56,7 @@ KINDS = {
     "tripod": "a hand that lifts and tilts",
     "on_rod": "a hand on a rod",
     "on_pins": "a hand on three pins",
+    "on_balls": "a hand on three balls",
     "coupled": "a single loop",
     "slotted": "a pin on a line",
     "two_arms": "a hand on two arms",
@@ -115,7 +117,7 @@ def _first_way(loop: Loop) -> _Way:
     if carried := on_rod(found):
         found.check_all_used()
         return _Way(carried[0], list(AXES[:2]), carried[1])
-    if pinned := on_pins(found):
+    if pinned := on_pins(found) or on_balls(found):
         found.check_all_used()
         return _Way(pinned, [])
     points = {j.at for j in loop.joints.values()}.union(*loop.bodies.values())
@@ -360,6 +362,8 @@ class _Way:
             return "tripod"
         if self.legs[0].call.startswith("Sleeve"):
             return "on_pins"
+        if self.legs[0].call.startswith("ThroughBall"):
+            return "on_balls"
         if len(self.task) == 1 and any(leg.passive for leg in self.legs):
             return "slotted"
         if self.at:
@@ -457,7 +461,7 @@ def _head(name: str, loop: Loop, way: _Way, origin: str) -> list[str]:
         angle = given.get("unit") == "rad" or (given.get("value") or "1").startswith("-")
         sign = ", nonnegative=False" if angle else ""
         lines.append(
-            f'{symbol} = d.parameter("{symbol}", value={exact}, '
+            f'{variable(symbol)} = d.parameter("{symbol}", value={exact}, '
             f"unit={literal(given.get('unit') or 'm')}, "
             f'meaning={literal(given.get("meaning") or UNSAID)}, source="{origin}"{sign})'
         )

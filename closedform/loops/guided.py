@@ -19,7 +19,7 @@ import sympy as sp
 from closedform.lemmas.extended import Extended
 from closedform.lemmas.legs import Leg, vector
 from closedform.loops.guided_hand import COUNTS, Guided, Holder
-from closedform.loops.guides import LENGTH, TURNS, Ball, Cross, Gimbal, Guide
+from closedform.loops.guides import LENGTH, TURNS, Ball, Cross, Driven, Gimbal, Guide
 from closedform.loops.hand import rate_of, square
 from closedform.loops.hinged_pose import motions, state_pose
 from closedform.loops.hinges import Hinged, Hinges
@@ -56,12 +56,15 @@ def guided(d: Derivation, guide: Holder, legs: Sequence[Leg | Hinged]) -> None:
         If it has no ``singularities``, they are named after the legs
     guide
         what holds the hand: a :class:`Guide` with three legs, a :class:`Gimbal` or a
-        :class:`Cross` with two, a :class:`Ball` with three, a :class:`Spindle` with five
+        :class:`Cross` with two, a :class:`Ball` with three, a :class:`Spindle` with five.  The
+        ``slide`` of a guide may be driven; then one of the legs is a ``Stretch`` with this joint
     legs
         cranks, slides or legs that stretch; ``on_hand`` is seen from the point of the hand, where
         the hand is not turned
     """
     guide = guide.with_legs(d.name, legs) if isinstance(guide, Hinges) else guide
+    if isinstance(guide, Guide) and guide.slide in d.actuated:
+        guide = guide.driven()
     m = Guided(d, guide, tuple(e.leg if isinstance(e, Hinged) else e for e in legs))
     if not d.singularities:
         numbered = [f"leg {k}" for k, _ in m.numbered]
@@ -109,12 +112,13 @@ def _place(m: Guided, guide: Guide | Gimbal) -> Step:
     else:
         assert at.slide and m.exact.slide
         u = at.slide.ahead
-        d.explain({rf"\mathbf {along}": "direction of the passive leg"})
+        d.explain({rf"\mathbf {along}": f"direction of the {guide.leg}"})
         d.explain({r"\mathbf p": "position of the point of the hand"})
         shown |= {rf"\mathbf {along}": u, r"\mathbf p": m.pivot + at.shift}
         said = (
-            "The universal joint of the passive leg turns it by turn_1 about an axis that is fixed "
-            f"to the ground, and by turn_2 about the axis {second}, which the first turn moves.  "
+            f"The universal joint of the {guide.leg} turns it by turn_1 about an axis that is "
+            f"fixed to the ground, and by turn_2 about the axis {second}, which the first turn "
+            f"moves.  "
             f"The hand is fixed to the end of the leg, whose direction is {along}.  So R is the "
             "rotation of the hand, and its point p is ahead of the pivot by the length of the "
             "leg.  Conversely, let X, Y and Z be the coordinates of p along the two axes and the "
@@ -144,11 +148,11 @@ def _place(m: Guided, guide: Guide | Gimbal) -> Step:
             "to it, and R is a rotation."
         )
         notes = (
-            "With X and Y, the coordinates of the hand along the two axes of the passive leg, and "
+            f"With X and Y, the coordinates of the hand along the two axes of the {guide.leg}, and "
             "Z along the leg, where nothing is turned, from its pivot: turn_1 = atan2(-Y, Z) and "
             "turn_2 = atan2(X, sqrt(Y^2 + Z^2)).",
-            "Not finite where the hand is on the first axis of the passive leg.",
-            LEFT_OUT,
+            f"Not finite where the hand is on the first axis of the {guide.leg}.",
+            guide.left_out,
         )
     step = d.step("Pose of the hand", said, shown, proves=proves, equal=equal)
     T = placed.rotation.row_join(m.pivot + placed.shift)
@@ -161,11 +165,6 @@ def _place(m: Guided, guide: Guide | Gimbal) -> Step:
         notes=notes,
     )
     return step
-
-
-LEFT_OUT = (
-    "The postures in which the hand is turned by half a turn about the passive leg are left out."
-)
 
 
 def _close(m: Guided, placed: Step | None) -> Step:
@@ -228,7 +227,9 @@ def _velocity(m: Guided, loop: Step) -> None:
     ball = isinstance(m.guide, Ball)
     per = "angular velocity" if ball else "rate of the target"
     finite = "Not finite at a parallel singularity."
-    where = "the hand is on the first axis of the passive leg"
+    where = ""
+    if isinstance(m.guide, Guide):
+        where = f"the hand is on the first axis of the {m.guide.leg}"
     if isinstance(m.guide, Hinges):
         where = f"the hinges do not fix the {m.guide.fixes} of the hand"
     on_axis = [f"Not finite where {where}."] * bool(own)
@@ -264,8 +265,8 @@ def _velocity(m: Guided, loop: Step) -> None:
             "singularities",
             "The diagonal of B (serial) and the determinant "
             + (
-                "of D (parallel), and that of G (the passive leg)."
-                if placed.slide
+                f"of D (parallel), and that of G (the {m.guide.leg})."
+                if isinstance(m.guide, Guide)
                 else "of A (parallel)" + ", and what the hinges fix." * bool(own) + "." * (not own)
             ),
             {"factors": [*driven, volume, *own]},
@@ -314,6 +315,7 @@ def _state_velocity(m: Guided, loop: Step) -> None:
         }
     )
     hinges = isinstance(m.guide, Hinges)
+    called = m.guide.leg if isinstance(m.guide, Guide) else ""
     moment = about = r"(\mathbf f_i\times\mathbf r_i)"
     if isinstance(m.guide, Cross):
         (shift,) = bold(d, "s")
@@ -361,8 +363,8 @@ def _state_velocity(m: Guided, loop: Step) -> None:
     if at.slide:
         d.explain(
             {
-                r"\mathbf D_i": "how the joints of the passive leg stretch rod i",
-                "G": "velocity of the hand per rate of the passive leg",
+                r"\mathbf D_i": f"how the joints of the {called} stretch rod i",
+                "G": f"velocity of the hand per rate of the {called}",
             }
         )
         shown = {
@@ -395,7 +397,7 @@ def _state_velocity(m: Guided, loop: Step) -> None:
         "hand stands still).  A is singular if the rods do not hold the hand (parallel: the hand "
         "can move while the joints stand still)."
         + (
-            "  G is singular where the hand is on the first axis of the passive leg, which then "
+            f"  G is singular where the hand is on the first axis of the {called}, which then "
             "turns freely about it." * bool(at.slide)
         ),
         shown,
@@ -411,6 +413,7 @@ def _draw(m: Guided) -> None:
     placed = m.placed(p)
     exact, loop = m.exact, m.closed(m.exact.arms)
     held, pivoted = isinstance(m.guide, Gimbal | Ball), isinstance(m.guide, Guide | Cross)
+    pivoted &= not isinstance(m.guide, Driven)  # there the pivot is the base of a leg
 
     def points(shift: sp.Matrix, arms: Sequence[sp.Matrix]) -> dict[str, Sequence[Any]]:
         hand = m.pivot + shift
@@ -423,7 +426,7 @@ def _draw(m: Guided) -> None:
 
     bases = [f"A{k}" for k, _ in m.numbered]
     drawn = Drawing({"ground": (*bases, *bases[:1])} if len(bases) > 2 else {"ground": (*bases,)})
-    if isinstance(m.guide, Guide):
+    if isinstance(m.guide, Guide) and not isinstance(m.guide, Driven):
         drawn.joints[m.guide.slide] = ("O", "P")
         drawn.lengths["O", "P"] = sp.sqrt(square(exact.shift))
     if isinstance(m.guide, Cross):
@@ -522,11 +525,11 @@ def _inverse(m: Guided, loop: Step) -> None:
             "joints do not determine the hand.",
             *(
                 [
-                    "SINGULAR too where the hand is on the first axis of the passive leg, which "
+                    f"SINGULAR too where the hand is on the first axis of the {guide.leg}, which "
                     "turns freely about it; there turn_1 = 0 is taken.",
-                    LEFT_OUT,
+                    guide.left_out,
                 ]
-                if placed.slide
+                if isinstance(guide, Guide)
                 else []
             ),
             *(

@@ -12,7 +12,7 @@ import sympy as sp
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.extended import excess_of
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, vector
-from closedform.loops.guides import LENGTH, TURNS, Ball, Gimbal, Guide, Placed
+from closedform.loops.guides import LENGTH, TURNS, Ball, Driven, Gimbal, Guide, Placed
 from closedform.loops.hand import check_order, check_plain
 from closedform.loops.hinges import Hinges, InPlane
 from closedform.loops.leg_by_leg import named_in, size_of
@@ -50,9 +50,9 @@ class Guided:
                 f"{name}: the axes of {self.guide.what} must be two unit vectors at right angles"
             )
         check_order(self.d, self.legs)
-        if isinstance(self.guide, ParallelAxes):
+        if isinstance(self.guide, ParallelAxes | Driven):
             self.guide.check(name, self.legs)
-        else:
+        if not isinstance(self.guide, ParallelAxes):
             check_plain(self.d, self.legs)
         if list(self.d.task) not in ([], list(self.guide.task)):
             raise ShapeError(f"{name}: the task of this hand must be {', '.join(self.guide.task)}")

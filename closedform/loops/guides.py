@@ -13,7 +13,8 @@ from typing import Any, ClassVar
 
 import sympy as sp
 
-from closedform.lemmas.legs import vector
+from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.legs import Leg, Stretch, vector
 from closedform.lemmas.links import polar_lemma
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import named, named_in
@@ -206,16 +207,41 @@ class Guide:
     degree: ClassVar[int] = 28
     """Of the forward problem in general, counted with a Groebner basis at random numbers."""
     turning: ClassVar[int] = 2
-    own: ClassVar[tuple[str, ...]] = ("passive leg",)
-    what: ClassVar[str] = "a passive leg"
+    leg: ClassVar[str] = "passive leg"
+    """What it is called."""
     holds: ClassVar[str] = ""
-    follow: ClassVar[str] = "the turns and the length of the passive leg follow"
-    motion: ClassVar[str] = (
-        "The turns of the passive leg move the far end of rod i, which is at f_i from the pivot, "
-        "about the first axis and about v, and its length moves it along u.  So they stretch rod i "
-        "by D_i: the moment of the vector r_i along it about both axes, and its part along u.  "
-        "The same joints move the hand by G, so row i of A is D_i*G^-1"
-    )
+
+    @property
+    def own(self) -> tuple[str, ...]:
+        return (self.leg,)
+
+    @property
+    def what(self) -> str:
+        return f"a {self.leg}"
+
+    @property
+    def follow(self) -> str:
+        return f"the turns and the length of the {self.leg} follow"
+
+    @property
+    def left_out(self) -> str:
+        return (
+            f"The postures in which the hand is turned by half a turn about the {self.leg} are "
+            f"left out."
+        )
+
+    @property
+    def motion(self) -> str:
+        return (
+            f"The turns of the {self.leg} move the far end of rod i, which is at f_i from the "
+            f"pivot, about the first axis and about v, and its length moves it along u.  So they "
+            f"stretch rod i by D_i: the moment of the vector r_i along it about both axes, and its "
+            f"part along u.  The same joints move the hand by G, so row i of A is D_i*G^-1"
+        )
+
+    def driven(self) -> Driven:
+        """The same, if a motor moves the slide."""
+        return Driven(self.slide, self.pivot, self.first, self.second)
 
     @property
     def joint(self) -> Turning:
@@ -262,6 +288,28 @@ class Guide:
         shift = LENGTH * slide.ahead
         arms = tuple(shift + R * place for place in places)
         return Placed(R, (vector(self.first), axes[0]), shift, arms, slide)
+
+
+@dataclass(frozen=True)
+class Driven(Guide):
+    """The same leg with a driven slide, as in a TriVariant; it is one of the three driven legs."""
+
+    leg: ClassVar[str] = "middle leg"
+    degree: ClassVar[int] = 8
+    """If its length is known, two turns are left, as those of a universal joint."""
+
+    def check(self, name: str, legs: Sequence[Leg]) -> None:
+        """Refuse legs of which none is that of the slide."""
+        for leg in legs:
+            if leg.joint == self.slide and isinstance(leg, Stretch):
+                places = [*(leg.base - vector(self.pivot)), *vector(leg.on_hand or (0, 0, 0))]
+                if any(sp.simplify(e) != 0 for e in places):
+                    break
+                return
+        raise ShapeError(
+            f"{name}: {self.slide} moves the leg that carries the hand, so one of the legs is a "
+            f"Stretch with this joint, from the pivot to the point of the hand"
+        )
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import sympy as sp
 
 from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import GROUND, Joint
-from closedform.scaffold.loops.legs import Legs
+from closedform.scaffold.loops.legs import Legs, middle_leg
 
 SPACE = 3
 DRIVEN = {"universal": 2, "spherical": 3}
@@ -38,10 +38,10 @@ def guide(found: Legs) -> GuideLine | None:
         return None
     for joint in loop.joints.values():
         hand = [b for b in joint.between if loop.hand in loop.bodies[b] and b != GROUND]
+        if hand and joint.kind == "prismatic" and (not joint.driven or middle_leg(loop, joint)):
+            return _guide(found, joint, joint.other(hand[0]))
         if joint.driven or not hand:
             continue
-        if joint.kind == "prismatic":
-            return _guide(found, joint, joint.other(hand[0]))
         if GROUND in joint.between and joint.kind in DRIVEN:
             return _pivot(found, joint)
         for body in hand if joint.kind == "revolute" else []:
@@ -157,11 +157,13 @@ def _guide(found: Legs, slide: Joint, post: str) -> GuideLine:
     second = slide.axis.cross(turning.axis)
     found.used |= {slide.name, turning.name}
     base = found.point(GROUND, turning)
+    how = " driven" * slide.driven
     return GuideLine(
         f"Guide({slide.name}, {found.at(base)}, {found.at(turning.axis)}, {found.at(second)})",
-        "a hand on a passive leg",
-        "A passive leg of a universal joint and a slide carries the hand.",
-        slide.name,
+        f"a hand on a {'middle' if slide.driven else 'passive'} leg",
+        f"A {'middle' if slide.driven else 'passive'} leg of a universal joint and a{how} slide "
+        f"carries the hand.",
+        "" if slide.driven else slide.name,
     )
 
 

@@ -460,6 +460,14 @@ class Legs:
     def stretch(self, joint: Joint) -> LoopLeg:
         """A leg of two bodies that slide along each other."""
         loop = self.loop
+        if on_ground := middle_leg(loop, joint):
+            self.used |= {joint.name, on_ground.name}
+            return LoopLeg(
+                joint,
+                f"Stretch({joint.name}, {self.at(self.point(GROUND, on_ground))})",
+                f"{joint.name} is the length of the leg that carries the hand",
+                sp.zeros(loop.dimensions, 1),
+            )
         ends: dict[bool, Joint] = {}
         for half in joint.between:
             others = [j for j in loop.of(half) if j is not joint]
@@ -554,6 +562,20 @@ class Legs:
         return pin.on_bar - hand
 
 
+def middle_leg(loop: Loop, slide: Joint) -> Joint | None:
+    """The universal joint on the ground of a leg whose end is the hand, if a slide is its other.
+
+    So the slide carries the hand, as that of a Tricept; it may be driven.
+    """
+    for half in slide.between:
+        post = slide.other(half)
+        if loop.hand in loop.bodies[half] and half != GROUND and slide.kind == "prismatic":
+            others = [j for j in loop.of(post) if j is not slide]
+            if [j.kind for j in others] == ["universal"] and GROUND in others[0].between:
+                return others[0] if loop.dimensions == len(AXES) else None
+    return None
+
+
 def across_axis(axis: sp.Matrix, arm: sp.Matrix, start: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
     """An arm that turns about an axis, less what is along it, and where the rest starts."""
     along = axis * sp.simplify(arm.dot(axis))
@@ -564,4 +586,4 @@ def _tuple(v: sp.Matrix) -> str:
     return f"({', '.join(map(source, v))})"
 
 
-__all__ = ["TURNING", "UPRIGHT", "Legs", "LoopLeg", "across_axis"]
+__all__ = ["TURNING", "UPRIGHT", "Legs", "LoopLeg", "across_axis", "middle_leg"]

@@ -242,3 +242,108 @@ def test_what_is_recognised_and_not_derived(file: str, told: str, tmp_path: Path
     """These were told that a slider must be joined to one rod, or that a leg has one rod."""
     with pytest.raises(TableError, match=told):
         script_of("refused", file, tmp_path)
+
+
+CANFIELD = """
+# 3-RSR (Canfield joint)
+hand = "P"
+copies = 3
+[parameters]
+b = {value = "0.2", meaning = "base"}
+l = {value = "0.3", meaning = "links"}
+[bodies]
+ground = {A1 = ["b", 0, 0]}
+lower1 = {A1 = ["b", 0, 0], B1 = ["b + l", 0, 0]}
+upper1 = {length = "l"}
+hand = {P = [0, 0, 0], C1 = ["b", 0, 0]}
+[joints]
+q1 = {between = ["ground", "lower1"], at = "A1", axis = [0, 1, 0], driven = true}
+b1 = {between = ["lower1", "upper1"], at = "B1", kind = "spherical"}
+c1 = {between = ["upper1", "hand"], at = "C1", axis = [0, 1, 0]}
+"""
+CAPAMAN = """
+# CaPaMan: four-bar parallelograms carry sliders with balls
+hand = "P"
+copies = 3
+[parameters]
+b = {value = "0.3", meaning = "base"}
+l = {value = "0.1", meaning = "cranks"}
+c = {value = "0.2", meaning = "hand"}
+[bodies]
+ground = {A1 = ["b", 0, 0]}
+crank1 = {A1 = ["b", 0, 0], B1 = ["b", 0, "l"]}
+coupler1 = {B1 = [0, 0, 0], D1 = [0, 0, 0]}
+car1 = {D1 = [0, 0, 0]}
+hand = {P = [0, 0, 0], D1 = ["c", 0, 0]}
+[joints]
+q1 = {between = ["ground", "crank1"], at = "A1", axis = [1, 0, 0], driven = true}
+b1 = {between = ["crank1", "coupler1"], at = "B1", axis = [1, 0, 0]}
+s1 = {between = ["coupler1", "car1"], at = "D1", kind = "prismatic", axis = [0, 1, 0]}
+c1 = {between = ["car1", "hand"], at = "D1", kind = "spherical"}
+"""
+CYLINDERS = """
+# 3-PRC translational
+hand = "P"
+[parameters]
+l = {value = "0.4", meaning = "bars"}
+[bodies]
+ground = {A1 = [0, 0, 0], A2 = [0, 0, 0], A3 = [0, 0, 0]}
+s1 = {B1 = [0, 0, 0]}
+s2 = {B2 = [0, 0, 0]}
+s3 = {B3 = [0, 0, 0]}
+r1 = {length = "l"}
+r2 = {length = "l"}
+r3 = {length = "l"}
+hand = {P = [0, 0, 0], C1 = [0, 0, 0], C2 = [0, 0, 0], C3 = [0, 0, 0]}
+block1 = {}
+block2 = {}
+block3 = {}
+[joints]
+q1 = {between = ["ground", "s1"], at = "A1", kind = "prismatic", axis = [1, 0, 0], driven = true}
+q2 = {between = ["ground", "s2"], at = "A2", kind = "prismatic", axis = [0, 1, 0], driven = true}
+q3 = {between = ["ground", "s3"], at = "A3", kind = "prismatic", axis = [0, 0, 1], driven = true}
+b1 = {between = ["s1", "r1"], at = "B1", axis = [0, 1, 0]}
+b2 = {between = ["s2", "r2"], at = "B2", axis = [0, 0, 1]}
+b3 = {between = ["s3", "r3"], at = "B3", axis = [1, 0, 0]}
+c1 = {between = ["r1", "block1"], at = "E1", axis = [0, 1, 0]}
+d1 = {between = ["block1", "hand"], at = "C1", kind = "prismatic", axis = [0, 1, 0]}
+c2 = {between = ["r2", "block2"], at = "E2", axis = [0, 0, 1]}
+d2 = {between = ["block2", "hand"], at = "C2", kind = "prismatic", axis = [0, 0, 1]}
+c3 = {between = ["r3", "block3"], at = "E3", axis = [1, 0, 0]}
+d3 = {between = ["block3", "hand"], at = "C3", kind = "prismatic", axis = [1, 0, 0]}
+"""
+CROSS_TABLES = """
+# 3-PPRS: each leg has a cross table
+hand = "P"
+copies = 3
+[parameters]
+b = {value = "0.3", meaning = "base"}
+c = {value = "0.1", meaning = "hand"}
+l = {value = "0.35", meaning = "strut"}
+[bodies]
+ground = {A1 = ["b", 0, 0]}
+cart1 = {A1 = ["b", 0, 0]}
+table1 = {B1 = ["b", 0, 0]}
+strut1 = {length = "l"}
+hand = {P = [0, 0, 0], C1 = ["c", 0, 0]}
+[joints]
+x1 = {between = ["ground", "cart1"], at = "A1", kind = "prismatic", axis = [0, 1, 0], driven = true}
+y1 = {between = ["cart1", "table1"], at = "A1", kind = "prismatic", axis = [1, 0, 0], driven = true}
+r1 = {between = ["table1", "strut1"], at = "B1", axis = [0, 1, 0]}
+c1 = {between = ["strut1", "hand"], at = "C1", kind = "spherical"}
+"""
+
+
+@pytest.mark.parametrize(
+    ("file", "told"),
+    [
+        (CANFIELD, "the mirror image of the ground in the plane of the balls"),
+        (CAPAMAN, "Three points of a hand on three lines are an equation of degree eight"),
+        (CYLINDERS, "c1 and d1 are a cylindrical joint .* degree eight"),
+        (CROSS_TABLES, "x1 and y1 drive one leg, so it has two motors.* degree 16"),
+    ],
+)
+def test_a_message_says_of_which_degree_it_would_be(file: str, told: str, tmp_path: Path) -> None:
+    """These said what a leg must be joined to, and nothing of the mechanism."""
+    with pytest.raises(TableError, match=told):
+        script_of("refused", file, tmp_path)

@@ -151,7 +151,11 @@ def _check_balls(found: Legs, on_hand: Mapping[str, tuple[Joint, Joint]]) -> Non
                 f"{far.name} holds {found.turning} by an axis, and {name} moves the ball joint "
                 f"{near.name} of the same rod; this is supported if the ball joint stands still on "
                 f"the ground, as that of a leg that stretches (SPR), or if the two are "
-                f"exchanged (a ball joint on the hand)"
+                f"exchanged (a ball joint on the hand).  The forward problem of three legs of this "
+                f"kind has degree 16: the balls stand still, and are on circles of "
+                f"{found.turning}.  If it is like the ground, as of a Canfield joint or an "
+                f"Omni-Wrist, one of its postures is the mirror image of the ground in the plane "
+                f"of the balls"
             )
 
 

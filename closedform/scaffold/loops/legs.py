@@ -16,7 +16,7 @@ from closedform.model.names import listed
 from closedform.scaffold.loops.axial import TwoMotors, in_pairs, leg_on_axis, told
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 from closedform.scaffold.loops.halves import halves
-from closedform.scaffold.loops.refused import carried, two_motors
+from closedform.scaffold.loops.refused import ball_on_line, carried, on_cylinder, two_motors
 from closedform.scaffold.loops.rods import several_told
 from closedform.scaffold.source import source
 
@@ -241,6 +241,7 @@ class Legs:
                 f"length or two points, or to one body by a passive slide; it is joined to "
                 f"{carried}"
                 + self.ball_on_hand(onward)
+                + "".join(ball_on_line(loop, j) for j in self.beyond(onward))
                 + two_motors(loop, joint)
                 + self.arcs_told()
                 + several_told(loop, body)
@@ -276,6 +277,16 @@ class Legs:
             f"with ball joints at the ends, whose length is their distance, and hold the hand by a "
             f"rod from {at}, or by a spherical joint there if it turns"
         )
+
+    def beyond(self, onward: Sequence[Joint]) -> list[Joint]:
+        """The passive slides on the bodies that some joints lead to."""
+        return [
+            j
+            for first in onward
+            for body in first.between
+            for j in self.loop.of(body)
+            if j.kind == "prismatic" and not j.driven
+        ]
 
     def ball_on_hand(self, onward: Sequence[Joint]) -> str:
         """What is said of a ball that slides on the hand, as in a 3-PSP mechanism."""
@@ -405,7 +416,7 @@ class Legs:
         if loop.dimensions == 3 or slide.driven:
             raise loop.error(
                 f"{slide.name} slides on {body}; this is supported for a passive slide in a plane "
-                f"only"
+                f"only" + (two_motors(loop, joint) if slide.driven else ball_on_line(loop, slide))
             )
         for j in (joint, slide):
             if j.axis is None:
@@ -522,7 +533,7 @@ class Legs:
             raise loop.error(
                 f"{far.name} leads to {other}, not to a body with the point {loop.hand}, which is "
                 f"{self.end}; a leg has one rod, and the hand is one body"
-                f"{self.lever(far)}"
+                f"{self.lever(far)}{on_cylinder(loop, far, rod)}"
             )
         if far.at not in loop.bodies[body]:
             raise loop.error(f"{body} has no point {far.at}, where {far.name} is")

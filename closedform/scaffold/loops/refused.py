@@ -21,7 +21,9 @@ def two_motors(loop: Loop, joint: Joint) -> str:
         f".  {motors[0].name} and {motors[1].name} drive one leg, so it has two motors.  This is "
         f"supported if the first one is a slider, on which a leg turns about the same axis, and "
         f"the second one stretches this leg, as in a 3-PRPS mechanism.  Otherwise write the "
-        f"equations in Python, or hold one of both motors and describe what is left"
+        f"equations in Python, or hold one of both motors and describe what is left.  If both "
+        f"motors of three such legs leave the ends of the legs circles, the forward problem has "
+        f"degree 16"
     )
 
 
@@ -50,4 +52,36 @@ def carried(loop: Loop, joint: Joint) -> str:
     )
 
 
-__all__ = ["carried", "two_motors"]
+def ball_on_line(loop: Loop, slide: Joint) -> str:
+    """What is said of a passive slide in space whose ball ends a leg, as in a CaPaMan."""
+    hands = [body for body, points in loop.bodies.items() if loop.hand in points]
+    for body in slide.between:
+        onto = [j for j in loop.of(body) if j is not slide]
+        if [j.kind for j in onto] == ["spherical"] and onto[0].other(body) in hands:
+            return (
+                f".  {slide.name} leaves {onto[0].name} a line, which the motor moves.  Three "
+                f"points of a hand on three lines are an equation of degree eight, or for "
+                f"horizontal lines, as of a CaPaMan, one of two in its twist after one of two in "
+                f"its tilts.  Write it in Python"
+            )
+    return ""
+
+
+def on_cylinder(loop: Loop, far: Joint, rod: str) -> str:
+    """What is said of a leg whose end may slide along the axis about which it turns."""
+    block = far.other(rod) if rod in far.between else ""
+    onto = [j for j in loop.of(block) if j is not far] if block else []
+    if loop.dimensions != len(AXES) or [j.kind for j in onto] != ["prismatic"]:
+        return ""
+    (slide,) = onto
+    if far.axis is None or slide.axis is None or any(far.axis.cross(slide.axis)):
+        return ""
+    return (
+        f".  {far.name} and {slide.name} are a cylindrical joint at the end of {rod}, as in a "
+        f"3-PRC mechanism: a leg keeps the hand at a distance from an axis.  For three such "
+        f"legs the forward problem has degree eight, and each joint follows from a plane and a "
+        f"distance; write these equations in Python"
+    )
+
+
+__all__ = ["ball_on_line", "carried", "on_cylinder", "two_motors"]

@@ -146,10 +146,14 @@ def _on_legs(found: Legs) -> _Way:
     _check_ends(found, passive.held if passive else ())
     if found.half_held and not found.turning:
         hinge, other = found.half_held[0]
+        mixed = (
+            ".  Legs of this kind beside a parallelogram, as of a HALF manipulator, which keep one "
+            "axis of the hand, are not supported" * bool(loop.parallelograms)
+        )
         raise loop.error(
             f"{hinge.name} and {other.name} are a hinge and a universal joint at the ends of one "
             f"leg; three such legs leave the hand no motion.  If it should not turn, write "
-            f'kind = "universal" and the same axis at both ends of each leg'
+            f'kind = "universal" and the same axis at both ends of each leg{mixed}'
         )
     if passive:
         return _Way(driven, [], guide=passive)

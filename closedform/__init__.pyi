@@ -103,6 +103,7 @@ from closedform.loops.slotted import Lever as Lever
 from closedform.loops.slotted import slotted as slotted
 from closedform.loops.spindle import Spindle as Spindle
 from closedform.loops.three_hinges import ThreeHinges as ThreeHinges
+from closedform.loops.three_planes import ThreePlanes as ThreePlanes
 from closedform.loops.tripod import tripod as tripod
 from closedform.loops.tripod_legs import Upright as Upright
 from closedform.loops.two_arms import two_arms as two_arms

@@ -28,6 +28,7 @@ from closedform.loops.letters import bold, letters
 from closedform.loops.parallel_axes import ParallelAxes, moved_by, state_axes
 from closedform.loops.platform import determinant, of_any_matrix
 from closedform.loops.skeleton import Drawing, points_of
+from closedform.loops.three_planes import ThreePlanes, state_planes
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Program, real
@@ -62,7 +63,8 @@ def guided(d: Derivation, guide: Holder, legs: Sequence[Leg | Hinged]) -> None:
         cranks, slides or legs that stretch; ``on_hand`` is seen from the point of the hand, where
         the hand is not turned
     """
-    guide = guide.with_legs(d.name, legs) if isinstance(guide, Hinges) else guide
+    if isinstance(guide, Hinges | ThreePlanes):
+        guide = guide.with_legs(d.name, legs)
     if isinstance(guide, Guide) and guide.slide in d.actuated:
         guide = guide.driven()
     m = Guided(d, guide, tuple(e.leg if isinstance(e, Hinged) else e for e in legs))
@@ -73,6 +75,8 @@ def guided(d: Derivation, guide: Holder, legs: Sequence[Leg | Hinged]) -> None:
         placed: Step | None = state_pose(d, guide, m.places, m.posture)
     elif isinstance(guide, Guide | Gimbal):
         placed = _place(m, guide)
+    elif isinstance(guide, ThreePlanes):
+        placed = state_planes(d, guide, m.places)
     else:
         placed = None
     loop = _close(m, placed)
@@ -324,7 +328,11 @@ def _state_velocity(m: Guided, loop: Step) -> None:
     first, second, along, rate = bold(d, "avuw")
     entry = rf"{first}^T(\mathbf e_i\times\mathbf r_i) + {rate}^T\mathbf r_i"
     row = rf"\begin{{bmatrix}}{first}^T{moment} & {second}^T{about}\end{{bmatrix}}"
-    alone = {Ball: rf"{moment}^T", ParallelAxes: r"\mathbf r_i^T"}
+    alone = {
+        Ball: rf"{moment}^T",
+        ParallelAxes: r"\mathbf r_i^T",
+        ThreePlanes: r"(\mathbf e_i\times\mathbf r_i)^T + \mathbf r_i^T V",
+    }
     shown: dict[str, Any] = {
         ("A_{ik}" if hinges else r"\mathbf a_i"): entry
         if hinges
@@ -413,6 +421,7 @@ def _draw(m: Guided) -> None:
     placed = m.placed(p)
     exact, loop = m.exact, m.closed(m.exact.arms)
     held, pivoted = isinstance(m.guide, Gimbal | Ball), isinstance(m.guide, Guide | Cross)
+    held &= not isinstance(m.guide, ThreePlanes)
     pivoted &= not isinstance(m.guide, Driven)  # there the pivot is the base of a leg
 
     def points(shift: sp.Matrix, arms: Sequence[sp.Matrix]) -> dict[str, Sequence[Any]]:
@@ -498,7 +507,7 @@ def _inverse(m: Guided, loop: Step) -> None:
     power = "mean square" if guide.turning == 2 else "third power of the root mean square"
     of_ends = (
         f" and the {power} distance of their far ends from the "
-        f"{'point of the hand' if isinstance(guide, Hinges | Cross) else 'pivot'}"
+        f"{'point of the hand' if isinstance(guide, Hinges | Cross | ThreePlanes) else 'pivot'}"
         + ", with the square of the length of the cross"
         * isinstance(guide, Cross)
     )

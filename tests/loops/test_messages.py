@@ -107,14 +107,14 @@ def test_a_mechanism_without_a_formula_is_told_what_to_do(
         script_of("t", text, tmp_path)
 
 
-def test_planes_that_meet_in_a_point_are_told_of(tmp_path: Path) -> None:
+def test_planes_that_share_another_line_are_told_of(tmp_path: Path) -> None:
     text = (TESTS / "held_out_loops" / "exechon.toml").read_text("utf-8")
     text = text.replace('kind = "universal", axis = [1, 0, 0]', "axis = [1, 0, 0]")
     text = text.replace(", axis = [0, 1, 0]}", ', kind = "spherical"}').replace(
         '"platform"], at = "C3", axis = [1, 0, 0]', '"platform"], at = "C3", kind = "spherical"'
     )
     text = text.replace('"A3", kind = "spherical"', '"A3", axis = [0, 0, 1]')
-    with pytest.raises(TableError, match="in one point alone, as in a 3-RPS cube"):
+    with pytest.raises(TableError, match="has to contain the z axis; put the origin where"):
         script_of("t", text, tmp_path)
 
 

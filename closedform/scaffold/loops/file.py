@@ -93,6 +93,7 @@ USED |= {
     "Stretch",
     "Strut",
     "ThreeHinges",
+    "ThreePlanes",
     "TurningPlane",
     "TwoHinges",
     "Universal",

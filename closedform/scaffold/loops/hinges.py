@@ -33,7 +33,7 @@ def hinged(found: Legs, legs: Sequence[LoopLeg]) -> tuple[list[LoopLeg], GuideLi
     on_hand = [name for name, e in ends.items() if name not in inside and _on_hand(*e)]
     on_ground = [name for name, e in ends.items() if name not in inside and _on_ground(*e)]
     if not inside and not on_hand and len(on_ground) in (0, TRIPOD):
-        return None
+        return _in_planes(found, legs, [ends[name][0] for name in on_ground])
     _check_balls(found, {name: ends[name] for name in on_hand})
     others = [*on_hand, *on_ground]
     three = len(on_hand) == TRIPOD and not (inside or on_ground)
@@ -70,6 +70,35 @@ def hinged(found: Legs, legs: Sequence[LoopLeg]) -> tuple[list[LoopLeg], GuideLi
         f"The leg{'s' * (len(inside) > 1)} of {listed([*inside])} keep{'s' * (len(inside) == 1)} "
     )
     return calls, GuideLine(call, KIND, f"{words}the hand in a plane that {motion}.")
+
+
+def _in_planes(
+    found: Legs, legs: Sequence[LoopLeg], hinges: Sequence[Joint]
+) -> tuple[list[LoopLeg], GuideLine] | None:
+    """Three legs in planes that meet in one point; None if they share a direction."""
+    axes = [h.axis for h in hinges if h.axis is not None and all(e.is_number for e in h.axis)]
+    if not len(legs) == len(axes) == TRIPOD or sp.simplify(sp.Matrix.hstack(*axes).det()) == 0:
+        return None
+    if not all(_stays(leg.joint, axis) for leg, axis in zip(legs, axes, strict=True)):
+        return None
+    calls = [
+        replace(
+            leg,
+            call=f"Hinged({leg.call}, on_ground={found.at(axis)})",
+            words=f"{leg.words}, hinged at {hinge.name}",
+        )
+        for leg, axis, hinge in zip(legs, axes, hinges, strict=True)
+    ]
+    words = "Hinges on the ground keep three legs in planes that meet in one point."
+    return calls, GuideLine("ThreePlanes()", KIND, words)
+
+
+def _stays(driven: Joint, normal: sp.Matrix) -> bool:
+    """Whether a motor moves the near end of its leg in the plane of the hinge."""
+    if GROUND not in driven.between or driven.axis is None:
+        return True
+    off = driven.axis.cross(normal) if driven.kind == "revolute" else [driven.axis.dot(normal)]
+    return not any(map(sp.simplify, off))
 
 
 def ends_of(found: Legs, joint: Joint) -> tuple[Joint, Joint]:

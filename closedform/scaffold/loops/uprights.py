@@ -38,20 +38,13 @@ def uprights(found: Legs) -> list[LoopLeg]:
     return [_upright(found, j, h) for j, h in zip(driven, hinges, strict=True) if h is not None]
 
 
-CUBE = (
-    "Planes that meet in one point alone, as in a 3-RPS cube mechanism, are not supported.  Their "
-    "forward problem has degree 16 too; the rotation R of the hand gives its place p by three "
-    "linear equations, n^T*(p + R*c - a) = 0, and then each joint"
-)
-
-
 def _upright(found: Legs, joint: Joint, hinged: Joint) -> LoopLeg:
     loop, axis = found.loop, hinged.axis
     assert axis is not None
     if axis[2] != 0 or not all(e.is_number for e in axis):
         raise loop.error(
             f"{hinged.name} keeps the leg of {joint.name} in a plane, which has to be vertical: "
-            f"its axis is horizontal, in numbers.  {CUBE}"
+            "its axis is horizontal, in numbers"
         )
     if joint.kind == "revolute" and joint.axis is not None and any(joint.axis.cross(axis)):
         raise loop.error(f"the axes of {joint.name} and {hinged.name} have to be parallel")
@@ -72,8 +65,7 @@ def _upright(found: Legs, joint: Joint, hinged: Joint) -> LoopLeg:
     if any(off):
         raise loop.error(
             f"the plane of the leg of {joint.name}, which is normal to the axis of {hinged.name}, "
-            f"has to contain the z axis; put the origin where the planes of the three legs meet.  "
-            f"{CUBE}"
+            f"has to contain the z axis; put the origin where the planes of the three legs meet"
         )
     if leg.place[2] != 0:
         raise loop.error(

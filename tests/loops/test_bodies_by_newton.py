@@ -16,14 +16,18 @@ OK, STARTS, LINES = 0, 60, 40
 FILES = {
     "atkinson": 0.7,
     "bike_suspension": 0.21,
+    "chebyshev_lambda": 0.9,
     "coupled_finger": -0.3,
     "dump_hoist": 1.6,
     "exo_knee": 0.24,
+    "hart": 0.7,
     "jib_crane": 1.1,
+    "link_press": 0.6,
     "pushrod": 0.1,
     "rack_steering": 0.02,
     "stephenson_three": 0.8,
     "trailing_arm": 0.27,
+    "umbrella": 0.35,
 }
 """The value of the driven joint."""
 

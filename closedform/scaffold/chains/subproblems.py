@@ -44,6 +44,8 @@ class SubproblemMaker(WristMaker):
     """Its component along the parallel axes in between."""
     between: sp.Matrix | None = None
     """The direction of those."""
+    third: str = ""
+    """The direction of the last of four axes, if the third has the same: two joints turn it."""
 
     def give(self, joint: Single) -> None:
         """Take a joint as an input."""
@@ -58,6 +60,10 @@ class SubproblemMaker(WristMaker):
         before, ends = arm.joints[: n - wrist], arm.joints[n - wrist :]
         R = self.centre(arm)
         self._see_the_last_axis(arm, R)
+        if n == len(self.arm.joints) == 4 and not arm.joints[2].slides and parallel(arm.joints[2]):
+            opposite = arm.joints[2].end[2, 2] == -1
+            axis = self.last_axis(arm, R)
+            self.third = times(arm.lead[:3, :3].T, f"-{axis}" if opposite else axis)
         solved = self.position(before)
         M = times(arm.lead[:3, :3].T, R)
         if wrist == 3 and not is_normal(ends):
@@ -429,14 +435,16 @@ class SubproblemMaker(WristMaker):
         first = self._turn(one, sides, "seen_across", scale=source(size / 2), by_size=True)
         self.vector("to_target", to_target.format(first))
         m = point("to_target")
-        second = self._turn(two, (*turning(g, m), u[2] - g[2] * m[2]))
+        moved = f"{self.unknowns[one.number]}: 2*ik.size"
+        if self.third:  # of which the point says nothing where it is on the second axis
+            aimed = times(one.end.T, f"(turned({first}).T * {self.third})")
+            second = self._rotate(two, source(g[:2, 0]), aimed, scale="1")
+        else:
+            second = self._turn(two, (*turning(g, m), u[2] - g[2] * m[2]))
+            moved += f", {self.unknowns[two.number]}: to_target[2] + {source(u[2])}"
         turned = f"(turned({second}).T * to_target)"
         self.vector("to_target", times(two.end.T, turned), "to_target2")
-        because = (
-            f"{{{self.unknowns[one.number]}: 2*ik.size, "
-            f"{self.unknowns[two.number]}: to_target[2] + {source(u[2])}}}"
-        )
-        third = self._rotate(three, source(u[:2, 0]), "to_target", because)
+        third = self._rotate(three, source(u[:2, 0]), "to_target", f"{{{moved}}}")
         return Solved(
             f"axes {two.number} and {three.number} meet",
             [(first, one.end), (second, two.end), (third, three.end)],

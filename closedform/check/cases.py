@@ -30,10 +30,13 @@ def flags_of(function: Function) -> list[sp.Symbol]:
 def margins_of(function: Function, kind: type | tuple[type, ...]) -> list[sp.Expr]:
     """The bounds (or the values of flags and matches) over their scales.
 
-    For a match this is minus its size, which is never positive.
+    For a match this is minus its size, which is never positive.  A flag without a scale has none:
+    it compares two values that are the same but for rounding.
     """
     margins = []
     for statement in function.body:
+        if isinstance(statement, Vanishes) and statement.scale == 0:
+            continue
         if isinstance(statement, kind) and isinstance(statement, Bound | Match | Vanishes):
             value = -sp.Abs(statement.value) if isinstance(statement, Match) else statement.value
             margin = value / statement.scale

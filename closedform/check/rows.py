@@ -508,7 +508,7 @@ def _resolvent(*point: Any) -> Any:
         low, high = np.where(value >= 0, u, low), np.where(value >= 0, high, u)
         after = u - value / slope(u, *point)
         after = np.where((after >= low) & (after <= high), after, (low + high) / 2)
-        still, u = (after == u) | np.isnan(u), after
+        still, u = ~(np.abs(after - u) > 2 * np.finfo(WIDE).eps * np.abs(u)), after
         if still.all():
             break
     return u

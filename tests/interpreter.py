@@ -27,6 +27,8 @@ RULES = {
     "select": lambda c, a, b: a if c else b,
     "true": lambda: True,
     "false": lambda: False,
+    "poison": lambda failed: math.nan if failed else 0.0,
+    "finite": lambda *values: all(map(math.isfinite, values)),
 }
 
 

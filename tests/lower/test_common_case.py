@@ -48,6 +48,31 @@ def test_where_nothing_vanishes_it_is_the_whole_program() -> None:
     assert 20 < sum(seen) < len(seen) - 20
 
 
+def bounded() -> Lowered:
+    """A flag before a bound, and one after it that holds wherever the bound fails."""
+    p = Program()
+    first = p.vanishes("first", sp.Abs(y), 1, "y is zero")
+    u = p.let("u", choose(first, (x**2 + z) * (x - z**2) + 3 * x * z, z / y))
+    room = p.bound("room", x - 1, 1, "x is at least 1")
+    second = p.vanishes("second", room, 1, "no room")
+    v = p.let("v", choose(second, (u + 2 * z) * (y - 3 * u) * (x + z) + u**2 * z, u / room))
+    d = Derivation("test", "", Paper("", "", ()), "")
+    return lower(d.function("f", "", {"q": (x, y, z)}, {"p": [u, v]}, program=p), d)
+
+
+@pytest.mark.parametrize(
+    ("at", "rare"), [((0, 1), False), ((1, 1), True), ((2, 1), False), ((0, 0), True)]
+)
+def test_a_flag_after_a_bound_that_fails_does_not_count(at: tuple, rare: bool) -> None:
+    program = bounded()
+    assert program.common is not None
+    point = {"x": float(at[0]), "y": float(at[1]), "z": 3.0}
+    *common, raised = run(program.common, point)
+    assert raised == rare
+    if not rare:
+        np.testing.assert_array_equal(common, run(program, point))
+
+
 def kernels() -> list[tuple[str, str]]:
     """The robots and functions that have a common case."""
     found = []

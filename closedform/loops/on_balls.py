@@ -40,7 +40,7 @@ from closedform.model.lemma import Lemma
 from closedform.model.pair import Pair
 from closedform.model.step import Step
 
-RHO, LENGTH = real("rho"), real("length")
+RHO, LENGTH = real("rho"), real("nu")
 SIDE = real("sigma_side")
 MEET = "the arms do not fix the twist of the hand"
 TOO_FAR = (
@@ -139,7 +139,7 @@ def _polar(
     """An angle and a length with the sign of the mode, of a vector that does not vanish."""
     (angle, length), (x, y), start = unknowns, target, len(f.body)
     size = f.let(f"size_{angle}", sp.sqrt(x**2 + y**2), nonnegative=True)
-    r = f.let(f"{length}_of", SIDE * size)
+    r = f.let(f"{length}_0", SIDE * size)
     pair = Pair(y / r, x / r).known_as(f, f"_{angle}")
     lemma = polar_lemma({angle: pair.angle, length: r}, (x, y), count, r"\sigma" * (count == 2))
     if count == 2:
@@ -264,7 +264,8 @@ def _state_forward(m: OnBalls, exact: Turns, loop: Step) -> None:
     m.d.step(
         "Forward: two assembly modes",
         "The balls are in the plane of the hand, so its axis is a multiple of N, the product of "
-        "two vectors between them: positive or negative, which are the assembly modes.  The axis "
+        "two vectors between them: positive or negative, which are the assembly modes.  nu is the "
+        "length of N with this sign, and rho that of N without its part along y.  The axis "
         "gives the tilts; those with a negative cosine of tilt_x turn the hand by half a turn "
         "about its axis, which takes its arms to themselves, and are left out.  Let m_i be the "
         "ball i in the plane, without the twist.  The normals of the arms, each times a weight w, "

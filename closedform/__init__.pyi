@@ -61,7 +61,6 @@ from closedform.lemmas.tangent import Links as Links
 from closedform.lemmas.tangent import LinksAndWrist as LinksAndWrist
 from closedform.lemmas.tangent import LinksAtHeight as LinksAtHeight
 from closedform.lemmas.tangent import Preferred as Preferred
-from closedform.lemmas.tangent import TwoTurns as TwoTurns
 from closedform.lemmas.three_planes import axes_in_three_planes as axes_in_three_planes
 from closedform.lemmas.through_ball import ThroughBall as ThroughBall
 from closedform.lemmas.triangle import Triangle as Triangle
@@ -69,6 +68,7 @@ from closedform.lemmas.two_link import elbow_squares as elbow_squares
 from closedform.lemmas.two_link import two_link_arm as two_link_arm
 from closedform.lemmas.two_link import two_link_arm_beside as two_link_arm_beside
 from closedform.lemmas.two_sines import two_sines as two_sines
+from closedform.lemmas.two_turns import TwoTurns as TwoTurns
 from closedform.lemmas.universal import Universal as Universal
 from closedform.lemmas.wrist import spin as spin
 from closedform.lemmas.wrist import tilt as tilt

@@ -369,43 +369,6 @@ class CoordinateWithin(Nearest):
 
 
 @dataclass(frozen=True)
-class TwoTurns(Goal):
-    """Two turns, about axes at a right angle that meet, that bring a vector to this one.
-
-    The ``vector`` is linear in the pair of an earlier turn: x across the second axis, z along it.
-    The other vector, equally long, is ``along`` and ``across`` the first axis.  So there are such
-    turns if ``|z| <= across``, or if ``|x| >= |along|``, which says the same.  What is asked for is
-    that about the shorter one, which says more.
-    """
-
-    vector: Callable[[Pair], sp.Matrix]
-    along: sp.Expr
-    across: sp.Expr
-
-    def reached(self, turn: Tangency) -> Reached:
-        """The pair of the turn, changed by no more than rounding where it is tangent."""
-        along, size = sp.Abs(self.along), turn.chain.size
-
-        def shorter(x: sp.Expr, z: sp.Expr) -> sp.Expr:
-            return sp.Piecewise((x, along < self.across), (z, True))
-
-        def value(pair: Pair) -> sp.Expr:
-            v = self.vector(pair)
-            return shorter(v[0], v[2])
-
-        most, least = shorter(size, self.across), shorter(along, sp.S.Zero)
-        return CoordinateWithin(value, most, least).reached(turn)
-
-    def anywhere(self, program: Program, suffix: str) -> Pair:
-        """The pair of a turn that is free: one that brings z to the middle of its range."""
-        s, c = sp.Dummy("s"), sp.Dummy("c")
-        z = self.vector(Pair(s, c))[2]
-        y, x = (program.let(f"level_{n}{suffix}", z.diff(e)) for n, e in (("s", s), ("c", c)))
-        length = program.let(f"level{suffix}", sp.sqrt(x**2 + y**2), nonnegative=True)
-        return direction(-x, y, length, sp.Eq(length, 0))
-
-
-@dataclass(frozen=True)
 class Links(Nearest):
     """Two links that have to reach the point q of their plane, linear in the pair of a turn."""
 

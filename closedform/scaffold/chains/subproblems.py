@@ -359,8 +359,8 @@ class SubproblemMaker(WristMaker):
         self.add(f"reach = ik.let('reach', {source(norm(sp.Matrix(sides)))})")
 
         def goal(pair: str) -> str:
-            if normal:
-                return self._two_turns(two, to_end.format(pair), p[2])
+            if normal or (flat and sp.simplify((two.end * Z)[2]) == 0):
+                return self._two_turns(two, to_end.format(pair), p[2], g)
             self.within_reach(to_end.format(pair), g[2] * p[2], "reach")
             return "seen_across"
 
@@ -372,29 +372,31 @@ class SubproblemMaker(WristMaker):
         self.vector("to_end", to_end.format(third))
         v = point("to_end")
         seen = norm(g[:2, 0]) * sp.sqrt(v[0] ** 2 + v[1] ** 2)
-        link, other = ("LinkAtHeight", "") if normal else ("LinksAtHeight", " 0,")
-        self.add(f"link = {link}({source(seen)},{other} {source(p[2] - g[2] * v[2])})")
+        self.add(f"link = LinkAtHeight({source(seen)}, {source(p[2] - g[2] * v[2])})")
         first = self._turn(one, (*sides, v[2] - g[2] * p[2]), "link")
         self.vector("to_target", times(one.end.T, f"(turned({first}).T * p)"))
         because = (
             f"{{{self.unknowns[three.number]}: {factor}, "
             f"{self.unknowns[one.number]}: to_target[2] + to_end[2]}}"
         )
-        compared = f", compared={first}.tangent" * normal
+        compared = f", compared={first}.tangent"
         second = self._rotate(two, "to_end", "to_target", because, more=compared)
         return Solved(
             f"axes {one.number} and {two.number} meet",
             [(first, one.end), (second, two.end), (third, three.end)],
         )
 
-    def _two_turns(self, two: Single, to_end: str, along: sp.Expr) -> str:
-        """Name the goal that two turns at right angles bring the point of an elbow to the target.
+    def _two_turns(self, two: Single, to_end: str, along: sp.Expr, g: sp.Matrix) -> str:
+        """Name the goal that two turns bring the point of an elbow to the target.
 
         The point stays in the plane through the second axis that is normal to that of the elbow.
         """
         axis = (two.end * Z).applyfunc(sp.simplify)
         seen = times(rotation("z", -heading(Z.cross(axis))), f"({to_end})")
-        self.add(f"two_turns = TwoTurns(lambda pair: {seen}, along={source(along)}, across=reach)")
+        across = source(sp.Symbol("reach") / norm(g[:2, 0]))
+        more = f", tilt={source(g[2])}" if g[2] != 0 else ""
+        arguments = f"along={source(along)}, across={across}{more}"
+        self.add(f"two_turns = TwoTurns(lambda pair: {seen}, {arguments})")
         return "two_turns"
 
     def elbow(

@@ -105,6 +105,17 @@ def planes(robot: str, name: str, q: np.ndarray) -> tuple[list[np.ndarray], obje
     return [*x.T, *used], kernel
 
 
+def at_the_end(module: ModuleType, q: np.ndarray) -> np.ndarray:
+    """The last of these postures, on the way to far ones, in which the mechanism closes."""
+    way = np.random.default_rng(4).normal(size=q.shape)
+    near, far = np.zeros((len(q), 1)), np.full((len(q), 1), 4.0)
+    for _ in range(60):
+        middle = (near + far) / 2
+        closes = np.isfinite(module.fk(q + middle * way).p[:, :1, 0])
+        near, far = np.where(closes, middle, near), np.where(closes, far, middle)
+    return q + near * way
+
+
 def postures(robot: str, n: int) -> tuple[np.ndarray, np.ndarray]:
     """Random postures, and some with most joints at right angles, or off by little."""
     module = importlib.import_module(f"closedform.generated.numpy.{robot}")
@@ -116,8 +127,10 @@ def postures(robot: str, n: int) -> tuple[np.ndarray, np.ndarray]:
         usual, special = 0.5 + usual / 12, rng.choice([0, 0, 0.3, 0.5], usual.shape)
     if robot == "delta":  # cranks that all rods reach
         usual = 0.45 + usual / 4
-    if robot == "linear_delta":  # sliders that most rods reach; out of reach counts as rare
+    if robot == "linear_delta":  # sliders that most rods reach
         usual = usual / 30
+    if robot in ("delta", "linear_delta"):  # both modes meet where the workspace ends
+        special = at_the_end(module, usual)
     if robot == "spherical_five_bar":  # both cranks, equally long, end at one place
         v = module.Parameters()
         meet = np.arccos(np.tan(v.gamma / 2) / np.tan(v.alpha1))

@@ -68,9 +68,8 @@ AUTHOR = (
 SCRIPT = {"arm", "coupling", "d", "forward", "links", "motors", "pair"}
 LINES = {
     "M", "ahead", "ik", "p", "q", "reaching", "turn1", "turn2", "wx", "wy", "x", "y", "yaw", "z",
-    "rho", "given", "left", "axis", "p_norm", "to_end", "to_target", "to_elbow", "to_wrist",
-    "both_links", "on_ellipse",
-    "R_inverse", "R_rest", "R_last", "R_between", "R_before", "R_shoulder",
+    "rho", "R_shoulder", "given", "left", "axis", "p_norm", "to_end", "to_target", "to_elbow", "to_wrist",
+    "both_links", "on_ellipse", "R_inverse", "R_rest", "R_last", "R_between", "R_before",
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
     "play", "radius_to_target", "radius_to_end", "lever", "past", "seen_across", "across",
     "missed_by", "pair_at", "aimed", "off_axis", "below_one", "carried", "squares", "at_end",
@@ -565,10 +564,7 @@ def _vector(given: Any, where: str) -> list[Any]:
 
 
 def expression(text: Any, where: str, allowed: Collection[str] = ()) -> Any:
-    """An exact expression; decimals are read as exact fractions.
-
-    The names in ``allowed`` are those of parameters though the script uses them itself.
-    """
+    """An exact expression; parameters may have ``allowed`` names, which the script uses too."""
     if not isinstance(text, str | int) or isinstance(text, bool):
         raise TableError(f"{where}: {shown(text)} is not a number or formula")
     try:

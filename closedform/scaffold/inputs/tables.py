@@ -68,12 +68,13 @@ AUTHOR = (
 SCRIPT = {"arm", "coupling", "d", "forward", "links", "motors", "pair"}
 LINES = {
     "M", "ahead", "ik", "p", "q", "reaching", "turn1", "turn2", "wx", "wy", "x", "y", "yaw", "z",
-    "rho", "R_shoulder", "given", "left", "axis", "p_norm", "to_end", "to_target", "to_elbow", "to_wrist",
+    "rho", "given", "left", "axis", "p_norm", "to_end", "to_target", "to_elbow", "to_wrist",
     "both_links", "on_ellipse", "R_inverse", "R_rest", "R_last", "R_between", "R_before",
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
-    "play", "radius_to_target", "radius_to_end", "lever", "past", "seen_across", "across",
-    "missed_by", "pair_at", "aimed", "off_axis", "below_one", "carried", "squares", "at_end",
+    "play", "carried", "radius_to_target", "radius_to_end", "lever", "past", "seen_across",
+    "across", "missed_by", "pair_at", "aimed", "off_axis", "below_one", "squares", "at_end",
     "less", "more", "less_behind", "more_behind", "behind", "far", "tilt", "offset", "seen",
+    "R_shoulder",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

@@ -149,6 +149,8 @@ def _near(
     q = np.where((task.size_of_error(kept) <= REACHED)[:, None], kept, q)
     good = (task.size_of_error(q) <= REACHED) & (shares > MOVES)
     rows, q = rows[good], q[good]
+    if task.given is not None:
+        q = task.holding(q, np.broadcast_to(task.given[good, None], q.shape))
     nudge = CLOSE_BY * np.cos(np.arange(q.shape[-1]) + 1.0)
     regular = mechanism.part(lead, rows)
     moved = np.asarray(regular.fk(q + nudge)) if not mechanism.module.ASSEMBLY_MODES else None
@@ -199,7 +201,7 @@ def _released(
     if len(rough):
         found[rough] = _polished(task.part(rough), found[rough], free[rough])
     good = task.size_of_error(found) <= np.maximum(REACHED, 2 * task.size_of_error(q))
-    found = np.where(good[:, None], found, q)
+    found = task.holding(np.where(good[:, None], found, q), q)
     off = found[rows, free] - wanted[rows, free]
     off = np.where(revolute[free], off - TURN * np.rint(off / TURN), off)
     exact = good & (moved != 0) & (np.abs(off) <= REACHED)
@@ -288,6 +290,14 @@ class Task:
         for other in (q - step, q + step):
             kept &= np.abs(self._beside(other, self.given)) <= BOWED
         return replace(self, given=np.where(kept, self.given, np.nan))
+
+    def holding(self, q: Array, there: Array) -> Array:
+        """The postures ``q`` with the joint that was given, if it is one, exactly as ``there``."""
+        joints, held = self.mechanism.joints, self.mechanism.given
+        if held not in joints:
+            return q
+        at = np.arange(len(joints)) == joints.index(held)
+        return np.where(at, there, q)
 
     def _beside(self, q: Array, given: Array) -> Array:
         gap = given - self.mechanism.given_at(q)

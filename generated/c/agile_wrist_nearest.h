@@ -47,7 +47,7 @@ static inline int agile_wrist_nearest(const agile_wrist_params *params, const re
     const real_t q_seed[3], const real_t *limits, const real_t *weights, real_t q[3], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 3, 8, 9, 4, 3, 3, 1, 0, 0x7u,
+    static const cf_robot robot = { 3, 8, 3, 9, 4, 3, 3, 1, 0, 0x7u,
         0x0u, agile_wrist_nearest_ik, agile_wrist_nearest_fk, agile_wrist_nearest_jacobian, agile_wrist_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, R, q_seed, limits, weights, q, status, outside);

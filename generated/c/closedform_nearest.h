@@ -41,10 +41,11 @@
 
 /* The functions and the sizes of one robot. task: 16 for a pose, 17 for a pose and a number that is
  * given besides it (the last of x, and of the rows of J), 9 for a rotation, or the number of
- * coordinates; angles and revolute have a bit for each coordinate and each joint. lengths: the power
- * of a length in the determinant, which is NULL if there is none. */
+ * coordinates; angles and revolute have a bit for each coordinate and each joint. held: the joint that
+ * is given, or the number of joints. lengths: the power of a length in the determinant, which is NULL
+ * if there is none. */
 typedef struct {
-    size_t joints, branches, task, modes, rows, jacobian_rows, fields, lengths;
+    size_t joints, branches, held, task, modes, rows, jacobian_rows, fields, lengths;
     unsigned revolute, angles;
     void (*ik)(const void *params, const real_t *x, real_t *q, uint8_t *status);
     void (*fk)(const void *params, const real_t *q, real_t *x);
@@ -359,6 +360,7 @@ static inline int cf_release(const cf_task *task, const real_t *seed, int only_s
     error = cf_polish(t, joint, 3, at);
     if (!(error <= cf_max(CF_REACHED, 2 * cf_error(t, q, e)))) return !straight;
     if (reached) at[joint] = seed[joint];
+    if (t->robot->held < n) at[t->robot->held] = q[t->robot->held];
     memcpy(q, at, n * sizeof *q);
     return !straight && !(conventional && reached);
 }
@@ -382,6 +384,7 @@ static inline int cf_near(const cf_task *t, const real_t *seed, real_t *q)
     kept[joint] = value;
     if (cf_polish(t, joint, 5, kept) <= CF_REACHED) memcpy(q, kept, n * sizeof *q);
     if (!(cf_polish(t, joint, 3, q) <= CF_REACHED)) return -1;
+    if (t->robot->held < n) q[t->robot->held] = t->x[16];
     for (size_t j = 0; j < n; ++j)
         kept[j] = q[j] + CLOSEDFORM_C(1e-4) * CF_LIBM(cos)((real_t)(j + 1)); /* regular, close by */
     t->robot->fk(t->params, kept, x);

@@ -47,7 +47,7 @@ static inline int delta_nearest(const delta_params *params, const real_t x[3],
     const real_t q_seed[3], const real_t *limits, const real_t *weights, real_t q[3], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 3, 8, 3, 2, 3, 3, 7, 3, 0x7u,
+    static const cf_robot robot = { 3, 8, 3, 3, 2, 3, 3, 7, 3, 0x7u,
         0x0u, delta_nearest_ik, delta_nearest_fk, delta_nearest_jacobian, delta_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);

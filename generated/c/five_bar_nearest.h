@@ -47,7 +47,7 @@ static inline int five_bar_nearest(const five_bar_params *params, const real_t x
     const real_t q_seed[2], const real_t *limits, const real_t *weights, real_t q[2], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 2, 4, 2, 2, 2, 2, 5, 2, 0x3u,
+    static const cf_robot robot = { 2, 4, 2, 2, 2, 2, 2, 5, 2, 0x3u,
         0x0u, five_bar_nearest_ik, five_bar_nearest_fk, five_bar_nearest_jacobian, five_bar_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);

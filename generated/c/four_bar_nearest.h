@@ -47,7 +47,7 @@ static inline int four_bar_nearest(const four_bar_params *params, const real_t x
     const real_t q_seed[1], const real_t *limits, const real_t *weights, real_t q[1], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 1, 2, 1, 2, 1, 1, 4, 0, 0x1u,
+    static const cf_robot robot = { 1, 2, 1, 1, 2, 1, 1, 4, 0, 0x1u,
         0x1u, four_bar_nearest_ik, four_bar_nearest_fk, four_bar_nearest_jacobian, four_bar_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);

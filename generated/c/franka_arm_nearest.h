@@ -55,7 +55,7 @@ static inline int franka_arm_nearest(const franka_arm_params *params, const real
     const real_t *theta7, const real_t q_seed[7], const real_t *limits, const real_t *weights, real_t q[7], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 7, 8, 17, 1, 7, 7, 7, 3, 0x7fu,
+    static const cf_robot robot = { 7, 8, 6, 17, 1, 7, 7, 7, 3, 0x7fu,
         0x10000u, franka_arm_nearest_ik, franka_arm_nearest_fk, franka_arm_nearest_jacobian, franka_arm_nearest_determinant };
     real_t x[17];
     memcpy(x, T, 16 * sizeof *x);

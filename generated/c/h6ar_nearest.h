@@ -46,7 +46,7 @@ static inline int h6ar_nearest(const h6ar_params *params, const real_t x[6],
     const real_t q_seed[6], const real_t *limits, const real_t *weights, real_t q[6], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 6, 4, 6, 1, 6, 6, 9, 3, 0x3fu,
+    static const cf_robot robot = { 6, 4, 6, 6, 1, 6, 6, 9, 3, 0x3fu,
         0x38u, h6ar_nearest_ik, h6ar_nearest_fk, h6ar_nearest_jacobian, h6ar_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);

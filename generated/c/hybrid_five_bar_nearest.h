@@ -47,7 +47,7 @@ static inline int hybrid_five_bar_nearest(const hybrid_five_bar_params *params, 
     const real_t q_seed[3], const real_t *limits, const real_t *weights, real_t q[3], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 3, 8, 3, 2, 3, 3, 3, 3, 0x7u,
+    static const cf_robot robot = { 3, 8, 3, 3, 2, 3, 3, 3, 3, 0x7u,
         0x0u, hybrid_five_bar_nearest_ik, hybrid_five_bar_nearest_fk, hybrid_five_bar_nearest_jacobian, hybrid_five_bar_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);

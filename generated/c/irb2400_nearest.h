@@ -46,7 +46,7 @@ static inline int irb2400_nearest(const irb2400_params *params, const real_t T[1
     const real_t q_seed[6], const real_t *limits, const real_t *weights, real_t q[6], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 6, 8, 16, 1, 6, 6, 6, 3, 0x3fu,
+    static const cf_robot robot = { 6, 8, 6, 16, 1, 6, 6, 6, 3, 0x3fu,
         0x0u, irb2400_nearest_ik, irb2400_nearest_fk, irb2400_nearest_jacobian, irb2400_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, T, q_seed, limits, weights, q, status, outside);

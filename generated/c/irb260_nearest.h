@@ -46,7 +46,7 @@ static inline int irb260_nearest(const irb260_params *params, const real_t x[4],
     const real_t q_seed[4], const real_t *limits, const real_t *weights, real_t q[4], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 4, 4, 4, 1, 4, 4, 6, 3, 0xfu,
+    static const cf_robot robot = { 4, 4, 4, 4, 1, 4, 4, 6, 3, 0xfu,
         0x8u, irb260_nearest_ik, irb260_nearest_fk, irb260_nearest_jacobian, irb260_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);

@@ -47,7 +47,7 @@ static inline int linear_delta_nearest(const linear_delta_params *params, const 
     const real_t q_seed[3], const real_t *limits, const real_t *weights, real_t q[3], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 3, 8, 3, 2, 3, 3, 3, 0, 0x0u,
+    static const cf_robot robot = { 3, 8, 3, 3, 2, 3, 3, 3, 0, 0x0u,
         0x0u, linear_delta_nearest_ik, linear_delta_nearest_fk, linear_delta_nearest_jacobian, linear_delta_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);

@@ -46,7 +46,7 @@ static inline int opw_arm_nearest(const opw_arm_params *params, const real_t T[1
     const real_t q_seed[6], const real_t *limits, const real_t *weights, real_t q[6], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 6, 8, 16, 1, 6, 6, 7, 3, 0x3fu,
+    static const cf_robot robot = { 6, 8, 6, 16, 1, 6, 6, 7, 3, 0x3fu,
         0x0u, opw_arm_nearest_ik, opw_arm_nearest_fk, opw_arm_nearest_jacobian, opw_arm_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, T, q_seed, limits, weights, q, status, outside);

@@ -47,7 +47,7 @@ static inline int orthoglide_nearest(const orthoglide_params *params, const real
     const real_t q_seed[3], const real_t *limits, const real_t *weights, real_t q[3], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 3, 8, 3, 2, 3, 3, 1, 0, 0x0u,
+    static const cf_robot robot = { 3, 8, 3, 3, 2, 3, 3, 1, 0, 0x0u,
         0x0u, orthoglide_nearest_ik, orthoglide_nearest_fk, orthoglide_nearest_jacobian, orthoglide_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);

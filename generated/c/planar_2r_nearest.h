@@ -46,7 +46,7 @@ static inline int planar_2r_nearest(const planar_2r_params *params, const real_t
     const real_t q_seed[2], const real_t *limits, const real_t *weights, real_t q[2], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 2, 2, 2, 1, 2, 3, 2, 2, 0x3u,
+    static const cf_robot robot = { 2, 2, 2, 2, 1, 2, 3, 2, 2, 0x3u,
         0x0u, planar_2r_nearest_ik, planar_2r_nearest_fk, planar_2r_nearest_jacobian, planar_2r_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);

@@ -47,7 +47,7 @@ static inline int rpr_planar_nearest(const rpr_planar_params *params, const real
     const real_t q_seed[2], const real_t *limits, const real_t *weights, real_t q[2], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 2, 1, 2, 2, 2, 2, 1, 0, 0x0u,
+    static const cf_robot robot = { 2, 1, 2, 2, 2, 2, 2, 1, 0, 0x0u,
         0x0u, rpr_planar_nearest_ik, rpr_planar_nearest_fk, rpr_planar_nearest_jacobian, rpr_planar_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);

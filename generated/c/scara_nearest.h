@@ -46,7 +46,7 @@ static inline int scara_nearest(const scara_params *params, const real_t x[4],
     const real_t q_seed[4], const real_t *limits, const real_t *weights, real_t q[4], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 4, 2, 4, 1, 4, 4, 3, 2, 0xbu,
+    static const cf_robot robot = { 4, 2, 4, 4, 1, 4, 4, 3, 2, 0xbu,
         0x8u, scara_nearest_ik, scara_nearest_fk, scara_nearest_jacobian, scara_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);

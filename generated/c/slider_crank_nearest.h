@@ -47,7 +47,7 @@ static inline int slider_crank_nearest(const slider_crank_params *params, const 
     const real_t q_seed[1], const real_t *limits, const real_t *weights, real_t q[1], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 1, 2, 1, 2, 1, 1, 3, 1, 0x1u,
+    static const cf_robot robot = { 1, 2, 1, 1, 2, 1, 1, 3, 1, 0x1u,
         0x0u, slider_crank_nearest_ik, slider_crank_nearest_fk, slider_crank_nearest_jacobian, slider_crank_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);

@@ -42,7 +42,7 @@ static inline int spherical_five_bar_nearest(const spherical_five_bar_params *pa
     const real_t q_seed[2], const real_t *limits, const real_t *weights, real_t q[2], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 2, 4, 3, 2, 3, 3, 6, 3, 0x3u,
+    static const cf_robot robot = { 2, 4, 2, 3, 2, 3, 3, 6, 3, 0x3u,
         0x0u, spherical_five_bar_nearest_ik, spherical_five_bar_nearest_fk, spherical_five_bar_nearest_jacobian, NULL };
     return cf_nearest_posture(
         &robot, params, x, q_seed, limits, weights, q, status, outside);

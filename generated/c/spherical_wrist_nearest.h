@@ -46,7 +46,7 @@ static inline int spherical_wrist_nearest(const spherical_wrist_params *params, 
     const real_t q_seed[3], const real_t *limits, const real_t *weights, real_t q[3], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 3, 2, 9, 1, 3, 3, 1, 0, 0x7u,
+    static const cf_robot robot = { 3, 2, 3, 9, 1, 3, 3, 1, 0, 0x7u,
         0x0u, spherical_wrist_nearest_ik, spherical_wrist_nearest_fk, spherical_wrist_nearest_jacobian, spherical_wrist_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, R, q_seed, limits, weights, q, status, outside);

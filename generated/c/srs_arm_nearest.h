@@ -55,7 +55,7 @@ static inline int srs_arm_nearest(const srs_arm_params *params, const real_t T[1
     const real_t *arm_angle, const real_t q_seed[7], const real_t *limits, const real_t *weights, real_t q[7], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 7, 8, 17, 1, 7, 7, 4, 3, 0x7fu,
+    static const cf_robot robot = { 7, 8, 7, 17, 1, 7, 7, 4, 3, 0x7fu,
         0x10000u, srs_arm_nearest_ik, srs_arm_nearest_fk, srs_arm_nearest_jacobian, srs_arm_nearest_determinant };
     real_t x[17];
     memcpy(x, T, 16 * sizeof *x);

@@ -46,7 +46,7 @@ static inline int stanford_arm_nearest(const stanford_arm_params *params, const 
     const real_t q_seed[6], const real_t *limits, const real_t *weights, real_t q[6], uint8_t *status,
     uint32_t *outside)
 {
-    static const cf_robot robot = { 6, 8, 16, 1, 6, 6, 1, 2, 0x3bu,
+    static const cf_robot robot = { 6, 8, 6, 16, 1, 6, 6, 1, 2, 0x3bu,
         0x0u, stanford_arm_nearest_ik, stanford_arm_nearest_fk, stanford_arm_nearest_jacobian, stanford_arm_nearest_determinant };
     return cf_nearest_posture(
         &robot, params, T, q_seed, limits, weights, q, status, outside);

@@ -223,7 +223,8 @@ class Task {
         this.n = robot.JOINTS.length;
         /** @type {boolean[]} */
         this.revolute = robot.JOINTS.map((/** @type {string} */ name) => robot.SKELETON.joints[name].kind === "revolute");
-        this.slides = this.revolute[robot.JOINTS.indexOf(robot.GIVEN)] === false;
+        this.held = robot.JOINTS.indexOf(robot.GIVEN);
+        this.slides = this.revolute[this.held] === false;
         this.angles = robot.TASK.map((/** @type {string} */ name) => ANGLES.includes(name));
         const lengths = Object.values({ ...robot.DEFAULTS, ...parameters });
         this.size = lengths.reduce((sum, length) => sum + Math.abs(length ?? 0), 0) || 1;
@@ -499,8 +500,8 @@ function moveTo(whole, seed, q, onlyStraight) {
     }
     const end = polished(task, joint, 3, at);
     if (!(end.error <= Math.max(REACHED, 2 * task.largest(q)))) return { q, doubtful: !straight };
-    if (reached) end.q = end.q.map((v, j) => (j === joint ? seed[joint] : v));
-    return { q: end.q, doubtful: !straight && !(conventional && reached) };
+    const exact = end.q.map((v, j) => (j === task.held ? q[j] : reached && j === joint ? seed[j] : v));
+    return { q: exact, doubtful: !straight && !(conventional && reached) };
 }
 
 /**
@@ -520,6 +521,7 @@ function nearSeed(task, seed) {
     const kept = polished(task, joint, 5, on.q.map((v, j) => (j === joint ? start[j] : v)));
     const { q, error } = polished(task, joint, 3, kept.error <= REACHED ? kept.q : on.q);
     if (!(error <= REACHED)) return undefined;
+    if (task.held >= 0 && task.given !== undefined) q[task.held] = task.given;
     const close = q.map((v, j) => v + 1e-4 * Math.cos(j + 1));
     const given = task.given === undefined ? undefined : givenAt(task.robot, close, task.parameters);
     const solutions = inverse(task.robot, task.robot.fk(close, task.parameters), given, task.parameters);

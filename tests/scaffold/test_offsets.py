@@ -68,7 +68,7 @@ def test_its_axes_are_those_of_an_arm_without_offsets() -> None:
     assert not {s for e in entries for s in e.free_symbols}
     added = [{s.name for s in joint.free_symbols} - set(table.joints) for joint, _, _ in table.axes]
     values = [[table.parameters[name]["value"] for name in names] for names in added]
-    assert values == [[], ["430457/1000000"], ["4363/25000"], [], [], [], []]
+    assert values == [[], ["0.430457"], ["0.17452"], [], [], [], []]
 
 
 def derivation() -> Derivation:

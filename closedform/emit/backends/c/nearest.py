@@ -27,6 +27,8 @@ class CNearest:
     given: str
     given_at: str
     """The statement that writes its value at a posture."""
+    held: int
+    """The index of the joint that is given; the number of joints if none is."""
     joints: int
     branches: int
     task: int
@@ -74,6 +76,7 @@ def nearest(derivation: Derivation, functions: Sequence[CFunction]) -> CNearest 
     lengths = {16: 3, 9: 0}.get(task, task - named.bit_count())
     slides = {j.name for j in joints if kinds[j] != "revolute"}
     given = {a.name for a in beside}
+    held = [k for k, j in enumerate(joints) if j.name in given]
     angles = named if task not in (9, 16) else 0
     angles |= sum(1 << task for name in given - slides)
     return CNearest(
@@ -81,6 +84,7 @@ def nearest(derivation: Derivation, functions: Sequence[CFunction]) -> CNearest 
         target_size=task,
         given=beside[0].name if beside else "",
         given_at=_given_at(derivation, beside[0].name) if beside else "",
+        held=held[0] if held else len(joints),
         joints=len(joints),
         branches=ik.outputs[0].size // len(joints),
         task=task + len(beside),

@@ -484,6 +484,7 @@ def is_nested(text: str) -> bool:
     return False
 
 
+@lru_cache(maxsize=10_000)
 def measure(text: str) -> float:
     """The width of a formula, in average letters; a fraction counts as the wider of its parts."""
     if stack := INNERMOST.search(text):

@@ -123,7 +123,8 @@ class Quantities:
             return value.applyfunc(self)
         known = [*self.known.values(), *self.entries.values()]
         named = self._named(value, known)
-        if named == value and isinstance(value, sp.Add):  # a quantity times the cosine of a joint
+        summed = isinstance(value, sp.Add) and operations(value) <= LARGEST
+        if named == value and summed:  # a quantity times the cosine of a joint
             grouped = joint_by_joint(value)
             whole = self._named(grouped, known)
             return whole if whole != grouped else value

@@ -127,7 +127,8 @@ class Lines:
     def tidy(self, value: sp.Expr) -> sp.Expr:
         """The narrowest of some equal forms: common factors in front, one fraction, factored."""
         if value not in self._tidied:
-            nested = joint_by_joint(value)
+            terms, size = len(sp.Add.make_args(value)), operations(value)
+            nested = joint_by_joint(value) if size <= SIMPLIFIED else value
 
             def cost(form: sp.Expr) -> float:
                 grouped = form.is_Add and len(form.args) == 2 < len(value.args) == 4
@@ -136,7 +137,6 @@ class Lines:
                 return self.width(form) - bonus
 
             # no product of sums is multiplied out unless terms cancel
-            terms, size = len(sp.Add.make_args(value)), operations(value)
             forms = (
                 f
                 for f in self._forms(value)

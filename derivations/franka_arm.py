@@ -166,7 +166,6 @@ roll = ik.solve(
     w[:2, 0],
     v[:2, 0],
     because={elbow: -1, theta6: -w[2] - v[2]},
-    compared=tilt.tangent,
 )
 d.step(
     "Inverse: the wrist",

@@ -96,6 +96,8 @@ class Chain:
         self.condition: sp.Expr = sp.S.Zero
         self.rounding: sp.Expr = sp.S.Zero
         """What a rounding error of the target becomes in a length that is compared with it."""
+        self.tangent: list[sp.Basic] = []
+        """Flags that a goal has chosen a turn, because both of its solutions nearly meet."""
         self.corrected: Corrected | None = None
         self.weights: dict[sp.Symbol, sp.Expr] = {}
         self.coefficients: set[sp.Symbol] = set()

@@ -91,7 +91,9 @@ def law_of_cosines(
     bent = triangle.elbow_pair(twice, whole)
     if toward is not ANYWHERE:
         turn = _tangency(chain, x, triangle, (twice, whole, r), name)
-        bent = toward.reached(turn).pair
+        reached = toward.reached(turn)
+        bent = reached.pair
+        chain.tangent.append(reached.tangent)
     free = Pair(sp.S.Zero, sp.S.One) if flag is sp.false else toward.anywhere(p, f"_{name}")
     pair, means = named(chain, x, Pair(choose(flag, free.s, bent.s), choose(flag, free.c, bent.c)))
     lemma = Lemma(

@@ -82,12 +82,10 @@ class Facing(Turned):
     """The pair of a joint that turns a vector into a plane, and the coordinate ``ahead`` in it.
 
     For ``a sin x + b cos x = c`` this is ``a cos x - b sin x``, and it has the sign ``-side``.
-    ``tangent`` is the flag that a goal has chosen x, near a tangent.
     """
 
     ahead: sp.Expr
     side: sp.Symbol
-    tangent: sp.Basic = sp.false
 
 
 @chain_lemma("a sin x + b cos x = c", "the pair of x, with `.ahead` and `.side`")
@@ -144,6 +142,7 @@ def turn(
             chain=chain, at=at, root=root, width=width, allowance=allowance, suffix=tag, free=flag
         )
     )
+    chain.tangent.append(found.tangent)
     pair, means = named(chain, x, found.pair)
     across = a * pair.c - b * pair.s if found.root is None else -sigma * found.root
     ahead = p.let(f"ahead{tag}", across)
@@ -159,7 +158,7 @@ def turn(
         lemma = replace(lemma, plainly={x: choose(flag, 0, told)})
     meaning = f"all coefficients of the equation for {x} vanish; {x} is free, 0 is returned."
     cases = degenerate(flag, [vanishing(a, b, c)], x, meaning)
-    facing = Facing(s=pair.s, c=pair.c, lever=root, ahead=ahead, side=sigma, tangent=found.tangent)
+    facing = Facing(s=pair.s, c=pair.c, lever=root, ahead=ahead, side=sigma)
     return Applied(lemma, facing, means, {}, cases)
 
 

@@ -43,7 +43,6 @@ def rotate(
     *,
     because: Because | None = None,
     scale: sp.Expr | None = None,
-    compared: sp.Basic = sp.false,
     reaching: Reaching | None = None,
     name: str = "",
 ) -> Applied:
@@ -61,12 +60,10 @@ def rotate(
         the vector before the turn and after it
     because
         why both are equally long: w.w - v.v is the sum of the equations that were solved for
-        these unknowns, each times the factor given
+        these unknowns, each times the factor given.  Where one of them was tangent, the target may
+        be just out of its reach, and the lengths may differ by much more: they are compared there
     scale
         that of the vectors, by default the size of the arm
-    compared
-        a flag under which the lengths are compared: near a tangent, an earlier turn may have made
-        them only nearly equal, where the tolerance of a reach is a large part of them
     reaching
         what the rest of the arm has to reach, if the turn decides on it
     name
@@ -83,9 +80,10 @@ def rotate(
     length = p.let(f"square_{tag}", sp.sqrt(sine**2 + cosine**2), nonnegative=True)
     flag: Any = sp.false
     of_w, of_v = sp.sqrt(w1**2 + w2**2), sp.sqrt(v1**2 + v2**2)
-    if compared is not sp.false:
+    tangent = sp.Or(*chain.tangent) if because else sp.false
+    if tangent is not sp.false:
         # half: what is allowed here stays well within the round trip that is promised
-        missed = choose(compared, of_w - of_v, 0)
+        missed = choose(tangent, of_w - of_v, 0)
         p.match(missed, size / 2, f"{x.name} turns a vector to one of its length")
     shorter = sp.Min(of_w, of_v)
     if not any(differs_from_zero(chain, e, size) for e in (w1, w2)):

@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 543 compare and select, 362 add, 23 atan2, 36 divide, 593 multiply, 1 sincos, 52 sqrt
+#   ik: 545 compare and select, 362 add, 23 atan2, 36 divide, 593 multiply, 1 sincos, 52 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
 
 The axes of theta1, theta2 and theta3 meet in the shoulder.  The axis of theta4, the elbow, is
@@ -1133,634 +1133,636 @@ def _ik(
     t89 = reach * t88
     t90 = ops.vanishing * ops.vanishing * (reach * reach)
     tangent6 = ops.abs(t85 * t86) - t89 <= t90
-    t91 = ops.vanishing * size
-    free6 = reach <= t91
+    t91 = tangent6 | tangent_elbow
+    t92 = ops.vanishing * size
+    free6 = reach <= t92
     v_x = a5 - a4 * t83 - d3 * t82
-    t92 = ops.abs(v_x)
-    t93 = t92 < reach
-    t94 = ops.max(0.0, -((height6 - t92) * (height6 + t92)))
+    t93 = ops.abs(v_x)
+    t94 = t93 < reach
+    t95 = ops.max(0.0, -((height6 - t93) * (height6 + t93)))
     below6 = ops.max(t85, 0.0)
     above6 = ops.max(t86, 0.0)
-    t95 = below6 * above6
-    held6 = ops.select(t93, t94, t95)
-    t96 = below6 - above6
-    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t96 * t96), below6 + above6)
-    t97 = 1.0 / (reach * span6)
-    t98 = u_x * 2.0
-    kept6 = ops.select(tangent6, ops.sqrt(held6), ops.sqrt(t95))
-    t99 = t97 * (t98 * kept6)
-    t100 = t97 * (s_z * t96)
-    c6 = ops.select(free6, 1.0, t99 + t100)
-    t101 = s_z * 2.0
-    t102 = t101 * kept6 * t97
-    t103 = t97 * (u_x * t96)
-    s6 = ops.select(free6, 0.0, t102 - t103)
+    t96 = below6 * above6
+    held6 = ops.select(t94, t95, t96)
+    t97 = below6 - above6
+    span6 = ops.select(tangent6, ops.sqrt(4.0 * held6 + t97 * t97), below6 + above6)
+    t98 = 1.0 / (reach * span6)
+    t99 = u_x * 2.0
+    kept6 = ops.select(tangent6, ops.sqrt(held6), ops.sqrt(t96))
+    t100 = t98 * (t99 * kept6)
+    t101 = t98 * (s_z * t97)
+    c6 = ops.select(free6, 1.0, t100 + t101)
+    t102 = s_z * 2.0
+    t103 = t102 * kept6 * t98
+    t104 = t98 * (u_x * t97)
+    s6 = ops.select(free6, 0.0, t103 - t104)
     w_x = u_x * c6 + s_z * s6
-    t104 = ops.sqrt(t20 + w_x * w_x)
-    t105 = ops.sqrt(v_x * v_x)
-    t106 = ops.abs(ops.select(tangent6, t104 - t105, 0.0))
-    unreachable = ops.opposite(t87 & (t106 <= t13))
+    t105 = ops.sqrt(t20 + w_x * w_x)
+    t106 = ops.sqrt(v_x * v_x)
+    t107 = ops.abs(ops.select(t91, t105 - t106, 0.0)) <= t13
+    unreachable = ops.opposite(t87 & t107)
     failed = invalid | unreachable
     R1_11 = T11 * c_x_theta7 - T12 * s_x_theta7
-    on_axis_5 = ops.min(t105, t104) <= t91
+    on_axis_5 = ops.min(t106, t105) <= t92
     dot_5 = v_x * w_x
-    t107 = w_y * v_x
-    t108 = t107 * t107
-    t109 = 1.0 / ops.sqrt(t108 + dot_5 * dot_5)
-    c5 = ops.select(on_axis_5, 1.0, dot_5 * t109)
+    t108 = w_y * v_x
+    t109 = t108 * t108
+    t110 = 1.0 / ops.sqrt(t109 + dot_5 * dot_5)
+    c5 = ops.select(on_axis_5, 1.0, dot_5 * t110)
     R1_13 = T11 * s_x_theta7 + T12 * c_x_theta7
-    t110 = ops.select(on_axis_5, 0.0, t107 * t109)
-    t111 = t82 * (c5 * (R1_11 * c6 + T13 * s6) - R1_13 * t110)
-    R4_13 = t83 * (R1_11 * s6 - T13 * c6) + t111
+    t111 = ops.select(on_axis_5, 0.0, t108 * t110)
+    t112 = t82 * (c5 * (R1_11 * c6 + T13 * s6) - R1_13 * t111)
+    R4_13 = t83 * (R1_11 * s6 - T13 * c6) + t112
     R1_21 = T21 * c_x_theta7 - T22 * s_x_theta7
     R1_23 = T21 * s_x_theta7 + T22 * c_x_theta7
-    t112 = t82 * (c5 * (R1_21 * c6 + T23 * s6) - R1_23 * t110)
-    R4_23 = t83 * (R1_21 * s6 - T23 * c6) + t112
-    t113 = ops.vanishing * 16.0
-    aligned_wrist = ops.sqrt(R4_13 * R4_13 + R4_23 * R4_23) <= t113
-    t114 = ops.opposite(failed)
-    c6_bent_behind_front = ops.select(free6, 1.0, t100 - t99)
-    t115 = ops.select(free6, 0.0, t102 + t103)
-    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t115
-    t116 = w_x_bent_behind_front * w_x_bent_behind_front
-    t117 = ops.sqrt(t20 + t116)
-    t118 = ops.abs(ops.select(tangent6, t117 - t105, 0.0))
-    unreachable_2 = ops.opposite(t87 & (t118 <= t13))
+    t113 = t82 * (c5 * (R1_21 * c6 + T23 * s6) - R1_23 * t111)
+    R4_23 = t83 * (R1_21 * s6 - T23 * c6) + t113
+    t114 = ops.vanishing * 16.0
+    aligned_wrist = ops.sqrt(R4_13 * R4_13 + R4_23 * R4_23) <= t114
+    t115 = ops.opposite(failed)
+    c6_bent_behind_front = ops.select(free6, 1.0, t101 - t100)
+    t116 = ops.select(free6, 0.0, t103 + t104)
+    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t116
+    t117 = w_x_bent_behind_front * w_x_bent_behind_front
+    t118 = ops.sqrt(t20 + t117)
+    t119 = ops.abs(ops.select(t91, t118 - t106, 0.0)) <= t13
+    unreachable_2 = ops.opposite(t87 & t119)
     failed_2 = invalid | unreachable_2
-    t119 = ops.opposite(failed_2)
-    t120 = t114 | t119
-    t121 = t49 - t51
-    t122 = t53 - t54
-    t123 = t56 + t57
-    q__elbow_1_over_ahead_front = ops.select(t47, a5 + a4 * t122 - d3 * t123, d3 * t122 - (d5 - a4 * t123))
+    t120 = ops.opposite(failed_2)
+    t121 = t115 | t120
+    t122 = t49 - t51
+    t123 = t53 - t54
+    t124 = t56 + t57
+    q__elbow_1_over_ahead_front = ops.select(t47, a5 + a4 * t123 - d3 * t124, d3 * t123 - (d5 - a4 * t124))
     size__elbow_1_over_ahead_front = ops.abs(q__elbow_1_over_ahead_front)
-    t124 = ops.max(t59, ops.min(size__elbow_1_over_ahead_front, t60))
-    t125 = ops.sign(q__elbow_1_over_ahead_front)
-    t126 = (size__elbow_1_over_ahead_front - t124) * t125
-    t127 = t126 - 2.0 * (t64 + t65)
-    inner__elbow_1_over_ahead_front = t121 * t121 - t126 * t127
-    t128 = inner__elbow_1_over_ahead_front < 0.0
-    t129 = ops.sign(-t121)
-    t130 = ops.max(0.0, inner__elbow_1_over_ahead_front)
-    t131 = ops.select(t128, t127, t121 - t129 * ops.sqrt(t130))
-    t132 = ops.select(t128, t121, t126)
-    t133 = ops.abs(t131) <= ops.abs(t132)
-    half__elbow_1_over_ahead_front = ops.select(t133, 0.0, t132 / t131)
-    t134 = half__elbow_1_over_ahead_front * half__elbow_1_over_ahead_front
-    t135 = 1.0 / (1.0 + t134)
-    by_s__elbow_1_over_ahead_front = 2.0 * half__elbow_1_over_ahead_front * t135
-    t136 = lever_elbow * ops.abs(by_s__elbow_1_over_ahead_front)
-    by_c__elbow_1_over_ahead_front = t135 * (1.0 - t134)
-    t137 = by_s__elbow_1_over_ahead_front * by_s__elbow_1_over_ahead_front
-    t138 = 1.0 + ops.abs(by_c__elbow_1_over_ahead_front)
-    versine__elbow_1_over_ahead_front = ops.select(0.0 < by_c__elbow_1_over_ahead_front, t137 / t138, 1.0 - by_c__elbow_1_over_ahead_front)
-    cost__elbow_1_over_ahead_front = t136 + t75 * versine__elbow_1_over_ahead_front
-    t139 = cost__elbow_1_over_ahead_front <= whole__elbow_1
-    cosine__elbow_1_over_ahead_front = ops.select(t139, by_c__elbow_1_over_ahead_front, 1.0)
-    t140 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
-    sine__elbow_1_over_ahead_front = ops.select(t139, by_s__elbow_1_over_ahead_front, 0.0)
-    t141 = ops.select(tangent_elbow, t140 - t46 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
-    selbow_over_ahead_front = ops.select(no_link_elbow, t35, t141)
-    t142 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
-    t143 = t46 * cosine__elbow_1_over_ahead_front + t142
-    celbow_over_ahead_front = ops.select(no_link_elbow, t80, -ops.select(tangent_elbow, t143, t46))
-    t144 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
-    t145 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
-    t146 = d5 - a4 * t144 + d3 * t145
-    t147 = reach + t146
-    t148 = reach - t146
-    t149 = t27 & (-t13 <= t147) & (-t13 <= t148)
-    tangent6_over_ahead_front = ops.abs(t147 * t148) - t89 <= t90
-    v_x_over_ahead_front = a5 - a4 * t145 - d3 * t144
-    t150 = ops.abs(v_x_over_ahead_front)
-    t151 = t150 < reach
-    t152 = ops.max(0.0, -((height6 - t150) * (height6 + t150)))
-    below6_over_ahead_front = ops.max(t147, 0.0)
-    above6_over_ahead_front = ops.max(t148, 0.0)
-    t153 = below6_over_ahead_front * above6_over_ahead_front
-    held6_over_ahead_front = ops.select(t151, t152, t153)
-    t154 = below6_over_ahead_front - above6_over_ahead_front
-    t155 = ops.sqrt(4.0 * held6_over_ahead_front + t154 * t154)
+    t125 = ops.max(t59, ops.min(size__elbow_1_over_ahead_front, t60))
+    t126 = ops.sign(q__elbow_1_over_ahead_front)
+    t127 = (size__elbow_1_over_ahead_front - t125) * t126
+    t128 = t127 - 2.0 * (t64 + t65)
+    inner__elbow_1_over_ahead_front = t122 * t122 - t127 * t128
+    t129 = inner__elbow_1_over_ahead_front < 0.0
+    t130 = ops.sign(-t122)
+    t131 = ops.max(0.0, inner__elbow_1_over_ahead_front)
+    t132 = ops.select(t129, t128, t122 - t130 * ops.sqrt(t131))
+    t133 = ops.select(t129, t122, t127)
+    t134 = ops.abs(t132) <= ops.abs(t133)
+    half__elbow_1_over_ahead_front = ops.select(t134, 0.0, t133 / t132)
+    t135 = half__elbow_1_over_ahead_front * half__elbow_1_over_ahead_front
+    t136 = 1.0 / (1.0 + t135)
+    by_s__elbow_1_over_ahead_front = 2.0 * half__elbow_1_over_ahead_front * t136
+    t137 = lever_elbow * ops.abs(by_s__elbow_1_over_ahead_front)
+    by_c__elbow_1_over_ahead_front = t136 * (1.0 - t135)
+    t138 = by_s__elbow_1_over_ahead_front * by_s__elbow_1_over_ahead_front
+    t139 = 1.0 + ops.abs(by_c__elbow_1_over_ahead_front)
+    versine__elbow_1_over_ahead_front = ops.select(0.0 < by_c__elbow_1_over_ahead_front, t138 / t139, 1.0 - by_c__elbow_1_over_ahead_front)
+    cost__elbow_1_over_ahead_front = t137 + t75 * versine__elbow_1_over_ahead_front
+    t140 = cost__elbow_1_over_ahead_front <= whole__elbow_1
+    cosine__elbow_1_over_ahead_front = ops.select(t140, by_c__elbow_1_over_ahead_front, 1.0)
+    t141 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
+    sine__elbow_1_over_ahead_front = ops.select(t140, by_s__elbow_1_over_ahead_front, 0.0)
+    t142 = ops.select(tangent_elbow, t141 - t46 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
+    selbow_over_ahead_front = ops.select(no_link_elbow, t35, t142)
+    t143 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
+    t144 = t46 * cosine__elbow_1_over_ahead_front + t143
+    celbow_over_ahead_front = ops.select(no_link_elbow, t80, -ops.select(tangent_elbow, t144, t46))
+    t145 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
+    t146 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
+    t147 = d5 - a4 * t145 + d3 * t146
+    t148 = reach + t147
+    t149 = reach - t147
+    t150 = t27 & (-t13 <= t148) & (-t13 <= t149)
+    tangent6_over_ahead_front = ops.abs(t148 * t149) - t89 <= t90
+    t151 = tangent6_over_ahead_front | tangent_elbow
+    v_x_over_ahead_front = a5 - a4 * t146 - d3 * t145
+    t152 = ops.abs(v_x_over_ahead_front)
+    t153 = t152 < reach
+    t154 = ops.max(0.0, -((height6 - t152) * (height6 + t152)))
+    below6_over_ahead_front = ops.max(t148, 0.0)
+    above6_over_ahead_front = ops.max(t149, 0.0)
+    t155 = below6_over_ahead_front * above6_over_ahead_front
+    held6_over_ahead_front = ops.select(t153, t154, t155)
+    t156 = below6_over_ahead_front - above6_over_ahead_front
+    t157 = ops.sqrt(4.0 * held6_over_ahead_front + t156 * t156)
     width6_over_ahead_front = below6_over_ahead_front + above6_over_ahead_front
-    span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t155, width6_over_ahead_front)
-    t156 = 1.0 / (reach * span6_over_ahead_front)
-    kept6_over_ahead_front = ops.select(tangent6_over_ahead_front, ops.sqrt(held6_over_ahead_front), ops.sqrt(t153))
-    t157 = t156 * (t98 * kept6_over_ahead_front)
-    t158 = t156 * (s_z * t154)
-    c6_over_ahead_front = ops.select(free6, 1.0, t157 + t158)
-    t159 = t101 * kept6_over_ahead_front * t156
-    t160 = t156 * (u_x * t154)
-    s6_over_ahead_front = ops.select(free6, 0.0, t159 - t160)
+    span6_over_ahead_front = ops.select(tangent6_over_ahead_front, t157, width6_over_ahead_front)
+    t158 = 1.0 / (reach * span6_over_ahead_front)
+    kept6_over_ahead_front = ops.select(tangent6_over_ahead_front, ops.sqrt(held6_over_ahead_front), ops.sqrt(t155))
+    t159 = t158 * (t99 * kept6_over_ahead_front)
+    t160 = t158 * (s_z * t156)
+    c6_over_ahead_front = ops.select(free6, 1.0, t159 + t160)
+    t161 = t102 * kept6_over_ahead_front * t158
+    t162 = t158 * (u_x * t156)
+    s6_over_ahead_front = ops.select(free6, 0.0, t161 - t162)
     w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
-    t161 = t20 + w_x_over_ahead_front * w_x_over_ahead_front
-    t162 = ops.sqrt(t161)
-    t163 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
-    t164 = ops.select(tangent6_over_ahead_front, t162 - t163, 0.0)
-    unreachable_3 = ops.opposite(t149 & (ops.abs(t164) <= t13))
+    t163 = t20 + w_x_over_ahead_front * w_x_over_ahead_front
+    t164 = ops.sqrt(t163)
+    t165 = ops.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    t166 = ops.abs(ops.select(t151, t164 - t165, 0.0)) <= t13
+    unreachable_3 = ops.opposite(t150 & t166)
     failed_3 = invalid | unreachable_3
-    t165 = ops.opposite(failed_3)
-    c6_over_behind_front = ops.select(free6, 1.0, t158 - t157)
-    t166 = ops.select(free6, 0.0, t159 + t160)
-    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t166
-    t167 = w_x_over_behind_front * w_x_over_behind_front
-    t168 = ops.sqrt(t20 + t167)
-    t169 = ops.select(tangent6_over_ahead_front, t168 - t163, 0.0)
-    unreachable_4 = ops.opposite(t149 & (ops.abs(t169) <= t13))
+    t167 = ops.opposite(failed_3)
+    c6_over_behind_front = ops.select(free6, 1.0, t160 - t159)
+    t168 = ops.select(free6, 0.0, t161 + t162)
+    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t168
+    t169 = w_x_over_behind_front * w_x_over_behind_front
+    t170 = ops.sqrt(t20 + t169)
+    t171 = ops.abs(ops.select(t151, t170 - t165, 0.0)) <= t13
+    unreachable_4 = ops.opposite(t150 & t171)
     failed_4 = invalid | unreachable_4
-    t170 = ops.opposite(failed_4)
-    t171 = t120 | t165 | t170
-    t172 = t165 | t170
-    t173 = ops.opposite(no_link_elbow)
-    t174 = t172 & t173
-    t175 = t174 & tangent_elbow & t139
-    t176 = t175 & ops.opposite(t133)
-    t177 = (t172 & no_link_elbow) | (t120 & no_link_elbow)
-    t178 = t177 & ops.opposite(t33)
-    t179 = t120 & t173
-    t180 = t179 & tangent_elbow & t77
-    t181 = t180 & ops.opposite(t72)
-    t182 = (t171 | t176 | t178 | t181) & ops.opposite(no_straight)
-    t183 = ops.select(t182, ops.sqrt(ops.select(t182, t30, 1.0)), 1.0)
-    t184 = 1.0 / t183
-    c_straight_2 = ops.select(no_straight, 1.0, -(t28 * t184))
-    s_straight_2 = ops.select(no_straight, 0.0, t29 * t184)
+    t172 = ops.opposite(failed_4)
+    t173 = t121 | t167 | t172
+    t174 = t167 | t172
+    t175 = ops.opposite(no_link_elbow)
+    t176 = t174 & t175
+    t177 = t176 & tangent_elbow & t140
+    t178 = t177 & ops.opposite(t134)
+    t179 = (t174 & no_link_elbow) | (t121 & no_link_elbow)
+    t180 = t179 & ops.opposite(t33)
+    t181 = t121 & t175
+    t182 = t181 & tangent_elbow & t77
+    t183 = t182 & ops.opposite(t72)
+    t184 = (t173 | t178 | t180 | t183) & ops.opposite(no_straight)
+    t185 = ops.select(t184, ops.sqrt(ops.select(t184, t30, 1.0)), 1.0)
+    t186 = 1.0 / t185
+    c_straight_2 = ops.select(no_straight, 1.0, -(t28 * t186))
+    s_straight_2 = ops.select(no_straight, 0.0, t29 * t186)
     level_s_elbow_2 = a4 * c_straight_2 - d3 * s_straight_2
-    t185 = a4 * s_straight_2 + d3 * c_straight_2
-    t186 = t185 * t185 + level_s_elbow_2 * level_s_elbow_2
-    t187 = ops.select(t178, ops.sqrt(ops.select(t178, t186, 1.0)), 1.0)
-    t188 = 1.0 / t187
-    t189 = ops.select(t33, 1.0, level_s_elbow_2 * t188)
-    t190 = t174 | t176 | t179 | t181
-    t191 = 1.0 / ops.select(t190, t42, 1.0)
-    upper_2 = ops.sqrt(ops.select(t190, t14, 1.0))
-    fore_2 = ops.sqrt(ops.select(t190, t15, 1.0))
-    t192 = upper_2 + fore_2
-    far_2 = ops.sqrt(ops.select(t190, t22, 1.0))
-    t193 = (t192 + far_2) * ops.max(t192 - far_2, 0.0)
-    t194 = upper_2 - fore_2
-    t195 = ops.max(t194 + far_2, 0.0) * ops.max(far_2 - t194, 0.0)
-    t196 = 1.0 / ops.select(t190, t191 * (t193 + t195), 1.0)
-    t197 = (t191 * t193 - t191 * t195) * t196
-    t198 = ops.select(t47, -t185, level_s_elbow_2)
-    t199 = t198 * t197
-    t200 = ops.select(t47, level_s_elbow_2, t185)
-    area_elbow = 2.0 * ops.sqrt(ops.select(t190, t193 * t195, 1.0))
-    t201 = 2.0 * (area_elbow / ops.select(t190, t38, 1.0))
-    s__elbow_1_over_ahead_front_2 = t196 * t201
-    t202 = t200 * s__elbow_1_over_ahead_front_2
-    t203 = t199 + t202
-    t204 = c_straight_2 * t197
-    t205 = s_straight_2 * s__elbow_1_over_ahead_front_2
-    t206 = t204 + t205
-    t207 = s_straight_2 * t197
-    t208 = c_straight_2 * s__elbow_1_over_ahead_front_2
-    t209 = t207 - t208
-    q__elbow_1_2 = ops.select(t47, a5 + a4 * t206 - d3 * t209, d3 * t206 - (d5 - a4 * t209))
+    t187 = a4 * s_straight_2 + d3 * c_straight_2
+    t188 = t187 * t187 + level_s_elbow_2 * level_s_elbow_2
+    t189 = ops.select(t180, ops.sqrt(ops.select(t180, t188, 1.0)), 1.0)
+    t190 = 1.0 / t189
+    t191 = ops.select(t33, 1.0, level_s_elbow_2 * t190)
+    t192 = t176 | t178 | t181 | t183
+    t193 = 1.0 / ops.select(t192, t42, 1.0)
+    upper_2 = ops.sqrt(ops.select(t192, t14, 1.0))
+    fore_2 = ops.sqrt(ops.select(t192, t15, 1.0))
+    t194 = upper_2 + fore_2
+    far_2 = ops.sqrt(ops.select(t192, t22, 1.0))
+    t195 = (t194 + far_2) * ops.max(t194 - far_2, 0.0)
+    t196 = upper_2 - fore_2
+    t197 = ops.max(t196 + far_2, 0.0) * ops.max(far_2 - t196, 0.0)
+    t198 = 1.0 / ops.select(t192, t193 * (t195 + t197), 1.0)
+    t199 = (t193 * t195 - t193 * t197) * t198
+    t200 = ops.select(t47, -t187, level_s_elbow_2)
+    t201 = t200 * t199
+    t202 = ops.select(t47, level_s_elbow_2, t187)
+    area_elbow = 2.0 * ops.sqrt(ops.select(t192, t195 * t197, 1.0))
+    t203 = 2.0 * (area_elbow / ops.select(t192, t38, 1.0))
+    s__elbow_1_over_ahead_front_2 = t198 * t203
+    t204 = t202 * s__elbow_1_over_ahead_front_2
+    t205 = t201 + t204
+    t206 = c_straight_2 * t199
+    t207 = s_straight_2 * s__elbow_1_over_ahead_front_2
+    t208 = t206 + t207
+    t209 = s_straight_2 * t199
+    t210 = c_straight_2 * s__elbow_1_over_ahead_front_2
+    t211 = t209 - t210
+    q__elbow_1_2 = ops.select(t47, a5 + a4 * t208 - d3 * t211, d3 * t208 - (d5 - a4 * t211))
     size__elbow_1_2 = ops.abs(q__elbow_1_2)
-    t210 = ops.opposite(free6)
-    t211 = (t170 & t210) | (t165 & t210)
-    t212 = t211 & tangent6_over_ahead_front
-    t213 = t119 & t210
-    t214 = t114 & t210
-    t215 = t211 | (t212 & ops.opposite(t151)) | t213 | t214
-    t216 = t213 | t214
-    t217 = t216 & tangent6
-    t218 = t215 | (t217 & ops.opposite(t93)) | ((t176 | t181) & ops.opposite(t47))
-    reach_2 = ops.sqrt(ops.select(t218, t21, 1.0))
-    t219 = t39 + ops.select(t47, size, reach_2)
-    t220 = size__elbow_1_2 - ops.max(t59, ops.min(size__elbow_1_2, t219))
-    t221 = t220 * t62
-    t222 = t200 * t197
-    t223 = t198 * s__elbow_1_over_ahead_front_2
-    t224 = t221 - 2.0 * (t222 - t223)
-    t225 = ops.select(t181 & ops.opposite(t67), ops.max(0.0, t203 * t203 - t221 * t224), 1.0)
-    t226 = ops.select(t67, t224, t203 - t68 * ops.sqrt(t225))
-    t227 = ops.select(t67, t203, t221) / ops.select(t181, t226, 1.0)
-    half__elbow_1_2 = ops.select(t72, 0.0, t227)
-    t228 = half__elbow_1_2 * half__elbow_1_2
-    t229 = 1.0 / ops.select(t180, 1.0 + t228, 1.0)
-    cosine__elbow_1_2 = ops.select(t77, t229 * (1.0 - t228), 1.0)
-    sine__elbow_1_2 = ops.select(t77, 2.0 * half__elbow_1_2 * t229, 0.0)
-    t230 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
-    t231 = ops.select(tangent_elbow, t197 * cosine__elbow_1_2 - t230, t197)
-    celbow_2 = ops.select(no_link_elbow, t189, -t231)
-    t232 = ops.select(t33, 0.0, t185 * t188)
-    t233 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
-    t234 = ops.select(tangent_elbow, t197 * sine__elbow_1_2 + t233, s__elbow_1_over_ahead_front_2)
-    selbow_2 = ops.select(no_link_elbow, t232, -t234)
-    t235 = c_straight_2 * celbow_2 + s_straight_2 * selbow_2
-    t236 = c_straight_2 * selbow_2 - s_straight_2 * celbow_2
-    v_x_2 = a5 - a4 * t235 - d3 * t236
-    t237 = ops.abs(v_x_2)
-    t238 = ops.max(0.0, -((height6 - t237) * (height6 + t237)))
-    t239 = d5 - a4 * t236 + d3 * t235
-    below6_2 = ops.max(reach_2 + t239, 0.0)
-    above6_2 = ops.max(reach_2 - t239, 0.0)
-    t240 = below6_2 * above6_2
-    held6_2 = ops.select(t93, t238, t240)
-    t241 = ops.select(t216 & ops.opposite(tangent6), t240, 1.0)
-    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t217, held6_2, 1.0)), ops.sqrt(t241))
-    t242 = below6_2 - above6_2
-    t243 = ops.select(t217, 4.0 * held6_2 + t242 * t242, 1.0)
-    span6_2 = ops.select(tangent6, ops.sqrt(t243), below6_2 + above6_2)
-    t244 = 1.0 / ops.select(t216, reach_2 * span6_2, 1.0)
-    t245 = t101 * kept6_2 * t244
-    t246 = t244 * (u_x * t242)
-    s6_2 = ops.select(free6, 0.0, t245 - t246)
-    t247 = t244 * (t98 * kept6_2)
-    t248 = t244 * (s_z * t242)
-    c6_2 = ops.select(free6, 1.0, t247 + t248)
+    t212 = ops.opposite(free6)
+    t213 = (t172 & t212) | (t167 & t212)
+    t214 = t213 & tangent6_over_ahead_front
+    t215 = t120 & t212
+    t216 = t115 & t212
+    t217 = t213 | (t214 & ops.opposite(t153)) | t215 | t216
+    t218 = t215 | t216
+    t219 = t218 & tangent6
+    t220 = t217 | (t219 & ops.opposite(t94)) | ((t178 | t183) & ops.opposite(t47))
+    reach_2 = ops.sqrt(ops.select(t220, t21, 1.0))
+    t221 = t39 + ops.select(t47, size, reach_2)
+    t222 = size__elbow_1_2 - ops.max(t59, ops.min(size__elbow_1_2, t221))
+    t223 = t222 * t62
+    t224 = t202 * t199
+    t225 = t200 * s__elbow_1_over_ahead_front_2
+    t226 = t223 - 2.0 * (t224 - t225)
+    t227 = ops.select(t183 & ops.opposite(t67), ops.max(0.0, t205 * t205 - t223 * t226), 1.0)
+    t228 = ops.select(t67, t226, t205 - t68 * ops.sqrt(t227))
+    t229 = ops.select(t67, t205, t223) / ops.select(t183, t228, 1.0)
+    half__elbow_1_2 = ops.select(t72, 0.0, t229)
+    t230 = half__elbow_1_2 * half__elbow_1_2
+    t231 = 1.0 / ops.select(t182, 1.0 + t230, 1.0)
+    cosine__elbow_1_2 = ops.select(t77, t231 * (1.0 - t230), 1.0)
+    sine__elbow_1_2 = ops.select(t77, 2.0 * half__elbow_1_2 * t231, 0.0)
+    t232 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_2
+    t233 = ops.select(tangent_elbow, t199 * cosine__elbow_1_2 - t232, t199)
+    celbow_2 = ops.select(no_link_elbow, t191, -t233)
+    t234 = ops.select(t33, 0.0, t187 * t190)
+    t235 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_2
+    t236 = ops.select(tangent_elbow, t199 * sine__elbow_1_2 + t235, s__elbow_1_over_ahead_front_2)
+    selbow_2 = ops.select(no_link_elbow, t234, -t236)
+    t237 = c_straight_2 * celbow_2 + s_straight_2 * selbow_2
+    t238 = c_straight_2 * selbow_2 - s_straight_2 * celbow_2
+    v_x_2 = a5 - a4 * t237 - d3 * t238
+    t239 = ops.abs(v_x_2)
+    t240 = ops.max(0.0, -((height6 - t239) * (height6 + t239)))
+    t241 = d5 - a4 * t238 + d3 * t237
+    below6_2 = ops.max(reach_2 + t241, 0.0)
+    above6_2 = ops.max(reach_2 - t241, 0.0)
+    t242 = below6_2 * above6_2
+    held6_2 = ops.select(t94, t240, t242)
+    t243 = ops.select(t218 & ops.opposite(tangent6), t242, 1.0)
+    kept6_2 = ops.select(tangent6, ops.sqrt(ops.select(t219, held6_2, 1.0)), ops.sqrt(t243))
+    t244 = below6_2 - above6_2
+    t245 = ops.select(t219, 4.0 * held6_2 + t244 * t244, 1.0)
+    span6_2 = ops.select(tangent6, ops.sqrt(t245), below6_2 + above6_2)
+    t246 = 1.0 / ops.select(t218, reach_2 * span6_2, 1.0)
+    t247 = t102 * kept6_2 * t246
+    t248 = t246 * (u_x * t244)
+    s6_2 = ops.select(free6, 0.0, t247 - t248)
+    t249 = t246 * (t99 * kept6_2)
+    t250 = t246 * (s_z * t244)
+    c6_2 = ops.select(free6, 1.0, t249 + t250)
     R2_23 = R1_21 * s6_2 - T23 * c6_2
     dot_5_2 = v_x_2 * (u_x * c6_2 + s_z * s6_2)
-    t249 = t114 & ops.opposite(on_axis_5)
-    t250 = w_y * v_x_2
-    t251 = t250 * t250
-    t252 = ops.select(t249, t251 + dot_5_2 * dot_5_2, 1.0)
-    t253 = 1.0 / ops.select(t249, ops.sqrt(t252), 1.0)
-    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t253)
+    t251 = t115 & ops.opposite(on_axis_5)
+    t252 = w_y * v_x_2
+    t253 = t252 * t252
+    t254 = ops.select(t251, t253 + dot_5_2 * dot_5_2, 1.0)
+    t255 = 1.0 / ops.select(t251, ops.sqrt(t254), 1.0)
+    c5_2 = ops.select(on_axis_5, 1.0, dot_5_2 * t255)
     R2_21 = R1_21 * c6_2 + T23 * s6_2
-    t254 = ops.select(on_axis_5, 0.0, t250 * t253)
-    R3_21 = c5_2 * R2_21 - R1_23 * t254
-    R4_23_2 = t235 * R2_23 + t236 * R3_21
-    t255 = t114 & ops.opposite(aligned_wrist)
+    t256 = ops.select(on_axis_5, 0.0, t252 * t255)
+    R3_21 = c5_2 * R2_21 - R1_23 * t256
+    R4_23_2 = t237 * R2_23 + t238 * R3_21
+    t257 = t115 & ops.opposite(aligned_wrist)
     R2_13 = R1_11 * s6_2 - T13 * c6_2
     R2_11 = R1_11 * c6_2 + T13 * s6_2
-    R3_11 = c5_2 * R2_11 - R1_13 * t254
-    R4_13_2 = t235 * R2_13 + t236 * R3_11
-    t256 = ops.select(t255, R4_13_2 * R4_13_2, 1.0) + ops.select(t255, R4_23_2 * R4_23_2, 1.0)
-    t257 = ops.select(t255, ops.sqrt(ops.select(t255, t256, 1.0)), 1.0)
-    t258 = 1.0 / t257
-    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t258)
-    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t258)
-    t259 = ops.atan2(s_wrist, ops.select(t114, c_wrist, 1.0))
-    t260 = ops.select(failed, ops.nan, ops.wrap_cut(t259))
-    t261 = ops.select(t114, R4_13_2 * c_wrist, 1.0) + ops.select(t114, R4_23_2 * s_wrist, 1.0)
+    R3_11 = c5_2 * R2_11 - R1_13 * t256
+    R4_13_2 = t237 * R2_13 + t238 * R3_11
+    t258 = ops.select(t257, R4_13_2 * R4_13_2, 1.0) + ops.select(t257, R4_23_2 * R4_23_2, 1.0)
+    t259 = ops.select(t257, ops.sqrt(ops.select(t257, t258, 1.0)), 1.0)
+    t260 = 1.0 / t259
+    s_wrist = ops.select(aligned_wrist, 0.0, R4_23_2 * t260)
+    c_wrist = ops.select(aligned_wrist, 1.0, R4_13_2 * t260)
+    t261 = ops.atan2(s_wrist, ops.select(t115, c_wrist, 1.0))
+    t262 = ops.select(failed, ops.nan, ops.wrap_cut(t261))
+    t263 = ops.select(t115, R4_13_2 * c_wrist, 1.0) + ops.select(t115, R4_23_2 * s_wrist, 1.0)
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t254
-    R4_33 = t235 * (R1_31 * s6_2 - T33 * c6_2) + t236 * R3_31
-    t262 = ops.atan2(t261, ops.select(t114, R4_33, 1.0))
-    t263 = ops.select(failed, ops.nan, ops.wrap_cut(t262))
-    t264 = ops.select(t114, s_wrist * (t236 * R2_13 - t235 * R3_11), 1.0)
-    t265 = ops.select(t114, c_wrist * (t236 * R2_23 - t235 * R3_21), 1.0)
-    t266 = ops.select(t114, s_wrist * (R2_11 * t254 + R1_13 * c5_2), 1.0)
-    t267 = ops.select(t114, c_wrist * (t254 * R2_21 + R1_23 * c5_2), 1.0)
-    t268 = ops.atan2(t264 - t265, ops.select(t114, t266 - t267, 1.0))
-    t269 = ops.select(failed, ops.nan, ops.wrap_cut(t268))
-    t270 = ops.wrap_cut(ops.atan2(t236, ops.select(t120, t235, 1.0)))
-    t271 = ops.select(failed, ops.nan, t270)
-    t272 = ops.wrap_cut(-ops.atan2(t254, ops.select(t114, c5_2, 1.0)))
+    R3_31 = c5_2 * (R1_31 * c6_2 + T33 * s6_2) - R1_33 * t256
+    R4_33 = t237 * (R1_31 * s6_2 - T33 * c6_2) + t238 * R3_31
+    t264 = ops.atan2(t263, ops.select(t115, R4_33, 1.0))
+    t265 = ops.select(failed, ops.nan, ops.wrap_cut(t264))
+    t266 = ops.select(t115, s_wrist * (t238 * R2_13 - t237 * R3_11), 1.0)
+    t267 = ops.select(t115, c_wrist * (t238 * R2_23 - t237 * R3_21), 1.0)
+    t268 = ops.select(t115, s_wrist * (R2_11 * t256 + R1_13 * c5_2), 1.0)
+    t269 = ops.select(t115, c_wrist * (t256 * R2_21 + R1_23 * c5_2), 1.0)
+    t270 = ops.atan2(t266 - t267, ops.select(t115, t268 - t269, 1.0))
+    t271 = ops.select(failed, ops.nan, ops.wrap_cut(t270))
+    t272 = ops.wrap_cut(ops.atan2(t238, ops.select(t121, t237, 1.0)))
     t273 = ops.select(failed, ops.nan, t272)
-    t274 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t114, c6_2, 1.0)))
+    t274 = ops.wrap_cut(-ops.atan2(t256, ops.select(t115, c5_2, 1.0)))
     t275 = ops.select(failed, ops.nan, t274)
-    t276 = ops.atan2(s_x_theta7, ops.select(t171, c_x_theta7, 1.0))
-    t277 = ops.wrap_cut(t276)
-    t278 = ops.select(failed, ops.nan, t277)
+    t276 = ops.wrap_cut(ops.atan2(s6_2, ops.select(t115, c6_2, 1.0)))
+    t277 = ops.select(failed, ops.nan, t276)
+    t278 = ops.atan2(s_x_theta7, ops.select(t173, c_x_theta7, 1.0))
+    t279 = ops.wrap_cut(t278)
+    t280 = ops.select(failed, ops.nan, t279)
     flip_wrist = ops.select(aligned_wrist, 0.0, 3.141592653589793)
-    t279 = ops.select(failed, ops.nan, ops.wrap(t259 + flip_wrist))
-    t280 = ops.select(failed, ops.nan, ops.wrap_cut(-t262))
-    t281 = ops.select(failed, ops.nan, ops.wrap(t268 + flip_wrist))
-    t282 = t83 * (R1_11 * t115 + T13 * c6_bent_behind_front)
-    on_axis_5_bent_behind_front = ops.min(t105, t117) <= t91
+    t281 = ops.select(failed, ops.nan, ops.wrap(t261 + flip_wrist))
+    t282 = ops.select(failed, ops.nan, ops.wrap_cut(-t264))
+    t283 = ops.select(failed, ops.nan, ops.wrap(t270 + flip_wrist))
+    t284 = t83 * (R1_11 * t116 + T13 * c6_bent_behind_front)
+    on_axis_5_bent_behind_front = ops.min(t106, t118) <= t92
     dot_5_bent_behind_front = v_x * w_x_bent_behind_front
-    t283 = dot_5_bent_behind_front * dot_5_bent_behind_front
-    t284 = 1.0 / ops.sqrt(t108 + t283)
-    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t284)
-    t285 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t115)
-    t286 = ops.select(on_axis_5_bent_behind_front, 0.0, t107 * t284)
-    t287 = t282 - t82 * (t285 - R1_13 * t286)
-    t288 = t83 * (R1_21 * t115 + T23 * c6_bent_behind_front)
-    t289 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t115)
-    t290 = t288 - t82 * (t289 - R1_23 * t286)
-    aligned_wrist_bent_behind_front = ops.sqrt(t287 * t287 + t290 * t290) <= t113
-    t291 = ops.select(free6, 0.0, t245 + t246)
-    c6_bent_behind_front_2 = ops.select(free6, 1.0, t248 - t247)
-    t292 = R1_21 * t291 + T23 * c6_bent_behind_front_2
-    dot_5_bent_behind_front_2 = v_x_2 * (u_x * c6_bent_behind_front_2 - s_z * t291)
-    t293 = t119 & ops.opposite(on_axis_5_bent_behind_front)
-    t294 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
-    t295 = ops.select(t293, ops.sqrt(ops.select(t293, t251 + t294, 1.0)), 1.0)
-    t296 = 1.0 / t295
-    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t296)
-    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t291
-    t297 = c5_bent_behind_front_2 * R2_21_bent_behind_front
-    t298 = ops.select(on_axis_5_bent_behind_front, 0.0, t250 * t296)
-    R3_21_bent_behind_front = t297 - R1_23 * t298
-    t299 = t235 * t292 - t236 * R3_21_bent_behind_front
-    t300 = ops.opposite(aligned_wrist_bent_behind_front)
-    t301 = t119 & t300
-    t302 = R1_11 * t291 + T13 * c6_bent_behind_front_2
-    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t291
-    t303 = c5_bent_behind_front_2 * R2_11_bent_behind_front
-    R3_11_bent_behind_front = t303 - R1_13 * t298
-    t304 = t235 * t302 - t236 * R3_11_bent_behind_front
-    t305 = ops.select(t301, t304 * t304, 1.0) + ops.select(t301, t299 * t299, 1.0)
-    t306 = ops.select(t301, ops.sqrt(ops.select(t301, t305, 1.0)), 1.0)
-    t307 = 1.0 / t306
-    t308 = ops.select(aligned_wrist_bent_behind_front, 0.0, t299 * t307)
-    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t304 * t307))
-    t309 = ops.select(t119, c_wrist_bent_behind_front, 1.0)
-    t310 = ops.atan2(t308, t309)
-    t311 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t310))
-    t312 = ops.select(t119, t304 * c_wrist_bent_behind_front, 1.0)
-    t313 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t291)
-    t314 = t235 * (R1_31 * t291 + T33 * c6_bent_behind_front_2)
-    t315 = ops.select(t119, t236 * (t313 - R1_33 * t298) - t314, 1.0)
-    t316 = ops.atan2(t312 - ops.select(t119, t299 * t308, 1.0), t315)
-    t317 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t316))
-    t318 = t308 * (t236 * t302 + t235 * R3_11_bent_behind_front)
-    t319 = c_wrist_bent_behind_front * (t236 * t292 + t235 * R3_21_bent_behind_front)
-    t320 = ops.select(t119, t318, 1.0) + ops.select(t119, t319, 1.0)
-    R3_13_bent_behind_front = R2_11_bent_behind_front * t298 + R1_13 * c5_bent_behind_front_2
-    t321 = ops.select(t119, t308 * R3_13_bent_behind_front, 1.0)
-    R3_23_bent_behind_front = t298 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
-    t322 = c_wrist_bent_behind_front * R3_23_bent_behind_front
-    t323 = ops.select(t119, -(t321 + ops.select(t119, t322, 1.0)), 1.0)
-    t324 = ops.atan2(t320, t323)
-    t325 = ops.select(failed_2, ops.nan, ops.wrap_cut(t324))
-    t326 = ops.select(failed_2, ops.nan, t270)
-    t327 = ops.select(t119, c5_bent_behind_front_2, 1.0)
-    t328 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t298, t327)))
-    t329 = ops.select(t119, c6_bent_behind_front_2, 1.0)
-    t330 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t291, t329)))
-    t331 = ops.select(failed_2, ops.nan, t277)
+    t285 = dot_5_bent_behind_front * dot_5_bent_behind_front
+    t286 = 1.0 / ops.sqrt(t109 + t285)
+    c5_bent_behind_front = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t286)
+    t287 = c5_bent_behind_front * (R1_11 * c6_bent_behind_front - T13 * t116)
+    t288 = ops.select(on_axis_5_bent_behind_front, 0.0, t108 * t286)
+    t289 = t284 - t82 * (t287 - R1_13 * t288)
+    t290 = t83 * (R1_21 * t116 + T23 * c6_bent_behind_front)
+    t291 = c5_bent_behind_front * (R1_21 * c6_bent_behind_front - T23 * t116)
+    t292 = t290 - t82 * (t291 - R1_23 * t288)
+    aligned_wrist_bent_behind_front = ops.sqrt(t289 * t289 + t292 * t292) <= t114
+    t293 = ops.select(free6, 0.0, t247 + t248)
+    c6_bent_behind_front_2 = ops.select(free6, 1.0, t250 - t249)
+    t294 = R1_21 * t293 + T23 * c6_bent_behind_front_2
+    dot_5_bent_behind_front_2 = v_x_2 * (u_x * c6_bent_behind_front_2 - s_z * t293)
+    t295 = t120 & ops.opposite(on_axis_5_bent_behind_front)
+    t296 = dot_5_bent_behind_front_2 * dot_5_bent_behind_front_2
+    t297 = ops.select(t295, ops.sqrt(ops.select(t295, t253 + t296, 1.0)), 1.0)
+    t298 = 1.0 / t297
+    c5_bent_behind_front_2 = ops.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front_2 * t298)
+    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front_2 - T23 * t293
+    t299 = c5_bent_behind_front_2 * R2_21_bent_behind_front
+    t300 = ops.select(on_axis_5_bent_behind_front, 0.0, t252 * t298)
+    R3_21_bent_behind_front = t299 - R1_23 * t300
+    t301 = t237 * t294 - t238 * R3_21_bent_behind_front
+    t302 = ops.opposite(aligned_wrist_bent_behind_front)
+    t303 = t120 & t302
+    t304 = R1_11 * t293 + T13 * c6_bent_behind_front_2
+    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front_2 - T13 * t293
+    t305 = c5_bent_behind_front_2 * R2_11_bent_behind_front
+    R3_11_bent_behind_front = t305 - R1_13 * t300
+    t306 = t237 * t304 - t238 * R3_11_bent_behind_front
+    t307 = ops.select(t303, t306 * t306, 1.0) + ops.select(t303, t301 * t301, 1.0)
+    t308 = ops.select(t303, ops.sqrt(ops.select(t303, t307, 1.0)), 1.0)
+    t309 = 1.0 / t308
+    t310 = ops.select(aligned_wrist_bent_behind_front, 0.0, t301 * t309)
+    c_wrist_bent_behind_front = ops.select(aligned_wrist_bent_behind_front, 1.0, -(t306 * t309))
+    t311 = ops.select(t120, c_wrist_bent_behind_front, 1.0)
+    t312 = ops.atan2(t310, t311)
+    t313 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t312))
+    t314 = ops.select(t120, t306 * c_wrist_bent_behind_front, 1.0)
+    t315 = c5_bent_behind_front_2 * (R1_31 * c6_bent_behind_front_2 - T33 * t293)
+    t316 = t237 * (R1_31 * t293 + T33 * c6_bent_behind_front_2)
+    t317 = ops.select(t120, t238 * (t315 - R1_33 * t300) - t316, 1.0)
+    t318 = ops.atan2(t314 - ops.select(t120, t301 * t310, 1.0), t317)
+    t319 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t318))
+    t320 = t310 * (t238 * t304 + t237 * R3_11_bent_behind_front)
+    t321 = c_wrist_bent_behind_front * (t238 * t294 + t237 * R3_21_bent_behind_front)
+    t322 = ops.select(t120, t320, 1.0) + ops.select(t120, t321, 1.0)
+    R3_13_bent_behind_front = R2_11_bent_behind_front * t300 + R1_13 * c5_bent_behind_front_2
+    t323 = ops.select(t120, t310 * R3_13_bent_behind_front, 1.0)
+    R3_23_bent_behind_front = t300 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front_2
+    t324 = c_wrist_bent_behind_front * R3_23_bent_behind_front
+    t325 = ops.select(t120, -(t323 + ops.select(t120, t324, 1.0)), 1.0)
+    t326 = ops.atan2(t322, t325)
+    t327 = ops.select(failed_2, ops.nan, ops.wrap_cut(t326))
+    t328 = ops.select(failed_2, ops.nan, t272)
+    t329 = ops.select(t120, c5_bent_behind_front_2, 1.0)
+    t330 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t300, t329)))
+    t331 = ops.select(t120, c6_bent_behind_front_2, 1.0)
+    t332 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t293, t331)))
+    t333 = ops.select(failed_2, ops.nan, t279)
     flip_wrist_bent_behind_back = ops.select(aligned_wrist_bent_behind_front, 0.0, 3.141592653589793)
-    t332 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t310))
-    t333 = ops.select(failed_2, ops.nan, ops.wrap_cut(t316))
-    t334 = ops.select(failed_2, ops.nan, ops.wrap(t324 + flip_wrist_bent_behind_back))
+    t334 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_bent_behind_back - t312))
+    t335 = ops.select(failed_2, ops.nan, ops.wrap_cut(t318))
+    t336 = ops.select(failed_2, ops.nan, ops.wrap(t326 + flip_wrist_bent_behind_back))
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
-    on_axis_5_over_ahead_front = ops.min(t163, t162) <= t91
+    on_axis_5_over_ahead_front = ops.min(t165, t164) <= t92
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
-    t335 = w_y * v_x_over_ahead_front
-    t336 = t335 * t335
-    t337 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t338 = 1.0 / ops.sqrt(t336 + t337)
-    c5_over_ahead_front = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t338)
+    t337 = w_y * v_x_over_ahead_front
+    t338 = t337 * t337
+    t339 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t340 = 1.0 / ops.sqrt(t338 + t339)
+    c5_over_ahead_front = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t340)
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    t339 = ops.select(on_axis_5_over_ahead_front, 0.0, t335 * t338)
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t339
-    R4_13_over_ahead_front = t145 * R2_13_over_ahead_front + t144 * R3_11_over_ahead_front
-    t340 = R4_13_over_ahead_front * R4_13_over_ahead_front
+    t341 = ops.select(on_axis_5_over_ahead_front, 0.0, t337 * t340)
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t341
+    R4_13_over_ahead_front = t146 * R2_13_over_ahead_front + t145 * R3_11_over_ahead_front
+    t342 = R4_13_over_ahead_front * R4_13_over_ahead_front
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t339
-    R4_23_over_ahead_front = t145 * R2_23_over_ahead_front + t144 * R3_21_over_ahead_front
-    t341 = R4_23_over_ahead_front * R4_23_over_ahead_front
-    aligned_wrist_over_ahead_front = ops.sqrt(t340 + t341) <= t113
-    t342 = t199 - t202
-    t343 = t204 - t205
-    t344 = t207 + t208
-    q__elbow_1_over_ahead_front_2 = ops.select(t47, a5 + a4 * t343 - d3 * t344, d3 * t343 - (d5 - a4 * t344))
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t341
+    R4_23_over_ahead_front = t146 * R2_23_over_ahead_front + t145 * R3_21_over_ahead_front
+    t343 = R4_23_over_ahead_front * R4_23_over_ahead_front
+    aligned_wrist_over_ahead_front = ops.sqrt(t342 + t343) <= t114
+    t344 = t201 - t204
+    t345 = t206 - t207
+    t346 = t209 + t210
+    q__elbow_1_over_ahead_front_2 = ops.select(t47, a5 + a4 * t345 - d3 * t346, d3 * t345 - (d5 - a4 * t346))
     size__elbow_1_over_ahead_front_2 = ops.abs(q__elbow_1_over_ahead_front_2)
-    t345 = ops.min(size__elbow_1_over_ahead_front_2, t219)
-    t346 = size__elbow_1_over_ahead_front_2 - ops.max(t59, t345)
-    t347 = t346 * t125
-    t348 = t347 - 2.0 * (t222 + t223)
-    t349 = ops.select(t176 & ops.opposite(t128), ops.max(0.0, t342 * t342 - t347 * t348), 1.0)
-    t350 = ops.select(t128, t348, t342 - t129 * ops.sqrt(t349))
-    t351 = ops.select(t128, t342, t347) / ops.select(t176, t350, 1.0)
-    half__elbow_1_over_ahead_front_2 = ops.select(t133, 0.0, t351)
-    t352 = half__elbow_1_over_ahead_front_2 * half__elbow_1_over_ahead_front_2
-    t353 = 1.0 / ops.select(t175, 1.0 + t352, 1.0)
-    cosine__elbow_1_over_ahead_front_2 = ops.select(t139, t353 * (1.0 - t352), 1.0)
-    by_s__elbow_1_over_ahead_front_2 = 2.0 * half__elbow_1_over_ahead_front_2 * t353
-    sine__elbow_1_over_ahead_front_2 = ops.select(t139, by_s__elbow_1_over_ahead_front_2, 0.0)
-    t354 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
-    t355 = t197 * cosine__elbow_1_over_ahead_front_2 + t354
-    celbow_over_ahead_front_2 = ops.select(no_link_elbow, t189, -ops.select(tangent_elbow, t355, t197))
-    t356 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
-    t357 = t356 - t197 * sine__elbow_1_over_ahead_front_2
-    t358 = ops.select(tangent_elbow, t357, s__elbow_1_over_ahead_front_2)
-    selbow_over_ahead_front_2 = ops.select(no_link_elbow, t232, t358)
-    t359 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
-    t360 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
-    v_x_over_ahead_front_2 = a5 - a4 * t359 - d3 * t360
-    t361 = ops.abs(v_x_over_ahead_front_2)
-    t362 = ops.max(0.0, -((height6 - t361) * (height6 + t361)))
-    t363 = d5 - a4 * t360 + d3 * t359
-    below6_over_ahead_front_2 = ops.max(reach_2 + t363, 0.0)
-    above6_over_ahead_front_2 = ops.max(reach_2 - t363, 0.0)
-    t364 = below6_over_ahead_front_2 * above6_over_ahead_front_2
-    held6_over_ahead_front_2 = ops.select(t151, t362, t364)
-    t365 = ops.select(t212, held6_over_ahead_front_2, 1.0)
-    t366 = t211 & ops.opposite(tangent6_over_ahead_front)
-    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t365), ops.sqrt(ops.select(t366, t364, 1.0)))
-    t367 = below6_over_ahead_front_2 - above6_over_ahead_front_2
-    t368 = ops.select(t212, 4.0 * held6_over_ahead_front_2 + t367 * t367, 1.0)
+    t347 = ops.min(size__elbow_1_over_ahead_front_2, t221)
+    t348 = size__elbow_1_over_ahead_front_2 - ops.max(t59, t347)
+    t349 = t348 * t126
+    t350 = t349 - 2.0 * (t224 + t225)
+    t351 = ops.select(t178 & ops.opposite(t129), ops.max(0.0, t344 * t344 - t349 * t350), 1.0)
+    t352 = ops.select(t129, t350, t344 - t130 * ops.sqrt(t351))
+    t353 = ops.select(t129, t344, t349) / ops.select(t178, t352, 1.0)
+    half__elbow_1_over_ahead_front_2 = ops.select(t134, 0.0, t353)
+    t354 = half__elbow_1_over_ahead_front_2 * half__elbow_1_over_ahead_front_2
+    t355 = 1.0 / ops.select(t177, 1.0 + t354, 1.0)
+    cosine__elbow_1_over_ahead_front_2 = ops.select(t140, t355 * (1.0 - t354), 1.0)
+    by_s__elbow_1_over_ahead_front_2 = 2.0 * half__elbow_1_over_ahead_front_2 * t355
+    sine__elbow_1_over_ahead_front_2 = ops.select(t140, by_s__elbow_1_over_ahead_front_2, 0.0)
+    t356 = s__elbow_1_over_ahead_front_2 * sine__elbow_1_over_ahead_front_2
+    t357 = t199 * cosine__elbow_1_over_ahead_front_2 + t356
+    celbow_over_ahead_front_2 = ops.select(no_link_elbow, t191, -ops.select(tangent_elbow, t357, t199))
+    t358 = s__elbow_1_over_ahead_front_2 * cosine__elbow_1_over_ahead_front_2
+    t359 = t358 - t199 * sine__elbow_1_over_ahead_front_2
+    t360 = ops.select(tangent_elbow, t359, s__elbow_1_over_ahead_front_2)
+    selbow_over_ahead_front_2 = ops.select(no_link_elbow, t234, t360)
+    t361 = c_straight_2 * celbow_over_ahead_front_2 + s_straight_2 * selbow_over_ahead_front_2
+    t362 = c_straight_2 * selbow_over_ahead_front_2 - s_straight_2 * celbow_over_ahead_front_2
+    v_x_over_ahead_front_2 = a5 - a4 * t361 - d3 * t362
+    t363 = ops.abs(v_x_over_ahead_front_2)
+    t364 = ops.max(0.0, -((height6 - t363) * (height6 + t363)))
+    t365 = d5 - a4 * t362 + d3 * t361
+    below6_over_ahead_front_2 = ops.max(reach_2 + t365, 0.0)
+    above6_over_ahead_front_2 = ops.max(reach_2 - t365, 0.0)
+    t366 = below6_over_ahead_front_2 * above6_over_ahead_front_2
+    held6_over_ahead_front_2 = ops.select(t153, t364, t366)
+    t367 = ops.select(t214, held6_over_ahead_front_2, 1.0)
+    t368 = t213 & ops.opposite(tangent6_over_ahead_front)
+    kept6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t367), ops.sqrt(ops.select(t368, t366, 1.0)))
+    t369 = below6_over_ahead_front_2 - above6_over_ahead_front_2
+    t370 = ops.select(t214, 4.0 * held6_over_ahead_front_2 + t369 * t369, 1.0)
     width6_over_ahead_front_2 = below6_over_ahead_front_2 + above6_over_ahead_front_2
-    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t368), width6_over_ahead_front_2)
-    t369 = ops.select(t211, reach_2 * span6_over_ahead_front_2, 1.0)
-    t370 = 1.0 / t369
-    t371 = t101 * kept6_over_ahead_front_2 * t370
-    t372 = t370 * (u_x * t367)
-    s6_over_ahead_front_2 = ops.select(free6, 0.0, t371 - t372)
-    t373 = t370 * (t98 * kept6_over_ahead_front_2)
-    t374 = t370 * (s_z * t367)
-    c6_over_ahead_front_2 = ops.select(free6, 1.0, t373 + t374)
+    span6_over_ahead_front_2 = ops.select(tangent6_over_ahead_front, ops.sqrt(t370), width6_over_ahead_front_2)
+    t371 = ops.select(t213, reach_2 * span6_over_ahead_front_2, 1.0)
+    t372 = 1.0 / t371
+    t373 = t102 * kept6_over_ahead_front_2 * t372
+    t374 = t372 * (u_x * t369)
+    s6_over_ahead_front_2 = ops.select(free6, 0.0, t373 - t374)
+    t375 = t372 * (t99 * kept6_over_ahead_front_2)
+    t376 = t372 * (s_z * t369)
+    c6_over_ahead_front_2 = ops.select(free6, 1.0, t375 + t376)
     R2_23_over_ahead_front_2 = R1_21 * s6_over_ahead_front_2 - T23 * c6_over_ahead_front_2
     w_x_over_ahead_front_2 = u_x * c6_over_ahead_front_2 + s_z * s6_over_ahead_front_2
     dot_5_over_ahead_front_2 = v_x_over_ahead_front_2 * w_x_over_ahead_front_2
-    t375 = t165 & ops.opposite(on_axis_5_over_ahead_front)
-    t376 = w_y * v_x_over_ahead_front_2
-    t377 = t376 * t376
-    t378 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
-    t379 = ops.select(t375, ops.sqrt(ops.select(t375, t377 + t378, 1.0)), 1.0)
-    t380 = 1.0 / t379
-    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t380)
+    t377 = t167 & ops.opposite(on_axis_5_over_ahead_front)
+    t378 = w_y * v_x_over_ahead_front_2
+    t379 = t378 * t378
+    t380 = dot_5_over_ahead_front_2 * dot_5_over_ahead_front_2
+    t381 = ops.select(t377, ops.sqrt(ops.select(t377, t379 + t380, 1.0)), 1.0)
+    t382 = 1.0 / t381
+    c5_over_ahead_front_2 = ops.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front_2 * t382)
     R2_21_over_ahead_front_2 = R1_21 * c6_over_ahead_front_2 + T23 * s6_over_ahead_front_2
-    t381 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
-    t382 = ops.select(on_axis_5_over_ahead_front, 0.0, t376 * t380)
-    R3_21_over_ahead_front_2 = t381 - R1_23 * t382
-    R4_23_over_ahead_front_2 = t359 * R2_23_over_ahead_front_2 + t360 * R3_21_over_ahead_front_2
-    t383 = t165 & ops.opposite(aligned_wrist_over_ahead_front)
+    t383 = c5_over_ahead_front_2 * R2_21_over_ahead_front_2
+    t384 = ops.select(on_axis_5_over_ahead_front, 0.0, t378 * t382)
+    R3_21_over_ahead_front_2 = t383 - R1_23 * t384
+    R4_23_over_ahead_front_2 = t361 * R2_23_over_ahead_front_2 + t362 * R3_21_over_ahead_front_2
+    t385 = t167 & ops.opposite(aligned_wrist_over_ahead_front)
     R2_13_over_ahead_front_2 = R1_11 * s6_over_ahead_front_2 - T13 * c6_over_ahead_front_2
     R2_11_over_ahead_front_2 = R1_11 * c6_over_ahead_front_2 + T13 * s6_over_ahead_front_2
-    t384 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
-    R3_11_over_ahead_front_2 = t384 - R1_13 * t382
-    R4_13_over_ahead_front_2 = t359 * R2_13_over_ahead_front_2 + t360 * R3_11_over_ahead_front_2
-    t385 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
-    t386 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
-    t387 = ops.select(t383, t385, 1.0) + ops.select(t383, t386, 1.0)
-    t388 = ops.select(t383, ops.sqrt(ops.select(t383, t387, 1.0)), 1.0)
-    t389 = 1.0 / t388
-    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t389)
-    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t389)
-    t390 = ops.select(t165, c_wrist_over_ahead_front, 1.0)
-    t391 = ops.atan2(s_wrist_over_ahead_front, t390)
-    t392 = ops.select(failed_3, ops.nan, ops.wrap_cut(t391))
-    t393 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
-    t394 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
-    t395 = ops.select(t165, t393, 1.0) + ops.select(t165, t394, 1.0)
+    t386 = c5_over_ahead_front_2 * R2_11_over_ahead_front_2
+    R3_11_over_ahead_front_2 = t386 - R1_13 * t384
+    R4_13_over_ahead_front_2 = t361 * R2_13_over_ahead_front_2 + t362 * R3_11_over_ahead_front_2
+    t387 = R4_13_over_ahead_front_2 * R4_13_over_ahead_front_2
+    t388 = R4_23_over_ahead_front_2 * R4_23_over_ahead_front_2
+    t389 = ops.select(t385, t387, 1.0) + ops.select(t385, t388, 1.0)
+    t390 = ops.select(t385, ops.sqrt(ops.select(t385, t389, 1.0)), 1.0)
+    t391 = 1.0 / t390
+    s_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front_2 * t391)
+    c_wrist_over_ahead_front = ops.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front_2 * t391)
+    t392 = ops.select(t167, c_wrist_over_ahead_front, 1.0)
+    t393 = ops.atan2(s_wrist_over_ahead_front, t392)
+    t394 = ops.select(failed_3, ops.nan, ops.wrap_cut(t393))
+    t395 = R4_13_over_ahead_front_2 * c_wrist_over_ahead_front
+    t396 = R4_23_over_ahead_front_2 * s_wrist_over_ahead_front
+    t397 = ops.select(t167, t395, 1.0) + ops.select(t167, t396, 1.0)
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front_2 - T33 * c6_over_ahead_front_2
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front_2 + T33 * s6_over_ahead_front_2
-    t396 = c5_over_ahead_front_2 * R2_31_over_ahead_front
-    R4_33_over_ahead_front = t359 * R2_33_over_ahead_front + t360 * (t396 - R1_33 * t382)
-    t397 = ops.select(t165, R4_33_over_ahead_front, 1.0)
-    t398 = ops.atan2(t395, t397)
-    t399 = ops.select(failed_3, ops.nan, ops.wrap_cut(t398))
-    t400 = t360 * R2_13_over_ahead_front_2 - t359 * R3_11_over_ahead_front_2
-    t401 = ops.select(t165, s_wrist_over_ahead_front * t400, 1.0)
-    t402 = t360 * R2_23_over_ahead_front_2 - t359 * R3_21_over_ahead_front_2
-    t403 = ops.select(t165, c_wrist_over_ahead_front * t402, 1.0)
-    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t382 + R1_13 * c5_over_ahead_front_2
-    t404 = s_wrist_over_ahead_front * R3_13_over_ahead_front
-    R3_23_over_ahead_front = t382 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
-    t405 = c_wrist_over_ahead_front * R3_23_over_ahead_front
-    t406 = ops.select(t165, t404, 1.0) - ops.select(t165, t405, 1.0)
-    t407 = ops.atan2(t401 - t403, ops.select(t165, t406, 1.0))
-    t408 = ops.select(failed_3, ops.nan, ops.wrap_cut(t407))
-    t409 = ops.wrap_cut(ops.atan2(t360, ops.select(t172, t359, 1.0)))
-    t410 = ops.select(failed_3, ops.nan, t409)
-    t411 = ops.atan2(t382, ops.select(t165, c5_over_ahead_front_2, 1.0))
-    t412 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t411))
-    t413 = ops.atan2(s6_over_ahead_front_2, ops.select(t165, c6_over_ahead_front_2, 1.0))
-    t414 = ops.select(failed_3, ops.nan, ops.wrap_cut(t413))
-    t415 = ops.select(failed_3, ops.nan, t277)
+    t398 = c5_over_ahead_front_2 * R2_31_over_ahead_front
+    R4_33_over_ahead_front = t361 * R2_33_over_ahead_front + t362 * (t398 - R1_33 * t384)
+    t399 = ops.select(t167, R4_33_over_ahead_front, 1.0)
+    t400 = ops.atan2(t397, t399)
+    t401 = ops.select(failed_3, ops.nan, ops.wrap_cut(t400))
+    t402 = t362 * R2_13_over_ahead_front_2 - t361 * R3_11_over_ahead_front_2
+    t403 = ops.select(t167, s_wrist_over_ahead_front * t402, 1.0)
+    t404 = t362 * R2_23_over_ahead_front_2 - t361 * R3_21_over_ahead_front_2
+    t405 = ops.select(t167, c_wrist_over_ahead_front * t404, 1.0)
+    R3_13_over_ahead_front = R2_11_over_ahead_front_2 * t384 + R1_13 * c5_over_ahead_front_2
+    t406 = s_wrist_over_ahead_front * R3_13_over_ahead_front
+    R3_23_over_ahead_front = t384 * R2_21_over_ahead_front_2 + R1_23 * c5_over_ahead_front_2
+    t407 = c_wrist_over_ahead_front * R3_23_over_ahead_front
+    t408 = ops.select(t167, t406, 1.0) - ops.select(t167, t407, 1.0)
+    t409 = ops.atan2(t403 - t405, ops.select(t167, t408, 1.0))
+    t410 = ops.select(failed_3, ops.nan, ops.wrap_cut(t409))
+    t411 = ops.wrap_cut(ops.atan2(t362, ops.select(t174, t361, 1.0)))
+    t412 = ops.select(failed_3, ops.nan, t411)
+    t413 = ops.atan2(t384, ops.select(t167, c5_over_ahead_front_2, 1.0))
+    t414 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t413))
+    t415 = ops.atan2(s6_over_ahead_front_2, ops.select(t167, c6_over_ahead_front_2, 1.0))
+    t416 = ops.select(failed_3, ops.nan, ops.wrap_cut(t415))
+    t417 = ops.select(failed_3, ops.nan, t279)
     flip_wrist_over_ahead_back = ops.select(aligned_wrist_over_ahead_front, 0.0, 3.141592653589793)
-    t416 = ops.select(failed_3, ops.nan, ops.wrap(t391 + flip_wrist_over_ahead_back))
-    t417 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t398))
-    t418 = ops.select(failed_3, ops.nan, ops.wrap(t407 + flip_wrist_over_ahead_back))
-    t419 = t145 * (R1_11 * t166 + T13 * c6_over_behind_front)
-    on_axis_5_over_behind_front = ops.min(t163, t168) <= t91
+    t418 = ops.select(failed_3, ops.nan, ops.wrap(t393 + flip_wrist_over_ahead_back))
+    t419 = ops.select(failed_3, ops.nan, ops.wrap_cut(-t400))
+    t420 = ops.select(failed_3, ops.nan, ops.wrap(t409 + flip_wrist_over_ahead_back))
+    t421 = t146 * (R1_11 * t168 + T13 * c6_over_behind_front)
+    on_axis_5_over_behind_front = ops.min(t165, t170) <= t92
     dot_5_over_behind_front = v_x_over_ahead_front * w_x_over_behind_front
-    t420 = dot_5_over_behind_front * dot_5_over_behind_front
-    t421 = 1.0 / ops.sqrt(t336 + t420)
-    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t421)
-    t422 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t166)
-    t423 = ops.select(on_axis_5_over_behind_front, 0.0, t335 * t421)
-    t424 = t419 - t144 * (t422 - R1_13 * t423)
-    t425 = t145 * (R1_21 * t166 + T23 * c6_over_behind_front)
-    t426 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t166)
-    t427 = t425 - t144 * (t426 - R1_23 * t423)
-    aligned_wrist_over_behind_front = ops.sqrt(t424 * t424 + t427 * t427) <= t113
-    t428 = ops.select(free6, 0.0, t371 + t372)
-    c6_over_behind_front_2 = ops.select(free6, 1.0, t374 - t373)
-    t429 = R1_21 * t428 + T23 * c6_over_behind_front_2
-    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (u_x * c6_over_behind_front_2 - s_z * t428)
-    t430 = t170 & ops.opposite(on_axis_5_over_behind_front)
-    t431 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
-    t432 = ops.select(t430, ops.sqrt(ops.select(t430, t377 + t431, 1.0)), 1.0)
-    t433 = 1.0 / t432
-    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t433)
-    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t428
-    t434 = c5_over_behind_front_2 * R2_21_over_behind_front
-    t435 = ops.select(on_axis_5_over_behind_front, 0.0, t376 * t433)
-    R3_21_over_behind_front = t434 - R1_23 * t435
-    t436 = t359 * t429 - t360 * R3_21_over_behind_front
-    t437 = ops.opposite(aligned_wrist_over_behind_front)
-    t438 = t170 & t437
-    t439 = R1_11 * t428 + T13 * c6_over_behind_front_2
-    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t428
-    t440 = c5_over_behind_front_2 * R2_11_over_behind_front
-    R3_11_over_behind_front = t440 - R1_13 * t435
-    t441 = t359 * t439 - t360 * R3_11_over_behind_front
-    t442 = ops.select(t438, t441 * t441, 1.0) + ops.select(t438, t436 * t436, 1.0)
-    t443 = ops.select(t438, ops.sqrt(ops.select(t438, t442, 1.0)), 1.0)
-    t444 = 1.0 / t443
-    t445 = ops.select(aligned_wrist_over_behind_front, 0.0, t436 * t444)
-    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t441 * t444))
-    t446 = ops.select(t170, c_wrist_over_behind_front, 1.0)
-    t447 = ops.atan2(t445, t446)
-    t448 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t447))
-    t449 = ops.select(t170, t441 * c_wrist_over_behind_front, 1.0)
-    t450 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t428)
-    t451 = t359 * (R1_31 * t428 + T33 * c6_over_behind_front_2)
-    t452 = ops.select(t170, t360 * (t450 - R1_33 * t435) - t451, 1.0)
-    t453 = ops.atan2(t449 - ops.select(t170, t436 * t445, 1.0), t452)
-    t454 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t453))
-    t455 = t445 * (t360 * t439 + t359 * R3_11_over_behind_front)
-    t456 = c_wrist_over_behind_front * (t360 * t429 + t359 * R3_21_over_behind_front)
-    t457 = ops.select(t170, t455, 1.0) + ops.select(t170, t456, 1.0)
-    R3_13_over_behind_front = R2_11_over_behind_front * t435 + R1_13 * c5_over_behind_front_2
-    t458 = ops.select(t170, t445 * R3_13_over_behind_front, 1.0)
-    R3_23_over_behind_front = t435 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
-    t459 = c_wrist_over_behind_front * R3_23_over_behind_front
-    t460 = ops.select(t170, -(t458 + ops.select(t170, t459, 1.0)), 1.0)
-    t461 = ops.atan2(t457, t460)
-    t462 = ops.select(failed_4, ops.nan, ops.wrap_cut(t461))
-    t463 = ops.select(failed_4, ops.nan, t409)
-    t464 = ops.select(t170, c5_over_behind_front_2, 1.0)
-    t465 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t435, t464)))
-    t466 = ops.select(t170, c6_over_behind_front_2, 1.0)
-    t467 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t428, t466)))
-    t468 = ops.select(failed_4, ops.nan, t277)
+    t422 = dot_5_over_behind_front * dot_5_over_behind_front
+    t423 = 1.0 / ops.sqrt(t338 + t422)
+    c5_over_behind_front = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t423)
+    t424 = c5_over_behind_front * (R1_11 * c6_over_behind_front - T13 * t168)
+    t425 = ops.select(on_axis_5_over_behind_front, 0.0, t337 * t423)
+    t426 = t421 - t145 * (t424 - R1_13 * t425)
+    t427 = t146 * (R1_21 * t168 + T23 * c6_over_behind_front)
+    t428 = c5_over_behind_front * (R1_21 * c6_over_behind_front - T23 * t168)
+    t429 = t427 - t145 * (t428 - R1_23 * t425)
+    aligned_wrist_over_behind_front = ops.sqrt(t426 * t426 + t429 * t429) <= t114
+    t430 = ops.select(free6, 0.0, t373 + t374)
+    c6_over_behind_front_2 = ops.select(free6, 1.0, t376 - t375)
+    t431 = R1_21 * t430 + T23 * c6_over_behind_front_2
+    dot_5_over_behind_front_2 = v_x_over_ahead_front_2 * (u_x * c6_over_behind_front_2 - s_z * t430)
+    t432 = t172 & ops.opposite(on_axis_5_over_behind_front)
+    t433 = dot_5_over_behind_front_2 * dot_5_over_behind_front_2
+    t434 = ops.select(t432, ops.sqrt(ops.select(t432, t379 + t433, 1.0)), 1.0)
+    t435 = 1.0 / t434
+    c5_over_behind_front_2 = ops.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front_2 * t435)
+    R2_21_over_behind_front = R1_21 * c6_over_behind_front_2 - T23 * t430
+    t436 = c5_over_behind_front_2 * R2_21_over_behind_front
+    t437 = ops.select(on_axis_5_over_behind_front, 0.0, t378 * t435)
+    R3_21_over_behind_front = t436 - R1_23 * t437
+    t438 = t361 * t431 - t362 * R3_21_over_behind_front
+    t439 = ops.opposite(aligned_wrist_over_behind_front)
+    t440 = t172 & t439
+    t441 = R1_11 * t430 + T13 * c6_over_behind_front_2
+    R2_11_over_behind_front = R1_11 * c6_over_behind_front_2 - T13 * t430
+    t442 = c5_over_behind_front_2 * R2_11_over_behind_front
+    R3_11_over_behind_front = t442 - R1_13 * t437
+    t443 = t361 * t441 - t362 * R3_11_over_behind_front
+    t444 = ops.select(t440, t443 * t443, 1.0) + ops.select(t440, t438 * t438, 1.0)
+    t445 = ops.select(t440, ops.sqrt(ops.select(t440, t444, 1.0)), 1.0)
+    t446 = 1.0 / t445
+    t447 = ops.select(aligned_wrist_over_behind_front, 0.0, t438 * t446)
+    c_wrist_over_behind_front = ops.select(aligned_wrist_over_behind_front, 1.0, -(t443 * t446))
+    t448 = ops.select(t172, c_wrist_over_behind_front, 1.0)
+    t449 = ops.atan2(t447, t448)
+    t450 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t449))
+    t451 = ops.select(t172, t443 * c_wrist_over_behind_front, 1.0)
+    t452 = c5_over_behind_front_2 * (R1_31 * c6_over_behind_front_2 - T33 * t430)
+    t453 = t361 * (R1_31 * t430 + T33 * c6_over_behind_front_2)
+    t454 = ops.select(t172, t362 * (t452 - R1_33 * t437) - t453, 1.0)
+    t455 = ops.atan2(t451 - ops.select(t172, t438 * t447, 1.0), t454)
+    t456 = ops.select(failed_4, ops.nan, ops.wrap_cut(-t455))
+    t457 = t447 * (t362 * t441 + t361 * R3_11_over_behind_front)
+    t458 = c_wrist_over_behind_front * (t362 * t431 + t361 * R3_21_over_behind_front)
+    t459 = ops.select(t172, t457, 1.0) + ops.select(t172, t458, 1.0)
+    R3_13_over_behind_front = R2_11_over_behind_front * t437 + R1_13 * c5_over_behind_front_2
+    t460 = ops.select(t172, t447 * R3_13_over_behind_front, 1.0)
+    R3_23_over_behind_front = t437 * R2_21_over_behind_front + R1_23 * c5_over_behind_front_2
+    t461 = c_wrist_over_behind_front * R3_23_over_behind_front
+    t462 = ops.select(t172, -(t460 + ops.select(t172, t461, 1.0)), 1.0)
+    t463 = ops.atan2(t459, t462)
+    t464 = ops.select(failed_4, ops.nan, ops.wrap_cut(t463))
+    t465 = ops.select(failed_4, ops.nan, t411)
+    t466 = ops.select(t172, c5_over_behind_front_2, 1.0)
+    t467 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t437, t466)))
+    t468 = ops.select(t172, c6_over_behind_front_2, 1.0)
+    t469 = ops.select(failed_4, ops.nan, ops.wrap_cut(-ops.atan2(t430, t468)))
+    t470 = ops.select(failed_4, ops.nan, t279)
     flip_wrist_over_behind_back = ops.select(aligned_wrist_over_behind_front, 0.0, 3.141592653589793)
-    t469 = ops.select(failed_4, ops.nan, ops.wrap(flip_wrist_over_behind_back - t447))
-    t470 = ops.select(failed_4, ops.nan, ops.wrap_cut(t453))
-    t471 = ops.select(failed_4, ops.nan, ops.wrap(t461 + flip_wrist_over_behind_back))
-    t472 = no_link_elbow | free6
-    t473 = ops.status(invalid, unreachable, t472 | on_axis_5 | aligned_wrist)
-    t474 = t472 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
-    t475 = ops.status(invalid, unreachable_2, t474)
-    t476 = t472 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
-    t477 = ops.status(invalid, unreachable_3, t476)
-    t478 = t472 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
-    t479 = ops.status(invalid, unreachable_4, t478)
+    t471 = ops.select(failed_4, ops.nan, ops.wrap(flip_wrist_over_behind_back - t449))
+    t472 = ops.select(failed_4, ops.nan, ops.wrap_cut(t455))
+    t473 = ops.select(failed_4, ops.nan, ops.wrap(t463 + flip_wrist_over_behind_back))
+    t474 = no_link_elbow | free6
+    t475 = ops.status(invalid, unreachable, t474 | on_axis_5 | aligned_wrist)
+    t476 = t474 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
+    t477 = ops.status(invalid, unreachable_2, t476)
+    t478 = t474 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
+    t479 = ops.status(invalid, unreachable_3, t478)
+    t480 = t474 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
+    t481 = ops.status(invalid, unreachable_4, t480)
     return (
-        t260,
-        t263,
-        t269,
+        t262,
+        t265,
         t271,
         t273,
         t275,
-        t278,
-        t279,
+        t277,
         t280,
         t281,
-        t271,
+        t282,
+        t283,
         t273,
         t275,
-        t278,
-        t311,
-        t317,
-        t325,
-        t326,
+        t277,
+        t280,
+        t313,
+        t319,
+        t327,
         t328,
         t330,
-        t331,
         t332,
         t333,
         t334,
-        t326,
+        t335,
+        t336,
         t328,
         t330,
-        t331,
-        t392,
-        t399,
-        t408,
+        t332,
+        t333,
+        t394,
+        t401,
         t410,
         t412,
         t414,
-        t415,
         t416,
         t417,
         t418,
-        t410,
+        t419,
+        t420,
         t412,
         t414,
-        t415,
-        t448,
-        t454,
-        t462,
-        t463,
+        t416,
+        t417,
+        t450,
+        t456,
+        t464,
         t465,
         t467,
-        t468,
         t469,
         t470,
         t471,
-        t463,
+        t472,
+        t473,
         t465,
         t467,
-        t468,
-        t473,
-        t473,
+        t469,
+        t470,
         t475,
         t475,
         t477,
         t477,
         t479,
         t479,
+        t481,
+        t481,
     )
 
 

@@ -12,7 +12,7 @@
  *   singularities: 5 add, 8 multiply, 3 sincos
  *   jacobian_space: 73 add, 155 multiply, 6 sincos
  *   jacobian_body: 83 add, 159 multiply, 6 sincos
- *   ik: 265 compare and select, 280 add, 23 atan2, 21 divide, 389 multiply, 1 sincos, 29 sqrt
+ *   ik: 267 compare and select, 280 add, 23 atan2, 21 divide, 389 multiply, 1 sincos, 29 sqrt
  *   ik where nothing vanishes: 154 compare and select, 222 add, 23 atan2, 14 divide, 321 multiply,
  *     1 sincos, 22 sqrt
  *

@@ -11,7 +11,7 @@
 #   singularities: 5 add, 8 multiply, 3 sincos
 #   jacobian_space: 73 add, 155 multiply, 6 sincos
 #   jacobian_body: 83 add, 159 multiply, 6 sincos
-#   ik: 265 compare and select, 280 add, 23 atan2, 21 divide, 389 multiply, 1 sincos, 29 sqrt
+#   ik: 267 compare and select, 280 add, 23 atan2, 21 divide, 389 multiply, 1 sincos, 29 sqrt
 #   ik where nothing vanishes: 154 compare and select, 222 add, 23 atan2, 14 divide, 321 multiply,
 #     1 sincos, 22 sqrt
 """Seven-joint arm with an offset elbow and hand (Franka).
@@ -1288,456 +1288,460 @@ def _ik(
     del t14, t17, t18
     t103 = t102 & (-t101 <= t64) & (-t101 <= t65)
     del t64, t65
-    t104 = np.abs(_runtime.select(tangent6, t80 - t79, 0.0))
+    t104 = tangent6 | tangent_elbow
+    del tangent6
+    t105 = np.abs(_runtime.select(t104, t80 - t79, 0.0))
     del t80
-    unreachable = np.logical_not(t103 & (t104 <= t101))
-    del t104
-    t105 = _runtime.poison(invalid | unreachable)
+    unreachable = np.logical_not(t103 & (t105 <= t101))
+    del t105
+    t106 = _runtime.poison(invalid | unreachable)
     R1_31 = T31 * c_x_theta7 - T32 * s_x_theta7
     R1_33 = T31 * s_x_theta7 + T32 * c_x_theta7
-    t106 = t62 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t84)
-    t107 = np.arctan2(R4_13 * c_wrist + R4_23 * s_wrist, t59 * (R1_31 * s6 - T33 * c6) + t106)
-    del R4_13, R4_23, t106
-    t108 = s_wrist * (t62 * R2_13 - t59 * R3_11) - c_wrist * (t62 * R2_23 - t59 * R3_21)
+    t107 = t62 * (c5 * (R1_31 * c6 + T33 * s6) - R1_33 * t84)
+    t108 = np.arctan2(R4_13 * c_wrist + R4_23 * s_wrist, t59 * (R1_31 * s6 - T33 * c6) + t107)
+    del R4_13, R4_23, t107
+    t109 = s_wrist * (t62 * R2_13 - t59 * R3_11) - c_wrist * (t62 * R2_23 - t59 * R3_21)
     del R2_13, R2_23, R3_11, R3_21
-    t109 = s_wrist * (R2_11 * t84 + R1_13 * c5) - c_wrist * (t84 * R2_21 + R1_23 * c5)
+    t110 = s_wrist * (R2_11 * t84 + R1_13 * c5) - c_wrist * (t84 * R2_21 + R1_23 * c5)
     del R2_11, R2_21, c_wrist, s_wrist
-    t110 = np.arctan2(t108, t109)
-    del t108, t109
-    t111 = _runtime.wrap_cut(np.arctan2(t62, t59))
-    t112 = t111 + t105
-    t113 = _runtime.wrap_cut(-np.arctan2(t84, c5)) + t105
+    t111 = np.arctan2(t109, t110)
+    del t109, t110
+    t112 = _runtime.wrap_cut(np.arctan2(t62, t59))
+    t113 = t112 + t106
+    t114 = _runtime.wrap_cut(-np.arctan2(t84, c5)) + t106
     del c5, t84
-    t114 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t105
+    t115 = _runtime.wrap_cut(np.arctan2(s6, c6)) + t106
     del c6, s6
-    t115 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
+    t116 = _runtime.wrap_cut(np.arctan2(s_x_theta7, c_x_theta7))
     del c_x_theta7, s_x_theta7
-    t116 = t115 + t105
+    t117 = t116 + t106
     flip_wrist = _runtime.select(aligned_wrist, 0.0, 3.141592653589793)
-    t117 = _runtime.select(free6, 0.0, t74 + t75)
+    t118 = _runtime.select(free6, 0.0, t74 + t75)
     del t74, t75
     c6_bent_behind_front = _runtime.select(free6, 1.0, t78 - t77)
     del t77, t78
-    t118 = R1_11 * t117 + T13 * c6_bent_behind_front
-    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t117
-    t119 = w_x_bent_behind_front * w_x_bent_behind_front
-    t120 = np.sqrt(t12 + t119)
-    del t119
-    on_axis_5_bent_behind_front = np.minimum(t79, t120) <= t60
+    t119 = R1_11 * t118 + T13 * c6_bent_behind_front
+    w_x_bent_behind_front = u_x * c6_bent_behind_front - s_z * t118
+    t120 = w_x_bent_behind_front * w_x_bent_behind_front
+    t121 = np.sqrt(t12 + t120)
+    del t120
+    on_axis_5_bent_behind_front = np.minimum(t79, t121) <= t60
     dot_5_bent_behind_front = v_x * w_x_bent_behind_front
     del v_x, w_x_bent_behind_front
-    t121 = dot_5_bent_behind_front * dot_5_bent_behind_front
-    t122 = 1.0 / np.sqrt(t82 + t121)
-    del t121, t82
-    c5_bent_behind_front = _runtime.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t122)
+    t122 = dot_5_bent_behind_front * dot_5_bent_behind_front
+    t123 = 1.0 / np.sqrt(t82 + t122)
+    del t122, t82
+    c5_bent_behind_front = _runtime.select(on_axis_5_bent_behind_front, 1.0, dot_5_bent_behind_front * t123)
     del dot_5_bent_behind_front
-    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front - T13 * t117
-    t123 = c5_bent_behind_front * R2_11_bent_behind_front
-    t124 = _runtime.select(on_axis_5_bent_behind_front, 0.0, t81 * t122)
-    del t122, t81
-    R3_11_bent_behind_front = t123 - R1_13 * t124
-    del t123
-    t125 = t59 * t118 - t62 * R3_11_bent_behind_front
-    t126 = R1_21 * t117 + T23 * c6_bent_behind_front
-    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front - T23 * t117
-    t127 = c5_bent_behind_front * R2_21_bent_behind_front
-    R3_21_bent_behind_front = t127 - R1_23 * t124
-    del t127
-    t128 = t59 * t126 - t62 * R3_21_bent_behind_front
-    h_wrist_bent_behind_front = np.sqrt(t125 * t125 + t128 * t128)
+    R2_11_bent_behind_front = R1_11 * c6_bent_behind_front - T13 * t118
+    t124 = c5_bent_behind_front * R2_11_bent_behind_front
+    t125 = _runtime.select(on_axis_5_bent_behind_front, 0.0, t81 * t123)
+    del t123, t81
+    R3_11_bent_behind_front = t124 - R1_13 * t125
+    del t124
+    t126 = t59 * t119 - t62 * R3_11_bent_behind_front
+    t127 = R1_21 * t118 + T23 * c6_bent_behind_front
+    R2_21_bent_behind_front = R1_21 * c6_bent_behind_front - T23 * t118
+    t128 = c5_bent_behind_front * R2_21_bent_behind_front
+    R3_21_bent_behind_front = t128 - R1_23 * t125
+    del t128
+    t129 = t59 * t127 - t62 * R3_21_bent_behind_front
+    h_wrist_bent_behind_front = np.sqrt(t126 * t126 + t129 * t129)
     aligned_wrist_bent_behind_front = h_wrist_bent_behind_front <= t85
-    t129 = 1.0 / h_wrist_bent_behind_front
+    t130 = 1.0 / h_wrist_bent_behind_front
     del h_wrist_bent_behind_front
-    t130 = _runtime.select(aligned_wrist_bent_behind_front, 0.0, t128 * t129)
-    c_wrist_bent_behind_front = _runtime.select(aligned_wrist_bent_behind_front, 1.0, -(t125 * t129))
-    del t129
-    t131 = np.arctan2(t130, c_wrist_bent_behind_front)
-    t132 = np.abs(_runtime.select(tangent6, t120 - t79, 0.0))
-    del t120, t79, tangent6
-    unreachable_2 = np.logical_not(t103 & (t132 <= t101))
-    del t103, t132
-    t133 = _runtime.poison(invalid | unreachable_2)
-    t134 = t125 * c_wrist_bent_behind_front - t128 * t130
-    del t125, t128
-    t135 = c5_bent_behind_front * (R1_31 * c6_bent_behind_front - T33 * t117)
-    t136 = t59 * (R1_31 * t117 + T33 * c6_bent_behind_front)
-    t137 = np.arctan2(t134, t62 * (t135 - R1_33 * t124) - t136)
-    del t134, t135, t136
-    t138 = t130 * (t62 * t118 + t59 * R3_11_bent_behind_front)
-    del R3_11_bent_behind_front, t118
-    t139 = c_wrist_bent_behind_front * (t62 * t126 + t59 * R3_21_bent_behind_front)
-    del R3_21_bent_behind_front, t126, t59, t62
-    R3_13_bent_behind_front = R2_11_bent_behind_front * t124 + R1_13 * c5_bent_behind_front
+    t131 = _runtime.select(aligned_wrist_bent_behind_front, 0.0, t129 * t130)
+    c_wrist_bent_behind_front = _runtime.select(aligned_wrist_bent_behind_front, 1.0, -(t126 * t130))
+    del t130
+    t132 = np.arctan2(t131, c_wrist_bent_behind_front)
+    t133 = np.abs(_runtime.select(t104, t121 - t79, 0.0))
+    del t104, t121, t79
+    unreachable_2 = np.logical_not(t103 & (t133 <= t101))
+    del t103, t133
+    t134 = _runtime.poison(invalid | unreachable_2)
+    t135 = t126 * c_wrist_bent_behind_front - t129 * t131
+    del t126, t129
+    t136 = c5_bent_behind_front * (R1_31 * c6_bent_behind_front - T33 * t118)
+    t137 = t59 * (R1_31 * t118 + T33 * c6_bent_behind_front)
+    t138 = np.arctan2(t135, t62 * (t136 - R1_33 * t125) - t137)
+    del t135, t136, t137
+    t139 = t131 * (t62 * t119 + t59 * R3_11_bent_behind_front)
+    del R3_11_bent_behind_front, t119
+    t140 = c_wrist_bent_behind_front * (t62 * t127 + t59 * R3_21_bent_behind_front)
+    del R3_21_bent_behind_front, t127, t59, t62
+    R3_13_bent_behind_front = R2_11_bent_behind_front * t125 + R1_13 * c5_bent_behind_front
     del R2_11_bent_behind_front
-    R3_23_bent_behind_front = t124 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front
+    R3_23_bent_behind_front = t125 * R2_21_bent_behind_front + R1_23 * c5_bent_behind_front
     del R2_21_bent_behind_front
-    t140 = c_wrist_bent_behind_front * R3_23_bent_behind_front
+    t141 = c_wrist_bent_behind_front * R3_23_bent_behind_front
     del R3_23_bent_behind_front, c_wrist_bent_behind_front
-    t141 = np.arctan2(t138 + t139, -(t130 * R3_13_bent_behind_front + t140))
-    del R3_13_bent_behind_front, t130, t138, t139, t140
-    t142 = t111 + t133
-    del t111
-    t143 = _runtime.wrap_cut(-np.arctan2(t124, c5_bent_behind_front))
-    del c5_bent_behind_front, t124
-    t144 = t143 + t133
-    del t143
-    t145 = _runtime.wrap_cut(-np.arctan2(t117, c6_bent_behind_front))
-    del c6_bent_behind_front, t117
-    t146 = t145 + t133
-    del t145
-    t147 = t115 + t133
+    t142 = np.arctan2(t139 + t140, -(t131 * R3_13_bent_behind_front + t141))
+    del R3_13_bent_behind_front, t131, t139, t140, t141
+    t143 = t112 + t134
+    del t112
+    t144 = _runtime.wrap_cut(-np.arctan2(t125, c5_bent_behind_front))
+    del c5_bent_behind_front, t125
+    t145 = t144 + t134
+    del t144
+    t146 = _runtime.wrap_cut(-np.arctan2(t118, c6_bent_behind_front))
+    del c6_bent_behind_front, t118
+    t147 = t146 + t134
+    del t146
+    t148 = t116 + t134
     flip_wrist_bent_behind_back = _runtime.select(aligned_wrist_bent_behind_front, 0.0, 3.141592653589793)
-    t148 = _runtime.wrap(flip_wrist_bent_behind_back - t131)
-    t149 = _runtime.wrap(t141 + flip_wrist_bent_behind_back)
+    t149 = _runtime.wrap(flip_wrist_bent_behind_back - t132)
+    t150 = _runtime.wrap(t142 + flip_wrist_bent_behind_back)
     del flip_wrist_bent_behind_back
-    t150 = t29 - t31
+    t151 = t29 - t31
     del t29, t31
-    t151 = t33 - t34
+    t152 = t33 - t34
     del t33, t34
-    t152 = t36 + t37
+    t153 = t36 + t37
     del t36, t37
-    q__elbow_1_over_ahead_front = _runtime.select(t27, a5 + a4 * t151 - d3 * t152, d3 * t151 - (d5 - a4 * t152))
-    del t151, t152, t27
+    q__elbow_1_over_ahead_front = _runtime.select(t27, a5 + a4 * t152 - d3 * t153, d3 * t152 - (d5 - a4 * t153))
+    del t152, t153, t27
     size__elbow_1_over_ahead_front = np.abs(q__elbow_1_over_ahead_front)
-    t153 = np.minimum(size__elbow_1_over_ahead_front, t40)
+    t154 = np.minimum(size__elbow_1_over_ahead_front, t40)
     del t40
-    t154 = size__elbow_1_over_ahead_front - np.maximum(t39, t153)
-    del size__elbow_1_over_ahead_front, t153, t39
-    t155 = t154 * _runtime.sign(q__elbow_1_over_ahead_front)
-    del q__elbow_1_over_ahead_front, t154
-    t156 = t155 - 2.0 * (t43 + t44)
+    t155 = size__elbow_1_over_ahead_front - np.maximum(t39, t154)
+    del size__elbow_1_over_ahead_front, t154, t39
+    t156 = t155 * _runtime.sign(q__elbow_1_over_ahead_front)
+    del q__elbow_1_over_ahead_front, t155
+    t157 = t156 - 2.0 * (t43 + t44)
     del t43, t44
-    inner__elbow_1_over_ahead_front = t150 * t150 - t155 * t156
-    t157 = inner__elbow_1_over_ahead_front < 0.0
-    t158 = np.maximum(0.0, inner__elbow_1_over_ahead_front)
+    inner__elbow_1_over_ahead_front = t151 * t151 - t156 * t157
+    t158 = inner__elbow_1_over_ahead_front < 0.0
+    t159 = np.maximum(0.0, inner__elbow_1_over_ahead_front)
     del inner__elbow_1_over_ahead_front
-    t159 = _runtime.select(t157, t156, t150 - _runtime.sign(-t150) * np.sqrt(t158))
-    del t156, t158
-    t160 = _runtime.select(t157, t150, t155)
-    del t150, t155, t157
-    half__elbow_1_over_ahead_front = _runtime.select(np.abs(t159) <= np.abs(t160), 0.0, t160 / t159)
-    del t159, t160
-    t161 = half__elbow_1_over_ahead_front * half__elbow_1_over_ahead_front
-    t162 = 1.0 / (1.0 + t161)
-    by_s__elbow_1_over_ahead_front = 2.0 * half__elbow_1_over_ahead_front * t162
+    t160 = _runtime.select(t158, t157, t151 - _runtime.sign(-t151) * np.sqrt(t159))
+    del t157, t159
+    t161 = _runtime.select(t158, t151, t156)
+    del t151, t156, t158
+    half__elbow_1_over_ahead_front = _runtime.select(np.abs(t160) <= np.abs(t161), 0.0, t161 / t160)
+    del t160, t161
+    t162 = half__elbow_1_over_ahead_front * half__elbow_1_over_ahead_front
+    t163 = 1.0 / (1.0 + t162)
+    by_s__elbow_1_over_ahead_front = 2.0 * half__elbow_1_over_ahead_front * t163
     del half__elbow_1_over_ahead_front
-    t163 = lever_elbow * np.abs(by_s__elbow_1_over_ahead_front)
+    t164 = lever_elbow * np.abs(by_s__elbow_1_over_ahead_front)
     del lever_elbow
-    by_c__elbow_1_over_ahead_front = t162 * (1.0 - t161)
-    del t161, t162
-    t164 = by_s__elbow_1_over_ahead_front * by_s__elbow_1_over_ahead_front
-    t165 = t164 / (1.0 + np.abs(by_c__elbow_1_over_ahead_front))
-    del t164
-    versine__elbow_1_over_ahead_front = _runtime.select(0.0 < by_c__elbow_1_over_ahead_front, t165, 1.0 - by_c__elbow_1_over_ahead_front)
+    by_c__elbow_1_over_ahead_front = t163 * (1.0 - t162)
+    del t162, t163
+    t165 = by_s__elbow_1_over_ahead_front * by_s__elbow_1_over_ahead_front
+    t166 = t165 / (1.0 + np.abs(by_c__elbow_1_over_ahead_front))
     del t165
-    cost__elbow_1_over_ahead_front = t163 + t52 * versine__elbow_1_over_ahead_front
-    del t163, t52, versine__elbow_1_over_ahead_front
-    t166 = cost__elbow_1_over_ahead_front <= whole__elbow_1
+    versine__elbow_1_over_ahead_front = _runtime.select(0.0 < by_c__elbow_1_over_ahead_front, t166, 1.0 - by_c__elbow_1_over_ahead_front)
+    del t166
+    cost__elbow_1_over_ahead_front = t164 + t52 * versine__elbow_1_over_ahead_front
+    del t164, t52, versine__elbow_1_over_ahead_front
+    t167 = cost__elbow_1_over_ahead_front <= whole__elbow_1
     del cost__elbow_1_over_ahead_front, whole__elbow_1
-    cosine__elbow_1_over_ahead_front = _runtime.select(t166, by_c__elbow_1_over_ahead_front, 1.0)
+    cosine__elbow_1_over_ahead_front = _runtime.select(t167, by_c__elbow_1_over_ahead_front, 1.0)
     del by_c__elbow_1_over_ahead_front
-    sine__elbow_1_over_ahead_front = _runtime.select(t166, by_s__elbow_1_over_ahead_front, 0.0)
-    del by_s__elbow_1_over_ahead_front, t166
-    t167 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
-    t168 = t26 * cosine__elbow_1_over_ahead_front + t167
-    del t167
-    celbow_over_ahead_front = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t168, t26))
-    del t168, t8
-    t169 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
+    sine__elbow_1_over_ahead_front = _runtime.select(t167, by_s__elbow_1_over_ahead_front, 0.0)
+    del by_s__elbow_1_over_ahead_front, t167
+    t168 = s__elbow_1_over_ahead_front * sine__elbow_1_over_ahead_front
+    t169 = t26 * cosine__elbow_1_over_ahead_front + t168
+    del t168
+    celbow_over_ahead_front = _runtime.select(no_link_elbow, t8, -_runtime.select(tangent_elbow, t169, t26))
+    del t169, t8
+    t170 = s__elbow_1_over_ahead_front * cosine__elbow_1_over_ahead_front
     del cosine__elbow_1_over_ahead_front
-    t170 = _runtime.select(tangent_elbow, t169 - t26 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
-    del s__elbow_1_over_ahead_front, sine__elbow_1_over_ahead_front, t169, t26, tangent_elbow
-    selbow_over_ahead_front = _runtime.select(no_link_elbow, t56, t170)
-    del t170, t56
-    t171 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
-    t172 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
+    t171 = _runtime.select(tangent_elbow, t170 - t26 * sine__elbow_1_over_ahead_front, s__elbow_1_over_ahead_front)
+    del s__elbow_1_over_ahead_front, sine__elbow_1_over_ahead_front, t170, t26
+    selbow_over_ahead_front = _runtime.select(no_link_elbow, t56, t171)
+    del t171, t56
+    t172 = c_straight * celbow_over_ahead_front + s_straight * selbow_over_ahead_front
+    t173 = c_straight * selbow_over_ahead_front - s_straight * celbow_over_ahead_front
     del c_straight, celbow_over_ahead_front, s_straight, selbow_over_ahead_front
-    t173 = d5 - a4 * t172 + d3 * t171
-    t174 = reach + t173
-    t175 = reach - t173
-    del t173
-    tangent6_over_ahead_front = np.abs(t174 * t175) - t67 <= t68
+    t174 = d5 - a4 * t173 + d3 * t172
+    t175 = reach + t174
+    t176 = reach - t174
+    del t174
+    tangent6_over_ahead_front = np.abs(t175 * t176) - t67 <= t68
     del t67, t68
-    v_x_over_ahead_front = a5 - a4 * t171 - d3 * t172
-    t176 = np.abs(v_x_over_ahead_front)
-    t177 = np.maximum(0.0, -((height6 - t176) * (height6 + t176)))
+    v_x_over_ahead_front = a5 - a4 * t172 - d3 * t173
+    t177 = np.abs(v_x_over_ahead_front)
+    t178 = np.maximum(0.0, -((height6 - t177) * (height6 + t177)))
     del height6
-    below6_over_ahead_front = np.maximum(t174, 0.0)
-    above6_over_ahead_front = np.maximum(t175, 0.0)
-    t178 = below6_over_ahead_front * above6_over_ahead_front
-    held6_over_ahead_front = _runtime.select(t176 < reach, t177, t178)
-    del t176, t177
-    kept6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, np.sqrt(held6_over_ahead_front), np.sqrt(t178))
-    del t178
-    t179 = below6_over_ahead_front - above6_over_ahead_front
-    t180 = np.sqrt(4.0 * held6_over_ahead_front + t179 * t179)
+    below6_over_ahead_front = np.maximum(t175, 0.0)
+    above6_over_ahead_front = np.maximum(t176, 0.0)
+    t179 = below6_over_ahead_front * above6_over_ahead_front
+    held6_over_ahead_front = _runtime.select(t177 < reach, t178, t179)
+    del t177, t178
+    kept6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, np.sqrt(held6_over_ahead_front), np.sqrt(t179))
+    del t179
+    t180 = below6_over_ahead_front - above6_over_ahead_front
+    t181 = np.sqrt(4.0 * held6_over_ahead_front + t180 * t180)
     del held6_over_ahead_front
     width6_over_ahead_front = below6_over_ahead_front + above6_over_ahead_front
     del above6_over_ahead_front, below6_over_ahead_front
-    span6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, t180, width6_over_ahead_front)
-    del t180, width6_over_ahead_front
-    t181 = 1.0 / (reach * span6_over_ahead_front)
+    span6_over_ahead_front = _runtime.select(tangent6_over_ahead_front, t181, width6_over_ahead_front)
+    del t181, width6_over_ahead_front
+    t182 = 1.0 / (reach * span6_over_ahead_front)
     del reach, span6_over_ahead_front
-    t182 = t61 * kept6_over_ahead_front * t181
+    t183 = t61 * kept6_over_ahead_front * t182
     del t61
-    t183 = t181 * (u_x * t179)
-    s6_over_ahead_front = _runtime.select(free6, 0.0, t182 - t183)
-    t184 = t181 * (t76 * kept6_over_ahead_front)
+    t184 = t182 * (u_x * t180)
+    s6_over_ahead_front = _runtime.select(free6, 0.0, t183 - t184)
+    t185 = t182 * (t76 * kept6_over_ahead_front)
     del kept6_over_ahead_front, t76
-    t185 = t181 * (s_z * t179)
-    del t179, t181
-    c6_over_ahead_front = _runtime.select(free6, 1.0, t184 + t185)
+    t186 = t182 * (s_z * t180)
+    del t180, t182
+    c6_over_ahead_front = _runtime.select(free6, 1.0, t185 + t186)
     R2_13_over_ahead_front = R1_11 * s6_over_ahead_front - T13 * c6_over_ahead_front
-    t186 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
+    t187 = np.sqrt(v_x_over_ahead_front * v_x_over_ahead_front)
     w_x_over_ahead_front = u_x * c6_over_ahead_front + s_z * s6_over_ahead_front
-    t187 = t12 + w_x_over_ahead_front * w_x_over_ahead_front
-    t188 = np.sqrt(t187)
-    del t187
-    on_axis_5_over_ahead_front = np.minimum(t186, t188) <= t60
+    t188 = t12 + w_x_over_ahead_front * w_x_over_ahead_front
+    t189 = np.sqrt(t188)
+    del t188
+    on_axis_5_over_ahead_front = np.minimum(t187, t189) <= t60
     dot_5_over_ahead_front = v_x_over_ahead_front * w_x_over_ahead_front
     del w_x_over_ahead_front
-    t189 = w_y * v_x_over_ahead_front
+    t190 = w_y * v_x_over_ahead_front
     del w_y
-    t190 = t189 * t189
-    t191 = dot_5_over_ahead_front * dot_5_over_ahead_front
-    t192 = 1.0 / np.sqrt(t190 + t191)
-    del t191
-    c5_over_ahead_front = _runtime.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t192)
+    t191 = t190 * t190
+    t192 = dot_5_over_ahead_front * dot_5_over_ahead_front
+    t193 = 1.0 / np.sqrt(t191 + t192)
+    del t192
+    c5_over_ahead_front = _runtime.select(on_axis_5_over_ahead_front, 1.0, dot_5_over_ahead_front * t193)
     del dot_5_over_ahead_front
     R2_11_over_ahead_front = R1_11 * c6_over_ahead_front + T13 * s6_over_ahead_front
-    t193 = _runtime.select(on_axis_5_over_ahead_front, 0.0, t189 * t192)
-    del t192
-    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t193
-    R4_13_over_ahead_front = t171 * R2_13_over_ahead_front + t172 * R3_11_over_ahead_front
-    t194 = R4_13_over_ahead_front * R4_13_over_ahead_front
+    t194 = _runtime.select(on_axis_5_over_ahead_front, 0.0, t190 * t193)
+    del t193
+    R3_11_over_ahead_front = c5_over_ahead_front * R2_11_over_ahead_front - R1_13 * t194
+    R4_13_over_ahead_front = t172 * R2_13_over_ahead_front + t173 * R3_11_over_ahead_front
+    t195 = R4_13_over_ahead_front * R4_13_over_ahead_front
     R2_23_over_ahead_front = R1_21 * s6_over_ahead_front - T23 * c6_over_ahead_front
     R2_21_over_ahead_front = R1_21 * c6_over_ahead_front + T23 * s6_over_ahead_front
-    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t193
-    R4_23_over_ahead_front = t171 * R2_23_over_ahead_front + t172 * R3_21_over_ahead_front
-    t195 = R4_23_over_ahead_front * R4_23_over_ahead_front
-    h_wrist_over_ahead_front = np.sqrt(t194 + t195)
-    del t194, t195
+    R3_21_over_ahead_front = c5_over_ahead_front * R2_21_over_ahead_front - R1_23 * t194
+    R4_23_over_ahead_front = t172 * R2_23_over_ahead_front + t173 * R3_21_over_ahead_front
+    t196 = R4_23_over_ahead_front * R4_23_over_ahead_front
+    h_wrist_over_ahead_front = np.sqrt(t195 + t196)
+    del t195, t196
     aligned_wrist_over_ahead_front = h_wrist_over_ahead_front <= t85
-    t196 = 1.0 / h_wrist_over_ahead_front
+    t197 = 1.0 / h_wrist_over_ahead_front
     del h_wrist_over_ahead_front
-    s_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front * t196)
-    c_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front * t196)
-    del t196
-    t197 = np.arctan2(s_wrist_over_ahead_front, c_wrist_over_ahead_front)
-    t198 = t102 & (-t101 <= t174) & (-t101 <= t175)
-    del t102, t174, t175
-    t199 = _runtime.select(tangent6_over_ahead_front, t188 - t186, 0.0)
-    del t188
-    unreachable_3 = np.logical_not(t198 & (np.abs(t199) <= t101))
-    del t199
-    t200 = _runtime.poison(invalid | unreachable_3)
-    t201 = R4_13_over_ahead_front * c_wrist_over_ahead_front
+    s_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 0.0, R4_23_over_ahead_front * t197)
+    c_wrist_over_ahead_front = _runtime.select(aligned_wrist_over_ahead_front, 1.0, R4_13_over_ahead_front * t197)
+    del t197
+    t198 = np.arctan2(s_wrist_over_ahead_front, c_wrist_over_ahead_front)
+    t199 = t102 & (-t101 <= t175) & (-t101 <= t176)
+    del t102, t175, t176
+    t200 = tangent6_over_ahead_front | tangent_elbow
+    del tangent6_over_ahead_front, tangent_elbow
+    t201 = np.abs(_runtime.select(t200, t189 - t187, 0.0))
+    del t189
+    unreachable_3 = np.logical_not(t199 & (t201 <= t101))
+    del t201
+    t202 = _runtime.poison(invalid | unreachable_3)
+    t203 = R4_13_over_ahead_front * c_wrist_over_ahead_front
     del R4_13_over_ahead_front
-    t202 = R4_23_over_ahead_front * s_wrist_over_ahead_front
+    t204 = R4_23_over_ahead_front * s_wrist_over_ahead_front
     del R4_23_over_ahead_front
     R2_33_over_ahead_front = R1_31 * s6_over_ahead_front - T33 * c6_over_ahead_front
     R2_31_over_ahead_front = R1_31 * c6_over_ahead_front + T33 * s6_over_ahead_front
-    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t193
+    R3_31_over_ahead_front = c5_over_ahead_front * R2_31_over_ahead_front - R1_33 * t194
     del R2_31_over_ahead_front
-    R4_33_over_ahead_front = t171 * R2_33_over_ahead_front + t172 * R3_31_over_ahead_front
+    R4_33_over_ahead_front = t172 * R2_33_over_ahead_front + t173 * R3_31_over_ahead_front
     del R2_33_over_ahead_front, R3_31_over_ahead_front
-    t203 = np.arctan2(t201 + t202, R4_33_over_ahead_front)
-    del R4_33_over_ahead_front, t201, t202
-    t204 = t172 * R2_13_over_ahead_front - t171 * R3_11_over_ahead_front
+    t205 = np.arctan2(t203 + t204, R4_33_over_ahead_front)
+    del R4_33_over_ahead_front, t203, t204
+    t206 = t173 * R2_13_over_ahead_front - t172 * R3_11_over_ahead_front
     del R2_13_over_ahead_front, R3_11_over_ahead_front
-    t205 = t172 * R2_23_over_ahead_front - t171 * R3_21_over_ahead_front
+    t207 = t173 * R2_23_over_ahead_front - t172 * R3_21_over_ahead_front
     del R2_23_over_ahead_front, R3_21_over_ahead_front
-    t206 = s_wrist_over_ahead_front * t204 - c_wrist_over_ahead_front * t205
-    del t204, t205
-    R3_13_over_ahead_front = R2_11_over_ahead_front * t193 + R1_13 * c5_over_ahead_front
+    t208 = s_wrist_over_ahead_front * t206 - c_wrist_over_ahead_front * t207
+    del t206, t207
+    R3_13_over_ahead_front = R2_11_over_ahead_front * t194 + R1_13 * c5_over_ahead_front
     del R2_11_over_ahead_front
-    t207 = s_wrist_over_ahead_front * R3_13_over_ahead_front
+    t209 = s_wrist_over_ahead_front * R3_13_over_ahead_front
     del R3_13_over_ahead_front, s_wrist_over_ahead_front
-    R3_23_over_ahead_front = t193 * R2_21_over_ahead_front + R1_23 * c5_over_ahead_front
+    R3_23_over_ahead_front = t194 * R2_21_over_ahead_front + R1_23 * c5_over_ahead_front
     del R2_21_over_ahead_front
-    t208 = c_wrist_over_ahead_front * R3_23_over_ahead_front
+    t210 = c_wrist_over_ahead_front * R3_23_over_ahead_front
     del R3_23_over_ahead_front, c_wrist_over_ahead_front
-    t209 = np.arctan2(t206, t207 - t208)
-    del t206, t207, t208
-    t210 = _runtime.wrap_cut(np.arctan2(t172, t171))
-    t211 = t210 + t200
-    t212 = _runtime.wrap_cut(-np.arctan2(t193, c5_over_ahead_front))
-    del c5_over_ahead_front, t193
-    t213 = t212 + t200
-    del t212
-    t214 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
-    del c6_over_ahead_front, s6_over_ahead_front
-    t215 = _runtime.wrap_cut(t214) + t200
+    t211 = np.arctan2(t208, t209 - t210)
+    del t208, t209, t210
+    t212 = _runtime.wrap_cut(np.arctan2(t173, t172))
+    t213 = t212 + t202
+    t214 = _runtime.wrap_cut(-np.arctan2(t194, c5_over_ahead_front))
+    del c5_over_ahead_front, t194
+    t215 = t214 + t202
     del t214
-    t216 = t115 + t200
+    t216 = np.arctan2(s6_over_ahead_front, c6_over_ahead_front)
+    del c6_over_ahead_front, s6_over_ahead_front
+    t217 = _runtime.wrap_cut(t216) + t202
+    del t216
+    t218 = t116 + t202
     flip_wrist_over_ahead_back = _runtime.select(aligned_wrist_over_ahead_front, 0.0, 3.141592653589793)
-    t217 = _runtime.wrap(t197 + flip_wrist_over_ahead_back)
-    t218 = _runtime.wrap(t209 + flip_wrist_over_ahead_back)
+    t219 = _runtime.wrap(t198 + flip_wrist_over_ahead_back)
+    t220 = _runtime.wrap(t211 + flip_wrist_over_ahead_back)
     del flip_wrist_over_ahead_back
-    t219 = _runtime.select(free6, 0.0, t182 + t183)
-    del t182, t183
-    c6_over_behind_front = _runtime.select(free6, 1.0, t185 - t184)
-    del t184, t185
-    t220 = R1_11 * t219 + T13 * c6_over_behind_front
-    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t219
+    t221 = _runtime.select(free6, 0.0, t183 + t184)
+    del t183, t184
+    c6_over_behind_front = _runtime.select(free6, 1.0, t186 - t185)
+    del t185, t186
+    t222 = R1_11 * t221 + T13 * c6_over_behind_front
+    w_x_over_behind_front = u_x * c6_over_behind_front - s_z * t221
     del s_z, u_x
-    t221 = w_x_over_behind_front * w_x_over_behind_front
-    t222 = np.sqrt(t12 + t221)
-    del t12, t221
-    on_axis_5_over_behind_front = np.minimum(t186, t222) <= t60
+    t223 = w_x_over_behind_front * w_x_over_behind_front
+    t224 = np.sqrt(t12 + t223)
+    del t12, t223
+    on_axis_5_over_behind_front = np.minimum(t187, t224) <= t60
     del t60
     dot_5_over_behind_front = v_x_over_ahead_front * w_x_over_behind_front
     del v_x_over_ahead_front, w_x_over_behind_front
-    t223 = dot_5_over_behind_front * dot_5_over_behind_front
-    t224 = 1.0 / np.sqrt(t190 + t223)
-    del t190, t223
-    c5_over_behind_front = _runtime.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t224)
+    t225 = dot_5_over_behind_front * dot_5_over_behind_front
+    t226 = 1.0 / np.sqrt(t191 + t225)
+    del t191, t225
+    c5_over_behind_front = _runtime.select(on_axis_5_over_behind_front, 1.0, dot_5_over_behind_front * t226)
     del dot_5_over_behind_front
-    R2_11_over_behind_front = R1_11 * c6_over_behind_front - T13 * t219
+    R2_11_over_behind_front = R1_11 * c6_over_behind_front - T13 * t221
     del R1_11
-    t225 = c5_over_behind_front * R2_11_over_behind_front
-    t226 = _runtime.select(on_axis_5_over_behind_front, 0.0, t189 * t224)
-    del t189, t224
-    R3_11_over_behind_front = t225 - R1_13 * t226
-    del t225
-    t227 = t171 * t220 - t172 * R3_11_over_behind_front
-    t228 = R1_21 * t219 + T23 * c6_over_behind_front
-    R2_21_over_behind_front = R1_21 * c6_over_behind_front - T23 * t219
+    t227 = c5_over_behind_front * R2_11_over_behind_front
+    t228 = _runtime.select(on_axis_5_over_behind_front, 0.0, t190 * t226)
+    del t190, t226
+    R3_11_over_behind_front = t227 - R1_13 * t228
+    del t227
+    t229 = t172 * t222 - t173 * R3_11_over_behind_front
+    t230 = R1_21 * t221 + T23 * c6_over_behind_front
+    R2_21_over_behind_front = R1_21 * c6_over_behind_front - T23 * t221
     del R1_21
-    t229 = c5_over_behind_front * R2_21_over_behind_front
-    R3_21_over_behind_front = t229 - R1_23 * t226
-    del t229
-    t230 = t171 * t228 - t172 * R3_21_over_behind_front
-    h_wrist_over_behind_front = np.sqrt(t227 * t227 + t230 * t230)
+    t231 = c5_over_behind_front * R2_21_over_behind_front
+    R3_21_over_behind_front = t231 - R1_23 * t228
+    del t231
+    t232 = t172 * t230 - t173 * R3_21_over_behind_front
+    h_wrist_over_behind_front = np.sqrt(t229 * t229 + t232 * t232)
     aligned_wrist_over_behind_front = h_wrist_over_behind_front <= t85
     del t85
-    t231 = 1.0 / h_wrist_over_behind_front
+    t233 = 1.0 / h_wrist_over_behind_front
     del h_wrist_over_behind_front
-    t232 = _runtime.select(aligned_wrist_over_behind_front, 0.0, t230 * t231)
-    c_wrist_over_behind_front = _runtime.select(aligned_wrist_over_behind_front, 1.0, -(t227 * t231))
-    del t231
-    t233 = np.arctan2(t232, c_wrist_over_behind_front)
-    t234 = _runtime.select(tangent6_over_ahead_front, t222 - t186, 0.0)
-    del t186, t222, tangent6_over_ahead_front
-    unreachable_4 = np.logical_not(t198 & (np.abs(t234) <= t101))
-    del t101, t198, t234
-    t235 = _runtime.poison(invalid | unreachable_4)
-    t236 = t227 * c_wrist_over_behind_front - t230 * t232
-    del t227, t230
-    t237 = c5_over_behind_front * (R1_31 * c6_over_behind_front - T33 * t219)
-    t238 = t171 * (R1_31 * t219 + T33 * c6_over_behind_front)
+    t234 = _runtime.select(aligned_wrist_over_behind_front, 0.0, t232 * t233)
+    c_wrist_over_behind_front = _runtime.select(aligned_wrist_over_behind_front, 1.0, -(t229 * t233))
+    del t233
+    t235 = np.arctan2(t234, c_wrist_over_behind_front)
+    t236 = np.abs(_runtime.select(t200, t224 - t187, 0.0))
+    del t187, t200, t224
+    unreachable_4 = np.logical_not(t199 & (t236 <= t101))
+    del t101, t199, t236
+    t237 = _runtime.poison(invalid | unreachable_4)
+    t238 = t229 * c_wrist_over_behind_front - t232 * t234
+    del t229, t232
+    t239 = c5_over_behind_front * (R1_31 * c6_over_behind_front - T33 * t221)
+    t240 = t172 * (R1_31 * t221 + T33 * c6_over_behind_front)
     del R1_31
-    t239 = np.arctan2(t236, t172 * (t237 - R1_33 * t226) - t238)
-    del R1_33, t236, t237, t238
-    t240 = t232 * (t172 * t220 + t171 * R3_11_over_behind_front)
-    del R3_11_over_behind_front, t220
-    t241 = c_wrist_over_behind_front * (t172 * t228 + t171 * R3_21_over_behind_front)
-    del R3_21_over_behind_front, t171, t172, t228
-    R3_13_over_behind_front = R2_11_over_behind_front * t226 + R1_13 * c5_over_behind_front
+    t241 = np.arctan2(t238, t173 * (t239 - R1_33 * t228) - t240)
+    del R1_33, t238, t239, t240
+    t242 = t234 * (t173 * t222 + t172 * R3_11_over_behind_front)
+    del R3_11_over_behind_front, t222
+    t243 = c_wrist_over_behind_front * (t173 * t230 + t172 * R3_21_over_behind_front)
+    del R3_21_over_behind_front, t172, t173, t230
+    R3_13_over_behind_front = R2_11_over_behind_front * t228 + R1_13 * c5_over_behind_front
     del R1_13, R2_11_over_behind_front
-    R3_23_over_behind_front = t226 * R2_21_over_behind_front + R1_23 * c5_over_behind_front
+    R3_23_over_behind_front = t228 * R2_21_over_behind_front + R1_23 * c5_over_behind_front
     del R1_23, R2_21_over_behind_front
-    t242 = c_wrist_over_behind_front * R3_23_over_behind_front
+    t244 = c_wrist_over_behind_front * R3_23_over_behind_front
     del R3_23_over_behind_front, c_wrist_over_behind_front
-    t243 = np.arctan2(t240 + t241, -(t232 * R3_13_over_behind_front + t242))
-    del R3_13_over_behind_front, t232, t240, t241, t242
-    t244 = t210 + t235
-    del t210
-    t245 = _runtime.wrap_cut(-np.arctan2(t226, c5_over_behind_front))
-    del c5_over_behind_front, t226
-    t246 = t245 + t235
-    del t245
-    t247 = _runtime.wrap_cut(-np.arctan2(t219, c6_over_behind_front))
-    del c6_over_behind_front, t219
-    t248 = t247 + t235
+    t245 = np.arctan2(t242 + t243, -(t234 * R3_13_over_behind_front + t244))
+    del R3_13_over_behind_front, t234, t242, t243, t244
+    t246 = t212 + t237
+    del t212
+    t247 = _runtime.wrap_cut(-np.arctan2(t228, c5_over_behind_front))
+    del c5_over_behind_front, t228
+    t248 = t247 + t237
     del t247
-    t249 = t115 + t235
-    del t115
+    t249 = _runtime.wrap_cut(-np.arctan2(t221, c6_over_behind_front))
+    del c6_over_behind_front, t221
+    t250 = t249 + t237
+    del t249
+    t251 = t116 + t237
+    del t116
     flip_wrist_over_behind_back = _runtime.select(aligned_wrist_over_behind_front, 0.0, 3.141592653589793)
-    t250 = _runtime.wrap(flip_wrist_over_behind_back - t233)
-    t251 = _runtime.wrap(t243 + flip_wrist_over_behind_back)
+    t252 = _runtime.wrap(flip_wrist_over_behind_back - t235)
+    t253 = _runtime.wrap(t245 + flip_wrist_over_behind_back)
     del flip_wrist_over_behind_back
-    t252 = no_link_elbow | free6
+    t254 = no_link_elbow | free6
     del free6, no_link_elbow
-    t253 = _runtime.status(invalid, unreachable, t252 | on_axis_5 | aligned_wrist)
+    t255 = _runtime.status(invalid, unreachable, t254 | on_axis_5 | aligned_wrist)
     del aligned_wrist, on_axis_5, unreachable
-    t254 = t252 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
+    t256 = t254 | on_axis_5_bent_behind_front | aligned_wrist_bent_behind_front
     del aligned_wrist_bent_behind_front, on_axis_5_bent_behind_front
-    t255 = _runtime.status(invalid, unreachable_2, t254)
-    del t254, unreachable_2
-    t256 = t252 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
+    t257 = _runtime.status(invalid, unreachable_2, t256)
+    del t256, unreachable_2
+    t258 = t254 | on_axis_5_over_ahead_front | aligned_wrist_over_ahead_front
     del aligned_wrist_over_ahead_front, on_axis_5_over_ahead_front
-    t257 = _runtime.status(invalid, unreachable_3, t256)
-    del t256, unreachable_3
-    t258 = t252 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
-    del aligned_wrist_over_behind_front, on_axis_5_over_behind_front, t252
-    t259 = _runtime.status(invalid, unreachable_4, t258)
-    del invalid, t258, unreachable_4
+    t259 = _runtime.status(invalid, unreachable_3, t258)
+    del t258, unreachable_3
+    t260 = t254 | on_axis_5_over_behind_front | aligned_wrist_over_behind_front
+    del aligned_wrist_over_behind_front, on_axis_5_over_behind_front, t254
+    t261 = _runtime.status(invalid, unreachable_4, t260)
+    del invalid, t260, unreachable_4
     return (
-        _runtime.wrap_cut(t87) + t105,
-        _runtime.wrap_cut(t107) + t105,
-        _runtime.wrap_cut(t110) + t105,
-        t112,
+        _runtime.wrap_cut(t87) + t106,
+        _runtime.wrap_cut(t108) + t106,
+        _runtime.wrap_cut(t111) + t106,
         t113,
         t114,
-        t116,
-        _runtime.wrap(t87 + flip_wrist) + t105,
-        _runtime.wrap_cut(-t107) + t105,
-        _runtime.wrap(t110 + flip_wrist) + t105,
-        t112,
+        t115,
+        t117,
+        _runtime.wrap(t87 + flip_wrist) + t106,
+        _runtime.wrap_cut(-t108) + t106,
+        _runtime.wrap(t111 + flip_wrist) + t106,
         t113,
         t114,
-        t116,
-        _runtime.wrap_cut(-t131) + t133,
-        _runtime.wrap_cut(-t137) + t133,
-        _runtime.wrap_cut(t141) + t133,
-        t142,
-        t144,
-        t146,
+        t115,
+        t117,
+        _runtime.wrap_cut(-t132) + t134,
+        _runtime.wrap_cut(-t138) + t134,
+        _runtime.wrap_cut(t142) + t134,
+        t143,
+        t145,
         t147,
-        t148 + t133,
-        _runtime.wrap_cut(t137) + t133,
-        t149 + t133,
-        t142,
-        t144,
-        t146,
+        t148,
+        t149 + t134,
+        _runtime.wrap_cut(t138) + t134,
+        t150 + t134,
+        t143,
+        t145,
         t147,
-        _runtime.wrap_cut(t197) + t200,
-        _runtime.wrap_cut(t203) + t200,
-        _runtime.wrap_cut(t209) + t200,
-        t211,
+        t148,
+        _runtime.wrap_cut(t198) + t202,
+        _runtime.wrap_cut(t205) + t202,
+        _runtime.wrap_cut(t211) + t202,
         t213,
         t215,
-        t216,
-        t217 + t200,
-        _runtime.wrap_cut(-t203) + t200,
-        t218 + t200,
-        t211,
+        t217,
+        t218,
+        t219 + t202,
+        _runtime.wrap_cut(-t205) + t202,
+        t220 + t202,
         t213,
         t215,
-        t216,
-        _runtime.wrap_cut(-t233) + t235,
-        _runtime.wrap_cut(-t239) + t235,
-        _runtime.wrap_cut(t243) + t235,
-        t244,
+        t217,
+        t218,
+        _runtime.wrap_cut(-t235) + t237,
+        _runtime.wrap_cut(-t241) + t237,
+        _runtime.wrap_cut(t245) + t237,
         t246,
         t248,
-        t249,
-        t250 + t235,
-        _runtime.wrap_cut(t239) + t235,
-        t251 + t235,
-        t244,
+        t250,
+        t251,
+        t252 + t237,
+        _runtime.wrap_cut(t241) + t237,
+        t253 + t237,
         t246,
         t248,
-        t249,
-        t253,
-        t253,
+        t250,
+        t251,
         t255,
         t255,
         t257,
         t257,
         t259,
         t259,
+        t261,
+        t261,
     )
 
 

@@ -379,8 +379,7 @@ class SubproblemMaker(WristMaker):
             f"{{{self.unknowns[three.number]}: {factor}, "
             f"{self.unknowns[one.number]}: to_target[2] + to_end[2]}}"
         )
-        compared = f", compared={first}.tangent"
-        second = self._rotate(two, "to_end", "to_target", because, more=compared)
+        second = self._rotate(two, "to_end", "to_target", because)
         return Solved(
             f"axes {one.number} and {two.number} meet",
             [(first, one.end), (second, two.end), (third, three.end)],

@@ -27,7 +27,7 @@ from closedform.lemmas.corrected import Corrected, Correction
 from closedform.lemmas.given import given_slide, given_turn
 from closedform.lemmas.pairs import direction
 from closedform.mechanics.frames import pose_symbols, require_pose
-from closedform.mechanics.lengths import lengths_in_numbers
+from closedform.mechanics.lengths import reach_in_numbers
 from closedform.model.derivation import Derivation, Solved
 from closedform.model.expressions import substitute
 from closedform.model.functions import (
@@ -132,7 +132,7 @@ class Chain:
         lengths = [p for p in self.d.parameters if p.nonnegative or p.unit != "rad"]
         sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
         places = self.forward[:3, 3] if self.is_pose else self.forward
-        return sp.Add(*sized) + max(map(lengths_in_numbers, places))
+        return sp.Add(*sized) + reach_in_numbers(places)
 
     def given(self, joint: sp.Symbol) -> Any:
         """Take a joint as an input of the inverse, besides the pose.

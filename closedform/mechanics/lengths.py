@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping
 
+import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Let
+
+POSTURES, STARTS, SWEEPS, DIRECTIONS = 1024, 16, 4, 180
+"""How many postures are tried for a reach, how many of them are improved, and how often and how
+finely each joint is turned for that."""
 
 
 def lengths_in_numbers(place: sp.Expr, names: Mapping[sp.Basic, sp.Expr] | None = None) -> sp.Expr:
@@ -25,6 +32,56 @@ def lengths_in_numbers(place: sp.Expr, names: Mapping[sp.Basic, sp.Expr] | None 
     return total
 
 
+def reach_in_numbers(places: Iterable[sp.Expr]) -> sp.Expr:
+    """The largest size of a coordinate as the joints turn, of the lengths that are numbers.
+
+    It is rounded up to three digits, so that it is the same on every computer.
+    """
+    reach = max(map(_largest, places), default=0.0)
+    if reach == 0:
+        return sp.S.Zero
+    place = 2 - math.floor(math.log10(reach))
+    return sp.Integer(math.ceil(reach * 10.0**place * (1 - 1e-9))) * sp.Integer(10) ** -place
+
+
+def _largest(place: sp.Expr) -> float:
+    """The largest size of the part of a coordinate that consists of numbers, sines and cosines.
+
+    The angles of the sines and cosines count as independent.  From the best of many postures, one
+    angle after the other goes to where the size is largest.
+    """
+    turns = (sp.sin, sp.cos)
+    terms = [
+        (number, sp.Mul.make_args(rest) if rest != 1 else ())
+        for term in sp.Add.make_args(sp.expand(place))
+        for number, rest in [term.as_independent(*term.free_symbols, as_Add=False)]
+        if all(isinstance(f.as_base_exp()[0], turns) for f in sp.Mul.make_args(rest) if rest != 1)
+    ]
+    angles = sorted({f.as_base_exp()[0].args[0] for _, fs in terms for f in fs}, key=str)
+
+    def sizes(at: NDArray[np.float64]) -> NDArray[np.float64]:
+        known = {
+            f(a): getattr(np, f.__name__)(row)
+            for f in turns
+            for a, row in zip(angles, at, strict=True)
+        }
+        total = np.zeros(at.shape[1:])
+        for number, factors in terms:
+            powers = (known[b] ** int(e) for b, e in (f.as_base_exp() for f in factors))
+            total = total + float(number) * np.multiply.reduce([np.ones(at.shape[1:]), *powers])
+        return np.asarray(abs(total))
+
+    steps = np.sqrt([float(sp.prime(k + 1)) for k in range(len(angles))])
+    tried = 2 * np.pi * np.outer(steps, np.arange(POSTURES))
+    best = tried[:, np.argsort(sizes(tried))[-STARTS:]]
+    ways = np.arange(DIRECTIONS) * (2 * np.pi / DIRECTIONS)
+    for k in [*range(len(angles))] * SWEEPS:
+        tried = np.repeat(best[:, :, None], DIRECTIONS, axis=2)
+        tried[k] = ways
+        best[k] = ways[sizes(tried).argmax(axis=-1)]
+    return float(sizes(best).max())
+
+
 def numbers_of_tool(derivation: Derivation) -> list[float]:
     """For each coordinate of the tool, the lengths in it that are numbers."""
     found = []
@@ -38,4 +95,4 @@ def numbers_of_tool(derivation: Derivation) -> list[float]:
     return found
 
 
-__all__ = ["lengths_in_numbers", "numbers_of_tool"]
+__all__ = ["lengths_in_numbers", "numbers_of_tool", "reach_in_numbers"]

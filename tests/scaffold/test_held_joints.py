@@ -108,3 +108,21 @@ def test_what_cannot_be_held_is_named(hold: dict, message: str, tmp_path: Path) 
     path = urdf("concrete_pump", tmp_path, follower)
     with pytest.raises(TableError, match=message):
         new("pump", "urdf", path, choice=Choice(hold=hold))
+
+
+def test_the_stages_of_a_telescope_are_named(tmp_path: Path) -> None:
+    """A mobile manipulator whose arm has four stages: only the lift was named, which is no help."""
+    wrist = [
+        ("yaw", "0.08 0 0", "0 0 1"),
+        ("pitch", "0 0 -0.03", "0 1 0"),
+        ("roll", "0 0 0", "1 0 0"),
+    ]
+    rows = [("lift", "prismatic", "0 0 0.2", "0 0 1")]
+    rows += [(f"arm{k}", "prismatic", "0.01 0 0", "0 1 0") for k in (3, 2, 1, 0)]
+    MACHINES["stretch"] = rows + [(name, "revolute", at, axis) for name, at, axis in wrist]
+    path = urdf("stretch", tmp_path)
+    script = new("stretch", "urdf", path)
+    assert "joints arm3, arm2, arm1 and arm0 slide in one direction" in script.inverse
+    assert "--hold arm2 --hold arm1 --hold arm0" in script.advice
+    held = Choice(hold=dict.fromkeys(("arm2", "arm1", "arm0"), "0"))
+    assert "an inverse with 2 branches" in new("stretch", "urdf", path, choice=held).inverse

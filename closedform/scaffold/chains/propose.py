@@ -83,14 +83,44 @@ def propose(
 def _require_few(arm: Serial) -> None:
     """Refuse an arm whose pose leaves more than one joint free."""
     names = [joint.name for joint in arm.joints]
-    if (more := len(names) - 6) > 1:
-        raise NoChainError(
-            f"it has {len(names)} joints, and a pose determines six; up to seven are solved, with "
-            f"one of them given",
-            f"Give values to {more - 1} of them, or to {more}: {_held(singles(arm).joints[0])}  "
-            f"Of such a file you may take the part between two links, with --base and --tool.  "
-            f"Otherwise use a numeric inverse, such as that of Pinocchio.",
-        )
+    if (more := len(names) - 6) <= 1:
+        return
+    whole = singles(arm)
+    if len(stages := _stages(whole)) >= more:
+        raise _telescope(len(names), stages)
+    raise NoChainError(
+        f"it has {len(names)} joints, and a pose determines six; up to seven are solved, with "
+        f"one of them given",
+        f"Give values to {more - 1} of them, or to {more}: {_held(whole.joints[0])}  "
+        f"Of such a file you may take the part between two links, with --base and --tool.  "
+        f"Otherwise use a numeric inverse, such as that of Pinocchio.",
+    )
+
+
+def _stages(whole: Singles) -> list[Single]:
+    """The most neighbouring slides with one direction, as the stages of a telescope."""
+    most: list[Single] = []
+    run: list[Single] = []
+    for joint in whole.joints:
+        if not joint.slides:
+            run = []
+            continue
+        run = [*run, joint] if run and parallel(run[-1]) else [joint]
+        most = max(most, run, key=len)
+    return most
+
+
+def _telescope(count: int, stages: Sequence[Single]) -> NoChainError:
+    """Why an arm whose slides share a direction has no inverse, and what to do."""
+    first, *others = (joint.joint.name for joint in stages)
+    names = f"{', '.join((first, *others[:-1]))} and {others[-1]}"
+    return NoChainError(
+        f"of its {count} joints {names} slide in one direction, and a pose determines only how far "
+        f"they move together",
+        f"In a URDF or MJCF file, let the others mimic {first} if they move as the stages of a "
+        f"telescope.  Or give values to all of them but one, with "
+        f"{' '.join(f'--hold {name}' for name in others)} for such a file.",
+    )
 
 
 def _refusal(

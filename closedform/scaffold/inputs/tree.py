@@ -32,11 +32,16 @@ from closedform.scaffold.inputs.tables import (
 LARGEST = 2_000_000
 """Maximum size of a file in bytes; meshes are files of their own."""
 NOISE = sp.Rational(1, 10**9)
-"""Angles and coordinates of axes below this are the rounding of an exporter, not meant."""
+"""Angles and coordinates of axes below this are the rounding of an exporter, not meant.
+
+A difference below this, also of a length, is not worth a note.
+"""
 MEANT = ((0, sp.Rational(1, 10**5)), (4, sp.Rational(1, 10**6)), (9, sp.Rational(1, 10**9)))
 """A length this close to a number with this many decimals stands for it; finally, nanometres."""
 NEAR = sp.Rational(1, 2000)
 """An angle this close to a multiple of pi/12 stands for it; so does a direction to an axis."""
+TILTS = (sp.atan(sp.sqrt(2) / 2), sp.atan(sp.sqrt(2)))
+"""Angles between the diagonal of a cube and its sides and edges: 35.26 and 54.74 degrees."""
 ROUNDED = sp.Rational(1, 10**6)
 """An angle is never exact: a difference from what it stands for below this is not worth a note."""
 FAR = 20
@@ -126,6 +131,8 @@ class _Placed(NamedTuple):
             moved.turn(joint, between(place, there))
             if joint.kind == "fixed":
                 continue
+            there, place = place, _level(place, table, where)
+            moved.moved += _size(place[:3, 3] - there[:3, 3])
             if joint.mimics:
                 mimics.append(Mimic(joint, place, len(table.axes), file))
                 place = _product(place, _offset(joint, where, table.notes))
@@ -352,7 +359,7 @@ def meant_length(value: sp.Rational, what: str, notes: list[str]) -> sp.Rational
 
 
 def _taken(value: sp.Rational, meant: sp.Rational, what: str, notes: list[str]) -> sp.Rational:
-    if value != meant:
+    if abs(value - meant) >= NOISE:
         notes.append(f"{what} {float(value)!r} is taken for {float(meant):.12g}")
     return meant
 
@@ -363,7 +370,8 @@ def meant_axis(given: sp.Matrix, where: str, notes: list[str]) -> sp.Matrix:
     others = sp.sqrt(given.dot(given) - size**2)
     if 0 < others < NEAR * size:
         found = given.applyfunc(lambda e: sp.sign(e) if abs(e) == size else sp.S.Zero)
-        notes.append(f"{where}: the axis {_listed(given)} is taken for {_listed(found)}")
+        if others >= NOISE * size:
+            notes.append(f"{where}: the axis {_listed(given)} is taken for {_listed(found)}")
         return found
     length = sp.sqrt(given.dot(given))
     return given / length if length.is_Rational and length != 1 else given
@@ -374,17 +382,17 @@ def _listed(vector: sp.Matrix) -> str:
 
 
 def meant_angle(value: sp.Rational, where: str, notes: list[str]) -> sp.Expr:
-    """The multiple of pi/12 that was rounded to a number, or the number.
+    """The multiple of pi/12, or the tilt of the diagonal of a cube, that was rounded to a number.
 
-    Right angles are written with two decimals too, as 1.57 and 3.14.
+    Right angles are written with two decimals too, as 1.57 and 3.14.  Any other number is itself.
     """
     steps = sp.Integer(round(float(value) * 12 / math.pi))
     exact = steps * sp.pi / 12
     short = steps % 6 == 0 and value == sp.Rational(f"{float(exact):.2f}")
     if value == 0 or (abs(sp.N(exact - value, 30)) > NEAR and not short):
-        return value
+        exact = sp.sign(value) * next((a for a in TILTS if abs(a - abs(value)) < NEAR), abs(value))
     if abs(sp.N(exact - value, 30)) > ROUNDED:
-        notes.append(f"{where}: the angle {sp.N(value, 8)} is taken for {exact}")
+        notes.append(f"{where}: the angle {float(value):.9g} is taken for {exact}")
     return exact
 
 
@@ -479,6 +487,26 @@ def _parting(ends: Sequence[str], above: Mapping[str, Joint]) -> str:
 def _product(a: sp.Matrix, b: sp.Matrix) -> sp.Matrix:
     shifted = a[:3, :3] * b[:3, 3] + a[:3, 3]
     return homogeneous(turned_on(a[:3, :3], b[:3, :3]), tuple(shifted.applyfunc(sp.expand)))
+
+
+def _level(place: sp.Matrix, table: Table, where: str) -> sp.Matrix:
+    """The place of a joint, with coordinates of those before it if lengths nearly add up to them.
+
+    Lengths that cancel are rounded one by one: 0.0036562 up and 0.0036563 down parts two axes.
+    """
+    place = place.copy()
+    for i in range(3):
+        for joint, _, at in table.axes:
+            gap = abs(float(place[i, 3] - at[i])) if not place[i, 3].free_symbols else 0.0
+            if 0 < gap < MEANT[0][1]:
+                place[i, 3] = at[i]
+                if gap >= NOISE:
+                    table.notes.append(
+                        f"{where}: with all joints at zero its {'xyz'[i]} is taken for that of "
+                        f"joint {joint}, {gap:.3g} from it"
+                    )
+                break
+    return place
 
 
 def _meant_turns(place: sp.Matrix, where: str, notes: list[str]) -> sp.Matrix:

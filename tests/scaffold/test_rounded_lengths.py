@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from closedform.cli.commands import main
 from closedform.scaffold.inputs.tables import Table
 from closedform.scaffold.inputs.urdf import read_urdf
 from closedform.scaffold.new import new
@@ -49,3 +50,21 @@ def test_axes_that_rounding_parts_meet(tmp_path: Path, last: str) -> None:
 
 def test_an_offset_of_a_hundredth_of_a_millimetre_is_kept(tmp_path: Path) -> None:
     assert len(across(read_urdf(alicia(tmp_path, "0.0036662")))) == 2
+
+
+def test_lengths_forth_and_back_do_not_cancel_in_printed_code(tmp_path: Path) -> None:
+    """The wrist of iCub: its Jacobian lost a digit, and `derive` called the code wrong."""
+    axes = (("1 0 0", "0.2289 0 0"), ("0 -1 0", "-0.23935 0 0"), ("0 0 -1", "0 0 0"))
+    joints = "".join(
+        f'<joint name="q{k}" type="revolute"><parent link="l{k}"/><child link="l{k + 1}"/>'
+        f'<origin xyz="{xyz}"/><axis xyz="{axis}"/></joint>'
+        for k, (axis, xyz) in enumerate(axes)
+    )
+    path = tmp_path / "wrist.urdf"
+    path.write_text(f'<robot name="wrist">{joints}</robot>', "utf-8")
+    (at,) = {tuple(at) for _, _, at in read_urdf(path).axes}
+    assert [float(e) for e in at] == [-0.01045, 0, 0]
+    made, printed = str(tmp_path), str(tmp_path / "printed")
+    assert main(["new", "wrist", "--from", "urdf", str(path), "-o", made]) == 0
+    script = str(tmp_path / "wrist.py")
+    assert main(["derive", script, "-o", printed, "--backend", "numpy"]) == 0

@@ -59,11 +59,14 @@ def turned_on(first: sp.Matrix, then: sp.Matrix) -> sp.Matrix:
     return joined if orthonormal(joined) else found
 
 
-def unit_vector(given: sp.Matrix, known: Sequence[sp.Matrix] = ()) -> sp.Matrix | None:
+def unit_vector(
+    given: sp.Matrix, known: Sequence[sp.Matrix] = (), *, roots: bool = True
+) -> sp.Matrix | None:
     """The exact unit vector that was rounded to the given numbers.
 
     If the decimals allow it, it is one of the ``known`` vectors or normal to one of them.
-    Otherwise it has simple coordinates if possible, and rational ones if not.  None if the length
+    Otherwise it has simple coordinates if possible (square ``roots`` only if allowed), and rational
+    ones if not.  None if the length
     is not 1 within :data:`~closedform.model.tolerances.UNIT_LENGTH`.
     """
     if given.free_symbols:
@@ -73,9 +76,10 @@ def unit_vector(given: sp.Matrix, known: Sequence[sp.Matrix] = ()) -> sp.Matrix 
     if abs(length - 1) > UNIT_LENGTH:
         return None
     u, place = [x / length for x in numbers], _last_place(given)
-    related = [*known, *(a.cross(b) for a, b in combinations(known, 2))]
+    across = (a.cross(b).applyfunc(sp.expand) for a, b in combinations(known, 2))
+    related = [*known, *across]
     near = (sign * v for v in related for sign in (1, -1) if _is_unit(v))
-    chosen = next((v for v in near if _close(v, u, place)), None) or _simple(u, place)
+    chosen = next((v for v in near if _close(v, u, place)), None) or _simple(u, place, roots)
     if chosen is not None:
         return chosen
     for v in known:
@@ -84,12 +88,14 @@ def unit_vector(given: sp.Matrix, known: Sequence[sp.Matrix] = ()) -> sp.Matrix 
     return _rational(u, place)
 
 
-def rotation(given: sp.Matrix, known: Sequence[sp.Matrix] = ()) -> sp.Matrix | None:
+def rotation(
+    given: sp.Matrix, known: Sequence[sp.Matrix] = (), *, roots: bool = True
+) -> sp.Matrix | None:
     """The exact rotation that was rounded to the given 3x3 matrix; None if no rotation is near."""
-    third = unit_vector(given[:, 2], known)
-    if third is None or unit_vector(given[:, 0]) is None:
+    third = unit_vector(given[:, 2], known, roots=roots)
+    if third is None or unit_vector(given[:, 0], roots=roots) is None:
         return None
-    first = unit_vector(given[:, 0], [third, *known])
+    first = unit_vector(given[:, 0], [third, *known], roots=roots)
     if first is None or sp.expand(first.dot(third)) != 0:
         first = _normal_to(third, [float(e) for e in given[:, 0]], _last_place(given))
     found = sp.Matrix.hstack(first, third.cross(first).applyfunc(sp.expand), third)
@@ -115,8 +121,9 @@ def _is_unit(v: sp.Matrix) -> bool:
     return bool(sp.expand(v.dot(v)) == 1)
 
 
-def _simple(u: Sequence[float], place: float) -> sp.Matrix | None:
-    sizes = [[s for s in SIMPLE if abs(float(s) - abs(x)) <= ROUNDED * place] for x in u]
+def _simple(u: Sequence[float], place: float, roots: bool) -> sp.Matrix | None:
+    simple = SIMPLE if roots else [s for s in SIMPLE if s.is_Rational]
+    sizes = [[s for s in simple if abs(float(s) - abs(x)) <= ROUNDED * place] for x in u]
     for chosen in product(*sizes):
         v = sp.Matrix([s if x >= 0 else -s for s, x in zip(chosen, u, strict=True)])
         if _is_unit(v):
@@ -158,6 +165,28 @@ def _normal_to(axis: sp.Matrix, u: Sequence[float], place: float) -> sp.Matrix:
         if _close(found, u, place):
             break
     return found.applyfunc(lambda e: sp.radsimp(sp.expand(e)))
+
+
+Axis = tuple[sp.Expr, list[sp.Expr], list[sp.Expr]]
+"""A joint, the direction of its axis, and a point on it."""
+
+
+def straightened(axes: Sequence[Axis]) -> list[Axis]:
+    """The axes with the point of one where the next one meets it, if the lengths to it go back.
+
+    Lengths forth and back would cancel in the printed code, and lose digits.
+    """
+    found = list(axes)
+    before: sp.Matrix = sp.zeros(3, 1)
+    for k, (_, _, after) in enumerate(axes[1:]):
+        joint, direction, point = found[k]
+        w, here = sp.Matrix(direction), sp.Matrix(point)
+        forth, back = here - before, sp.Matrix(after) - here
+        meets = all(e in (-1, 0, 1) for e in w) and back.cross(w).is_zero_matrix
+        if meets and (forth.dot(w) * back.dot(w)).is_negative:
+            found[k] = (joint, direction, after)
+        before = sp.Matrix(found[k][2])
+    return found
 
 
 @dataclass
@@ -217,6 +246,7 @@ __all__ = [
     "decimal",
     "orthonormal",
     "rotation",
+    "straightened",
     "turned_on",
     "unit_vector",
     "without_squares",

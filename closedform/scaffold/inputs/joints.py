@@ -15,7 +15,13 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from closedform.model.functions import real
-from closedform.scaffold.inputs.tables import Table, TableError, check_table_name, shown_name
+from closedform.scaffold.inputs.tables import (
+    Table,
+    TableError,
+    add_joint,
+    check_table_name,
+    shown_name,
+)
 
 MOVING = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic"}
 
@@ -52,6 +58,17 @@ def symbol_of(name: str) -> str:
     except TableError:
         return f"{known}_0"
     return known
+
+
+def declare(joint: Joint, table: Table, where: str) -> sp.Symbol:
+    """The symbol of a joint that moves, which becomes one of the table, with its limits."""
+    name = symbol_of(joint.name)
+    add_joint(table, name, MOVING[joint.kind], where)
+    if name != joint.name:
+        table.notes.append(f"{where}: it is called {name}")
+    if joint.limits:
+        table.limits[name] = joint.limits
+    return real(name)
 
 
 def led(chain: Sequence[Joint], joints: Sequence[Joint], file: str) -> list[Joint]:
@@ -222,4 +239,4 @@ def couple(mimics: Sequence[Mimic], table: Table) -> None:
             table.limits[name] = (str(least), str(most))
 
 
-__all__ = ["MOVING", "Joint", "Mimic", "couple", "led", "symbol_of"]
+__all__ = ["MOVING", "Joint", "Mimic", "couple", "declare", "led", "symbol_of"]

@@ -486,7 +486,7 @@ def use_exact(table: Table, file: str) -> None:
             angles.read(joint, f"{file}, axis {i}", angle=True),
             *([angles.read(e, f"{file}, axis {i}") for e in v] for v in vectors),
         )
-        for i, (joint, *vectors) in enumerate(axes, 1)
+        for i, (joint, *vectors) in enumerate(exact.straightened(axes), 1)
     ]
     table.home = table.home.applyfunc(lambda e: angles.read(e, f"{file}, [home]"))
     if table.base is not None:

@@ -11,38 +11,38 @@ import math
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from typing import NamedTuple
 
 import sympy as sp
 
 from closedform.mechanics.frames import exponential, homogeneous, rotation
-from closedform.model.functions import real
+from closedform.scaffold.inputs.decimals import add_axes, has_many_angles, rational_if_slow
 from closedform.scaffold.inputs.exact import orthonormal, turned_on, unit_vector, without_squares
 from closedform.scaffold.inputs.held import held
-from closedform.scaffold.inputs.joints import MOVING, Joint, Mimic, couple, led, symbol_of
+from closedform.scaffold.inputs.joints import MOVING, Joint, Mimic, couple, declare, led
 from closedform.scaffold.inputs.tables import (
     JOINTS,
     Table,
     TableError,
-    add_joint,
     shown_name,
     use_exact,
 )
 
 LARGEST = 2_000_000
 """Maximum size of a file in bytes; meshes are files of their own."""
-NOISE = sp.Rational(1, 10**9)
+NOISE = 1e-9
 """Angles and coordinates of axes below this are the rounding of an exporter, not meant.
 
 A difference below this, also of a length, is not worth a note.
 """
-MEANT = ((0, sp.Rational(1, 10**5)), (4, sp.Rational(1, 10**6)), (9, sp.Rational(1, 10**9)))
+MEANT = ((0, Fraction(1, 10**5)), (4, Fraction(1, 10**6)), (9, Fraction(1, 10**9)))
 """A length this close to a number with this many decimals stands for it; finally, nanometres."""
-NEAR = sp.Rational(1, 2000)
+NEAR = 5e-4
 """An angle this close to a multiple of pi/12 stands for it; so does a direction to an axis."""
 TILTS = (sp.atan(sp.sqrt(2) / 2), sp.atan(sp.sqrt(2)))
 """Angles between the diagonal of a cube and its sides and edges: 35.26 and 54.74 degrees."""
-ROUNDED = sp.Rational(1, 10**6)
+ROUNDED = 1e-6
 """An angle is never exact: a difference from what it stands for below this is not worth a note."""
 FAR = 20
 """Joints farther apart than this are probably not placed in metres."""
@@ -81,8 +81,14 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
     if not choice.tool:
         table.doubt = f"{table.doubt}  {_gripper(chain)}".strip()
     chain = held(chain, choice.hold, table, file)
-    found = [_Placed.of(chain, table, Displacement.of(as_written), file)]
-    if len(found[0].angles) > 1:  # sines of several angles are slow: joints may turn them back
+    where_it_was = Displacement.of(as_written)
+    if has_many_angles(chain):
+        found = [_Placed.in_decimals(chain, table, where_it_was, file)]
+    else:
+        found = [_Placed.of(chain, table, where_it_was, file)]
+    if len(found[0].angles) > 1 and not has_many_angles(
+        chain
+    ):  # sines of several angles are slow: joints may turn them back
         found.append(_Placed.of(chain, table, Displacement.of(as_written), file, offsets=True))
     table, moved, mimics, offsets = min(found, key=lambda placed: len(placed.angles))
     if not table.axes:
@@ -139,19 +145,27 @@ class _Placed(NamedTuple):
                 continue
             if not table.axes and not _along_axes(place):
                 # what a tilted mount does to all axes stays apart
-                table.base, place = place, sp.eye(4)
-            name = symbol_of(joint.name)
-            add_joint(table, name, MOVING[joint.kind], where)
+                table.base, place = rational_if_slow(place, where, table), sp.eye(4)
+            symbol = declare(joint, table, where)
             axis = _unit(joint.axis, place[:3, :3], table, where)
             direction = (place[:3, :3] * axis).applyfunc(sp.expand)
-            table.axes.append((real(name), list(direction), list(place[:3, 3])))
-            turned[real(name)] = angle
-            if name != joint.name:
-                table.notes.append(f"{where}: it is called {name}")
-            if joint.limits:
-                table.limits[name] = joint.limits
+            table.axes.append((symbol, list(direction), list(place[:3, 3])))
+            turned[symbol] = angle
         table.home = place
         return cls(table, moved, mimics, turned)
+
+    @classmethod
+    def in_decimals(
+        cls, chain: Sequence[Joint], table: Table, moved: Displacement, file: str
+    ) -> _Placed:
+        """The axes of a chain whose frames have many angles."""
+        table = deepcopy(table)
+        changed = add_axes(chain, table, file)
+        for joint, angle in changed.turned:
+            moved.turn(joint, 2 * angle)
+        moved.moved += changed.moved
+        moved.turned += changed.tool
+        return cls(table, moved, [], {})
 
     @property
     def angles(self) -> set[sp.Expr]:
@@ -346,20 +360,21 @@ def placed(xyz: Sequence[sp.Expr], rpy: Sequence[sp.Expr]) -> sp.Matrix:
 
 def meant_number(value: sp.Rational, what: str, notes: list[str]) -> sp.Rational:
     """A number, or 0 if it is noise."""
-    return value if abs(value) >= NOISE else _taken(value, sp.S.Zero, what, notes)
+    return value if abs(float(value)) >= NOISE else _taken(value, sp.S.Zero, what, notes)
 
 
 def meant_length(value: sp.Rational, what: str, notes: list[str]) -> sp.Rational:
     """A length without what the arithmetic of an exporter added to it."""
+    length = Fraction(int(value.p), int(value.q))  # rounds a hundred times faster than SymPy
     for decimals, near in MEANT:
-        short = sp.Rational(round(value * 10**decimals), 10**decimals)
-        if abs(value - short) < near and (decimals or short == 0):
-            return _taken(value, short, what, notes)
+        steps = round(length * 10**decimals)
+        if abs(length - Fraction(steps, 10**decimals)) < near and (decimals or steps == 0):
+            return _taken(value, sp.Rational(steps, 10**decimals), what, notes)
     return value
 
 
 def _taken(value: sp.Rational, meant: sp.Rational, what: str, notes: list[str]) -> sp.Rational:
-    if abs(value - meant) >= NOISE:
+    if abs(float(value - meant)) >= NOISE:
         notes.append(f"{what} {float(value)!r} is taken for {float(meant):.12g}")
     return meant
 
@@ -386,13 +401,17 @@ def meant_angle(value: sp.Rational, where: str, notes: list[str]) -> sp.Expr:
 
     Right angles are written with two decimals too, as 1.57 and 3.14.  Any other number is itself.
     """
-    steps = sp.Integer(round(float(value) * 12 / math.pi))
-    exact = steps * sp.pi / 12
-    short = steps % 6 == 0 and value == sp.Rational(f"{float(exact):.2f}")
-    if value == 0 or (abs(sp.N(exact - value, 30)) > NEAR and not short):
-        exact = sp.sign(value) * next((a for a in TILTS if abs(a - abs(value)) < NEAR), abs(value))
-    if abs(sp.N(exact - value, 30)) > ROUNDED:
-        notes.append(f"{where}: the angle {float(value):.9g} is taken for {exact}")
+    given = float(value)
+    steps = round(given * 12 / math.pi)
+    exact, near = steps * sp.pi / 12, steps * math.pi / 12
+    short = steps % 6 == 0 and f"{near:.2f}" == f"{given:.12g}"
+    if given == 0 or (abs(near - given) > NEAR and not short):
+        tilt = next((a for a in TILTS if abs(float(a) - abs(given)) < NEAR), None)
+        if tilt is None:
+            return value
+        exact, near = (tilt, float(tilt)) if given > 0 else (-tilt, -float(tilt))
+    if abs(near - given) > ROUNDED:
+        notes.append(f"{where}: the angle {given:.9g} is taken for {exact}")
     return exact
 
 

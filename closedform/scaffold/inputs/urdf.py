@@ -34,8 +34,29 @@ COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 
 def read_urdf(path: Path, choice: Choice = DEFAULT) -> Table:
     """The chain of the ``choice``; by default from root to end."""
-    joints = [_joint(element, path.name) for element in _root(path).findall("joint")]
+    elements = _root(path).findall("joint")
+    chain = _links_above(elements, choice.tool)
+    joints = [
+        _joint(element, path.name, aside=bool(chain) and _link(element, "child") not in chain)
+        for element in elements
+    ]
     return table_of(joints, path.name, choice)
+
+
+def _link(element: ElementTree.Element, end: str) -> str:
+    """The link at one end of a joint; nothing if it has none."""
+    found = element.find(end)
+    return "" if found is None else found.get("link", "")
+
+
+def _links_above(elements: Sequence[ElementTree.Element], link: str) -> set[str]:
+    """A link with those that carry it; none if it is not chosen."""
+    above = {_link(element, "child"): _link(element, "parent") for element in elements}
+    found: set[str] = set()
+    while link in above and link not in found:
+        found.add(link)
+        link = above[link]
+    return found
 
 
 def _root(path: Path) -> ElementTree.Element:
@@ -61,7 +82,8 @@ def _parsed(content: bytes) -> ElementTree.Element:
     return tree.close()
 
 
-def _joint(element: ElementTree.Element, file: str) -> Joint:
+def _joint(element: ElementTree.Element, file: str, *, aside: bool) -> Joint:
+    """A joint; the place and the axis of one that is ``aside`` of the chain are not read."""
     notes: list[str] = []
     name, kind = element.get("name", ""), element.get("type", "")
     where = f"{file}, joint {shown_name(name)}"
@@ -72,13 +94,11 @@ def _joint(element: ElementTree.Element, file: str) -> Joint:
             f"{where}: its type is {shown(kind)}, which URDF does not know; a joint is revolute, "
             f"continuous, prismatic or fixed"
         )
-    links = []
-    for end in ("parent", "child"):
-        found = element.find(end)
-        if found is None or not found.get("link"):
+    links = [_link(element, end) for end in ("parent", "child")]
+    for end, link in zip(("parent", "child"), links, strict=True):
+        if not link:
             raise TableError(f'{where}: it has no {end} link; write <{end} link="..."/>')
-        links.append(found.get("link", ""))
-    origin, axis = element.find("origin"), element.find("axis")
+    origin, axis = (None if aside else element.find(part) for part in ("origin", "axis"))
     xyz, rpy, direction = (
         _numbers(element, key, default, where)
         for element, key, default in (

@@ -3,9 +3,11 @@
 from pathlib import Path
 
 import pytest
+import sympy as sp
 
 from closedform.cli.commands import main
 from closedform.scaffold.inputs.tables import Table
+from closedform.scaffold.inputs.tree import Choice
 from closedform.scaffold.inputs.urdf import read_urdf
 from closedform.scaffold.new import new
 
@@ -52,6 +54,19 @@ def test_an_offset_of_a_hundredth_of_a_millimetre_is_kept(tmp_path: Path) -> Non
     assert len(across(read_urdf(alicia(tmp_path, "0.0036662")))) == 2
 
 
+def test_lengths_that_nearly_cancel_can_be_ignored(tmp_path: Path) -> None:
+    """They are long themselves, so that no length of the file could be named or left out."""
+    path = alicia(tmp_path, "0.0037562")
+    refused = new("alicia", "urdf", path)
+    assert "no inverse" in refused.inverse
+    assert "y of the joints q4 and q6 differs by 0.0001, " in refused.advice
+    assert "with --ignore 0.0001 or " in refused.advice
+    script = new("alicia", "urdf", path, choice=Choice(ignore=0.0001))
+    assert "with a spherical wrist" in script.inverse
+    (note,) = (n for n in script.notes if "with all joints at zero" in n)
+    assert note.endswith("0.0001 from it, because of --ignore")
+
+
 def test_lengths_forth_and_back_do_not_cancel_in_printed_code(tmp_path: Path) -> None:
     """The wrist of iCub: its Jacobian lost a digit, and `derive` called the code wrong."""
     axes = (("1 0 0", "0.2289 0 0"), ("0 -1 0", "-0.23935 0 0"), ("0 0 -1", "0 0 0"))
@@ -68,3 +83,19 @@ def test_lengths_forth_and_back_do_not_cancel_in_printed_code(tmp_path: Path) ->
     assert main(["new", "wrist", "--from", "urdf", str(path), "-o", made]) == 0
     script = str(tmp_path / "wrist.py")
     assert main(["derive", script, "-o", printed, "--backend", "numpy"]) == 0
+
+
+def test_a_numeric_inverse_is_advised_once(tmp_path: Path) -> None:
+    """A shoulder and three axes that are normal to each other, as in the arm of pib."""
+    rows = [("0 0 0", "1 0 0"), ("0 0 0", "0 0 1"), ("0 0 0", "-1 0 0"),
+            ("0.21634 -0.0379 0.0213", "0 -1 0"), ("0.07644 0.0379 0.04674", "-1 0 -1"),
+            ("0.1276 0.0149 0.0908", "1 0 -1")]  # fmt: skip
+    joints = "".join(
+        f'<joint name="q{k}" type="revolute"><parent link="l{k}"/><child link="l{k + 1}"/>'
+        f'<origin xyz="{xyz}"/><axis xyz="{axis}"/></joint>'
+        for k, (xyz, axis) in enumerate(rows)
+    )
+    path = tmp_path / "pib.urdf"
+    path.write_text(f'<robot name="pib">{joints}</robot>', "utf-8")
+    assert new("pib", "urdf", path).advice.count("ssik") == 1
+    assert tuple(read_urdf(path).axes[4][1]) == (-sp.sqrt(2) / 2, 0, -sp.sqrt(2) / 2)

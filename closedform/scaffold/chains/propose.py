@@ -143,7 +143,7 @@ def _refusal(
         progress("counting the solutions")
         error = _counted(error if _has_three(whole) else NO_THREE, solutions(whole))
     elif n == 6 and not any(joint.slides for joint in whole.joints):
-        error = NoChainError(error.found, f"{error.needed}  {NUMERIC}", error.degree)
+        error = NoChainError(error.found, _numeric(error.needed), error.degree)
     elif n < 6 and arm.coordinates() is None and not error.degree:
         progress("counting the solutions")
         error = _counted_few(error, solutions_of_few(whole))
@@ -199,7 +199,7 @@ def _has_three(whole: Singles) -> bool:
 
 def _counted(error: NoChainError, counted: Solutions | None, given: str = "") -> NoChainError:
     """The error with the degree of the equations for a pose, if their solutions were counted."""
-    needed = error.needed if NUMERIC in error.needed else f"{error.needed}  {NUMERIC}"
+    needed = _numeric(error.needed)
     if counted is None:
         return NoChainError(error.found, needed)
     *few, last = (str(n) for n in reversed(counted.steps))
@@ -214,6 +214,11 @@ def _counted(error: NoChainError, counted: Solutions | None, given: str = "") ->
         )
     found = f"{error.found}, and {given}there is no closed form: degree {counted.degree}"
     return NoChainError(found, f"{told}; roots do not solve them.  {needed}", counted.degree)
+
+
+def _numeric(needed: str) -> str:
+    """What to do, with the advice to use a numeric inverse, once."""
+    return needed if NUMERIC in needed else f"{needed}  {NUMERIC}"
 
 
 def _counted_few(error: NoChainError, number: int | None) -> NoChainError:

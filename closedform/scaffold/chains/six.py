@@ -248,7 +248,7 @@ class SixMaker(AroundParallelMaker):
             raise NoChainError(
                 f"the point where three axes meet can come to axis {six.number}, where three "
                 f"solutions meet",
-                "The known chain loses digits there; use ssik for a numeric inverse.",
+                "The known chain loses digits there.  Use ssik for a numeric inverse.",
                 degree=4,
             )
         seen, p = one.shift, point("p")

@@ -503,7 +503,7 @@ class SubproblemMaker(WristMaker):
         if folds(two, three):
             raise NoChainError(
                 f"its wrist can come to axis {two.number}, where three solutions meet",
-                "The known chain loses digits there; use ssik for a numeric inverse.",
+                "The known chain loses digits there.  Use ssik for a numeric inverse.",
                 degree=degree,
             )
         self.add("square = ik.coordinate('square', p.dot(p))")

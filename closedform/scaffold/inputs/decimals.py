@@ -60,7 +60,7 @@ def rational_if_slow(mount: sp.Matrix, where: str, table: Table) -> sp.Matrix:
     return found
 
 
-def add_axes(chain: Sequence[Joint], table: Table, file: str) -> Changed:
+def add_axes(chain: Sequence[Joint], table: Table, file: str, ignore: float) -> Changed:
     """Add the axes at home, and the pose of the tool, to the table, seen from the first axes."""
     place = np.eye(4)
     placed: list[tuple[Joint, np.ndarray, np.ndarray]] = []
@@ -82,7 +82,7 @@ def add_axes(chain: Sequence[Joint], table: Table, file: str) -> Changed:
         w = unit_vector(_rational(given, DIGITS), directions, roots=False)
         assert w is not None
         directions.append(w)
-        points.append(_shared(at, directions, points))
+        points.append(_shared(at, directions, points, max(MEET, ignore)))
         turned.append((joint, float(np.linalg.norm(_floats(w).ravel() - given))))
         moved += 2 * _distance(at, points[-1], w)
     for (joint, *_), w, at in zip(placed, directions, points, strict=True):
@@ -109,18 +109,20 @@ def _mount(directions: Sequence[np.ndarray]) -> np.ndarray:
     return np.column_stack([x, np.cross(z, x), z])
 
 
-def _shared(at: np.ndarray, directions: Sequence[sp.Matrix], points: list[sp.Matrix]) -> sp.Matrix:
+def _shared(
+    at: np.ndarray, directions: Sequence[sp.Matrix], points: list[sp.Matrix], near: float
+) -> sp.Matrix:
     """A point of the last axis: one before it, or one where it meets the axis before, if near.
 
     Then the ``points`` have this point for the axis before, too.
     """
     w = directions[-1]
     for point in reversed(points):
-        if _distance(at, point, w) < MEET:
+        if _distance(at, point, w) < near:
             return point
     if points and (along := _foot(at, directions, points[-1])) is not None:
         meeting = (points[-1] + along * directions[-2]).applyfunc(sp.expand)
-        if _distance(at, meeting, w) < MEET:
+        if _distance(at, meeting, w) < near:
             points[-1] = meeting
             return meeting
     return _rational(at, PLACES)

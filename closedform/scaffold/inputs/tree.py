@@ -12,11 +12,13 @@ from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from itertools import combinations
 from typing import NamedTuple
 
 import sympy as sp
 
 from closedform.mechanics.frames import exponential, homogeneous, rotation
+from closedform.model.tolerances import UNIT_LENGTH
 from closedform.scaffold.inputs.decimals import add_axes, has_many_angles, rational_if_slow
 from closedform.scaffold.inputs.exact import orthonormal, turned_on, unit_vector, without_squares
 from closedform.scaffold.inputs.held import held
@@ -81,7 +83,7 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
     if not choice.tool:
         table.doubt = f"{table.doubt}  {_gripper(chain)}".strip()
     chain = held(chain, choice.hold, table, file)
-    where_it_was = Displacement.of(as_written)
+    where_it_was = Displacement.of(as_written, choice.ignore)
     if has_many_angles(chain):
         found = [_Placed.in_decimals(chain, table, where_it_was, file)]
     else:
@@ -89,8 +91,11 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
     if len(found[0].angles) > 1 and not has_many_angles(
         chain
     ):  # sines of several angles are slow: joints may turn them back
-        found.append(_Placed.of(chain, table, Displacement.of(as_written), file, offsets=True))
+        found.append(
+            _Placed.of(chain, table, Displacement.of(as_written, choice.ignore), file, offsets=True)
+        )
     table, moved, mimics, offsets = min(found, key=lambda placed: len(placed.angles))
+    table.doubt = f"{table.doubt}  {_parted(table.axes)}".strip()
     if not table.axes:
         raise TableError(f"{file}: no joint between {chain[0].parent} and {chain[-1].child} moves")
     couple(mimics, table)
@@ -137,7 +142,7 @@ class _Placed(NamedTuple):
             moved.turn(joint, between(place, there))
             if joint.kind == "fixed":
                 continue
-            there, place = place, _level(place, table, where)
+            there, place = place, _level(place, table, where, moved.ignore)
             moved.moved += _size(place[:3, 3] - there[:3, 3])
             if joint.mimics:
                 mimics.append(Mimic(joint, place, len(table.axes), file))
@@ -160,7 +165,7 @@ class _Placed(NamedTuple):
     ) -> _Placed:
         """The axes of a chain whose frames have many angles."""
         table = deepcopy(table)
-        changed = add_axes(chain, table, file)
+        changed = add_axes(chain, table, file, moved.ignore)
         for joint, angle in changed.turned:
             moved.turn(joint, 2 * angle)
         moved.moved += changed.moved
@@ -215,14 +220,15 @@ def _offset(joint: Joint, where: str, notes: list[str]) -> sp.Matrix:
 class Displacement:
     """How far what was taken for other numbers moves the tool, in any posture."""
 
-    def __init__(self) -> None:
+    def __init__(self, ignore: float) -> None:
+        self.ignore = ignore
         self.turned = self.moved = 0.0
         self.after: dict[str, float] = {}
         self.slides = False
 
     @classmethod
-    def of(cls, chain: Sequence[Joint]) -> Displacement:
-        found, after = cls(), 0.0
+    def of(cls, chain: Sequence[Joint], ignore: float) -> Displacement:
+        found, after = cls(ignore), 0.0
         for joint in reversed(chain):
             if MOVING.get(joint.kind) == "prismatic":
                 found.slides = True
@@ -380,7 +386,7 @@ def _taken(value: sp.Rational, meant: sp.Rational, what: str, notes: list[str]) 
 
 
 def meant_axis(given: sp.Matrix, where: str, notes: list[str]) -> sp.Matrix:
-    """An axis: along the coordinates if it nearly is, a unit vector if its length is rational."""
+    """An axis: along the coordinates if it nearly is, else a unit vector, unless rounded."""
     size = max(map(abs, given))
     others = sp.sqrt(given.dot(given) - size**2)
     if 0 < others < NEAR * size:
@@ -389,7 +395,8 @@ def meant_axis(given: sp.Matrix, where: str, notes: list[str]) -> sp.Matrix:
             notes.append(f"{where}: the axis {_listed(given)} is taken for {_listed(found)}")
         return found
     length = sp.sqrt(given.dot(given))
-    return given / length if length.is_Rational and length != 1 else given
+    exact = length.is_Rational or abs(float(length) - 1) > UNIT_LENGTH  # else it was rounded
+    return given / length if exact and length != 1 else given
 
 
 def _listed(vector: sp.Matrix) -> str:
@@ -508,24 +515,52 @@ def _product(a: sp.Matrix, b: sp.Matrix) -> sp.Matrix:
     return homogeneous(turned_on(a[:3, :3], b[:3, :3]), tuple(shifted.applyfunc(sp.expand)))
 
 
-def _level(place: sp.Matrix, table: Table, where: str) -> sp.Matrix:
+def _level(place: sp.Matrix, table: Table, where: str, ignore: float) -> sp.Matrix:
     """The place of a joint, with coordinates of those before it if lengths nearly add up to them.
 
     Lengths that cancel are rounded one by one: 0.0036562 up and 0.0036563 down parts two axes.
     """
-    place = place.copy()
+    place, near = place.copy(), max(float(MEANT[0][1]), ignore * (1 + NOISE))
     for i in range(3):
-        for joint, _, at in table.axes:
-            gap = abs(float(place[i, 3] - at[i])) if not place[i, 3].free_symbols else 0.0
-            if 0 < gap < MEANT[0][1]:
-                place[i, 3] = at[i]
-                if gap >= NOISE:
-                    table.notes.append(
-                        f"{where}: with all joints at zero its {'xyz'[i]} is taken for that of "
-                        f"joint {joint}, {gap:.3g} from it"
-                    )
-                break
+        gaps = [(_gap(place[i, 3], at[i]), joint, at[i]) for joint, _, at in table.axes]
+        found = [(gap, k) for k, (gap, *_) in enumerate(gaps) if gap < near]
+        if not found:
+            continue
+        gap, joint, place[i, 3] = gaps[min(found)[1]]
+        if gap >= NOISE:
+            table.notes.append(
+                f"{where}: with all joints at zero its {'xyz'[i]} is taken for that of joint "
+                f"{joint}, {gap:.3g} from it{', because of --ignore' if gap <= ignore else ''}"
+            )
     return place
+
+
+def _gap(one: sp.Expr, other: sp.Expr) -> float:
+    """How far two coordinates are from each other; infinite if that depends on a parameter."""
+    apart = one - other
+    return math.inf if apart.free_symbols else abs(float(apart))
+
+
+def _parted(axes: Sequence[tuple[sp.Symbol, list[sp.Expr], list[sp.Expr]]]) -> str:
+    """What to try if no inverse is found: a sentence on coordinates that nearly agree, or none."""
+    gaps = [
+        (_gap(here[i], there[i]), str(one), str(other), "xyz"[i])
+        for (one, _, there), (other, _, here) in combinations(axes, 2)
+        for i in range(3)
+    ]
+    longest = max((gap for gap, *_ in gaps if gap < math.inf), default=0.0)
+    parted = {
+        _rounded_up(gap): f"{coordinate} of the joints {one} and {other} differs by {gap:.6g}"
+        for gap, one, other, coordinate in sorted(gaps, reverse=True)
+        if NOISE < gap < SHORT * longest
+    }
+    if not parted:
+        return ""
+    some = sorted(parted.items(), key=lambda item: float(item[0]))[:3]
+    return (
+        f"With all joints at zero, {', '.join(text for _, text in some)}; if that is not meant, "
+        f"leave it out with --ignore {' or '.join(gap for gap, _ in some)}."
+    )
 
 
 def _meant_turns(place: sp.Matrix, where: str, notes: list[str]) -> sp.Matrix:

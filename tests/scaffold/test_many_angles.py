@@ -92,3 +92,12 @@ def test_a_direction_normal_to_two_others_is_written_out(roots: bool) -> None:
     diagonal = sp.Matrix([sp.Rational("0.707107"), sp.Rational("0.707107"), 0])
     found = unit_vector(diagonal, roots=roots)
     assert found is not None and all(e.is_Rational for e in found) is not roots
+
+
+def test_a_small_coordinate_with_nine_decimals_is_kept() -> None:
+    """The mount of an arm of Romeo was turned by 4e-7 rad: 0.000000383 was taken for 0."""
+    given = sp.Matrix([sp.Rational(text) for text in ("3.83e-7", "0.173635", "0.984810")])
+    given[2] = sp.Rational(round((1 - 0.173635**2) ** 0.5 * 10**9), 10**9)
+    found = unit_vector(given, roots=False)
+    assert found is not None and found.dot(found) == 1
+    assert max(abs(float(a - b)) for a, b in zip(found, given, strict=True)) < 1e-9

@@ -126,3 +126,24 @@ def test_offsets_of_parallel_joints_may_be_any_parameters(tmp_path: Path) -> Non
     assert away < 1e-12 and turned < 1e-12 and (np.abs(answers[status == OK]) <= np.pi).all()
     same = np.abs(np.exp(1j * answers) - np.exp(1j * q[:, None])).max(axis=-1)
     assert np.nanmin(same, axis=-1).max() < 1e-8
+
+
+def test_a_tilt_that_a_joint_turns_back_is_its_offset(tmp_path: Path) -> None:
+    """The shoulder of a Fourier GR-1: sines of the tilt stood in each axis and each length."""
+    rows = [
+        ("0 0.1 0.2", "0.43275 0 0", "0 1 0"),
+        ("0 0.0951 0", "-0.43275 0 0", "1 0 0"),
+        ("0 0.04 -0.0709", "0 0 0", "0 0 1"),
+        ("0 0 -0.18", "0 0 0", "0 1 0"),
+    ]
+    joints = "".join(
+        f'<joint name="q{k}" type="revolute"><parent link="l{k}"/><child link="l{k + 1}"/>'
+        f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{axis}"/></joint>'
+        for k, (xyz, rpy, axis) in enumerate(rows)
+    )
+    path = tmp_path / "gr1.urdf"
+    path.write_text(f'<robot name="gr1">{joints}</robot>', "utf-8")
+    table = read_urdf(path)
+    assert [tuple(w) for _, w, _ in table.axes] == [(0, 1, 0), (1, 0, 0), (0, 0, 1), (0, 1, 0)]
+    assert all(e.is_Rational for _, _, at in table.axes for e in at)
+    assert [len(joint.free_symbols) for joint, *_ in table.axes] == [1, 2, 1, 1]

@@ -133,7 +133,7 @@ def _simple(u: Sequence[float], place: float, roots: bool) -> sp.Matrix | None:
 
 def _fractions(*values: float) -> Iterator[tuple[sp.Rational, ...]]:
     """Fractions that approximate the numbers more and more closely."""
-    for k in range(2, 20):
+    for k in range(2, 53):
         near = (Fraction(x).limit_denominator(2**k) for x in values)
         yield tuple(sp.Rational(f.numerator, f.denominator) for f in near)
 

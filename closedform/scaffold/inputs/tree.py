@@ -8,7 +8,7 @@ the notes say so.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -79,23 +79,14 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
     as_written = chain
     chain = _without_short(chain, choice.ignore, file, table.notes)
     table.end = chain[-1].child
-    table.doubt = _doubt(chain)
+    short = _short(chain)
+    table.doubt = _doubt(*short) if short else ""
     if not choice.tool:
         table.doubt = f"{table.doubt}  {_gripper(chain)}".strip()
     chain = held(chain, choice.hold, table, file)
-    where_it_was = Displacement.of(as_written, choice.ignore)
-    if has_many_angles(chain):
-        found = [_Placed.in_decimals(chain, table, where_it_was, file)]
-    else:
-        found = [_Placed.of(chain, table, where_it_was, file)]
-    if len(found[0].angles) > 1 and not has_many_angles(
-        chain
-    ):  # sines of several angles are slow: joints may turn them back
-        found.append(
-            _Placed.of(chain, table, Displacement.of(as_written, choice.ignore), file, offsets=True)
-        )
-    table, moved, mimics, offsets = min(found, key=lambda placed: len(placed.angles))
-    table.doubt = f"{table.doubt}  {_parted(table.axes)}".strip()
+    found = list(_read(chain, table, Displacement.of(as_written, choice.ignore), file))
+    table, moved, mimics, offsets = min(found, key=_Placed.sines)
+    table.doubt = f"{table.doubt}  {_parted(table.axes, short)}".strip()
     if not table.axes:
         raise TableError(f"{file}: no joint between {chain[0].parent} and {chain[-1].child} moves")
     couple(mimics, table)
@@ -107,6 +98,21 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
     table.notes += moved.notes(file) + _units(as_written, file)
     use_exact(table, file)
     return table
+
+
+def _read(
+    chain: Sequence[Joint], table: Table, moved: Displacement, file: str
+) -> Iterator[_Placed]:
+    """The ways to read a chain: as it is, with offsets of joints, or in decimals."""
+    angles = [_own_turn(joint) for joint in chain]
+    straight = [_turned_back(j, a) for j, a in zip(chain, angles, strict=True)]
+    if has_many_angles(straight):
+        yield _Placed.in_decimals(chain, table, deepcopy(moved), file)
+        return
+    if not has_many_angles(chain):
+        yield _Placed.of(chain, table, deepcopy(moved), file)
+    if any(angles):  # sines of angles are slow, and joints may turn them back
+        yield _Placed.of(chain, table, deepcopy(moved), file, offsets=True)
 
 
 class _Placed(NamedTuple):
@@ -134,9 +140,8 @@ class _Placed(NamedTuple):
         turned: dict[sp.Symbol, sp.Expr] = {}
         for joint in chain:
             where = f"{file}, joint {shown_name(joint.name)}"
-            angle = _own_turn(joint) if offsets and not joint.mimics else sp.S.Zero
-            if angle != 0:
-                joint = replace(joint, origin=_turned_back(joint, angle))
+            angle = _own_turn(joint) if offsets else sp.S.Zero
+            joint = _turned_back(joint, angle)
             there = _product(place, joint.origin)
             place = _meant_turns(there, where, table.notes)
             moved.turn(joint, between(place, there))
@@ -172,12 +177,12 @@ class _Placed(NamedTuple):
         moved.turned += changed.tool
         return cls(table, moved, [], {})
 
-    @property
-    def angles(self) -> set[sp.Expr]:
-        """The angles whose sines and cosines the axes and the tool contain."""
+    def sines(self) -> tuple[int, int]:
+        """How many angles are in axes, tool and offsets, and how many of them in sines."""
         vectors = [v for _, *both in self.table.axes for v in both]
         entries = [*self.table.home, *(e for v in vectors for e in v)]
-        return {f.args[0] for e in entries for f in e.atoms(sp.sin, sp.cos)}
+        inside = {abs(f.args[0]) for e in entries for f in e.atoms(sp.sin, sp.cos)}
+        return len(inside | {abs(a) for a in self.offsets.values() if a != 0}), len(inside)
 
 
 def _own_turn(joint: Joint) -> sp.Expr:
@@ -186,20 +191,23 @@ def _own_turn(joint: Joint) -> sp.Expr:
     It is 0 if there is none, and if the origin does not need it.
     """
     R = joint.origin[:3, :3]
-    if MOVING.get(joint.kind) != "revolute" or not R.has(sp.sin, sp.cos):
+    if MOVING.get(joint.kind) != "revolute" or joint.mimics or not R.has(sp.sin, sp.cos):
         return sp.S.Zero
     if not orthonormal(joint.axis):
         return sp.S.Zero
     held = {f.args[0] for f in R.atoms(sp.sin, sp.cos)}
     for angle in (k * a for a in sorted(held, key=sp.default_sort_key) for k in (1, -1)):
-        if not _turned_back(joint, angle)[:3, :3].has(sp.sin, sp.cos):
+        if not _turned_back(joint, angle).origin[:3, :3].has(sp.sin, sp.cos):
             return angle
     return sp.S.Zero
 
 
-def _turned_back(joint: Joint, angle: sp.Expr) -> sp.Matrix:
-    """The origin of a joint, which has turned back by an angle."""
-    return _product(joint.origin, exponential(sp.Matrix([0, 0, 0, *joint.axis]), -angle))
+def _turned_back(joint: Joint, angle: sp.Expr) -> Joint:
+    """The joint with the origin where it has turned back by an angle."""
+    if angle == 0:
+        return joint
+    turn = exponential(sp.Matrix([0, 0, 0, *joint.axis]), -angle)
+    return replace(joint, origin=_product(joint.origin, turn))
 
 
 def _offset(joint: Joint, where: str, notes: list[str]) -> sp.Matrix:
@@ -334,14 +342,15 @@ def _rounded_up(length: float) -> str:
     return f"{math.ceil(length / step - 1e-9) * step:.2g}"
 
 
-def _doubt(chain: Sequence[Joint]) -> str:
-    """What to try if no inverse is found: a sentence on lengths that may not be meant, or none."""
+def _short(chain: Sequence[Joint]) -> tuple[float, str] | None:
+    """The longest of the lengths that are short beside the others, and its joint."""
     sizes = [(abs(float(e)), joint.name) for joint in chain for e in joint.origin[:3, 3] if e != 0]
     longest = max(sizes, default=(0.0, ""))[0]
-    short = [found for found in sizes if found[0] < SHORT * longest]
-    if not short:
-        return ""
-    length, name = max(short)
+    return max((found for found in sizes if found[0] < SHORT * longest), default=None)
+
+
+def _doubt(length: float, name: str) -> str:
+    """What to try if no inverse is found: a sentence on lengths that may not be meant."""
     return (
         f"The file has lengths such as {length:.6g}, of the joint {shown_name(name)}; if they are "
         f"not meant, leave them out with --ignore {_rounded_up(length)}."
@@ -541,8 +550,14 @@ def _gap(one: sp.Expr, other: sp.Expr) -> float:
     return math.inf if apart.free_symbols else abs(float(apart))
 
 
-def _parted(axes: Sequence[tuple[sp.Symbol, list[sp.Expr], list[sp.Expr]]]) -> str:
-    """What to try if no inverse is found: a sentence on coordinates that nearly agree, or none."""
+def _parted(
+    axes: Sequence[tuple[sp.Symbol, list[sp.Expr], list[sp.Expr]]], short: tuple[float, str] | None
+) -> str:
+    """What to try if no inverse is found: a sentence on coordinates that nearly agree, or none.
+
+    Those that agree without ``short`` lengths, which are named already, are left out.
+    """
+    least = short[0] if short else NOISE
     gaps = [
         (_gap(here[i], there[i]), str(one), str(other), "xyz"[i])
         for (one, _, there), (other, _, here) in combinations(axes, 2)
@@ -552,7 +567,7 @@ def _parted(axes: Sequence[tuple[sp.Symbol, list[sp.Expr], list[sp.Expr]]]) -> s
     parted = {
         _rounded_up(gap): f"{coordinate} of the joints {one} and {other} differs by {gap:.6g}"
         for gap, one, other, coordinate in sorted(gaps, reverse=True)
-        if NOISE < gap < SHORT * longest
+        if least < gap < SHORT * longest
     }
     if not parted:
         return ""

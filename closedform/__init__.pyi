@@ -18,6 +18,7 @@ from closedform.lemmas.arm_plane import arm_angle as arm_angle
 from closedform.lemmas.arm_plane import arm_plane as arm_plane
 from closedform.lemmas.axial import Across as Across
 from closedform.lemmas.axial import Along as Along
+from closedform.lemmas.axial import FreeAlong as FreeAlong
 from closedform.lemmas.chain import Chain as Chain
 from closedform.lemmas.circles import circle_intersection as circle_intersection
 from closedform.lemmas.extended import Extended as Extended
@@ -64,6 +65,8 @@ from closedform.lemmas.tangent import Preferred as Preferred
 from closedform.lemmas.three_planes import axes_in_three_planes as axes_in_three_planes
 from closedform.lemmas.through_ball import ThroughBall as ThroughBall
 from closedform.lemmas.triangle import Triangle as Triangle
+from closedform.lemmas.turret import Around as Around
+from closedform.lemmas.turret import OnTurret as OnTurret
 from closedform.lemmas.two_link import elbow_squares as elbow_squares
 from closedform.lemmas.two_link import two_link_arm as two_link_arm
 from closedform.lemmas.two_link import two_link_arm_beside as two_link_arm_beside

@@ -2,17 +2,20 @@
 
 A slider on the ground carries a leg that turns about the direction of the slide and stretches at
 right angles to it, as in a 3-PRPS mechanism.  Such a leg has two motors, and is a leg for each.
+Instead of stretching, it may be a rod on a crank or on another slider, as in a 3-PPRS mechanism.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
 
-from closedform.lemmas.legs import Naming, Slider, Solution, vector
+from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.legs import Crank, Naming, Slide, Slider, Solution, vector
+from closedform.lemmas.turret import Around, OnTurret
 from closedform.model.inverse import Link
 from closedform.model.lemma import Lemma
 
@@ -120,7 +123,91 @@ class Across:
         return Solution(link, value, sp.Matrix(named))
 
 
-Axial = Along | Across
+@dataclass(frozen=True)
+class FreeAlong:
+    """A crank or a slide with a rod whose end is free along an axis.
+
+    Revolute joints whose axes have the direction of the unit vector ``axis`` join the parts of the
+    ``leg``, which move in a plane at right angles to it.  The whole plane may slide along the axis.
+    The rod leads to the point ``on_hand`` of the hand, which is that of the leg if it is left out.
+    """
+
+    leg: Crank | Slide
+    axis: Sequence[Any]
+    on_hand: Sequence[Any] = ()
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.leg, Crank | Slide) or len(self.leg.base) != len(self.axis):
+            raise ShapeError("a leg that is FreeAlong an axis is a crank or a slide in space")
+        axis, name = vector(self.axis), self.joint
+        if any(map(sp.simplify, [axis.dot(axis) - 1, *(e.dot(axis) for e in self.plane)])):
+            raise ShapeError(
+                f"{name}: the axis of a leg that is FreeAlong it is a unit vector, at right angles "
+                f"to the plane in which {name} moves its end"
+            )
+        object.__setattr__(self, "on_hand", self.on_hand or self.leg.on_hand)
+
+    @property
+    def joint(self) -> sp.Symbol:
+        return self.leg.joint
+
+    @property
+    def rod(self) -> Any:
+        return self.leg.rod
+
+    @property
+    def length(self) -> Any:
+        """The length of the crank."""
+        return self.leg.length if isinstance(self.leg, Crank) else 0
+
+    @property
+    def signs(self) -> int:
+        return self.leg.signs
+
+    @property
+    def base(self) -> sp.Matrix:
+        return self.leg.base
+
+    @property
+    def rate(self) -> sp.Matrix:
+        return self.leg.rate
+
+    @property
+    def plane(self) -> tuple[sp.Matrix, sp.Matrix]:
+        """Two directions of the plane of the leg."""
+        if isinstance(self.leg, Crank):
+            return vector(self.leg.along), vector(self.leg.across)
+        return self.leg.rate, vector(self.axis).cross(self.leg.rate)
+
+    def end(self) -> sp.Matrix:
+        return self.leg.end()
+
+    def foot(self, span: sp.Matrix) -> sp.Matrix:
+        """How far the plane of the leg has to slide along the axis."""
+        axis = vector(self.axis)
+        return axis.dot(span) * axis
+
+    def pull(self, span: sp.Matrix) -> sp.Matrix:
+        """The rod, from the vector to the point from the near end, where nothing has slid."""
+        return (span - self.foot(span)).applyfunc(sp.expand)
+
+    def excess(self, span: sp.Matrix) -> sp.Expr:
+        """What vanishes if the rod has its length."""
+        rod = self.pull(span)
+        return rod.dot(rod) - sp.sympify(self.rod, strict=True) ** 2
+
+    def solve(self, chain: Naming, w: sp.Matrix, sigma: sp.Symbol) -> Solution:
+        first, second = self.plane
+        flat = (
+            replace(self.leg, pivot=(0, 0), along=(1, 0), across=(0, 1), on_hand=())
+            if isinstance(self.leg, Crank)
+            else replace(self.leg, start=(0, 0), direction=(1, 0), on_hand=())
+        )
+        solved = flat.solve(chain, sp.Matrix([w.dot(first), w.dot(second)]), sigma)
+        return replace(solved, rod=solved.rod[0] * first + solved.rod[1] * second)
+
+
+Axial = Along | Across | FreeAlong | Around | OnTurret
 """Legs that hold a point by an axis."""
 
-__all__ = ["Across", "Along", "Axial"]
+__all__ = ["Across", "Along", "Axial", "FreeAlong"]

@@ -16,6 +16,7 @@ from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut, sign_of_le
 from closedform.lemmas.parallelogram import Parallelogram
 from closedform.lemmas.planes import Flat, Plane
 from closedform.lemmas.rails import Rail
+from closedform.lemmas.turret import Around, OnTurret
 from closedform.lemmas.universal import Universal
 from closedform.model.alike import INDEX, Alike, alike, renamed
 from closedform.model.derivation import Derivation
@@ -252,11 +253,18 @@ class Hand:
         )
 
 
-def rate_of(leg: Leg, rod: sp.Matrix) -> sp.Expr:
-    """The entry of B of a leg, from the vector along its rod."""
+def rate_of(leg: Leg, rod: sp.Matrix, span: sp.Matrix | None = None) -> sp.Expr:
+    """The entry of B of a leg, from the vector along its rod.
+
+    That of a turret follows from the ``span`` from its pivot.
+    """
     if isinstance(leg, Along):
         return sp.S.One
-    return leg.joint if isinstance(leg, Stretch | Across) else rod.dot(leg.rate)
+    if isinstance(leg, Around):
+        assert span is not None
+        return leg.away(span)
+    moved = leg.leg if isinstance(leg, OnTurret) else leg
+    return moved.joint if isinstance(moved, Stretch | Across) else rod.dot(leg.rate)
 
 
 def singular_everywhere(A: sp.Matrix, at: Mapping[sp.Basic, sp.Expr] | None = None) -> bool:
@@ -280,8 +288,8 @@ def check_order(d: Derivation, driven: Sequence[Leg], *, axial: bool = False) ->
     """Refuse legs that are not in the order of the joints, and such that only some hands have."""
     if not axial and any(isinstance(leg, Axial) for leg in driven):
         raise ShapeError(
-            f"{d.name}: legs Along and Across an axis carry a hand that turns in space, on three "
-            f"pairs of them, in platform"
+            f"{d.name}: legs Along and Across an axis, or Around one and OnTurret, carry a hand "
+            f"that turns in space, on three pairs of them, in platform"
         )
     joints = tuple(leg.joint for leg in driven)
     if joints != d.actuated:

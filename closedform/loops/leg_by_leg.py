@@ -12,6 +12,7 @@ from closedform.lemmas.axial import Across
 from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, sign_of_leg
 from closedform.lemmas.named import named, named_in
 from closedform.lemmas.planes import Flat
+from closedform.lemmas.turret import OnTurret
 from closedform.loops.reached import bounds_of_any, export_reach, signs_of
 from closedform.mechanics.lengths import lengths_in_numbers
 from closedform.model.derivation import Derivation, Solved
@@ -48,7 +49,8 @@ class LegByLeg:
         sigma = sign_of_leg(k)
         if leg.signs == 2:
             self.choices.append((sigma, SIGN))
-        self.found.append(leg.solve(self.naming(k), w, sigma))
+        seen = leg.turned_by(self.found[-1].link) if isinstance(leg, OnTurret) else leg
+        self.found.append(seen.solve(self.naming(k), w, sigma))
 
     def lengths(self, legs: Sequence[Leg]) -> sp.Expr:
         """The product of the lengths of the rods, as they are in the answer."""
@@ -59,7 +61,7 @@ class LegByLeg:
         stretched = {s.link.unknowns[0]: s.value for s in self.found}
         return [
             stretched[leg.joint]
-            if isinstance(leg, Stretch | Across)
+            if isinstance(leg.leg if isinstance(leg, OnTurret) else leg, Stretch | Across)
             else sp.sympify(leg.rod, strict=True)
             for leg in legs
         ]

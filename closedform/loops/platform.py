@@ -15,14 +15,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations, pairwise
+from operator import add
 from typing import Any
 
 import sympy as sp
 
-from closedform.lemmas.axial import Along
+from closedform.lemmas.axial import Along, FreeAlong
 from closedform.lemmas.legs import Leg, Slide
 from closedform.lemmas.planes import Plane
 from closedform.lemmas.rails import Rail
+from closedform.lemmas.turret import Around, OnTurret
 from closedform.loops.guides import Ball
 from closedform.loops.hand import in_space, rate_of, square
 from closedform.loops.leg_by_leg import (
@@ -36,6 +38,13 @@ from closedform.loops.leg_by_leg import (
 from closedform.loops.letters import letters
 from closedform.loops.meeting import Meet
 from closedform.loops.modes import NO_MODE
+from closedform.loops.on_axes import (
+    close_on_axes,
+    row_on_axes,
+    solved_on_axes,
+    still_on_axes,
+    still_on_turrets,
+)
 from closedform.loops.on_rails import on_rails
 from closedform.loops.pairs import degree_of_pairs
 from closedform.loops.platform_legs import (
@@ -119,7 +128,7 @@ def platform(d: Derivation, legs: Sequence[Leg | Half], *, bars: int = 2) -> Non
     check_holds(m)
     if not d.singularities:
         d.singularities = (*(f"leg {k}" for k, _ in m.numbered), "all legs")
-    m.d.loop = loop = _close_on_axes(m) if m.axial else _close(m)
+    m.d.loop = loop = close_on_axes(m) if m.axial else _close(m)
     if upright:
         state_upright(m, loop)
     if solved := TwoRails.of(m) or Meet.of(m) or ThreePoints.of(m):
@@ -179,26 +188,6 @@ def _close(m: Platform) -> Step:
     )
 
 
-def _close_on_axes(m: Platform) -> Step:
-    """The same for points that are held by axes."""
-    (e,) = letters(m.d, "e")
-    rows = [
-        (str(k), str(leg.joint), leg.base.T, leg.rate.T, place.T)
-        for k, (leg, place) in enumerate(zip(m.legs[::2], m.places[::2], strict=True), 1)
-    ]
-    return m.d.step(
-        "The loop",
-        "Three points of the hand are held by axes of the ground.  Its pose is the position p of "
-        "one of its points, and R, by which it is turned.  A slider moves along the axis k, which "
-        "passes a_k and has the direction u_k, and carries a leg that turns about the axis and "
-        "stretches at right angles to it.  The leg ends at a ball joint, which is "
-        f"{e} in the frame of the hand.  So the coordinate of p + R*{e} along the axis is the "
-        "joint of the slider, and its distance from the axis is the length of the leg.",
-        {},
-        rows=[("k", "slider", "a", "u", e), *rows],
-    )
-
-
 def _forward(m: Platform, loop: Step) -> str:
     """The degree of the forward problem, for which no formula is derived."""
     if m.axial:
@@ -255,7 +244,8 @@ def _forward(m: Platform, loop: Step) -> str:
 
 def _velocity(m: Platform, loop: Step) -> None:
     d = m.d
-    rates = [rate_of(leg, rod) for leg, rod in zip(m.legs, m.rods, strict=True)]
+    ends = [span + arm for span, arm in zip(m.spans, m.arms, strict=True)]
+    rates = [rate_of(*each) for each in zip(m.legs, m.rods, ends, strict=True)]
     n = m.dimensions
     v, omega = (sp.Matrix([real(f"{name}_{i}") for i in "xyz"]) for name in ("v", "omega"))
     omega = omega if m.tilts else sp.Matrix([0, 0, omega[2]])
@@ -267,7 +257,9 @@ def _velocity(m: Platform, loop: Step) -> None:
     shown = {r"\mathbf a_i": sp.Matrix([[*rod, *m.moment(sp.Matrix(arm), sp.Matrix(rod))]])}
     for k, leg in m.numbered:
         along = sp.Matrix([_component(d, "r", str(k), i) for i in axes])
-        shown[f"B_{{{k}{k}}}"] = rate_of(leg, along)
+        if isinstance(leg, Around):
+            along = sp.Matrix([_component(d, "w", str(k), i) for i in axes])
+        shown[f"B_{{{k}{k}}}"] = rate_of(leg, along, along)
     e, s = letters(d, "es")
     halved, twice = "of the loop equations, halved,", "is twice the"
     adjugate = ", and the adjugate gives J with A*J = B" * (not m.tilts)
@@ -285,11 +277,7 @@ def _velocity(m: Platform, loop: Step) -> None:
     if m.axial:
         halved = "of the equations of the loop, those of the distances halved,"
         twice = "is, for a distance twice, the"
-        row = (
-            "a vector r and its moment about p: for a slider the direction of its axis, and for a "
-            "leg the vector from the axis to its end"
-        )
-        serial = "a leg has the length 0 (serial: it turns"
+        row, serial = row_on_axes(m), still_on_axes(m)
     d.step(
         "Velocity and singular sets",
         f"The derivatives {halved} give A*t = B*dq for the twist t of the "
@@ -310,9 +298,13 @@ def _velocity(m: Platform, loop: Step) -> None:
                 )
                 for pair in (
                     (rod.dot(by), (row * twist)[0]),
-                    (e.diff(leg.joint), -rate * (1 if isinstance(leg, Along | Rail) else 2)),
+                    (
+                        e.diff(leg.joint),
+                        -rate * (1 if isinstance(leg, Along | Around | Rail) else 2),
+                    ),
                 )
             ),
+            *still_on_turrets(m),
         ],
         uses=[loop],
     )
@@ -330,8 +322,8 @@ def _export(m: Platform) -> None:
     placed = _named_rows(m, p, arms, spans)
     rods = [row[0, : m.dimensions].T for row in placed]
     driven = [
-        named_in(p, f"B_{k}{k}", rate_of(leg, rod))
-        for (k, leg), rod in zip(m.numbered, rods, strict=True)
+        named_in(p, f"B_{k}{k}", rate_of(leg, rod, span + arm))
+        for (k, leg), rod, span, arm in zip(m.numbered, rods, spans, arms, strict=True)
     ]
     volume = p.let("Delta", determinant(p, placed))
     A = sp.Matrix.vstack(*placed)
@@ -375,7 +367,9 @@ def _component(d: Derivation, letter: str, leg: str, axis: int) -> sp.Symbol:
     """A symbol for a component of the vector along a rod, r, or of the arm of its moment, h."""
     name = f"{letter}{leg}_{axis}"
     if name not in d.written:
-        vector = "vector along rod" if letter == "r" else "arm of rod"
+        vector = {"r": "vector along rod", "w": "vector from the pivot to the end of leg"}.get(
+            letter, "arm of rod"
+        )
         meaning = f"component {axis} of the {vector} i" if leg == "i" else ""
         d.write(name, f"{letter}_{{{leg}{axis}}}", meaning)
     return real(name)
@@ -389,15 +383,19 @@ def _named_arms(m: Platform, p: Program) -> list[sp.Matrix]:
 
 
 def _named_rows(
-    m: Platform, p: Program, arms: Sequence[sp.Matrix], spans: Sequence[sp.Matrix]
+    m: Platform,
+    p: Program,
+    arms: Sequence[sp.Matrix],
+    spans: Sequence[sp.Matrix],
+    rods: Sequence[sp.Matrix] = (),
 ) -> list[sp.Matrix]:
     """The rows of A, their entries under names.
 
     A rod is a span and an arm, and the arm has no moment, so the moment is that of the span.
     """
     found = []
-    for (k, leg), arm, span in zip(m.numbered, arms, spans, strict=True):
-        rod = pull_of(leg, span + arm)
+    given = rods or map(pull_of, m.legs, map(add, spans, arms))
+    for (k, _), arm, span, rod in zip(m.numbered, arms, spans, given, strict=True):
         entries = enumerate([*rod, *m.moment(arm, rod if m.axial or m.rails else span)], 1)
         found.append(sp.Matrix([[named_in(p, f"A_{k}{i}", e) for i, e in entries]]))
     return found
@@ -456,7 +454,8 @@ def _draw(m: Platform, at: Posture | None = None) -> None:
             span = m.spans[k - 1] + m.arms[k - 1]
             drawn.add_rail(k, leg, end, leg.way.dot(span), equation)
         else:
-            drawn.add_leg(k, leg, end, equation)
+            aside = m.loop[k - 2] ** 2 if isinstance(leg, OnTurret) else 0
+            drawn.add_leg(k, leg, end, equation + aside)
         if end != pin:
             drawn.links[f"half{k}"] = (pin, end)
             drawn.lengths[pin, end] = sp.sqrt(sp.factor(sp.trigsimp(square(offset))))
@@ -468,7 +467,7 @@ def _draw(m: Platform, at: Posture | None = None) -> None:
         drawn.lengths[pair] = sp.sqrt(sp.factor(sp.expand(square(gap))))
         if m.tilts:  # the length of the cosine and sine of one angle is known
             drawn.closing[pair] = sp.expand(square(m.rotation * gap) - square(gap))
-    ground = tuple(f"A{k}" for k, _ in m.numbered)
+    ground = tuple(f"A{k}" for k, leg in m.numbered if not isinstance(leg, FreeAlong | OnTurret))
     points = placed(m.position, m.rotation)
     skeleton(
         m.d,
@@ -508,7 +507,7 @@ def _inverse(m: Platform, loop: Step, degree: str = "", points: ThreePoints | No
         least, scale_name, said = least / 3, r"\Sigma", AMPLIFIED
     else:
         spans = [s.rod - arm for s, arm in zip(solved.found, arms, strict=True)]
-        rows = _named_rows(m, g, arms, spans)
+        rows = _named_rows(m, g, arms, spans, [s.rod for s in solved.found] if m.axial else ())
         volume = determinant(g, rows)
         least, scale_name, said = _scale(m, g, solved, turns=not degree)
     g.determined(
@@ -522,7 +521,7 @@ def _inverse(m: Platform, loop: Step, degree: str = "", points: ThreePoints | No
     )
     d.step(
         "Inverse: leg by leg",
-        f"Each leg is solved alone.  {known_sides(m.legs)}{solved.on_modes}"
+        f"Each leg is solved alone.  {known_sides(m.legs)}{solved_on_axes(m)}{solved.on_modes}"
         "Near a parallel singularity rounded "
         "joints do not determine the hand.  The status is SINGULAR if the determinant of A is "
         f"less than {said}.  {MISSED}",

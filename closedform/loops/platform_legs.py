@@ -13,9 +13,10 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.algebra.solutions import count_solutions
-from closedform.lemmas.axial import Across, Along, Axial
+from closedform.lemmas.axial import Across, Along, Axial, FreeAlong
 from closedform.lemmas.legs import Leg, Strut, cross_in_plane, vector
 from closedform.lemmas.rails import Rail
+from closedform.lemmas.turret import Around, OnTurret
 from closedform.loops.hand import (
     check_order,
     check_plain,
@@ -92,14 +93,14 @@ class Platform:
         """Refuse legs along and across axes that are not three pairs."""
         if not self.axial:
             return
-        pairs = zip(self.legs[::2], self.legs[1::2], strict=False)
-        for first, second in pairs:
-            if not (isinstance(first, Along) and isinstance(second, Across)):
+        for first, second in zip(self.legs[::2], self.legs[1::2], strict=False):
+            same = _off_axis(first, second)
+            if same is None:
                 raise ShapeError(
-                    f"{self.d.name}: legs Along and Across an axis are three pairs, in this order"
+                    f"{self.d.name}: legs Along and Across an axis are three pairs, in this order; "
+                    f"of a pair, the second leg may be FreeAlong the axis instead.  A leg Around "
+                    f"an axis and one OnTurret are a pair too"
                 )
-            same = vector(first.direction).cross(vector(second.axis))
-            same = same.col_join((first.base - second.base).cross(first.rate))
             on_hand = vector(first.on_hand or (0, 0, 0)) - vector(second.on_hand or (0, 0, 0))
             if any(map(sp.simplify, [*same, *on_hand])):
                 raise ShapeError(
@@ -331,6 +332,18 @@ def certify_forward(m: Platform, links: Sequence[Link], equations: Sequence[sp.E
             passive=passive,
         )
     )
+
+
+def _off_axis(first: Leg, second: Leg) -> list[sp.Expr] | None:
+    """What vanishes if two legs have the same axis; None if they are not a pair."""
+    if isinstance(first, Around) and isinstance(second, OnTurret):
+        return [sp.Integer(first != replace(second.turret, on_hand=first.on_hand))]
+    if not (isinstance(first, Along) and isinstance(second, Across | FreeAlong)):
+        return None
+    off = [*vector(first.direction).cross(vector(second.axis))]
+    if isinstance(second, Across):
+        off += [*(first.base - second.base).cross(first.rate)]
+    return off
 
 
 def pull_of(leg: Leg, span: sp.Matrix) -> sp.Matrix:

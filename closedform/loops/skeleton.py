@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
-from closedform.lemmas.axial import Across, Along, Axial
+from closedform.lemmas.axial import Across, Along, Axial, FreeAlong
 from closedform.lemmas.extended import Extended
 from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch, Strut
 from closedform.lemmas.parallelogram import Parallelogram, Prism
 from closedform.lemmas.planes import Plane
 from closedform.lemmas.rails import Rail
+from closedform.lemmas.turret import Around, OnTurret
 from closedform.loops.hand import Hand, in_space, square
 from closedform.loops.held import Bars, bars_of
 from closedform.loops.leg_by_leg import size_of
@@ -68,11 +69,38 @@ class Drawing:
 
     def _add_axial(self, k: int, leg: Axial, far: str, equation: sp.Expr) -> None:
         """A slider along an axis, or a leg that starts at a foot on an axis."""
+        if isinstance(leg, FreeAlong):
+            self.lengths[f"B{k}", far] = sp.sympify(leg.rod, strict=True)
+            self.closing[f"B{k}", far] = equation
+            self.links[f"rod{k}"] = (f"B{k}", far)
+            self._add_driven(k, leg.leg)
+            return
+        if isinstance(leg, Around):
+            self.joints[leg.joint] = (f"A{k}",)
+            return
+        if isinstance(leg, OnTurret):
+            self._add_on_turret(k, leg, far, equation)
+            return
         pair = (f"A{k}", f"B{k}") if isinstance(leg, Along) else (f"B{k}", far)
         self.joints[leg.joint] = pair
         self.lengths[pair] = leg.joint
         if isinstance(leg, Across):
             self.closing[pair] = equation
+
+    def _add_on_turret(self, k: int, leg: OnTurret, far: str, equation: sp.Expr) -> None:
+        """A turret, and the planar leg on it, which ends in its plane on the axes of the loop."""
+        near = f"A{k}" if isinstance(leg.leg, Stretch) else f"B{k}"
+        foot = leg.leg.base
+        if any(foot):
+            self.links[f"turret{k}"] = (f"A{k - 1}", f"A{k}")
+            self.lengths[f"A{k - 1}", f"A{k}"] = sp.sqrt(sp.factor(square(foot)))
+        self.lengths[near, far] = sp.sympify(leg.rod, strict=True)
+        self.closing[near, far] = equation
+        if isinstance(leg.leg, Stretch):
+            self.joints[leg.joint] = (near, far)
+        else:
+            self.links[f"rod{k}"] = (near, far)
+            self._add_driven(k, leg.leg)
 
     def _add_rod(self, k: int, leg: Leg, far: str, equation: sp.Expr) -> None:
         """The rod; of a leg that stretches it is the driven joint."""
@@ -84,7 +112,7 @@ class Drawing:
         elif not isinstance(leg.rod, Parallelogram):
             self.links[f"rod{k}"] = (near, far)
 
-    def _add_driven(self, k: int, leg: Leg) -> None:
+    def _add_driven(self, k: int, leg: Leg | Crank | Slide) -> None:
         """The crank or the slider."""
         base, end = f"A{k}", f"B{k}"
         if isinstance(leg, Crank):
@@ -220,7 +248,16 @@ def _points(m: Hand, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
 def points_of(k: int, leg: Leg, far: str, place: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
     """The base A and the near end B of a leg, its far end, and the ends of its bars."""
     at = {f"A{k}": leg.base}
-    if not isinstance(leg, Stretch | Strut):
+    if isinstance(leg, FreeAlong):
+        foot = leg.foot(place - leg.base)
+        at |= {f"A{k}": leg.base + foot, f"B{k}": leg.end() + foot}
+    elif isinstance(leg, Around):
+        pass
+    elif isinstance(leg, OnTurret):
+        at[f"A{k}"] = leg.start()
+        if not isinstance(leg.leg, Stretch):
+            at[f"B{k}"] = leg.end()
+    elif not isinstance(leg, Stretch | Strut):
         foot = leg.foot(place - leg.base) if isinstance(leg, Across) else sp.zeros(len(place), 1)
         at[f"B{k}"] = leg.end() + foot
     if far != "P":

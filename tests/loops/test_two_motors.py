@@ -113,7 +113,7 @@ def test_legs_that_are_no_pairs_are_refused() -> None:
         return Across(q, at, way, on_hand=(1, 0, 0))
 
     d = [Derivation("t", "T", Paper("t", "T", ("A",)), "T") for _ in range(3)]
-    with pytest.raises(ShapeError, match="are three pairs, in this order"):
+    with pytest.raises(ShapeError, match="three pairs, in this order; of a pair, the second"):
         of([along, across, along, across, across, along], d[0])
     with pytest.raises(ShapeError, match="q1 and q2 have to have the same axis"):
         of([along, lambda q: across(q, (1, 0, 0))] * 3, d[1])
@@ -147,5 +147,5 @@ def test_a_cylindrical_joint_is_copied_with_its_slider(tmp_path: Path) -> None:
 
 def test_other_axes_are_told_of(tmp_path: Path) -> None:
     text = TEXT.replace("axis = [0, 1, 0]}", "axis = [0, 0, 1]}")
-    with pytest.raises(TableError, match="on which a leg turns about the same axis"):
+    with pytest.raises(TableError, match="a slider, about whose direction the leg turns"):
         script_of("prps", text, tmp_path)

@@ -1,56 +1,124 @@
-"""Recognises legs with two motors: a slider, and on it a leg that turns and stretches."""
+"""Recognises legs with two motors.
+
+One motor moves a leg along an axis, and the other one moves its end across it.  Or a turret turns
+the plane of a leg, in which the other motor moves its end.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
-from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
+import sympy as sp
+
+from closedform.scaffold.loops.bodies import GROUND, Joint, Loop, across_axis
+from closedform.scaffold.source import source
 
 SPACE = 3
 
 
 @dataclass(frozen=True)
 class TwoMotors:
-    """A leg whose slider and whose length are driven."""
+    """A leg with two motors: one moves its end along an axis, the other one across it.
 
-    slider: Joint
+    The second motor stretches the leg, or it moves a ``rod`` by a crank or by a slider.  If the
+    first one is a turret, it turns a plane through the axis, in which the second one moves the end.
+    """
+
+    along: Joint
+    across: Joint
     hinge: Joint
-    stretch: Joint
     ball: Joint
+    rod: str = ""
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        return self.along, self.across, self.hinge, self.ball
+
+    @property
+    def motors(self) -> tuple[Joint, Joint]:
+        return self.along, self.across
+
+    @property
+    def turret(self) -> bool:
+        return self.along.kind == "revolute"
+
+
+class Finder(Protocol):
+    """What writes the legs of a loop."""
+
+    loop: Loop
+
+    def at(self, v: sp.Matrix) -> str:
+        """A point or a direction as it is written."""
+
+    def point(self, body: str, joint: Joint) -> sp.Matrix:
+        """Where a joint is on a body."""
+
+    def pivot(self, joint: Joint) -> sp.Matrix:
+        """Where a body turns about the ground."""
+
+    def directions(self, joint: Joint, arm: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
+        """Where a crank points at the angle 0, and the direction in which it turns there."""
 
 
 def leg_on_axis(loop: Loop, driven: Joint) -> TwoMotors | None:
     """The leg with two motors of which a joint is one, if it is of this kind."""
-    if loop.dimensions != SPACE or driven.kind != "prismatic":
+    if loop.dimensions != SPACE:
         return None
-    if GROUND in driven.between:
-        return _from_slider(loop, driven)
-    for slider in loop.of(GROUND):
-        leg = _from_slider(loop, slider) if slider.driven else None
-        if leg and leg.stretch is driven:
-            return leg
+    found = (_from_ground(loop, j) for j in loop.of(GROUND) if j.driven)
+    return next((leg for leg in found if leg and driven in leg.motors), None)
+
+
+def _from_ground(loop: Loop, first: Joint) -> TwoMotors | None:
+    """The leg that a driven joint of the ground carries."""
+    path = [first, *_onward(loop, first)]
+    if len(path) != 4 or path[3].kind != "spherical":
+        return None
+    turret = first.kind == "revolute"
+    if path[1].kind == "revolute" and not path[1].driven and path[2].driven:
+        _, hinge, second, ball = path
+        fits = _normal(first, hinge) if turret else _parallel(first, hinge)
+        fits = fits and second.kind == "prismatic"
+        return TwoMotors(first, second, hinge, ball) if fits else None
+    _, second, hinge, ball = path
+    if not second.driven or hinge.kind != "revolute" or second.axis is None:
+        return None
+    rods = [body for body in ball.between if body in hinge.between and body in loop.rods]
+    for along, across in ((first, second), (second, first)):
+        turns = across.kind == "revolute"
+        fits = _parallel(across, hinge) if turns else _normal(across, hinge)
+        fits = fits and (_normal(first, hinge) if turret else _parallel(along, hinge))
+        if rods and (turret or along.kind == "prismatic") and fits:
+            return TwoMotors(along, across, hinge, ball, rods[0])
     return None
 
 
-def _from_slider(loop: Loop, slider: Joint) -> TwoMotors | None:
-    """The leg that a driven slider carries."""
-    joint, body = slider, slider.other(GROUND)
-    path = []
-    for _ in range(3):
+def _onward(loop: Loop, joint: Joint) -> Iterator[Joint]:
+    """The joints after one on the ground, up to the hand, as long as no body has a branch."""
+    body = joint.other(GROUND)
+    while loop.hand not in loop.bodies[body]:
         onward = [j for j in loop.of(body) if j is not joint]
         if len(onward) != 1:
-            return None
+            return
         (joint,) = onward
         body = joint.other(body)
-        path.append(joint)
-    hinge, stretch, ball = path
-    kinds = slider.kind, hinge.kind, stretch.kind, ball.kind
-    if kinds != ("prismatic", "revolute", "prismatic", "spherical") or not stretch.driven:
-        return None
-    if slider.axis is None or hinge.axis is None or any(slider.axis.cross(hinge.axis)):
-        return None
-    return TwoMotors(slider, hinge, stretch, ball)
+        yield joint
+
+
+def _parallel(one: Joint, other: Joint) -> bool:
+    """Whether two joints have the same direction."""
+    if one.axis is None or other.axis is None:
+        return False
+    return not any(map(sp.simplify, one.axis.cross(other.axis)))
+
+
+def _normal(one: Joint, other: Joint) -> bool:
+    """Whether the directions of two joints are at right angles."""
+    if one.axis is None or other.axis is None:
+        return False
+    return bool(sp.simplify(one.axis.dot(other.axis)) == 0)
 
 
 def in_pairs(loop: Loop, driven: Sequence[Joint]) -> list[Joint]:
@@ -58,16 +126,94 @@ def in_pairs(loop: Loop, driven: Sequence[Joint]) -> list[Joint]:
     found: list[Joint] = []
     for joint in driven:
         leg = leg_on_axis(loop, joint)
-        found += [j for j in ((leg.slider, leg.stretch) if leg else (joint,)) if j not in found]
+        found += [j for j in (leg.motors if leg else (joint,)) if j not in found]
     return found
 
 
-def told(leg: TwoMotors) -> str:
-    """What a leg is, in words."""
-    return (
-        f"{leg.slider.name} moves a slider, on which a leg turns about its axis, whose length is "
-        f"{leg.stretch.name}"
-    )
+def call_of(found: Finder, leg: TwoMotors, joint: Joint) -> str:
+    """One of both motors as it is written, without the place of its end on the hand."""
+    assert leg.along.axis is not None
+    axis = found.at(leg.along.axis)
+    if leg.turret:
+        return _on_turret(found, leg, joint)
+    if not leg.rod:
+        start = found.at(found.point(leg.along.other(GROUND), leg.hinge))
+        return f"{'Along' if joint is leg.along else 'Across'}({joint.name}, {start}, {axis}"
+    mover = leg.hinge.other(leg.rod)
+    start, length = found.point(mover, leg.hinge), source(found.loop.rods[leg.rod])
+    if leg.across.kind == "prismatic":
+        assert leg.across.axis is not None
+        moved = f"Slide({joint.name}, {length}, {found.at(start)}, {found.at(leg.across.axis)})"
+    else:
+        arm, start = _arm(found, leg.across, mover, start)
+        ways = ", ".join(map(found.at, found.directions(leg.across, arm)))
+        crank = f"{source(found.loop.length(arm))}, {length}, {found.at(start)}"
+        moved = f"Crank({joint.name}, {crank}, {ways})"
+    if joint is leg.along:
+        return f"Along({joint.name}, {found.at(start)}, {axis}"
+    return f"FreeAlong({moved}, {axis}"
 
 
-__all__ = ["TwoMotors", "in_pairs", "leg_on_axis", "told"]
+def _on_turret(found: Finder, leg: TwoMotors, joint: Joint) -> str:
+    """One of both motors of a leg on a turret, in the plane that passes through its axis."""
+    loop, axis, normal = found.loop, leg.along.axis, leg.hinge.axis
+    assert axis is not None
+    assert normal is not None
+    pivot = found.pivot(leg.along)
+    mover = leg.hinge.other(leg.rod) if leg.rod else leg.along.other(GROUND)
+    end = found.point(mover, leg.hinge)
+    ahead = normal.cross(axis).applyfunc(sp.simplify)
+    if sp.simplify((end - pivot).dot(ahead)).xreplace(loop.positive).is_negative:
+        ahead = -ahead
+    if sp.simplify((end - pivot).dot(normal)) != 0:
+        raise loop.error(
+            f"{leg.hinge.name} is beside the axis of {leg.along.name}: the plane of the leg, which "
+            f"is normal to the axis of {leg.hinge.name}, has to contain this axis"
+        )
+
+    def flat(v: sp.Matrix) -> str:
+        """In the plane: along the direction of the turret, and along its axis."""
+        return found.at(sp.Matrix([sp.simplify(v.dot(e)) for e in (ahead, axis)]))
+
+    turret = f"Around({leg.along.name}, {found.at(pivot)}, {found.at(axis)}, {found.at(ahead)}"
+    if joint is leg.along:
+        return turret
+    length = source(loop.rods[leg.rod]) if leg.rod else ""
+    if not leg.rod:
+        moved = f"Stretch({joint.name}, {flat(end - pivot)})"
+    elif joint.kind == "prismatic":
+        assert joint.axis is not None
+        moved = f"Slide({joint.name}, {length}, {flat(end - pivot)}, {flat(joint.axis)})"
+    else:
+        arm, start = _arm(found, joint, mover, end)
+        ways = ", ".join(map(flat, found.directions(joint, arm)))
+        crank = f"{source(loop.length(arm))}, {length}, {flat(start - pivot)}"
+        moved = f"Crank({joint.name}, {crank}, {ways})"
+    return f"OnTurret({moved}, {turret})"
+
+
+def _arm(found: Finder, joint: Joint, crank: str, end: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
+    """A crank at the angle 0 as a vector at right angles to its axis, and where it starts."""
+    start = found.loop.bodies[crank].get(joint.at)
+    if start is None:
+        start = found.point(joint.other(crank), joint)
+    assert joint.axis is not None
+    return across_axis(joint.axis, end - start, start)
+
+
+def told(leg: TwoMotors, joint: Joint) -> str:
+    """What one of both motors of a leg does, in words."""
+    if joint is leg.along:
+        turns = (
+            f"{joint.name} turns the plane of a leg, which passes through the axis of this joint"
+        )
+        moves = f"{joint.name} moves a leg along an axis, about which it turns"
+        return turns if leg.turret else moves
+    if not leg.rod:
+        return f"{joint.name} is the length of such a leg"
+    moved = "a crank" if joint.kind == "revolute" else "a slider"
+    where = "in this plane" if leg.turret else "across the axis"
+    return f"{joint.name} moves {moved} with the rod of such a leg, {where}"
+
+
+__all__ = ["TwoMotors", "call_of", "in_pairs", "leg_on_axis", "told"]

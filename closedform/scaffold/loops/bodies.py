@@ -93,4 +93,10 @@ def with_pivots(loop: Loop) -> Loop:
     return replace(loop, bodies=bodies)
 
 
-__all__ = ["AXES", "GROUND", "Joint", "Loop", "with_pivots"]
+def across_axis(axis: sp.Matrix, arm: sp.Matrix, start: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
+    """An arm that turns about an axis, less what is along it, and where the rest starts."""
+    along = axis * sp.simplify(arm.dot(axis))
+    return (arm - along).applyfunc(sp.simplify), start + along
+
+
+__all__ = ["AXES", "GROUND", "Joint", "Loop", "across_axis", "with_pivots"]

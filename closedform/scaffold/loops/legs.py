@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from closedform.model.names import listed
-from closedform.scaffold.loops.axial import TwoMotors, in_pairs, leg_on_axis, told
-from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
+from closedform.scaffold.loops.axial import TwoMotors, call_of, in_pairs, leg_on_axis, told
+from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop, across_axis
 from closedform.scaffold.loops.halves import halves
 from closedform.scaffold.loops.refused import ball_on_line, carried, on_cylinder, two_motors
 from closedform.scaffold.loops.rods import several_told
@@ -151,7 +151,8 @@ class Legs:
     def check_place(self, joint: Joint) -> None:
         """Refuse a drive between two bodies that both move, unless it slides them."""
         in_plane = self.loop.dimensions == 2
-        if GROUND not in joint.between and joint.kind != "prismatic":
+        moved = GROUND not in joint.between and joint.kind != "prismatic"
+        if moved and not leg_on_axis(self.loop, joint):
             raise self.loop.error(
                 f"{joint.name} is driven, so it must be between the ground and a body, or slide "
                 f"the two halves of a leg; it is between {listed(joint.between)}"
@@ -253,16 +254,11 @@ class Legs:
         raise loop.error(f"{joint.name} is driven, so it must be revolute or prismatic")
 
     def on_axis(self, leg: TwoMotors, joint: Joint) -> LoopLeg:
-        """One of both motors of a leg that turns about the axis of its slider."""
-        parts = (leg.slider, leg.hinge, leg.stretch, leg.ball)
-        self.used |= {j.name for j in parts}
+        """One of both motors of a leg of which one moves its end along an axis."""
+        self.used |= {j.name for j in leg.joints}
         place = self.place_of(leg.ball)
-        assert leg.slider.axis is not None
-        start = self.at(self.point(leg.slider.other(GROUND), leg.hinge))
-        name = "Along" if joint is leg.slider else "Across"
-        call = f"{name}({joint.name}, {start}, {self.at(leg.slider.axis)}{self.tail(place)})"
-        words = told(leg) if joint is leg.slider else f"{joint.name} is the length of such a leg"
-        return LoopLeg(joint, call, words, place, on_axis=True)
+        call = f"{call_of(self, leg, joint)}{self.tail(place)})"
+        return LoopLeg(joint, call, told(leg, joint), place, on_axis=True)
 
     def arcs_told(self) -> str:
         """What is said of a mechanism all of whose axes meet."""
@@ -585,12 +581,6 @@ def middle_leg(loop: Loop, slide: Joint) -> Joint | None:
             if [j.kind for j in others] == ["universal"] and GROUND in others[0].between:
                 return others[0] if loop.dimensions == len(AXES) else None
     return None
-
-
-def across_axis(axis: sp.Matrix, arm: sp.Matrix, start: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
-    """An arm that turns about an axis, less what is along it, and where the rest starts."""
-    along = axis * sp.simplify(arm.dot(axis))
-    return (arm - along).applyfunc(sp.simplify), start + along
 
 
 def _tuple(v: sp.Matrix) -> str:

@@ -19,8 +19,10 @@ def two_motors(loop: Loop, joint: Joint) -> str:
         return ""
     return (
         f".  {motors[0].name} and {motors[1].name} drive one leg, so it has two motors.  This is "
-        f"supported if the first one is a slider, on which a leg turns about the same axis, and "
-        f"the second one stretches this leg, as in a 3-PRPS mechanism.  Otherwise write the "
+        f"supported if one of them is a slider, about whose direction the leg turns, and the other "
+        f"one stretches the leg at right angles to it, as in a 3-PRPS mechanism, or moves a rod "
+        f"across it by a slider or a crank, as in a 3-PPRS mechanism; or if the first one turns "
+        f"the plane of the leg about an axis in it, as in an Eclipse.  Otherwise write the "
         f"equations in Python, or hold one of both motors and describe what is left.  If both "
         f"motors of three such legs leave the ends of the legs circles, the forward problem has "
         f"degree 16"

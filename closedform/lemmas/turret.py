@@ -101,13 +101,12 @@ class Around:
         lemma = at.lemma(pair.angle, r"\sigma\frac{\pi}{2}")
         plain = sp.atan2(sigma * b, -sigma * a, evaluate=False)
         link = Link(
-            (q,),
-            lemma.equations,
-            {},
-            replace(lemma, plainly={q: plain}),
-            tuple(p.body[start:]),
-            {pair.s: sp.sin(q), pair.c: sp.cos(q), away: b * sp.sin(q) - a * sp.cos(q)},
-            degenerate(free, [{a: sp.S.Zero, b: sp.S.Zero}], q, said),
+            unknowns=(q,),
+            equations=lemma.equations,
+            lemma=replace(lemma, plainly={q: plain}),
+            body=tuple(p.body[start:]),
+            means={pair.s: sp.sin(q), pair.c: sp.cos(q), away: b * sp.sin(q) - a * sp.cos(q)},
+            degenerate=degenerate(free, [{a: sp.S.Zero, b: sp.S.Zero}], q, said),
         )
         return Solution(link, lemma[q], self.normal(pair))
 

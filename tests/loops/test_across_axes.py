@@ -133,7 +133,7 @@ def test_legs_that_do_not_move_across_their_axis_are_refused() -> None:
     with pytest.raises(ShapeError, match="at right angles to the plane in which q1 moves"):
         FreeAlong(Slide(q[0], 1, (0, 0, 0), (0, 0, 1)), (0, 0, 1))
     with pytest.raises(ShapeError, match="is a unit vector"):
-        FreeAlong(Crank(q[0], 1, 1, (0, 0, 0), (1, 0, 0), (0, 1, 0)), (0, 0, 2))
+        FreeAlong(Crank(q[0], 1, 1, (0, 0, 0), along=(1, 0, 0), across=(0, 1, 0)), (0, 0, 2))
     place = {"on_hand": (1, 0, 0)}
     legs = [Along(q[k], (0, 0, 0), (0, 0, 1), **place) for k in (0, 2, 4)]
     others = [Across(q[k], (0, 0, 0), (0, 0, 1), **place) for k in (1, 3)]

@@ -323,7 +323,10 @@ d3 = {between = ["block3", "hand"], at = "C3", kind = "prismatic", axis = [1, 0,
 @pytest.mark.parametrize(
     ("file", "told"),
     [
-        (CANFIELD, "the mirror image of the ground in the plane of the balls"),
+        (
+            CANFIELD.replace('upper1 = {length = "l"}', 'upper1 = {length = "2*l"}'),
+            "is supported if hand is the mirror image of the ground, as that of a Canfield joint",
+        ),
         (CAPAMAN, "Three points of a hand on three lines are an equation of degree eight"),
         (CYLINDERS, "c1 and d1 are a cylindrical joint .* degree eight"),
     ],

@@ -63,7 +63,7 @@ USED = {
     "on_rod",
     "linkage",
 }
-USED |= {"slotted", "guided", "sliding_linkage", "on_pins", "on_balls"}
+USED |= {"slotted", "guided", "sliding_linkage", "on_pins", "on_balls", "mirrored"}
 USED |= {
     "Derivation",
     "Paper",

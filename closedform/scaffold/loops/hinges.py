@@ -182,9 +182,10 @@ def _check_balls(found: Legs, on_hand: Mapping[str, tuple[Joint, Joint]]) -> Non
                 f"the ground, as that of a leg that stretches (SPR), or if the two are "
                 f"exchanged (a ball joint on the hand).  The forward problem of three legs of this "
                 f"kind has degree 16: the balls stand still, and are on circles of "
-                f"{found.turning}.  If it is like the ground, as of a Canfield joint or an "
-                f"Omni-Wrist, one of its postures is the mirror image of the ground in the plane "
-                f"of the balls"
+                f"{found.turning}.  It is supported if {found.turning} is the mirror image of the "
+                f"ground, as that of a Canfield joint: each rod is as long as its crank, and the "
+                f"points and axes of {found.turning} are those of the ground with the sign of one "
+                f"coordinate changed"
             )
 
 

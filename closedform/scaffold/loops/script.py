@@ -20,6 +20,7 @@ from closedform.scaffold.loops.hinges import hinged
 from closedform.scaffold.loops.idle import without_idle
 from closedform.scaffold.loops.legs import TURNING, UPRIGHT, Legs, LoopLeg
 from closedform.scaffold.loops.linkages import LinkageLines, linkage
+from closedform.scaffold.loops.mirrored import mirrored
 from closedform.scaffold.loops.on_balls import on_balls
 from closedform.scaffold.loops.on_line import on_line
 from closedform.scaffold.loops.on_pins import on_pins
@@ -57,6 +58,7 @@ KINDS = {
     "on_rod": "a hand on a rod",
     "on_pins": "a hand on three pins",
     "on_balls": "a hand on three balls",
+    "mirrored": "a mirrored hand",
     "coupled": "a single loop",
     "slotted": "a pin on a line",
     "two_arms": "a hand on two arms",
@@ -120,6 +122,9 @@ def _first_way(loop: Loop) -> _Way:
     if pinned := on_pins(found) or on_balls(found):
         found.check_all_used()
         return _Way(pinned, [])
+    if image := mirrored(found):
+        found.check_all_used()
+        return _Way(image.legs, [], image.pivot, function="mirrored", more=image.mirror)
     points = {j.at for j in loop.joints.values()}.union(*loop.bodies.values())
     if follower:
         raise loop.error(f"the hand is the joint {loop.hand}, which must not be driven")
@@ -352,6 +357,8 @@ class _Way:
     bars: int = 0
     function: str = ""
     """The function that is called, if the rest does not say it."""
+    more: str = ""
+    """Its last argument, if it has one more."""
 
     @property
     def name(self) -> str:
@@ -394,7 +401,8 @@ class _Way:
         if self.name in ("coupled", "slotted", "on_rod", "two_arms"):
             return [f"    {argument}," for argument in [*legs, *[self.at] * bool(self.at)]]
         first = [f"    {self.guide.call},"] if self.guide else []
-        one = ["    bars=1,"] * (self.bars == 1)
+        first += [f"    {self.at},"] * bool(self.at)
+        one = [f"    {self.more},"] * bool(self.more) or ["    bars=1,"] * (self.bars == 1)
         return [*first, "    [", *(f"        {leg}," for leg in legs), "    ],", *one]
 
     @property

@@ -171,3 +171,22 @@ def test_the_script_has_the_plane_of_each_leg(tmp_path: Path) -> None:
     script = script_of("arms", ARMS, tmp_path)
     assert "OnTurret(Crank(q2, a, l, (0, 0), (1, 0), (0, -1)), Around(t2" in script
     assert "OnTurret(Slide(z3, l, (b, 0), (0, 1)), Around(t3" in script_of("e", ECLIPSE, tmp_path)
+
+
+def test_a_loop_that_leads_back_to_the_ground_ends(tmp_path: Path) -> None:
+    """A chain of bodies that closes on the ground was followed round and round."""
+    text = """
+hand = "P"
+[bodies]
+ground = {O = [0, 0, 0], S = [0.3, 0.3, 0]}
+first = {O = [0, 0, 0], A = [0.3, 0, 0]}
+second = {A = [0, 0, 0]}
+rod = {length = 0.4}
+[joints]
+q = {between = ["ground", "first"], at = "O", axis = [0, 0, 1], driven = true}
+t = {between = ["first", "second"], at = "A", axis = [1, 0, 0]}
+P = {between = ["second", "rod"], at = "P", kind = "spherical"}
+d = {between = ["ground", "rod"], at = "S", kind = "spherical"}
+"""
+    with pytest.raises(ValueError, match="q moves first, which must be joined to one rod"):
+        script_of("round", text.replace("P =", "c ="), tmp_path)

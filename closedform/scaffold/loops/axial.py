@@ -98,7 +98,7 @@ def _from_ground(loop: Loop, first: Joint) -> TwoMotors | None:
 def _onward(loop: Loop, joint: Joint) -> Iterator[Joint]:
     """The joints after one on the ground, up to the hand, as long as no body has a branch."""
     body = joint.other(GROUND)
-    while loop.hand not in loop.bodies[body]:
+    while body != GROUND and loop.hand not in loop.bodies[body]:
         onward = [j for j in loop.of(body) if j is not joint]
         if len(onward) != 1:
             return

@@ -92,6 +92,7 @@ from closedform.loops.hinges import StandingPlane as StandingPlane
 from closedform.loops.hinges import TurningPlane as TurningPlane
 from closedform.loops.hinges import TwoHinges as TwoHinges
 from closedform.loops.linkage import Body as Body
+from closedform.loops.mast import Mast as Mast
 from closedform.loops.mirrored import mirrored as mirrored
 from closedform.loops.on_balls import on_balls as on_balls
 from closedform.loops.on_pins import Sleeve as Sleeve

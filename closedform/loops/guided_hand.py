@@ -16,6 +16,7 @@ from closedform.loops.guides import LENGTH, TURNS, Ball, Driven, Gimbal, Guide, 
 from closedform.loops.hand import check_order, check_plain
 from closedform.loops.hinges import Hinges, InPlane
 from closedform.loops.leg_by_leg import named_in, size_of
+from closedform.loops.mast import Mast
 from closedform.loops.parallel_axes import ParallelAxes
 from closedform.loops.spindle import Spindle
 from closedform.model.derivation import Derivation
@@ -45,7 +46,8 @@ class Guided:
                 f"{name}: a driven leg beside {self.guide.what} must be a crank, a slide or a "
                 f"leg that stretches"
             )
-        if isinstance(self.guide, Guide | Gimbal | InPlane | Spindle) and self.guide.joint.faulty:
+        kinds = Guide | Gimbal | InPlane | Spindle | Mast
+        if isinstance(self.guide, kinds) and self.guide.joint.faulty:
             raise ShapeError(
                 f"{name}: the axes of {self.guide.what} must be two unit vectors at right angles"
             )

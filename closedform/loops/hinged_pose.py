@@ -11,6 +11,7 @@ from closedform.lemmas.legs import vector
 from closedform.loops.guides import Placed
 from closedform.loops.hinges import TILTED, Hinges, InPlane, StandingPlane, TurningPlane
 from closedform.loops.letters import letters
+from closedform.loops.mast import Mast
 from closedform.loops.spindle import Spindle
 from closedform.loops.three_hinges import PSI, ThreeHinges
 from closedform.loops.tripod_legs import sum_of_cosines
@@ -40,6 +41,11 @@ LINE = (
     "fixed to the ground, and by turn_2 about an axis that the first turn moves.  This is R, the "
     "rotation of the hand, up to the turn about its own axis, which moves no leg.  "
 )
+MAST = (
+    "A slide moves the universal joint along a mast by the travel.  This joint turns the hand by "
+    "turn_1 about an axis that stands still, and by turn_2 about an axis that the first turn "
+    "moves.  R is the rotation of the hand, and its point p is the centre of the joint.  "
+)
 HINGED = (
     "A hinge keeps leg k in a plane, whose normal m is an axis of the ground, or of the hand.  "
     "So m is at right angles to the vector from the base of the leg to its end on the hand.  For "
@@ -55,6 +61,14 @@ TWISTED = (
     "g*sin(psi) = 0, and gives the twist.  Then two of the equations are linear in the x and y of "
     "p.  The other solution for the twist differs by half a turn and is left out."
 )
+
+WORDS: dict[type, str] = {
+    TurningPlane: IN_PLANE,
+    StandingPlane: ON_AXIS,
+    Spindle: LINE,
+    Mast: MAST,
+}
+"""How a target says what the pose is; without an entry it is a height, two tilts and a twist."""
 
 
 def state_pose(d: Derivation, guide: Hinges, places: Sequence[sp.Matrix], at: Placed) -> Step:
@@ -88,8 +102,7 @@ def state_pose(d: Derivation, guide: Hinges, places: Sequence[sp.Matrix], at: Pl
         proves += "The hinged legs are in their planes.  "
     step = d.step(
         "Pose of the hand",
-        {TurningPlane: IN_PLANE, StandingPlane: ON_AXIS, Spindle: LINE}.get(type(guide), TILTS)
-        + HINGED.format(them=them) * bool(guide.hinged),
+        WORDS.get(type(guide), TILTS) + HINGED.format(them=them) * bool(guide.hinged),
         shown,
         proves=proves.rstrip(),
         equal=equal,

@@ -81,6 +81,7 @@ USED |= {
     "Half",
     "Hinged",
     "Lever",
+    "Mast",
     "OnTurret",
     "ParallelAxes",
     "Parallelogram",

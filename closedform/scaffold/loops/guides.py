@@ -36,6 +36,8 @@ def guide(found: Legs) -> GuideLine | None:
     loop = found.loop
     if loop.dimensions != SPACE:
         return None
+    if on_mast := _mast(found):
+        return on_mast
     for joint in loop.joints.values():
         hand = [b for b in joint.between if loop.hand in loop.bodies[b] and b != GROUND]
         if hand and joint.kind == "prismatic" and (not joint.driven or middle_leg(loop, joint)):
@@ -48,6 +50,46 @@ def guide(found: Legs) -> GuideLine | None:
             if first := _first_of_cross(found, joint, body):
                 return _cross(found, first, joint)
     return None
+
+
+def _mast(found: Legs) -> GuideLine | None:
+    """A universal joint at the point of the hand, on a passive slide of the ground."""
+    loop = found.loop
+    for turning in loop.joints.values():
+        if turning.kind != "universal" or turning.at != loop.hand or GROUND in turning.between:
+            continue
+        for post in turning.between:
+            onto = [j for j in loop.of(post) if j is not turning]
+            if [j.kind for j in onto] != ["prismatic"] or GROUND not in onto[0].between:
+                continue
+            if not onto[0].driven:
+                return _on_mast(found, onto[0], turning, post)
+    return None
+
+
+def _on_mast(found: Legs, slide: Joint, turning: Joint, post: str) -> GuideLine:
+    loop = found.loop
+    if slide.axis is None or turning.axis is None or turning.second is None:
+        raise loop.error(
+            f"{turning.name} holds the hand on {post}, which {slide.name} moves; give {slide.name} "
+            f"its axis, and {turning.name} two axes at right angles, where the hand is not turned: "
+            f"axis, which is fixed to {post}, and second, which is fixed to the hand"
+        )
+    if sp.simplify(turning.axis.dot(turning.second)) != 0:
+        raise loop.error(f"axis and second of {turning.name} have to be at right angles")
+    points = loop.bodies[post]
+    base = found.point(GROUND, slide)
+    if slide.at in points and turning.at in points:
+        base += points[turning.at] - points[slide.at]
+    points.pop(loop.hand, None)  # the hand is the body that the joint carries
+    found.used |= {slide.name, turning.name}
+    _check_driven(found, slide, SPACE, f"{slide.name} and {turning.name}")
+    axes = ", ".join(map(found.at, (turning.axis, turning.second, slide.axis)))
+    return GuideLine(
+        f"Mast({found.at(base)}, {axes})",
+        "a hand on a mast",
+        "A universal joint, which slides along a mast, holds the hand.",
+    )
 
 
 def _first_of_cross(found: Legs, second: Joint, hand: str) -> Joint | None:
@@ -142,7 +184,8 @@ def _guide(found: Legs, slide: Joint, post: str) -> GuideLine:
     if turning is None or turning.kind != "universal" or GROUND not in turning.between:
         raise loop.error(
             f"{slide.name} is a passive slide of the hand on {post}, which must be joined to the "
-            f"ground by a universal joint, and to nothing else"
+            f"ground by a universal joint, and to nothing else.  Or the slide is on the ground, "
+            f"and carries a universal joint at {loop.hand}, as that of a swash plate"
         )
     if turning.axis is None or slide.axis is None:
         raise loop.error(

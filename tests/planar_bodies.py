@@ -18,16 +18,18 @@ def turned(angle: float) -> np.ndarray:
 
 
 class Linkage:
-    """The bodies and joints of a file, whose driven joint has the value ``q``."""
+    """The bodies and joints of a file, whose driven joints have the values ``q``, in order."""
 
-    def __init__(self, path: Path, q: float):
+    def __init__(self, path: Path, *q: float):
         data = tomllib.loads(path.read_text("utf-8"))
         values = {k: float(p["value"]) for k, p in data.get("parameters", {}).items()}
 
         def number(entry: object) -> float:
             return float(eval(str(entry), {"sqrt": np.sqrt, **values}))
 
-        self.q, self.hand, self.joints = q, data["hand"], data["joints"]
+        self.hand, self.joints = data["hand"], data["joints"]
+        driven = [name for name, joint in self.joints.items() if joint.get("driven")]
+        self.q = dict(zip(driven, q, strict=True))
         self.bodies, self.rods = {}, {}
         for name, body in data["bodies"].items():
             points = {k: e for k, e in body.items() if isinstance(e, list)}
@@ -69,7 +71,7 @@ class Linkage:
             a, b = self.held(name)
             gaps.append(np.hypot(*(pins[a] - pins[b])) - length)
         for name, joint in self.joints.items():
-            q = self.q if joint.get("driven") else None
+            q = self.q.get(name)
             if self.slides(joint):
                 gaps += self.slid(joint, (pins, poses), q)
             elif q is not None or name == self.hand:

@@ -120,7 +120,8 @@ class SlidingLinkage:
         used = {b for group in self.groups for b in group.bodies}
         used |= {GROUND, *self.turning, *self.sliders}
         if loose := [b for b in self.bodies if b not in used]:
-            raise ShapeError(f"{name}: {', '.join(loose)} do not move the hand; leave them out")
+            do, them = ("do", "them") if len(loose) > 1 else ("does", "it")
+            raise ShapeError(f"{name}: {', '.join(loose)} {do} not move the hand; leave {them} out")
 
     @cached_property
     def points(self) -> dict[str, tuple[str, ...]]:

@@ -235,10 +235,16 @@ def groups_for(
     slides: Sequence[tuple[str, str]],
     wanted: str,
 ) -> list[Group]:
-    """The groups that the body ``wanted`` depends on, in their order, and that of this body."""
+    """The groups that the body ``wanted`` depends on, in their order, and that of this body.
+
+    With it come those of the bodies by which slides keep it from turning, though they follow later.
+    """
     kept: list[Group] = []
     points: set[str] = set()
     names = {wanted}
+    for group in groups:
+        if isinstance(group, Place) and group.body == wanted:
+            names |= {*_between(slides, wanted, group.like)}
     for group in reversed(groups):
         near, on = _needs(group, slides)
         given = {p for name in group.bodies for p in bodies[name]} - near
@@ -247,6 +253,21 @@ def groups_for(
             points |= near
             names |= on
     return kept
+
+
+def _between(slides: Sequence[tuple[str, str]], body: str, like: str) -> list[str]:
+    """The bodies of the shortest chain of slides from one body to another, without both."""
+    chains = [[body]]
+    for chain in chains:
+        for pair in slides:
+            if chain[-1] not in pair:
+                continue
+            other = pair[1 - pair.index(chain[-1])]
+            if other == like:
+                return chain[1:]
+            if not any(other in c for c in chains):
+                chains.append([*chain, other])
+    return []
 
 
 def holder(

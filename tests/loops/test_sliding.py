@@ -17,7 +17,7 @@ from places import TESTS
 from closedform.scaffold.inputs.tables import TableError
 
 FOLDER = TESTS / "held_out_loops"
-MODES = {"shaper": 4, "scissor_lift": 4, "swivelling_rod": 2, "macpherson": 2}
+MODES = {"shaper": 4, "scissor_lift": 4, "swivelling_rod": 2, "macpherson": 2, "oldham": 1}
 OK, UNREACHABLE, SINGULAR = 0, 1, 2
 LINES = 40
 
@@ -292,3 +292,16 @@ def test_a_loop_of_slides_keeps_directions_once(tmp_path: Path) -> None:
     for side in (1, -1):
         push = 0.05 * np.cos([0.5, 2.0]) + side * rod
         assert np.abs(h - ((0.3 - push) / 4)[:, None]).min(axis=1).max() < 1e-15
+
+
+def test_the_disc_of_an_oldham_coupling_is_not_left_out(tmp_path: Path) -> None:
+    """Its slides turn the follower, though it is placed last; it was left out as idle."""
+    text = (FOLDER / "oldham.toml").read_text("utf-8")
+    mechanism = derived("oldham", script_of("oldham", text, tmp_path), tmp_path)
+    angles = np.linspace(-3, 3, 7)[:, None]
+    psi, status = mechanism.fk(angles)
+    assert (status == OK).all() and np.allclose(psi[:, 0], angles)
+    assert np.allclose(mechanism.jacobian(angles), 1)
+    *_, disc = mechanism.skeleton([0.3])[0]
+    e, (c, s) = mechanism.Parameters().e, (np.cos(0.3), np.sin(0.3))
+    assert np.allclose(disc, [e * c * c, e * c * s, 0])  # on the circle over both shafts

@@ -85,11 +85,13 @@ def _without_bodies(loop: Loop) -> Loop:
     if not idle:
         return loop
     idle += [b for b in loop.bodies if b not in found.points and found.half_of(b) in idle]
+    joints = {n: j for n, j in loop.joints.items() if not {*j.between} & {*idle}}
+    if not any(last in j.between for j in joints.values() if j is not follower):
+        return loop  # its direction is that of a body on which it slides, as in an Oldham coupling
     loop.notes.append(
         f"{loop.file}: {listed(idle)} do{'es' * (len(idle) == 1)} not move the hand and "
         f"{'is' if len(idle) == 1 else 'are'} left out"
     )
-    joints = {n: j for n, j in loop.joints.items() if not {*j.between} & {*idle}}
     return _without(loop, idle, joints)
 
 

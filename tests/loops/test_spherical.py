@@ -48,3 +48,27 @@ def test_axes_that_do_not_meet_are_refused(tmp_path: Path) -> None:
         script_of(
             "t", CARDAN.replace("cross = {O = [0, 0, 0]}", "cross = {O = [0, 0, 1]}"), tmp_path
         )
+
+
+def test_bodies_of_axes_alone_need_no_points(tmp_path: Path) -> None:
+    """A joint of Cardan by its axes; the bodies without the point O were not read as arcs."""
+    text = """
+hand = "psi"
+[parameters]
+al = {value = "0.4", unit = "rad", meaning = "angle of the shafts"}
+[bodies]
+ground = {O = [0, 0, 0]}
+first = {}
+cross = {}
+last = {}
+[joints]
+q = {between = ["ground", "first"], at = "O", axis = [0, 0, 1], driven = true}
+c1 = {between = ["first", "cross"], at = "O", axis = [1, 0, 0]}
+c2 = {between = ["cross", "last"], at = "O", axis = [0, 1, 0]}
+psi = {between = ["ground", "last"], at = "O", axis = ["sin(al)", 0, "cos(al)"]}
+"""
+    mechanism = derived("shafts", script_of("shafts", text, tmp_path), tmp_path)
+    q = np.array([0.3, 1.0, 2.0, -1.3])
+    psi, status = mechanism.fk(q[:, None])
+    assert not status.any()
+    assert np.allclose(np.tan(psi[..., 0]) * np.cos(0.4), np.tan(q)[:, None])

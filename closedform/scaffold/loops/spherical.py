@@ -43,13 +43,16 @@ def with_arcs(loop: Loop) -> Loop:
 
 
 def _meet(loop: Loop) -> bool:
-    """Whether four axes pass one point of the ground, and bodies have no other points."""
+    """Whether four axes pass one point of the ground, and bodies have no other points.
+
+    The bodies need not have this point themselves.
+    """
     joints = [*loop.joints.values()]
     if len(joints) != JOINTS or len(loop.bodies) != JOINTS or loop.rods or loop.parallelograms:
         return False
     places = {tuple(at) for points in loop.bodies.values() for at in points.values()}
     turning = all(j.kind == "revolute" and j.axis is not None for j in joints)
-    placed = all(any(j.at in loop.bodies[b] for b in j.between) for j in joints)
+    placed = all(any(j.at in loop.bodies[b] for b in (*j.between, GROUND)) for j in joints)
     return turning and placed and len(places) == 1
 
 

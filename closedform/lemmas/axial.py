@@ -135,6 +135,8 @@ class FreeAlong:
     leg: Crank | Slide
     axis: Sequence[Any]
     on_hand: Sequence[Any] = ()
+    slide: sp.Symbol | None = None
+    """The passive joint of a cylindrical joint on the hand: how far this has slid on the rod."""
 
     def __post_init__(self) -> None:
         if not isinstance(self.leg, Crank | Slide) or len(self.leg.base) != len(self.axis):

@@ -16,6 +16,7 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.lemmas.axial import FreeAlong
 from closedform.lemmas.extended import Extended
 from closedform.lemmas.legs import Leg, vector
 from closedform.loops.guided_hand import COUNTS, Guided, Holder
@@ -25,6 +26,7 @@ from closedform.loops.hinged_pose import motions, state_pose
 from closedform.loops.hinges import Hinged, Hinges
 from closedform.loops.leg_by_leg import MISSED, LegByLeg, named_in, signs_of_modes
 from closedform.loops.letters import bold, letters
+from closedform.loops.on_cylinders import OnCylinders
 from closedform.loops.parallel_axes import ParallelAxes, moved_by, state_axes
 from closedform.loops.platform import determinant, of_any_matrix
 from closedform.loops.skeleton import Drawing, points_of
@@ -212,6 +214,8 @@ def _velocity(m: Guided, loop: Step) -> None:
         rod = m.pivot + arm - sp.Matrix(near)
         if isinstance(leg.rod, Extended):
             rod = leg.rod.named_along(p, f"_{k}", rod)
+        if isinstance(leg, FreeAlong):
+            rod = leg.pull(rod)
         rods.append(sp.Matrix([named_in(p, f"r_{k}{i}", e) for i, e in enumerate(rod, 1)]))
     rows = m.rows(p, placed, rods)
     stretched = [placed.row(k, rod) for k, rod in enumerate(rods)]
@@ -225,6 +229,8 @@ def _velocity(m: Guided, loop: Step) -> None:
     few = len(rows) <= FEW
     J = D.adjugate() * sp.diag(*driven) / volume if few else sp.zeros(0)
     det = sp.Mul(*driven) / volume
+    if isinstance(m.guide, OnCylinders):
+        J, det = _by_units(p, rows, driven)
     own = [*placed.fixed]
     if slide := placed.slide:
         rows = stretched = [row * slide.inverse for row in rows]
@@ -291,6 +297,23 @@ def _velocity(m: Guided, loop: Step) -> None:
         )
 
 
+def _by_units(
+    p: Program, rows: Sequence[sp.Matrix], driven: Sequence[sp.Expr]
+) -> tuple[sp.Matrix, sp.Expr]:
+    """A^-1*B and its determinant, from rows over their largest entries.
+
+    Rods across the axes may all be tiny beside the mechanism, and so are products of their entries.
+    """
+    sizes = [
+        p.let(f"unit_{k}", sp.Max(*map(sp.Abs, row)), nonnegative=True)
+        for k, row in enumerate(rows, 1)
+    ]
+    A = p.matrix("U", sp.Matrix.vstack(*(row / e for row, e in zip(rows, sizes, strict=True))))
+    B = [p.let(f"V_{k}", b / e) for k, (b, e) in enumerate(zip(driven, sizes, strict=True), 1)]
+    volume = p.let("Delta_U", A.det())
+    return A.adjugate() * sp.diag(*B) / volume, sp.Mul(*B) / volume
+
+
 def _volume(p: Program, rows: Sequence[sp.Matrix]) -> sp.Expr:
     """The determinant of some rows, by minors of two parts if they are many."""
     return sp.Matrix.vstack(*rows).det() if len(rows) <= FEW else determinant(p, rows)
@@ -332,6 +355,7 @@ def _state_velocity(m: Guided, loop: Step) -> None:
     alone = {
         Ball: rf"{moment}^T",
         ParallelAxes: r"\mathbf r_i^T",
+        OnCylinders: r"\mathbf r_i^T",
         ThreePlanes: r"(\mathbf e_i\times\mathbf r_i)^T + \mathbf r_i^T V",
     }
     shown: dict[str, Any] = {
@@ -417,7 +441,10 @@ def _state_velocity(m: Guided, loop: Step) -> None:
 
 
 def _draw(m: Guided) -> None:
-    """The skeleton: pivot O, bases A, near ends B and far ends C of the legs, and P, the hand."""
+    """The skeleton: pivot O, bases A, near ends B and far ends C of the legs, and P, the hand.
+
+    E are the far ends of rods on which the hand slides.
+    """
     p = m.d.program()
     placed = m.placed(p)
     exact, loop = m.exact, m.closed(m.exact.arms)
@@ -446,7 +473,7 @@ def _draw(m: Guided) -> None:
         if isinstance(leg.rod, Extended):
             drawn.add_extended(k, leg, far, equation, m.pivot + exact.arms[k - 1] - leg.end())
         else:
-            drawn.add_leg(k, leg, far, equation)
+            drawn.add_leg(k, leg, far, equation, m.pivot + exact.arms[k - 1])
         if far != "P":
             drawn.links[f"hand{k}"] = ("P", far)
             drawn.lengths["P", far] = sp.sqrt(sp.factor(sp.trigsimp(square(place))))

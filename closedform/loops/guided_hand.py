@@ -10,6 +10,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.axial import FreeAlong
 from closedform.lemmas.extended import excess_of
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, vector
 from closedform.loops.guides import LENGTH, TURNS, Ball, Driven, Gimbal, Guide, Placed
@@ -17,6 +18,7 @@ from closedform.loops.hand import check_order, check_plain
 from closedform.loops.hinges import Hinges, InPlane
 from closedform.loops.leg_by_leg import named_in, size_of
 from closedform.loops.mast import Mast
+from closedform.loops.on_cylinders import OnCylinders
 from closedform.loops.parallel_axes import ParallelAxes
 from closedform.loops.spindle import Spindle
 from closedform.model.derivation import Derivation
@@ -41,17 +43,20 @@ class Guided:
             raise ShapeError(
                 f"{name}: a hand on {self.guide.what} has {COUNTS[n]} driven legs in space"
             )
-        if not all(isinstance(leg, Crank | Slide | Stretch) for leg in self.legs):
+        kinds = Crank | Slide | Stretch
+        if isinstance(self.guide, OnCylinders):
+            kinds |= FreeAlong
+        if not all(isinstance(leg, kinds) for leg in self.legs):
             raise ShapeError(
                 f"{name}: a driven leg beside {self.guide.what} must be a crank, a slide or a "
                 f"leg that stretches"
             )
-        kinds = Guide | Gimbal | InPlane | Spindle | Mast
-        if isinstance(self.guide, kinds) and self.guide.joint.faulty:
+        turning = Guide | Gimbal | InPlane | Spindle | Mast
+        if isinstance(self.guide, turning) and self.guide.joint.faulty:
             raise ShapeError(
                 f"{name}: the axes of {self.guide.what} must be two unit vectors at right angles"
             )
-        check_order(self.d, self.legs)
+        check_order(self.d, self.legs, axial=isinstance(self.guide, OnCylinders))
         if isinstance(self.guide, ParallelAxes | Driven):
             self.guide.check(name, self.legs)
         if not isinstance(self.guide, ParallelAxes):
@@ -117,7 +122,9 @@ class Guided:
     def closed(self, arms: Sequence[sp.Matrix]) -> tuple[sp.Expr, ...]:
         """The equations of the loop, for far ends of the legs as seen from the pivot."""
         return tuple(
-            excess_of(leg.rod, self.pivot + arm - leg.end())
+            leg.excess(self.pivot + arm - leg.end())
+            if isinstance(leg, FreeAlong)
+            else excess_of(leg.rod, self.pivot + arm - leg.end())
             for leg, arm in zip(self.legs, arms, strict=True)
         )
 

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.axial import FreeAlong
 from closedform.lemmas.extended import Extended, excess_of, rod_of, stretched_by
 from closedform.lemmas.legs import Crank, Leg, Slide, vector
 from closedform.loops.guides import Placed, arms_at
@@ -143,15 +144,19 @@ class ParallelAxes:
 
 def state_axes(d: Derivation, legs: Sequence[Leg], loop: Step) -> None:
     """The step on the axes, which keep the hand from turning."""
-    parallel_axes(d, [leg.rod.direction for leg in legs], loop)
+    axes = [vector(e.axis) if isinstance(e, FreeAlong) else e.rod.direction for e in legs]
+    parallel_axes(d, axes, loop)
 
 
 def moved_by(
     leg: Leg, span: sp.Matrix, target: Sequence[sp.Symbol]
 ) -> list[tuple[sp.Expr, sp.Expr]]:
     """How the equation of a leg changes with the target and with its joint."""
-    equation, rod = excess_of(leg.rod, span), rod_of(leg.rod, span)
-    by = 2 * stretched_by(leg.rod, span)
+    if isinstance(leg, FreeAlong):
+        equation, rod, by = leg.excess(span), leg.pull(span), sp.Integer(2)
+    else:
+        equation, rod = excess_of(leg.rod, span), rod_of(leg.rod, span)
+        by = 2 * stretched_by(leg.rod, span)
     return [
         *((equation.diff(x), by * e) for x, e in zip(target, rod, strict=False)),
         (equation.diff(leg.joint), -by * rate_of(leg, rod)),

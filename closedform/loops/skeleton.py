@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import sympy as sp
 
 from closedform.lemmas.axial import Across, Along, Axial, FreeAlong
 from closedform.lemmas.extended import Extended
-from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch, Strut
+from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Stretch, Strut, vector
 from closedform.lemmas.parallelogram import Parallelogram, Prism
 from closedform.lemmas.planes import Plane
 from closedform.lemmas.rails import Rail
@@ -34,8 +35,16 @@ class Drawing:
     closing: dict[tuple[str, str], sp.Expr] = field(default_factory=dict)
     joints: dict[sp.Symbol, tuple[str, ...]] = field(default_factory=dict)
 
-    def add_leg(self, k: int, leg: Leg, far: str, equation: sp.Expr) -> None:
-        """A leg with its equation, whose rod ends at the point ``far``."""
+    def add_leg(
+        self, k: int, leg: Leg, far: str, equation: sp.Expr, place: sp.Matrix | None = None
+    ) -> None:
+        """A leg with its equation, whose rod ends at the point ``far``, which is at a place."""
+        if isinstance(leg, FreeAlong) and leg.slide is not None and place is not None:
+            rod: Any = leg.leg
+            self.add_leg(k, rod, f"E{k}", equation)
+            self.joints[leg.slide] = (f"E{k}", far)
+            self.lengths[f"E{k}", far] = vector(leg.axis).dot(place - leg.base)
+            return
         if isinstance(leg, Axial):
             self._add_axial(k, leg, far, equation)
             return
@@ -245,8 +254,8 @@ def _points(m: Hand, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
     return points | {"P": in_space(hand)}
 
 
-def points_of(k: int, leg: Leg, far: str, place: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
-    """The base A and the near end B of a leg, its far end, and the ends of its bars."""
+def _near_ends(k: int, leg: Leg, place: sp.Matrix) -> dict[str, sp.Matrix]:
+    """The base A and the near end B of a leg, whose far end is at a place."""
     at = {f"A{k}": leg.base}
     if isinstance(leg, FreeAlong):
         foot = leg.foot(place - leg.base)
@@ -260,6 +269,17 @@ def points_of(k: int, leg: Leg, far: str, place: sp.Matrix) -> dict[str, Sequenc
     elif not isinstance(leg, Stretch | Strut):
         foot = leg.foot(place - leg.base) if isinstance(leg, Across) else sp.zeros(len(place), 1)
         at[f"B{k}"] = leg.end() + foot
+    return at
+
+
+def points_of(k: int, leg: Leg, far: str, place: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
+    """The base A and the near end B of a leg, its far end, and the ends of its bars."""
+    if isinstance(leg, FreeAlong) and leg.slide is not None:  # the hand slides, not the leg
+        rod: Any = leg.leg
+        end = place - leg.foot(place - leg.base)
+        held = {} if far == "P" else {far: in_space(place)}
+        return points_of(k, rod, f"E{k}", end) | held
+    at = _near_ends(k, leg, place)
     if far != "P":
         at[far] = place
     if isinstance(leg.rod, Extended):

@@ -33,7 +33,10 @@ def mechanism(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathF
     text, folder = {"tables": TABLES, "cranks": CRANKS}[request.param], tmp_path_factory.mktemp("m")
     assert len(text.splitlines()) < 40
     return request.param, derived(
-        request.param, script_of(request.param, text, folder), folder, crosscheck=True
+        f"across_{request.param}",
+        script_of(f"across_{request.param}", text, folder),
+        folder,
+        crosscheck=True,
     )
 
 

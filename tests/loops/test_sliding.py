@@ -297,7 +297,7 @@ def test_a_loop_of_slides_keeps_directions_once(tmp_path: Path) -> None:
 def test_the_disc_of_an_oldham_coupling_is_not_left_out(tmp_path: Path) -> None:
     """Its slides turn the follower, though it is placed last; it was left out as idle."""
     text = (FOLDER / "oldham.toml").read_text("utf-8")
-    mechanism = derived("oldham", script_of("oldham", text, tmp_path), tmp_path)
+    mechanism = derived("oldham_disc", script_of("oldham_disc", text, tmp_path), tmp_path)
     angles = np.linspace(-3, 3, 7)[:, None]
     psi, status = mechanism.fk(angles)
     assert (status == OK).all() and np.allclose(psi[:, 0], angles)

@@ -65,7 +65,9 @@ UP = np.array([0, 0, 1])
 def mechanism(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory):
     kind, folder = request.param, tmp_path_factory.mktemp("m")
     assert len(FILES[kind].strip().splitlines()) < 40
-    return kind, derived(kind, script_of(kind, FILES[kind], folder), folder, crosscheck=True)
+    return kind, derived(
+        f"turret_{kind}", script_of(f"turret_{kind}", FILES[kind], folder), folder, crosscheck=True
+    )
 
 
 def rotation(r: np.ndarray) -> np.ndarray:

@@ -82,6 +82,7 @@ USED |= {
     "Hinged",
     "Lever",
     "Mast",
+    "OnCylinders",
     "OnTurret",
     "ParallelAxes",
     "Parallelogram",

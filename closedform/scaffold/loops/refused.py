@@ -80,9 +80,9 @@ def on_cylinder(loop: Loop, far: Joint, rod: str) -> str:
         return ""
     return (
         f".  {far.name} and {slide.name} are a cylindrical joint at the end of {rod}, as in a "
-        f"3-PRC mechanism: a leg keeps the hand at a distance from an axis.  For three such "
-        f"legs the forward problem has degree eight, and each joint follows from a plane and a "
-        f"distance; write these equations in Python"
+        f"3-PRC mechanism: a leg keeps the hand at a distance from an axis.  This is supported if "
+        f"all three legs are of this kind, each with the same axis at both ends of its rod, on a "
+        f"driven slider or crank"
     )
 
 

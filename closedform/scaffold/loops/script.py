@@ -22,6 +22,7 @@ from closedform.scaffold.loops.legs import TURNING, UPRIGHT, Legs, LoopLeg
 from closedform.scaffold.loops.linkages import LinkageLines, linkage
 from closedform.scaffold.loops.mirrored import mirrored
 from closedform.scaffold.loops.on_balls import on_balls
+from closedform.scaffold.loops.on_cylinders import on_cylinders
 from closedform.scaffold.loops.on_line import on_line
 from closedform.scaffold.loops.on_pins import on_pins
 from closedform.scaffold.loops.on_rod import on_rod
@@ -138,7 +139,7 @@ def _first_way(loop: Loop) -> _Way:
 def _on_legs(found: Legs) -> _Way:
     """A hand that legs carry."""
     loop = found.loop
-    if extended := between_links(found):
+    if extended := between_links(found) or on_cylinders(found):
         found.check_all_used()
         return _Way(extended[0], [], guide=extended[1])
     driven, struts = found.legs(), found.struts()

@@ -91,7 +91,9 @@ def _rods(m: Platform, planar: type[FreeAlong] | type[OnTurret], where: str) -> 
 
 
 def row_on_axes(m: Platform) -> str:
-    """What the rows of A are."""
+    """Which vectors the rows of A have, as a sentence; empty if all are those of rods."""
+    if not m.axial:
+        return ""
     rows = []
     if any(isinstance(leg, Along) for leg in m.legs):
         rows.append("for a slider along an axis the direction of this axis")
@@ -101,12 +103,18 @@ def row_on_axes(m: Platform) -> str:
         rows.append("for a leg that stretches from an axis the vector from the axis to its end")
     if any(isinstance(leg, Planar) for leg in m.legs):
         rows.append("for a leg in such a plane the vector along its rod, or along the leg")
-    told = "; ".join(rows)
-    turned = any(isinstance(leg, Around) for leg in m.legs)
-    return f"a vector r and its moment about p: {told}" + (
-        "; the entry of B for a turret is the distance of the ball joint from its axis, which is "
-        "negative behind it, and a leg in its plane does not depend on the turret where the loop "
-        "closes" * turned
+    return f"This vector is {'; '.join(rows)}.  "
+
+
+def beside_turrets(m: Platform) -> str:
+    """Sentences on B, if there are turrets."""
+    if not any(isinstance(leg, Around) for leg in m.legs):
+        return ""
+    return (
+        "The entry of a turret is the distance of the ball joint from its axis, negative behind "
+        "it: the part of the vector w_i from the pivot to the ball joint in the direction of the "
+        "plane.  The equation of a leg in its plane does not change with the turret, where the "
+        "loop closes.  "
     )
 
 
@@ -153,4 +161,11 @@ def solved_on_axes(m: Platform) -> str:
     return told
 
 
-__all__ = ["close_on_axes", "row_on_axes", "solved_on_axes", "still_on_axes", "still_on_turrets"]
+__all__ = [
+    "beside_turrets",
+    "close_on_axes",
+    "row_on_axes",
+    "solved_on_axes",
+    "still_on_axes",
+    "still_on_turrets",
+]

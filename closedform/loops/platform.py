@@ -39,6 +39,7 @@ from closedform.loops.letters import letters
 from closedform.loops.meeting import Meet
 from closedform.loops.modes import NO_MODE
 from closedform.loops.on_axes import (
+    beside_turrets,
     close_on_axes,
     row_on_axes,
     solved_on_axes,
@@ -277,14 +278,15 @@ def _velocity(m: Platform, loop: Step) -> None:
     if m.axial:
         halved = "of the equations of the loop, those of the distances halved,"
         twice = "is, for a distance twice, the"
-        row, serial = row_on_axes(m), still_on_axes(m)
+        row, serial = "a vector r and its moment about p", still_on_axes(m)
     d.step(
         "Velocity and singular sets",
         f"The derivatives {halved} give A*t = B*dq for the twist t of the "
         f"hand: the velocity of its point p and its angular velocity.  Row i of A is {row}, at the "
-        f"end of the arm h, which is R*{e}.  B is diagonal, because each leg depends on its own "
-        f"joint alone.  B is singular if {serial} and the hand stands still).  A is singular if "
-        f"{m.meet} (parallel: the hand can move while the joints stand still).",
+        f"end of the arm h, which is R*{e}.  {row_on_axes(m)}B is diagonal, because each leg "
+        f"depends on its own joint alone.  {beside_turrets(m)}B is singular if {serial} and the "
+        f"hand stands still).  A is singular if {m.meet} (parallel: the hand can move while the "
+        f"joints stand still).",
         shown,
         proves=f"The derivative of each loop equation along a twist and a joint rate {twice} "
         f"row of A times the twist, minus {times} entry of B times the rate.  The formula for the "

@@ -197,14 +197,14 @@ def test_a_file_that_does_not_fit_says_why(
 
 
 def test_a_hinge_on_the_hand_beside_a_ball_joint_that_moves_is_refused(tmp_path: Path) -> None:
-    """As on the wrist of Canfield, a 3-RSR mechanism."""
+    """As on a 3-RSR mechanism whose hand is not the mirror image of the ground."""
     text = """
 hand = "P"
 copies = 3
 [bodies]
 ground = {A1 = [0.1, 0, 0]}
 arm1 = {B1 = [0.3, 0, 0]}
-far1 = {length = 0.2}
+far1 = {length = 0.25}
 top = {P = [0, 0, 0], C1 = [0.1, 0, 0]}
 [joints]
 q1 = {between = ["ground", "arm1"], at = "A1", axis = [0, 1, 0], driven = true}

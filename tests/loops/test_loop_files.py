@@ -241,8 +241,12 @@ def test_a_leg_with_two_motors_is_told_so(tmp_path: Path) -> None:
     with pytest.raises(TableError, match="q1 slides; a passive"):
         script_of("eclipse", ECLIPSE, tmp_path)
     motor = ECLIPSE.replace('"prismatic", ', '"prismatic", driven = true, ')
+    assert "OnTurret(Slide(q1, l, (1/2, 0), (0, 1))" in script_of(
+        "eclipse", motor.replace("0.5", '"1/2"'), tmp_path
+    ).replace("Rational(1, 2)", "1/2")
+    oblique = motor.replace('"B1", axis = [0, 1, 0]', '"B1", axis = [0, 1, 1]')
     with pytest.raises(TableError, match="q1 is driven, on column1, which phi1 moves; a leg has"):
-        script_of("eclipse", motor, tmp_path)
+        script_of("eclipse", oblique, tmp_path)
 
 
 def test_a_motor_between_rods_in_space_is_not_that_of_a_desk_lamp(tmp_path: Path) -> None:

@@ -197,9 +197,8 @@ class Chain:
             pairs=pairs, slides=slides, size=size,
         ).applied()  # fmt: skip
         for entry, scale in zip(self.corrected.missed, scales, strict=True):
-            # half: the size counts a length once for each term of a coordinate that contains it
             more = rounding if scale == size else sp.S.Zero
-            self.program.match(entry, scale / 2, meaning, rounding=more)
+            self.program.match(entry, scale, meaning, rounding=more)
 
     def _solved_pair(self, total: sp.Expr) -> Pair:
         """The pair of a sum of solved joints."""

@@ -58,8 +58,8 @@ class Chain:
     """An inverse as a chain of lemmas; each solves for a joint or for several.
 
     Apply lemmas by :meth:`solve`, in the order in which you would solve by hand, and export the
-    inverse by :meth:`finish`.  Tolerances are relative to the ``size`` of the arm, the sum of its
-    lengths unless you set another one before the first lemma.
+    inverse by :meth:`finish`.  Tolerances are relative to the ``size`` of the arm, unless you set
+    another one before the first lemma: the sum of its lengths, or its reach if they are numbers.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ class Chain:
         self._size = self.let("size", value)
 
     def sum_of_lengths(self) -> sp.Expr:
-        """The size of the arm, in its parameters and numbers."""
+        """The size of the arm: its parameters that are lengths, and its reach in numbers."""
         lengths = [p for p in self.d.parameters if p.nonnegative or p.unit != "rad"]
         sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
         places = self.forward[:3, 3] if self.is_pose else self.forward

@@ -14,7 +14,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.legs import Crank, Naming, Slide, Slider, Solution, vector
+from closedform.lemmas.legs import Carrier, Crank, Naming, Slide, Slider, Solution, vector
 from closedform.lemmas.turret import Around, OnTurret
 from closedform.model.inverse import Link
 from closedform.model.lemma import Lemma
@@ -59,8 +59,23 @@ class Along(Slider):
         return Solution(Link((q,), lemma.equations, {}, lemma), value, self.rate)
 
 
+class _AcrossAxis:
+    """A leg that is at right angles to an axis, in a plane that may be anywhere along it."""
+
+    axis: Sequence[Any]
+
+    def foot(self, span: sp.Matrix) -> sp.Matrix:
+        """The part along the axis of a vector from where the leg starts to its end."""
+        axis = vector(self.axis)
+        return axis.dot(span) * axis
+
+    def pull(self, span: sp.Matrix) -> sp.Matrix:
+        """The leg or its rod: what is left of that vector, across the axis."""
+        return (span - self.foot(span)).applyfunc(sp.expand)
+
+
 @dataclass(frozen=True)
-class Across:
+class Across(_AcrossAxis):
     """A leg that turns about an axis, and whose joint is its length, at right angles to the axis.
 
     The axis passes ``pivot`` and has the direction of the unit vector ``axis``.  The leg ends at
@@ -87,15 +102,6 @@ class Across:
 
     def end(self) -> sp.Matrix:
         return self.base
-
-    def foot(self, span: sp.Matrix) -> sp.Matrix:
-        """The point of the axis that is nearest, as seen from the pivot."""
-        axis = vector(self.axis)
-        return axis.dot(span) * axis
-
-    def pull(self, span: sp.Matrix) -> sp.Matrix:
-        """The leg, from the vector to the point from the pivot."""
-        return (span - self.foot(span)).applyfunc(sp.expand)
 
     def excess(self, span: sp.Matrix) -> sp.Expr:
         """What vanishes if the leg has its length."""
@@ -124,7 +130,7 @@ class Across:
 
 
 @dataclass(frozen=True)
-class FreeAlong:
+class FreeAlong(Carrier, _AcrossAxis):
     """A crank or a slide with a rod whose end is free along an axis.
 
     Revolute joints whose axes have the direction of the unit vector ``axis`` join the parts of the
@@ -150,23 +156,6 @@ class FreeAlong:
         object.__setattr__(self, "on_hand", self.on_hand or self.leg.on_hand)
 
     @property
-    def joint(self) -> sp.Symbol:
-        return self.leg.joint
-
-    @property
-    def rod(self) -> Any:
-        return self.leg.rod
-
-    @property
-    def length(self) -> Any:
-        """The length of the crank."""
-        return self.leg.length if isinstance(self.leg, Crank) else 0
-
-    @property
-    def signs(self) -> int:
-        return self.leg.signs
-
-    @property
     def base(self) -> sp.Matrix:
         return self.leg.base
 
@@ -183,15 +172,6 @@ class FreeAlong:
 
     def end(self) -> sp.Matrix:
         return self.leg.end()
-
-    def foot(self, span: sp.Matrix) -> sp.Matrix:
-        """How far the plane of the leg has to slide along the axis."""
-        axis = vector(self.axis)
-        return axis.dot(span) * axis
-
-    def pull(self, span: sp.Matrix) -> sp.Matrix:
-        """The rod, from the vector to the point from the near end, where nothing has slid."""
-        return (span - self.foot(span)).applyfunc(sp.expand)
 
     def excess(self, span: sp.Matrix) -> sp.Expr:
         """What vanishes if the rod has its length."""

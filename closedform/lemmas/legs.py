@@ -437,7 +437,31 @@ class Strut:
         return sp.Matrix([chain.let(f"p{i}", share * e) for i, e in zip("xyz", w, strict=True)])
 
 
+class Carrier:
+    """What carries a ``leg`` elsewhere, and has its joint, its lengths and its modes."""
+
+    leg: Crank | Slide | Stretch
+
+    @property
+    def joint(self) -> sp.Symbol:
+        return self.leg.joint
+
+    @property
+    def rod(self) -> Any:
+        return self.leg.rod
+
+    @property
+    def length(self) -> Any:
+        """The length of the crank."""
+        return self.leg.length if isinstance(self.leg, Crank) else 0
+
+    @property
+    def signs(self) -> int:
+        return self.leg.signs
+
+
 __all__ = [
+    "Carrier",
     "Crank",
     "Leg",
     "Naming",

@@ -14,7 +14,7 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.amplitude import Amplitude
-from closedform.lemmas.legs import Crank, Naming, Slide, Solution, Stretch, vector
+from closedform.lemmas.legs import Carrier, Crank, Naming, Slide, Solution, Stretch, vector
 from closedform.lemmas.links import degenerate
 from closedform.lemmas.pairs import direction
 from closedform.model.inverse import Link
@@ -112,7 +112,7 @@ class Around:
 
 
 @dataclass(frozen=True)
-class OnTurret:
+class OnTurret(Carrier):
     """A planar leg on a turret, whose second coordinate is along the axis of the turret.
 
     The first one is the distance from this axis, in the direction of the plane of the turret.  The
@@ -135,23 +135,6 @@ class OnTurret:
                 "coordinates of the plane of the turret"
             )
         object.__setattr__(self, "on_hand", self.on_hand or self.turret.on_hand)
-
-    @property
-    def joint(self) -> sp.Symbol:
-        return self.leg.joint
-
-    @property
-    def rod(self) -> Any:
-        return self.leg.rod
-
-    @property
-    def length(self) -> Any:
-        """The length of the crank."""
-        return self.leg.length if isinstance(self.leg, Crank) else 0
-
-    @property
-    def signs(self) -> int:
-        return self.leg.signs
 
     @property
     def base(self) -> sp.Matrix:

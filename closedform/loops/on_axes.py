@@ -45,15 +45,20 @@ def _names(legs: Sequence[Leg]) -> str:
     return listed([str(leg.joint) for leg in legs])
 
 
+def _motors(noun: str, legs: Sequence[Leg], verb: str) -> str:
+    """The start of a sentence on one motor or on several."""
+    one = len(legs) == 1
+    return f"The {noun}{'' if one else 's'} of {_names(legs)} {verb}{'s' if one else ''}"
+
+
 def _along(m: Platform) -> str:
     """What sliders along axes do, and the second motors of their legs."""
     sliders = [leg for leg in m.legs if isinstance(leg, Along)]
     if not sliders:
         return ""
     told = (
-        f"The slider{'s' * (len(sliders) > 1)} of {_names(sliders)} move{'s' * (len(sliders) == 1)}"
-        " along the axis, with a leg in the plane at right angles to it.  So this joint is the "
-        "coordinate of the ball joint along the axis.  "
+        f"{_motors('slider', sliders, 'move')} along the axis, with a leg in the plane at right "
+        "angles to it.  So this joint is the coordinate of the ball joint along the axis.  "
     )
     if any(isinstance(leg, Across) for leg in m.legs):
         told += (
@@ -69,9 +74,8 @@ def _around(m: Platform) -> str:
     if not turrets:
         return ""
     told = (
-        f"The turret{'s' * (len(turrets) > 1)} of {_names(turrets)} turn{'s' * (len(turrets) == 1)}"
-        " a plane through the axis, in which the leg moves.  So the ball joint has no part "
-        "along the normal of this plane.  "
+        f"{_motors('turret', turrets, 'turn')} a plane through the axis, in which the leg moves.  "
+        "So the ball joint has no part along the normal of this plane.  "
     )
     stretched = [e for e in m.legs if isinstance(e, OnTurret) and isinstance(e.leg, Stretch)]
     if stretched:

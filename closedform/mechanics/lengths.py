@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 import sympy as sp
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Let
 
+TURNS = sp.sin, sp.cos
 POSTURES, STARTS, SWEEPS, DIRECTIONS = 1024, 16, 4, 180
 """How many postures are tried for a reach, how many of them are improved, and how often and how
 finely each joint is turned for that."""
@@ -24,12 +25,18 @@ def lengths_in_numbers(place: sp.Expr, names: Mapping[sp.Basic, sp.Expr] | None 
     """
     names = names or {}
     total = sp.S.Zero
-    for term in sp.Add.make_args(sp.expand(place)):
-        size, rest = term.as_independent(*term.free_symbols, as_Add=False)
-        for base, _ in (f.as_base_exp() for f in sp.Mul.make_args(rest) if f != 1):
-            size *= 1 if isinstance(base, sp.sin | sp.cos) else names.get(base, 0)
+    for size, factors in _terms(place):
+        for base, _ in factors:
+            size *= 1 if isinstance(base, TURNS) else names.get(base, 0)
         total += abs(size)
     return total
+
+
+def _terms(place: sp.Expr) -> Iterator[tuple[sp.Expr, list[tuple[sp.Expr, sp.Expr]]]]:
+    """The terms of a coordinate: a number, and the bases and exponents of the other factors."""
+    for term in sp.Add.make_args(sp.expand(place)):
+        number, rest = term.as_independent(*term.free_symbols, as_Add=False)
+        yield number, [f.as_base_exp() for f in sp.Mul.make_args(rest) if f != 1]
 
 
 def reach_in_numbers(places: Iterable[sp.Expr]) -> sp.Expr:
@@ -50,24 +57,22 @@ def _largest(place: sp.Expr) -> float:
     The angles of the sines and cosines count as independent.  From the best of many postures, one
     angle after the other goes to where the size is largest.
     """
-    turns = (sp.sin, sp.cos)
     terms = [
-        (number, sp.Mul.make_args(rest) if rest != 1 else ())
-        for term in sp.Add.make_args(sp.expand(place))
-        for number, rest in [term.as_independent(*term.free_symbols, as_Add=False)]
-        if all(isinstance(f.as_base_exp()[0], turns) for f in sp.Mul.make_args(rest) if rest != 1)
+        (number, factors)
+        for number, factors in _terms(place)
+        if all(isinstance(base, TURNS) for base, _ in factors)
     ]
-    angles = sorted({f.as_base_exp()[0].args[0] for _, fs in terms for f in fs}, key=str)
+    angles = sorted({base.args[0] for _, factors in terms for base, _ in factors}, key=str)
 
     def sizes(at: NDArray[np.float64]) -> NDArray[np.float64]:
         known = {
             f(a): getattr(np, f.__name__)(row)
-            for f in turns
+            for f in TURNS
             for a, row in zip(angles, at, strict=True)
         }
         total = np.zeros(at.shape[1:])
         for number, factors in terms:
-            powers = (known[b] ** int(e) for b, e in (f.as_base_exp() for f in factors))
+            powers = (known[base] ** int(exponent) for base, exponent in factors)
             total = total + float(number) * np.multiply.reduce([np.ones(at.shape[1:]), *powers])
         return np.asarray(abs(total))
 

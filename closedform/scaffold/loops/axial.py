@@ -6,7 +6,7 @@ the plane of a leg, in which the other motor moves its end.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -139,16 +139,8 @@ def call_of(found: Finder, leg: TwoMotors, joint: Joint) -> str:
     if not leg.rod:
         start = found.at(found.point(leg.along.other(GROUND), leg.hinge))
         return f"{'Along' if joint is leg.along else 'Across'}({joint.name}, {start}, {axis}"
-    mover = leg.hinge.other(leg.rod)
-    start, length = found.point(mover, leg.hinge), source(found.loop.rods[leg.rod])
-    if leg.across.kind == "prismatic":
-        assert leg.across.axis is not None
-        moved = f"Slide({joint.name}, {length}, {found.at(start)}, {found.at(leg.across.axis)})"
-    else:
-        arm, start = _arm(found, leg.across, mover, start)
-        ways = ", ".join(map(found.at, found.directions(leg.across, arm)))
-        crank = f"{source(found.loop.length(arm))}, {length}, {found.at(start)}"
-        moved = f"Crank({joint.name}, {crank}, {ways})"
+    end = found.point(leg.hinge.other(leg.rod), leg.hinge)
+    moved, start = _moved(found, leg, end, found.at, sp.zeros(SPACE, 1))
     if joint is leg.along:
         return f"Along({joint.name}, {found.at(start)}, {axis}"
     return f"FreeAlong({moved}, {axis}"
@@ -178,27 +170,34 @@ def _on_turret(found: Finder, leg: TwoMotors, joint: Joint) -> str:
     turret = f"Around({leg.along.name}, {found.at(pivot)}, {found.at(axis)}, {found.at(ahead)}"
     if joint is leg.along:
         return turret
-    length = source(loop.rods[leg.rod]) if leg.rod else ""
-    if not leg.rod:
-        moved = f"Stretch({joint.name}, {flat(end - pivot)})"
-    elif joint.kind == "prismatic":
-        assert joint.axis is not None
-        moved = f"Slide({joint.name}, {length}, {flat(end - pivot)}, {flat(joint.axis)})"
-    else:
-        arm, start = _arm(found, joint, mover, end)
-        ways = ", ".join(map(flat, found.directions(joint, arm)))
-        crank = f"{source(loop.length(arm))}, {length}, {flat(start - pivot)}"
-        moved = f"Crank({joint.name}, {crank}, {ways})"
+    moved = (
+        _moved(found, leg, end, flat, pivot)[0]
+        if leg.rod
+        else f"Stretch({joint.name}, {flat(end - pivot)})"
+    )
     return f"OnTurret({moved}, {turret})"
 
 
-def _arm(found: Finder, joint: Joint, crank: str, end: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
-    """A crank at the angle 0 as a vector at right angles to its axis, and where it starts."""
-    start = found.loop.bodies[crank].get(joint.at)
-    if start is None:
-        start = found.point(joint.other(crank), joint)
+def _moved(
+    found: Finder,
+    leg: TwoMotors,
+    end: sp.Matrix,
+    written: Callable[[sp.Matrix], str],
+    origin: sp.Matrix,
+) -> tuple[str, sp.Matrix]:
+    """What moves the near ``end`` of a rod, with places seen from the ``origin``, and its start."""
+    joint, body, length = leg.across, leg.hinge.other(leg.rod), source(found.loop.rods[leg.rod])
     assert joint.axis is not None
-    return across_axis(joint.axis, end - start, start)
+    if joint.kind == "prismatic":
+        places = f"{written(end - origin)}, {written(joint.axis)}"
+        return f"Slide({joint.name}, {length}, {places})", end
+    start = found.loop.bodies[body].get(joint.at)
+    if start is None:
+        start = found.point(joint.other(body), joint)
+    arm, start = across_axis(joint.axis, end - start, start)
+    ways = ", ".join(map(written, found.directions(joint, arm)))
+    lengths = f"{source(found.loop.length(arm))}, {length}"
+    return f"Crank({joint.name}, {lengths}, {written(start - origin)}, {ways})", start
 
 
 def told(leg: TwoMotors, joint: Joint) -> str:

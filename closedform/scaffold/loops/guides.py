@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from closedform.model.names import listed
-from closedform.scaffold.loops.bodies import GROUND, Joint
+from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
 from closedform.scaffold.loops.legs import Legs, middle_leg
 
 SPACE = 3
@@ -75,8 +75,7 @@ def _on_mast(found: Legs, slide: Joint, turning: Joint, post: str) -> GuideLine:
             f"its axis, and {turning.name} two axes at right angles, where the hand is not turned: "
             f"axis, which is fixed to {post}, and second, which is fixed to the hand"
         )
-    if sp.simplify(turning.axis.dot(turning.second)) != 0:
-        raise loop.error(f"axis and second of {turning.name} have to be at right angles")
+    _require_cross(loop, turning)
     points = loop.bodies[post]
     base = found.point(GROUND, slide)
     if slide.at in points and turning.at in points:
@@ -150,6 +149,14 @@ def _check_driven(found: Legs, held: Joint, needed: int, by: str) -> None:
         )
 
 
+def _require_cross(loop: Loop, universal: Joint) -> None:
+    """Refuse a universal joint whose axes are not at right angles."""
+    assert universal.axis is not None
+    assert universal.second is not None
+    if sp.simplify(universal.axis.dot(universal.second)) != 0:
+        raise loop.error(f"axis and second of {universal.name} have to be at right angles")
+
+
 def _pivot(found: Legs, joint: Joint) -> GuideLine:
     """A joint that holds the hand on the ground: universal or a ball."""
     loop = found.loop
@@ -170,8 +177,7 @@ def _pivot(found: Legs, joint: Joint) -> GuideLine:
             f"the hand is not turned: axis, which is fixed to the ground, and second, which is "
             f"fixed to the hand"
         )
-    if sp.simplify(joint.axis.dot(joint.second)) != 0:
-        raise loop.error(f"axis and second of {joint.name} have to be at right angles")
+    _require_cross(loop, joint)
     axes = f"{found.at(joint.axis)}, {found.at(joint.second)}"
     words = "A universal joint holds the hand on the ground."
     return GuideLine(f"Gimbal({base}, {axes})", "a hand on a universal joint", words)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from math import prod
 from typing import Any
 
 import sympy as sp
@@ -12,6 +13,8 @@ from closedform.algebra.expressions import subexpressions
 
 Rows = list[list[Any]]
 """A matrix; its entries are polynomials, or expressions where these have other operations."""
+FACTORS = 1000
+"""Larger prime factors of the number in a root stay together."""
 
 
 class Expansion:
@@ -26,7 +29,8 @@ class Expansion:
         self._polynomial = all(_is_plain(e) or e in inside for e in parts) and all(
             sp.expand(e) == e for e in atoms
         )
-        self._atoms = atoms
+        roots = [r for e in atoms if _is_root(e) for r in _roots_of(e)]
+        self._atoms = atoms = [*(e for e in atoms if not _is_root(e)), *dict.fromkeys(roots)]
         context = fmpq_mpoly_ctx.get([f"x{i}" for i in range(len(atoms))], Ordering.lex)
         self._constant = context.constant
         self._known = dict(zip(atoms, context.gens(), strict=True))
@@ -76,6 +80,8 @@ class Expansion:
     def _made(self, e: Any) -> Any:
         if e.is_Rational:
             return self._constant(fmpq(e.p, e.q))
+        if _is_root(e):
+            return prod(self._known[r] for r in _roots_of(e))
         if e.is_Pow:
             return self._read(e.base) ** int(e.exp)
         total = self._constant(int(e.is_Mul))
@@ -99,6 +105,11 @@ def _is_atom(e: Any) -> bool:
 
 def _is_root(e: Any) -> bool:
     return bool(e.is_Pow and e.exp == sp.S.Half and e.base.is_Integer)
+
+
+def _roots_of(root: Any) -> list[Any]:
+    """The roots whose product is the root of an integer, so that those of 2, 3 and 6 are two."""
+    return [sp.sqrt(p**n) for p, n in sp.factorint(root.base, limit=FACTORS).items()]
 
 
 def _is_plain(e: Any) -> bool:

@@ -25,6 +25,7 @@ from closedform.mechanics.frames import (
     exponential,
     frame_along,
     homogeneous,
+    multiplied_out,
     plane_angle,
     reduce_circle,
     rotation,
@@ -562,7 +563,9 @@ def from_screws(
 def _seen(frame: sp.Matrix, value: sp.Matrix) -> sp.Matrix:
     """Vectors in the axes of a frame, with squares of sines and cosines of parameters reduced."""
     seen = frame.T * value
-    return reduce_circle(seen.applyfunc(sp.expand)) if seen.free_symbols else seen
+    if seen.free_symbols:
+        return reduce_circle(seen.applyfunc(sp.expand))
+    return multiplied_out(seen)
 
 
 __all__ = [

@@ -173,11 +173,21 @@ def frame_along(w: sp.Matrix) -> sp.Matrix:
         return sp.eye(3)
     if sum(e != 0 for e in across) == 1:  # without a root, as its size may depend on an angle
         across = across.applyfunc(lambda e: sp.sign(e) if e.is_number else sp.Integer(e != 0))
-    length = sp.sqrt(across.dot(across))
+    length = sp.sqrt(multiplied_out(across.T * across)[0])
     if not length.is_Rational and all(e.is_Rational for e in w):
         return _rational_frame(w)
-    x = across / length
-    return sp.Matrix.hstack(x, w.cross(x), w)
+    x = multiplied_out(across / length)
+    return sp.Matrix.hstack(x, multiplied_out(w.cross(x)), w)
+
+
+def multiplied_out(constants: sp.Matrix) -> sp.Matrix:
+    """Constants with the products of their roots multiplied out, and roots in no denominator.
+
+    What has symbols, or no roots, is left as it is.
+    """
+    return constants.applyfunc(
+        lambda e: sp.radsimp(sp.expand(e)) if e.is_number and not e.is_Rational else e
+    )
 
 
 def _rational_frame(w: sp.Matrix) -> sp.Matrix:

@@ -27,3 +27,11 @@ def test_products_are_those_of_sympy(matrix: sp.Matrix, polynomial: bool) -> Non
     moved = found.plus(found.times(M, p), found.cross(p, found.times(M, p)), -1)
     expected = matrix * column - column.cross(matrix * column)
     assert found.written(moved) == expected.applyfunc(sp.expand)
+
+
+def test_roots_are_those_of_primes() -> None:
+    """Else the root of 2 times that of 6 is not twice that of 3, and nothing cancels."""
+    row, column = sp.Matrix([[sp.sqrt(2), -sp.sqrt(3)]]), sp.Matrix([sp.sqrt(6), 2])
+    found = Expansion([row, column])
+    ((zero,),) = found.times(found.read(row), found.read(column))
+    assert zero == 0

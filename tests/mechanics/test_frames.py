@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 from sympy import cos, sin, sqrt
 
-from closedform.mechanics.frames import merge_angles, plane_angle
+from closedform.mechanics.frames import frame_along, merge_angles, plane_angle
 
 a, b, c, x, y = sp.symbols("a b c x y", real=True)
 MERGED = {
@@ -60,3 +60,16 @@ def test_an_angle_is_read_from_its_sine_and_cosine(angle: sp.Expr) -> None:
 
 def test_other_directions_keep_their_arctangent() -> None:
     assert plane_angle(x, sqrt(1 - x**2)).has(sp.atan2)
+
+
+@pytest.mark.parametrize(
+    "angles", [(sp.pi / 12, 0), (5 * sp.pi / 12, sp.pi / 2), (sp.pi / 4, sp.pi / 3)]
+)
+def test_a_frame_along_an_axis_has_no_roots_in_denominators(angles: tuple) -> None:
+    """They stood in each product of frames of arms with joints at 15 degrees, such as the iCub."""
+    tilt, around = angles
+    w = sp.Matrix([sin(tilt) * cos(around), sin(tilt) * sin(around), cos(tilt)])
+    R = frame_along(w)
+    assert (R.T * R).applyfunc(sp.expand) == sp.eye(3) and R[:, 2] == w
+    assert sp.expand(R.det()) == 1
+    assert all(r.exp == sp.S.Half for e in R for r in e.atoms(sp.Pow))

@@ -20,9 +20,16 @@ import sympy as sp
 from closedform.mechanics.frames import exponential, homogeneous, rotation
 from closedform.model.tolerances import UNIT_LENGTH
 from closedform.scaffold.inputs.decimals import add_axes, has_many_angles, rational_if_slow
-from closedform.scaffold.inputs.exact import orthonormal, turned_on, unit_vector, without_squares
+from closedform.scaffold.inputs.exact import orthonormal, unit_vector, without_squares
 from closedform.scaffold.inputs.held import held
 from closedform.scaffold.inputs.joints import MOVING, Joint, Mimic, couple, declare, led
+from closedform.scaffold.inputs.own_turns import (
+    along_axes,
+    own_part,
+    own_turn,
+    product,
+    turned_back,
+)
 from closedform.scaffold.inputs.tables import (
     JOINTS,
     Table,
@@ -85,7 +92,7 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
         table.doubt = f"{table.doubt}  {_gripper(chain)}".strip()
     chain = held(chain, choice.hold, table, file)
     found = list(_read(chain, table, Displacement.of(as_written, choice.ignore), file))
-    table, moved, mimics, offsets = min(found, key=_Placed.sines)
+    table, moved, mimics, offsets = min(found, key=_Placed.effort)
     table.doubt = f"{table.doubt}  {_parted(table.axes, short)}".strip()
     if not table.axes:
         raise TableError(f"{file}: no joint between {chain[0].parent} and {chain[-1].child} moves")
@@ -104,15 +111,18 @@ def _read(
     chain: Sequence[Joint], table: Table, moved: Displacement, file: str
 ) -> Iterator[_Placed]:
     """The ways to read a chain: as it is, with offsets of joints, or in decimals."""
-    angles = [_own_turn(joint) for joint in chain]
-    straight = [_turned_back(j, a) for j, a in zip(chain, angles, strict=True)]
+    angles = [own_turn(joint) for joint in chain]
+    straight = [turned_back(j, a) for j, a in zip(chain, angles, strict=True)]
     if has_many_angles(straight):
         yield _Placed.in_decimals(chain, table, deepcopy(moved), file)
         return
     if not has_many_angles(chain):
         yield _Placed.of(chain, table, deepcopy(moved), file)
     if any(angles):  # sines of angles are slow, and joints may turn them back
-        yield _Placed.of(chain, table, deepcopy(moved), file, offsets=True)
+        yield _Placed.of(chain, table, deepcopy(moved), file, angles)
+    parts = [a or own_part(joint) for a, joint in zip(angles, chain, strict=True)]
+    if parts != angles:  # so are sums of roots, such as the cosine of pi/12
+        yield _Placed.of(chain, table, deepcopy(moved), file, parts)
 
 
 class _Placed(NamedTuple):
@@ -130,19 +140,17 @@ class _Placed(NamedTuple):
         table: Table,
         moved: Displacement,
         file: str,
-        *,
-        offsets: bool = False,
+        offsets: Sequence[sp.Expr] = (),
     ) -> _Placed:
         """The axes where all joints are zero; with ``offsets``, where they have turned back what
         their origins turn them about their own axes."""
         table, place = deepcopy(table), sp.eye(4)
         mimics: list[Mimic] = []
         turned: dict[sp.Symbol, sp.Expr] = {}
-        for joint in chain:
+        for joint, angle in zip(chain, offsets or [sp.S.Zero] * len(chain), strict=True):
             where = f"{file}, joint {shown_name(joint.name)}"
-            angle = _own_turn(joint) if offsets else sp.S.Zero
-            joint = _turned_back(joint, angle)
-            there = _product(place, joint.origin)
+            joint = turned_back(joint, angle)
+            there = product(place, joint.origin)
             place = _meant_turns(there, where, table.notes)
             moved.turn(joint, between(place, there))
             if joint.kind == "fixed":
@@ -151,9 +159,9 @@ class _Placed(NamedTuple):
             moved.moved += _size(place[:3, 3] - there[:3, 3])
             if joint.mimics:
                 mimics.append(Mimic(joint, place, len(table.axes), file))
-                place = _product(place, _offset(joint, where, table.notes))
+                place = product(place, _offset(joint, where, table.notes))
                 continue
-            if not table.axes and not _along_axes(place):
+            if not table.axes and not along_axes(place):
                 # what a tilted mount does to all axes stays apart
                 table.base, place = rational_if_slow(place, where, table), sp.eye(4)
             symbol = declare(joint, table, where)
@@ -177,37 +185,16 @@ class _Placed(NamedTuple):
         moved.turned += changed.tool
         return cls(table, moved, [], {})
 
-    def sines(self) -> tuple[int, int]:
-        """How many angles are in axes, tool and offsets, and how many of them in sines."""
+    def effort(self) -> tuple[int, ...]:
+        """How many angles are in axes, tool and offsets, and how many of them in sines; then how
+        many coordinates have roots, and how many joints have offsets."""
         vectors = [v for _, *both in self.table.axes for v in both]
         entries = [*self.table.home, *(e for v in vectors for e in v)]
         inside = {abs(f.args[0]) for e in entries for f in e.atoms(sp.sin, sp.cos)}
-        return len(inside | {abs(a) for a in self.offsets.values() if a != 0}), len(inside)
-
-
-def _own_turn(joint: Joint) -> sp.Expr:
-    """The angle of a turn about the axis of a joint after which its origin has no other turn.
-
-    It is 0 if there is none, and if the origin does not need it.
-    """
-    R = joint.origin[:3, :3]
-    if MOVING.get(joint.kind) != "revolute" or joint.mimics or not R.has(sp.sin, sp.cos):
-        return sp.S.Zero
-    if not orthonormal(joint.axis):
-        return sp.S.Zero
-    held = {f.args[0] for f in R.atoms(sp.sin, sp.cos)}
-    for angle in (k * a for a in sorted(held, key=sp.default_sort_key) for k in (1, -1)):
-        if not _turned_back(joint, angle).origin[:3, :3].has(sp.sin, sp.cos):
-            return angle
-    return sp.S.Zero
-
-
-def _turned_back(joint: Joint, angle: sp.Expr) -> Joint:
-    """The joint with the origin where it has turned back by an angle."""
-    if angle == 0:
-        return joint
-    turn = exponential(sp.Matrix([0, 0, 0, *joint.axis]), -angle)
-    return replace(joint, origin=_product(joint.origin, turn))
+        offsets = [abs(a) for a in self.offsets.values() if a != 0]
+        with_sines = {a for a in offsets if sp.sin(a).has(sp.sin)}
+        roots = [e for e in entries if any(not r.exp.is_Integer for r in e.atoms(sp.Pow))]
+        return len(inside | with_sines), len(inside), len(roots), len(offsets)
 
 
 def _offset(joint: Joint, where: str, notes: list[str]) -> sp.Matrix:
@@ -471,11 +458,6 @@ def _chain(joints: Sequence[Joint], base: str, tool: str, file: str) -> list[Joi
     return found
 
 
-def _along_axes(place: sp.Matrix) -> bool:
-    """Whether a pose turns the axes of coordinates to each other."""
-    return all(e in (-1, 0, 1) for e in place[:3, :3])
-
-
 def _only_end(above: Mapping[str, Joint], parents: set[str], file: str) -> str:
     """The end of the only chain that moves, with the fixed links at its end."""
     ends: dict[tuple[str, ...], list[str]] = {}
@@ -517,11 +499,6 @@ def _parting(ends: Sequence[str], above: Mapping[str, Joint]) -> str:
     if len(moving) > 1:
         joints = f"the {len(moving)} joints {joints} to {shown_name(moving[-1])}"
     return f"; or {shown_name(common[-1])}, where they part, after {joints}"
-
-
-def _product(a: sp.Matrix, b: sp.Matrix) -> sp.Matrix:
-    shifted = a[:3, :3] * b[:3, 3] + a[:3, 3]
-    return homogeneous(turned_on(a[:3, :3], b[:3, :3]), tuple(shifted.applyfunc(sp.expand)))
 
 
 def _level(place: sp.Matrix, table: Table, where: str, ignore: float) -> sp.Matrix:

@@ -37,6 +37,8 @@ AFTER, BEFORE = [1, 2, 0], [2, 0, 1]
 """The coordinates of a cross product."""
 SMALL, CONTRACTS = 0.2, 0.1
 """The largest step of a joint, and by how much the second correction must be smaller."""
+EASY = 0.3
+"""The share of these limits within which the step becomes larger."""
 
 
 @dataclass(frozen=True)
@@ -91,22 +93,24 @@ class Numeric:
 
     def pose(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The poses of the tool, and the twists (v; omega) of the joints in the base frame."""
-        T = np.repeat(self.lead[None, :3], len(q), axis=0)
-        twists = np.zeros((len(q), 6, q.shape[1]), complex)
-        turns = np.where(self.slides, 0, q)  # a slide may be far away in complex numbers
-        cosines, sines = np.cos(turns), self.senses * np.sin(turns)
+        # columns of poses come first and postures last, so that each operation runs along memory
+        n = len(q)
+        T = np.repeat(self.lead[:3].T[:, :, None], n, axis=2)
+        twists = np.zeros((q.shape[1], 6, n), complex)
+        turns = np.where(self.slides, 0, q).T  # a slide may be far away in complex numbers
+        cosines, sines = np.cos(turns), self.senses[:, None] * np.sin(turns)
         for k, sense in enumerate(self.senses):
-            x, y, w, p = (T[:, :, i].copy() for i in range(4))
+            x, y, w, p = T
             if self.slides[k]:
-                twists[:, :3, k] = sense * w
-                T[:, :, 3] += sense * q[:, k, None] * w
+                twists[k, :3] = sense * w
+                p += sense * q[:, k] * w
             else:
-                twists[:, 3:, k] = sense * w
-                twists[:, :3, k] = sense * (p[:, AFTER] * w[:, BEFORE] - p[:, BEFORE] * w[:, AFTER])
-                c, s = cosines[:, k, None], sines[:, k, None]
-                T[:, :, 0], T[:, :, 1] = c * x + s * y, c * y - s * x
-            T = (T.reshape(-1, 4) @ self.motions[k]).reshape(T.shape)
-        return T, twists
+                twists[k, 3:] = sense * w
+                twists[k, :3] = sense * (p[AFTER] * w[BEFORE] - p[BEFORE] * w[AFTER])
+                c, s = cosines[k], sines[k]
+                T[0], T[1] = c * x + s * y, c * y - s * x
+            T = (self.motions[k].T @ T.reshape(4, -1)).reshape(T.shape)
+        return T.transpose(2, 1, 0), twists.transpose(2, 1, 0)
 
     def with_more(self, count: int, rng: np.random.Generator) -> Numeric:
         """With joints after the last one, about axes at random; at zero they do not move."""
@@ -159,15 +163,14 @@ class Fibre:
     images: list[list[int]] = field(default_factory=list)
     work: int = WORK
 
-    def correction(self, q: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """A step of Newton's method to the targets; not a number at a singular posture."""
+    def correction(self, q: np.ndarray, X: np.ndarray) -> np.ndarray:
+        """A step of Newton's method to target poses; not a number at a singular posture."""
         self.work -= len(q)
         T, twists = self.arm.pose(q)
-        X = targets(x)
-        R = np.einsum("nik,njk->nij", X[:, :, :3], T[:, :, :3])
-        shift = X[:, :, 3] - np.einsum("nij,nj->ni", R, T[:, :, 3])
-        error = [R[:, i, j] - R[:, j, i] for i, j in ((2, 1), (0, 2), (1, 0))]
-        step = np.stack([*shift.T, *(e / 2 for e in error)], axis=1)
+        R = X[:, :, :3] @ T[:, :, :3].transpose(0, 2, 1)
+        step = np.empty(q.shape, complex)
+        step[:, :3] = X[:, :, 3] - (R @ T[:, :, 3:])[:, :, 0]
+        step[:, 3:] = (R[:, BEFORE, AFTER] - R[:, AFTER, BEFORE]) / 2
         try:
             found: np.ndarray = np.linalg.solve(twists, step[..., None])[..., 0]
         except np.linalg.LinAlgError:
@@ -175,24 +178,26 @@ class Fibre:
             found = np.linalg.solve(twists, step[..., None])[..., 0]
         return found
 
-    def corrected(self, q: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The solutions nearest to the given ones, and which of them are not of another path."""
+    def corrected(self, q: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The solutions nearest to the given ones, which of them are not of another path, and which
+        of these would not be with a larger step."""
         q, good, moving = q.copy(), np.zeros(len(q), bool), np.arange(len(q))
-        first = np.zeros(len(q))
+        first, easy, X = np.zeros(len(q)), np.ones(len(q), bool), targets(x)
         for k in range(7):
-            step = self.correction(q[moving], x[moving])
+            step = self.correction(q[moving], X[moving])
             q[moving] += step
             size = np.abs(step).max(axis=1)
             if k == 0:
                 first = size
-            held = size <= (
-                SMALL if k != 1 else np.minimum(SMALL, CONTRACTS * first[moving] + CLOSE)
-            )
+            most = SMALL if k != 1 else np.minimum(SMALL, CONTRACTS * first[moving] + CLOSE)
+            held = size <= most
+            if k < 2:
+                easy[moving] &= size <= EASY * most
             good[moving] = held & (size < CLOSE)
             moving = moving[held & (size >= CLOSE)]
             if not len(moving):
                 break
-        return q, good
+        return q, good, easy
 
     def followed(self, q: np.ndarray, loops: np.ndarray) -> np.ndarray:
         """Where each solution is after its loop; not a number if it was lost."""
@@ -204,21 +209,28 @@ class Fibre:
         return q
 
     def _along(self, q: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
-        """The solutions at the ends of straight lines between targets, each at its own pace."""
+        """The solutions at the ends of straight lines between targets, each at its own pace.
+
+        A parabola through the last three solutions leads to the next.
+        """
         q, at, step = q.copy(), np.zeros(len(q)), np.full(len(q), 1 / 32)
-        rate = np.zeros_like(q)
+        rate, bend, last = np.zeros_like(q), np.zeros_like(q), np.zeros(len(q))
         while len(moving := np.flatnonzero((at < 1) & np.isfinite(q[:, 0]))):
             if self.work < 0:
                 q[moving] = np.nan
                 break
             ahead = np.minimum(step[moving], 1 - at[moving])[:, None]
             x = start[moving] + (at[moving, None] + ahead) * (end - start)[moving]
-            there, good = self.corrected(q[moving] + ahead * rate[moving], x)
+            halves = (last[moving, None] + ahead) / 2
+            guess = q[moving] + ahead * (rate[moving] + halves * bend[moving])
+            there, good, easy = self.corrected(guess, x)
             done, slower = moving[good], moving[~good]
-            rate[done] = ((there - q[moving]) / ahead)[good]
+            new = ((there - q[moving]) / ahead)[good]
+            bend[done] = np.where(last[done, None] > 0, (new - rate[done]) / halves[good], 0)
+            rate[done], last[done] = new, ahead[good, 0]
             q[done], at[done] = there[good], at[done] + ahead[good, 0]
             at[done[at[done] > 1 - SHORTEST]] = 1
-            step[done] *= 1.5
+            step[moving[good & easy]] *= 1.5
             step[slower] /= 2
             q[slower[step[slower] < SHORTEST]] = np.nan
         return q

@@ -132,15 +132,15 @@ class Serial:
         if rows is None:
             return None
         J = self.geometric.extract(rows, list(range(n)))
-        if rows != moved and dependent_joints(J, self.joints)[0] < n == self._turning_rank():
-            return None  # a wrist whose tool is beside its centre
+        if rows != moved and dependent_joints(J, self.joints)[0] < n == self._rank():
+            return None  # a wrist, or a last joint whose axis has the origin of the tool on it
         values = [self.position[i] if i < 3 else self._yaw() for i in rows]
         names = tuple(("x", "y", "z", "roll", "pitch", "yaw")[i] for i in rows)
         return Coordinates(names, tuple(rows), sp.Matrix(values), J)
 
-    def _turning_rank(self) -> int:
-        """The rank of the angular velocities."""
-        return dependent_joints(self.geometric[3:, :], self.joints)[0]
+    def _rank(self) -> int:
+        """The number of ways in which the joints move the tool, at ordinary postures."""
+        return dependent_in_chain(self.groups, self.joints)[0]
 
     def _yaw(self) -> sp.Expr:
         """The angle of the tool about z, for an arm whose joints turn it about z alone."""

@@ -72,7 +72,7 @@ class Script:
     explained: tuple[str, ...] = ()
     """What was recognised about the axes, and which chains were tried."""
     advice: str = ""
-    """What to do if no inverse is proposed."""
+    """What to do if no inverse is proposed, or if the table may lack a tool."""
     structure: str = ""
     lemmas: tuple[str, ...] = ()
     """The structure that was recognised and the lemmas that solve it, if an inverse is proposed."""
@@ -191,7 +191,7 @@ def skeleton(name: str, table: Table, origin: str, search: InverseSearch) -> Scr
         inverse=inverse.outcome,
         notes=tuple(table.notes),
         explained=tuple(inverse.explained),
-        advice=f"{inverse.advice}  {table.doubt}".strip() if inverse.advice else "",
+        advice=inverse.advice if inverse.structure else f"{inverse.advice}  {table.doubt}".strip(),
         structure=inverse.structure,
         lemmas=inverse.lemmas,
     )
@@ -414,10 +414,23 @@ def _inverse_lines(arm: Serial, search: InverseSearch, refused: Sequence[Tried])
         lines=lines,
         outcome=outcome,
         explained=explained,
-        advice="",
+        advice=_only_turned(arm),
         structure=found.structure,
         lemmas=found.lemmas,
         name=found.name,
+    )
+
+
+def _only_turned(arm: Serial) -> str:
+    """What to do if the last joint of a short arm does not move the origin of the tool."""
+    if len(arm.joints) > 4 or arm.coordinates() is not None:
+        return ""
+    *others, last = (arm.geometric[:3, k].is_zero_matrix for k in range(len(arm.joints)))
+    if not last or all(others):
+        return ""
+    return (
+        f"The origin of the tool is on the axis of {arm.joints[-1]}, which only turns the tool.  "
+        f"If the tool is farther away, add it to the table, or choose its link with --tool."
     )
 
 

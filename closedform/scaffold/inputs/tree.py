@@ -81,7 +81,13 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
     """The chain of a file, as axes at home."""
     if not joints:
         raise TableError(f"{file}: there are no joints")
-    chain = led(_chain(joints, choice.base, choice.tool, file), joints, file)
+    chain = _chain(joints, choice.base, choice.tool, file)
+    if not chain:
+        raise TableError(
+            f"{file}: no joint leads from {shown_name(choice.base or choice.tool)} to the tool; "
+            f"choose a tool after it, with --tool, or another --base"
+        )
+    chain = led(chain, joints, file)
     table = Table(notes=[note for joint in chain for note in joint.notes])
     as_written = chain
     chain = _without_short(chain, choice.ignore, file, table.notes)

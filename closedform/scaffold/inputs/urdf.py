@@ -141,10 +141,18 @@ def _number(element: ElementTree.Element | None, key: str, default: int, where: 
     text = None if element is None else element.get(key)
     if text is None:
         return sp.Integer(default)
+    return _exact(text.strip(), f"{where}: {key}")
+
+
+def _exact(text: str, where: str) -> sp.Rational:
+    """A number of the file."""
     try:
-        fraction = number(text.strip())
+        fraction = number(text)
     except FormulaError as error:
-        raise TableError(f"{where}: {key}: {error}") from error
+        hint = "; numbers are separated by spaces alone" if "," in text else ""
+        if "${" in text:
+            hint = "; the file has formulas of xacro, which expands them: xacro FILE > robot.urdf"
+        raise TableError(f"{where}: {error}{hint}") from error
     return sp.Rational(fraction.numerator, fraction.denominator)
 
 
@@ -173,13 +181,6 @@ def _numbers(
     if text is None:
         return [sp.Integer(e) for e in default]
     words = text.split()
-    if len(words) != 3:
+    if len(words) != 3 and "${" not in text:
         raise TableError(f"{where}: {key} needs three numbers, not {shown(text)}")
-    found = []
-    for word in words:
-        try:
-            fraction = number(word)
-        except FormulaError as error:
-            raise TableError(f"{where}: {key}: {error}") from error
-        found.append(sp.Rational(fraction.numerator, fraction.denominator))
-    return found
+    return [_exact(word, f"{where}: {key}") for word in words]

@@ -101,3 +101,28 @@ def test_a_small_coordinate_with_nine_decimals_is_kept() -> None:
     found = unit_vector(given, roots=False)
     assert found is not None and found.dot(found) == 1
     assert max(abs(float(a - b)) for a, b in zip(found, given, strict=True)) < 1e-9
+
+
+ROMEO = [
+    "0.417025 0.895055 -0.15801", "0.0401398 0.155542 0.987013", "0.998889 0.0139984 0.044995",
+    "-0.0449994 0 0.998987", "0.998987 0 0.0449994", "-0.0449994 0 0.998987", "0 1 0",
+]  # fmt: skip
+"""The axes of an arm of a Romeo, in frames that are not turned."""
+
+
+def test_right_angles_that_need_long_numbers_are_left_out(tmp_path: Path) -> None:
+    """The fifth axis had 64 digits, and a derivation did not end within 200 s."""
+    joints = "".join(
+        f'<joint name="q{k}" type="continuous"><parent link="l{k}"/><child link="l{k + 1}"/>'
+        f'<origin xyz="{0.1 * (k > 1)} 0 0"/><axis xyz="{axis}"/></joint>'
+        for k, axis in enumerate(ROMEO)
+    )
+    path = tmp_path / "romeo.urdf"
+    path.write_text(f'<robot name="romeo">{joints}</robot>', "utf-8")
+    found = [sp.Matrix(w) for _, w, _ in read_urdf(path).axes]
+    for w, axis in zip(found, ROMEO, strict=True):
+        assert w.dot(w) == 1 and all(int(e.q).bit_length() <= 62 for e in w)
+        np.testing.assert_allclose(
+            np.array(w, float).ravel(), [float(e) for e in axis.split()], atol=1e-6
+        )
+    assert found[3] == found[5] and found[3].dot(found[4]) == 0

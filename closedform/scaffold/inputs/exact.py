@@ -21,6 +21,8 @@ from closedform.model.tolerances import UNIT_LENGTH
 ROUNDED = 0.75
 """Tolerance in units of the last decimal: half for its own rounding, the rest for the others'."""
 FINEST = 1e-15
+WORD = 62
+"""Longer denominators grow from axis to axis, and proofs take minutes."""
 SHORT = (1, 2, 3, 4, 5, 6, 8, 10, 12)
 """The parts of a half turn whose multiples have short sines and cosines: one root in another."""
 SIMPLE: tuple[sp.Expr, ...] = (
@@ -64,7 +66,8 @@ def unit_vector(
 ) -> sp.Matrix | None:
     """The exact unit vector that was rounded to the given numbers.
 
-    If the decimals allow it, it is one of the ``known`` vectors or normal to one of them.
+    If the decimals allow it, it is one of the ``known`` vectors or normal to one of them; but not
+    normal if that takes denominators of more than :data:`WORD` bits, as after several such vectors.
     Otherwise it has simple coordinates if possible (square ``roots`` only if allowed), and rational
     ones if not.  None if the length
     is not 1 within :data:`~closedform.model.tolerances.UNIT_LENGTH`.
@@ -84,7 +87,9 @@ def unit_vector(
         return chosen
     for v in known:
         if abs(sum(float(a) * b for a, b in zip(v, u, strict=True))) <= 2 * place:
-            return _normal_to(v, u, place)
+            normal = _normal_to(v, u, place)
+            if all(int(n.q).bit_length() <= WORD for e in normal for n in e.atoms(sp.Rational)):
+                return normal
     return _rational(u, place)
 
 

@@ -1,6 +1,7 @@
 """Mechanisms that tests derive from a file of bodies and joints, or from a script."""
 
 import importlib
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import ModuleType
@@ -19,6 +20,11 @@ def script_of(name: str, text: str, folder: Path) -> str:
     path = folder / f"{name}.toml"
     path.write_text(text, "utf-8")
     return loop_script(name, read_loop(path), path.name)[0]
+
+
+def unbroken(script: str) -> str:
+    """A script whose calls are each on one line."""
+    return re.sub(r",?\s+(?=[)\]])|(?<=[(\[])\s+", "", re.sub(r"\n +", " ", script))
 
 
 def read_script(script: str) -> Derivation:

@@ -7,11 +7,12 @@ from types import ModuleType
 import numpy as np
 import pytest
 import sympy as sp
-from loop_files import derived, newton, read_script, script_of
+from loop_files import derived, newton, read_script, script_of, unbroken
 
 from closedform import Derivation, Paper, Parallelogram, Slide, platform, prove, real
 from closedform.algebra.shapes import ShapeError
 from closedform.loops.held import LEFT_OUT
+from closedform.scaffold.inputs.tables import TableError
 from closedform.scaffold.new import new
 
 HANDS = ("delta", "linear_delta", "orthoglide")
@@ -266,10 +267,42 @@ c3 = {between = ["last", "hand"], at = "C3"}
 
 def test_parallelograms_from_a_file(tmp_path: Path) -> None:
     script = script_of("mixed", DELTA, tmp_path)
-    assert "Crank(q1, L, Parallelogram(l, (0, 1, 0), w)," in script
+    assert "Crank(q1, L, Parallelogram(l, (0, 1, 0), w)," in unbroken(script)
     d = read_script(script)
     assert {i.function: i.solutions for i in prove(d).inverses} == {"fk": 2, "ik": 8}
     assert "constraint" in {f.name for f in d.functions}
+
+
+FIVE_BAR = """
+hand = "P"
+[bodies]
+ground = {A1 = [0, 0], A2 = [0.3, 0]}
+crank1 = {B1 = [0.2, 0]}
+crank2 = {B2 = [0.5, 0]}
+rod1 = {length = 0.35, parallelogram = [0, 0.05]}
+rod2 = {length = 0.35}
+[joints]
+t1 = {between = ["ground", "crank1"], at = "A1", driven = true}
+t2 = {between = ["ground", "crank2"], at = "A2", driven = true}
+b1 = {between = ["crank1", "rod1"], at = "B1"}
+b2 = {between = ["crank2", "rod2"], at = "B2"}
+p = {between = ["rod1", "rod2"], at = "P"}
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "new", "said"),
+    [
+        (FIVE_BAR, "", "", "t1 turns crank1 with .* rod1, .* if both rods end in the same point"),
+        (DELTA, '[0, "w", 0]}\nup', '["w", 0, 0]}\nup', "a short side along the axis of q1"),
+    ],
+)
+def test_a_file_whose_short_side_turns_is_refused(
+    text: str, old: str, new: str, said: str, tmp_path: Path
+) -> None:
+    assert old in text
+    with pytest.raises(TableError, match=said):
+        script_of("turned", text.replace(old, new), tmp_path)
 
 
 PALLETISER = """# L1 = 0.5 m: lower arm

@@ -17,7 +17,7 @@ from closedform.scaffold.loops.axial import TwoMotors, call_of, in_pairs, leg_on
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop, across_axis
 from closedform.scaffold.loops.halves import halves
 from closedform.scaffold.loops.refused import ball_on_line, carried, on_cylinder, two_motors
-from closedform.scaffold.loops.rods import several_told
+from closedform.scaffold.loops.rods import check_short_side, several_told
 from closedform.scaffold.source import source
 
 UPRIGHT = 4
@@ -364,6 +364,7 @@ class Legs:
 
     def crank(self, joint: Joint, near: Joint, rod: str) -> LoopLeg:
         """A driven crank with a rod, which is ``near`` where the crank carries it."""
+        check_short_side(self.loop, joint, rod, self.end)
         place = self.place_on_hand(rod, near)
         arm, _ = self.arm_of(joint, near)
         return LoopLeg(

@@ -134,6 +134,24 @@ def _differ(first: sp.Matrix, second: sp.Matrix) -> bool:
     return any(sp.simplify(e) != 0 for e in first - second)
 
 
+def check_short_side(loop: Loop, joint: Joint, rod: str, end: str) -> None:
+    """Refuse a parallelogram whose short side a driven crank turns, and with it the hand."""
+    body, side = joint.other(GROUND), loop.parallelograms.get(rod)
+    if side is None or body in loop.parallelograms:
+        return
+    flat = loop.dimensions == 2
+    if flat or joint.axis is None or _differ(joint.axis.cross(side), sp.zeros(3, 1)):
+        instead = (
+            "or leave that of the rod out if both rods end in the same point"
+            if flat
+            else f"or the rod a short side along the axis of {joint.name}"
+        )
+        raise loop.error(
+            f"{joint.name} turns {body} with the short side of the parallelogram {rod}, which "
+            f"would turn {end} with the crank.  Give {body} the same parallelogram, {instead}"
+        )
+
+
 def several_told(loop: Loop, body: str) -> str:
     """What is said of a driven body with several rods."""
     rods = {j.other(body) for j in loop.of(body)} & {*loop.rods}
@@ -149,4 +167,4 @@ def several_told(loop: Loop, body: str) -> str:
     )
 
 
-__all__ = ["read_pairs", "read_rods", "several_told"]
+__all__ = ["check_short_side", "read_pairs", "read_rods", "several_told"]

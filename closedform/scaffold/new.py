@@ -44,10 +44,8 @@ from closedform.scaffold.inputs.urdf import read_urdf
 from closedform.scaffold.limit import LimitError, bounded
 from closedform.scaffold.loops.file import read_loop
 from closedform.scaffold.loops.script import loop_script
-from closedform.scaffold.source import file_name, literal, source
+from closedform.scaffold.source import LINE, file_name, literal, source
 
-LINE = 100
-"""The maximum length of a line in a script."""
 TIMEOUT = 60.0
 """Seconds after which a script is written without what was not found by then."""
 LONGER = (

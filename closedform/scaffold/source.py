@@ -20,6 +20,39 @@ VARIABLES = {"d": "d_"}
 """The variables of parameters whose names the script uses itself: d is the derivation."""
 
 
+LINE = 100
+"""How long a line of a script may be."""
+
+OPENING, CLOSING = "([{", ")]}"
+TEXT = re.compile(r'"(?:[^"\\]|\\.)*"|\'(?:[^\'\\]|\\.)*\'')
+
+
+def fitted(line: str) -> list[str]:
+    """A line of a script, in several lines if it is too long: its outermost brackets are broken.
+
+    What is in them is put on one line if it fits, and otherwise each argument on its own.
+    """
+    hidden = TEXT.sub(lambda text: "_" * len(text[0]), line)
+    start = next((k for k, e in enumerate(hidden) if e in OPENING), -1)
+    if len(line) <= LINE or start < 0:
+        return [line]
+    depth, breaks, end = 0, [start], len(line)
+    for k, e in enumerate(hidden[start:], start):
+        depth += (e in OPENING) - (e in CLOSING)
+        if depth == 0:
+            end = k
+            break
+        if depth == 1 and e == ",":
+            breaks.append(k)
+    indent = " " * (len(line) - len(line.lstrip()) + 4)
+    inside = f"{indent}{line[start + 1 : end]}"
+    if len(inside) <= LINE:
+        return [line[: start + 1], inside, f"{indent[4:]}{line[end:]}"]
+    parts = [line[a + 1 : b].strip() for a, b in zip(breaks, [*breaks[1:], end], strict=True)]
+    rows = [row for part in parts if part for row in fitted(f"{indent}{part},")]
+    return [line[: start + 1], *rows, f"{indent[4:]}{line[end:]}"]
+
+
 class _Source(StrPrinter):  # type: ignore[misc]
     """Expressions as Python; a fraction of integers stays exact."""
 

@@ -5,7 +5,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from loop_files import derived, newton, read_script, script_of
+from loop_files import derived, newton, read_script, script_of, unbroken
 from places import TESTS
 
 from closedform import prove
@@ -85,13 +85,12 @@ def test_sliders_carry_the_pins(tmp_path: Path) -> None:
 
 
 def test_parallel_lines_are_refused(tmp_path: Path) -> None:
-    script = script_of("three_rrp", CRANKS, tmp_path)
-    head, *lines = script.split("s1, (b, 0), ")
-    assert lines
+    script = unbroken(script_of("three_rrp", CRANKS, tmp_path))
     for way in ("(-sqrt(3)/2, Rational(-1, 2)))", "(sqrt(3)/2, Rational(-1, 2)))"):
-        lines[0] = lines[0].replace(way + ",\n", "(0, 1)),\n")
+        assert way in script
+        script = script.replace(way, "(0, 1))")
     with pytest.raises(ShapeError, match="parallel"):
-        read_script(head + "s1, (b, 0), " + lines[0])
+        read_script(script)
 
 
 def test_balls_that_slide_on_a_hand_in_space_are_named(tmp_path: Path) -> None:

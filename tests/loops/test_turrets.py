@@ -8,11 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from loop_files import apart, derived, newton, script_of
+from loop_files import apart, derived, newton, script_of, unbroken
 from places import TESTS
 
 from closedform import Around, Derivation, OnTurret, Paper, Slide, Stretch, platform
 from closedform.algebra.shapes import ShapeError
+from closedform.scaffold.source import LINE
 
 ECLIPSE = (TESTS / "held_out_loops" / "eclipse.toml").read_text("utf-8")
 ARMS = """
@@ -171,8 +172,10 @@ def test_legs_that_are_not_on_their_turret_are_refused() -> None:
 def test_the_script_has_the_plane_of_each_leg(tmp_path: Path) -> None:
     """Its second coordinate is along the axis, and a crank turns about the axis of its joint."""
     script = script_of("arms", ARMS, tmp_path)
-    assert "OnTurret(Crank(q2, a, l, (0, 0), (1, 0), (0, -1)), Around(t2" in script
-    assert "OnTurret(Slide(z3, l, (b, 0), (0, 1)), Around(t3" in script_of("e", ECLIPSE, tmp_path)
+    assert max(map(len, script.splitlines())) <= LINE
+    assert "OnTurret(Crank(q2, a, l, (0, 0), (1, 0), (0, -1)), Around(t2" in unbroken(script)
+    script = unbroken(script_of("e", ECLIPSE, tmp_path))
+    assert "OnTurret(Slide(z3, l, (b, 0), (0, 1)), Around(t3" in script
 
 
 def test_a_loop_that_leads_back_to_the_ground_ends(tmp_path: Path) -> None:

@@ -33,7 +33,7 @@ from closedform.scaffold.loops.spherical import with_arcs
 from closedform.scaffold.loops.spindle import NEEDED, spindle
 from closedform.scaffold.loops.two_arms import two_arms
 from closedform.scaffold.loops.uprights import HINGED, uprights
-from closedform.scaffold.source import file_name, literal, variable
+from closedform.scaffold.source import file_name, fitted, literal, variable
 
 UNSAID = "say what it measures"
 BY_HAND = (
@@ -77,8 +77,8 @@ def loop_script(name: str, loop: Loop, origin: str) -> tuple[str, str]:
         if joint.driven:
             kind = "prismatic" if joint.kind == "prismatic" else "revolute"
             add_joint(table, joint.name, kind, loop.file)
-    text = "\n".join([*_head(name, loop, way, origin), *_body(table, way)]) + "\n"
-    return text, way.kind
+    lines = [*_head(name, loop, way, origin), *_body(table, way)]
+    return "\n".join(part for line in lines for part in fitted(line)) + "\n", way.kind
 
 
 def _way(loop: Loop) -> _Way:
@@ -260,10 +260,10 @@ def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLe
             f"are {len(legs)}"
         )
     if loop.parallelograms:
-        these = "one" if loop.dimensions == 2 else "all"
-        raise loop.error(
-            f"{body} may turn; either {these} of its rods must be parallelograms, or no body"
-        )
+        these = "one of its rods must be a parallelogram"
+        if loop.dimensions > 2:
+            these = "all of its rods must be parallelograms"
+        raise loop.error(f"{body} may turn; either {these}, or no body")
     if held := [j.name for j in loop.of(body) if j.kind == "universal" and j.axis is not None]:
         raise loop.error(
             f"{body} may turn, although {listed(held)} has an axis; either all of its rods must "

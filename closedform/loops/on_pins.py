@@ -14,7 +14,6 @@ from typing import Any, cast
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.amplitude import Amplitude
 from closedform.lemmas.legs import Crank, Leg, Slide, Solution, cross_in_plane, vector
 from closedform.lemmas.lines import FAR, coordinate, slide_to_line
 from closedform.lemmas.rails import named_number
@@ -22,11 +21,12 @@ from closedform.loops.hand import check_order, in_space, square
 from closedform.loops.leg_by_leg import SIGN, Choice, LegByLeg, named_in, record_lemma, size_of
 from closedform.loops.modes import NO_MODE, export
 from closedform.loops.slotted import turned_to_line
+from closedform.loops.yaw import yaw_by_amplitude
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Branches, Program, branches, choose, real
-from closedform.model.inverse import Combination, Degenerate, Inverse, Link
+from closedform.model.functions import Branches, Program, branches, real
+from closedform.model.inverse import Combination, Inverse, Link
 from closedform.model.lemma import Lemma
 from closedform.model.pair import Pair
 from closedform.model.step import Step
@@ -194,25 +194,15 @@ class _Posture:
 
 def _turn(m: _OnPins, f: Program, size: sp.Expr, sigma: sp.Symbol) -> tuple[Link, Pair, sp.Expr]:
     """The yaw, its pair, and the determinant of A without its sign."""
-    named = [named_in(f, n, e) for n, e in zip("abc", m.coefficients, strict=True)]
-    start, yaw = len(f.body), m.yaw
-    at = Amplitude.of(
-        f, yaw, (named[0], named[1], named[2]), sigma, scale=lambda _: size / 4, suffix="_turn"
+    return yaw_by_amplitude(
+        f,
+        m.yaw,
+        [named_in(f, n, e) for n, e in zip("abc", m.coefficients, strict=True)],
+        sigma,
+        size,
+        missed=lambda _: size / 4,
+        said="the pins do not hold the hand",
     )
-    free = f.vanishes("free", at.h, size, "the hand turns freely", (yaw,))
-    root = f.let("root", at.root, nonnegative=True)
-    length = f.let("length", choose(free, 1, sp.sqrt(named[2] ** 2 + root**2)), nonnegative=True)
-    reach = f.let("reach", choose(free, 1, at.h), nonnegative=True)
-    found = Pair(at.a / reach, at.b / reach) + Pair(sigma * root / length, named[2] / length)
-    pair = Pair(f.let("s", choose(free, 0, found.s)), f.let("c_yaw", choose(free, 1, found.c)))
-    how = r"\sigma\delta,\ (\cos\delta, \sin\delta) = \frac{(c, \sqrt{(h - c)(h + c)})}{h},\ "
-    lemma = at.lemma(sp.atan2(pair.s, pair.c), rf"{how}h = \sqrt{{a^2+b^2}}")
-    locus = {e: sp.S.Zero for e in named if e.is_Symbol}
-    case = Degenerate((free,), locus, yaw, "the pins do not hold the hand")
-    means = {pair.s: sp.sin(yaw), pair.c: sp.cos(yaw)}
-    body = tuple(f.body[start:])
-    link = Link((yaw,), lemma.equations, {}, lemma, body, means=means, degenerate=(case,))
-    return link, pair, root
 
 
 def _forward(m: _OnPins, choice: Choice, loop: Step) -> _Posture:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import sympy as sp
 
@@ -61,14 +62,17 @@ def yaw_by_amplitude(
     found = Pair(at.a / reach, at.b / reach) + away
     pair = Pair(f.let("s", choose(free, 0, found.s)), f.let("c_yaw", choose(free, 1, found.c)))
     how = r"\sigma\delta,\ (\cos\delta, \sin\delta) = \frac{(c, \sqrt{(h - c)(h + c)})}{h},\ "
+    means = {pair.s: sp.sin(yaw), pair.c: sp.cos(yaw)}
     lemma = at.lemma(sp.atan2(pair.s, pair.c), rf"{how}h = \sqrt{{a^2+b^2}}")
+    told = sp.atan2(a, b, evaluate=False) + sigma * sp.atan2(root, c, evaluate=False)
+    lemma = replace(lemma, means=means, plainly={yaw: choose(free, 0, told)})
     link = Link(
         unknowns=(yaw,),
         equations=lemma.equations,
         given={},
         lemma=lemma,
         body=tuple(f.body[start:]),
-        means={pair.s: sp.sin(yaw), pair.c: sp.cos(yaw)},
+        means=means,
         degenerate=degenerate(free, [{e: sp.S.Zero for e in (a, b, c) if e != 0}], yaw, said),
     )
     return link, pair, root

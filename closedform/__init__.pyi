@@ -91,11 +91,13 @@ from closedform.loops.hinges import Hinged as Hinged
 from closedform.loops.hinges import StandingPlane as StandingPlane
 from closedform.loops.hinges import TurningPlane as TurningPlane
 from closedform.loops.hinges import TwoHinges as TwoHinges
+from closedform.loops.lines_hand import BallOnLine as BallOnLine
 from closedform.loops.linkage import Body as Body
 from closedform.loops.mast import Mast as Mast
 from closedform.loops.mirrored import mirrored as mirrored
 from closedform.loops.on_balls import on_balls as on_balls
 from closedform.loops.on_cylinders import OnCylinders as OnCylinders
+from closedform.loops.on_lines import on_lines as on_lines
 from closedform.loops.on_pins import Sleeve as Sleeve
 from closedform.loops.on_pins import on_pins as on_pins
 from closedform.loops.on_rod import on_rod as on_rod

@@ -63,7 +63,7 @@ USED = {
     "on_rod",
     "linkage",
 }
-USED |= {"slotted", "guided", "sliding_linkage", "on_pins", "on_balls", "mirrored"}
+USED |= {"slotted", "guided", "sliding_linkage", "on_pins", "on_balls", "on_lines", "mirrored"}
 USED |= {
     "Derivation",
     "Paper",
@@ -71,6 +71,7 @@ USED |= {
     "Along",
     "Around",
     "Ball",
+    "BallOnLine",
     "Body",
     "Crank",
     "Cross",

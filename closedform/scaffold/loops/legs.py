@@ -234,6 +234,7 @@ class Legs:
             raise loop.error(
                 f"{joint.name} turns {body}, on which {slides[0].name} slides; a passive slide is "
                 f"supported on a driven slider, not on a driven crank"
+                + ball_on_line(loop, slides[0])
             )
         if len(rods) != 1 or len(onward) != 1:
             carried = listed([j.other(body) for j in onward]) or "nothing else"

@@ -62,9 +62,9 @@ def ball_on_line(loop: Loop, slide: Joint) -> str:
         if [j.kind for j in onto] == ["spherical"] and onto[0].other(body) in hands:
             return (
                 f".  {slide.name} leaves {onto[0].name} a line, which the motor moves.  Three "
-                f"points of a hand on three lines are an equation of degree eight, or for "
-                f"horizontal lines, as of a CaPaMan, one of two in its twist after one of two in "
-                f"its tilts.  Write it in Python"
+                f"points of a hand on three lines are an equation of degree eight.  This is "
+                f"supported for three horizontal lines, as of a CaPaMan, on driven sliders, or on "
+                f"cranks that are parallelograms or have the axis of the line"
             )
     return ""
 

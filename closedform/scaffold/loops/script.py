@@ -24,6 +24,7 @@ from closedform.scaffold.loops.mirrored import mirrored
 from closedform.scaffold.loops.on_balls import on_balls
 from closedform.scaffold.loops.on_cylinders import on_cylinders
 from closedform.scaffold.loops.on_line import on_line
+from closedform.scaffold.loops.on_lines import on_lines
 from closedform.scaffold.loops.on_pins import on_pins
 from closedform.scaffold.loops.on_rod import on_rod
 from closedform.scaffold.loops.rods import read_pairs, read_rods
@@ -59,6 +60,7 @@ KINDS = {
     "on_rod": "a hand on a rod",
     "on_pins": "a hand on three pins",
     "on_balls": "a hand on three balls",
+    "on_lines": "a hand on three lines",
     "mirrored": "a mirrored hand",
     "coupled": "a single loop",
     "slotted": "a pin on a line",
@@ -67,6 +69,13 @@ KINDS = {
     "sliding_linkage": "a linkage with slides",
 }
 """What each function derives, in the words of the guide."""
+BY_LEG = {
+    "Upright": "tripod",
+    "Sleeve": "on_pins",
+    "ThroughBall": "on_balls",
+    "BallOnLine": "on_lines",
+}
+"""The function of a hand whose first leg says which it is."""
 
 
 def loop_script(name: str, loop: Loop, origin: str) -> tuple[str, str]:
@@ -120,7 +129,7 @@ def _first_way(loop: Loop) -> _Way:
     if carried := on_rod(found):
         found.check_all_used()
         return _Way(carried[0], list(AXES[:2]), carried[1])
-    if pinned := on_pins(found) or on_balls(found):
+    if pinned := on_pins(found) or on_balls(found) or on_lines(found):
         found.check_all_used()
         return _Way(pinned, [])
     if image := mirrored(found):
@@ -370,12 +379,8 @@ class _Way:
             return "sliding_linkage" if self.linkage.slides else "linkage"
         if self.guide:
             return "guided"
-        if self.legs[0].call.startswith("Upright"):
-            return "tripod"
-        if self.legs[0].call.startswith("Sleeve"):
-            return "on_pins"
-        if self.legs[0].call.startswith("ThroughBall"):
-            return "on_balls"
+        if named := BY_LEG.get(self.legs[0].call.partition("(")[0]):
+            return named
         if len(self.task) == 1 and any(leg.passive for leg in self.legs):
             return "slotted"
         if self.at:

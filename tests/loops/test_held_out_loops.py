@@ -15,6 +15,7 @@ from loop_files import apart, derived, newton, script_of
 from places import TESTS
 
 from closedform.cli.commands import main
+from closedform.scaffold.inputs.tables import TableError
 
 FOLDER = TESTS / "held_out_loops"
 OK, UNREACHABLE, SINGULAR = range(3)
@@ -35,6 +36,14 @@ def rssr(v, q: np.ndarray, p: np.ndarray) -> list[float]:
     axis, arm = np.array([0, -np.sqrt(0.75), 0.5]), np.array([v.c, 0, 0])  # Rodrigues' formula
     B = [v.f, 0, 0] + arm * np.cos(p[0]) + np.cross(axis, arm) * np.sin(p[0])
     return [norm(*(A - B)) - v.b]
+
+
+def rrss(v, q: np.ndarray, p: np.ndarray) -> list[float]:
+    """The hinge turns the body on the crank, and the crank turns both."""
+    axis, arm = np.array([0, -0.8, 0.6]), np.array([v.b, 0, 0])
+    x, y, z = [v.a, 0, 0] + arm * np.cos(p[0]) + np.cross(axis, arm) * np.sin(p[0])
+    ball = np.exp(1j * q[0]) * complex(x, y)
+    return [norm(ball.real - v.g, ball.imag, z - v.h) - v.l]
 
 
 def three_slides(v, q: np.ndarray, p: np.ndarray) -> list[float]:
@@ -152,6 +161,7 @@ MISSES: dict[str, tuple[Callable, int]] = {
     "prrrp": (prrrp, 4),
     "puu": (puu, 8),
     "quick_return": (quick_return, 2),
+    "rrss": (rrss, 2),
     "rssr": (rssr, 2),
     "scotch_yoke": (scotch_yoke, 1),
     "scott_russell": (scott_russell, 2),
@@ -228,6 +238,16 @@ def test_the_words_for_a_single_loop_name_no_hand(tmp_path: Path) -> None:
     script = script_of("rssr", (FOLDER / "rssr.toml").read_text("utf-8"), tmp_path)
     assert "Joint theta turns a crank of length a, which" in script
     assert script.count("joins to the other leg") == 2
+
+
+def test_a_loop_with_its_task_on_a_crank_says_how_it_is_seen(tmp_path: Path) -> None:
+    text = (FOLDER / "rrss.toml").read_text("utf-8")
+    assert "seen from crank" in script_of("rrss", text, tmp_path)
+    bare = text.replace("crank = {O = [0, 0, 0], A", "crank = {A")
+    assert script_of("rrss", bare, tmp_path) == script_of("rrss", text, tmp_path)
+    point = text.replace('hand = "phi"', 'hand = "P"').replace("C = [", "P = [0, 0, 1], C = [")
+    with pytest.raises(TableError, match=r'With hand = "phi" .* P follows from theta and phi'):
+        script_of("rrss", point, tmp_path)
 
 
 def in_numbers(name: str, second: str, folder: Path) -> ModuleType:

@@ -16,7 +16,13 @@ from closedform.model.names import listed
 from closedform.scaffold.loops.axial import TwoMotors, call_of, in_pairs, leg_on_axis, told
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop, across_axis
 from closedform.scaffold.loops.halves import halves
-from closedform.scaffold.loops.refused import ball_on_line, carried, on_cylinder, two_motors
+from closedform.scaffold.loops.refused import (
+    ball_on_line,
+    carried,
+    hinged_on,
+    on_cylinder,
+    two_motors,
+)
 from closedform.scaffold.loops.rods import check_short_side, several_told
 from closedform.scaffold.source import source
 
@@ -245,6 +251,7 @@ class Legs:
                 + self.ball_on_hand(onward)
                 + "".join(ball_on_line(loop, j) for j in self.beyond(onward))
                 + two_motors(loop, joint)
+                + hinged_on(loop, joint)
                 + self.arcs_told()
                 + several_told(loop, body)
             )

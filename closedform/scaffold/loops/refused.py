@@ -69,6 +69,23 @@ def ball_on_line(loop: Loop, slide: Joint) -> str:
     return ""
 
 
+def hinged_on(loop: Loop, joint: Joint) -> str:
+    """What is said of a hand that is hinged to the only driven body, as on an RRSS linkage."""
+    body = joint.other(GROUND)
+    if loop.dimensions != len(AXES) or sum(j.driven for j in loop.joints.values()) != 1:
+        return ""
+    hinges = [
+        j for j in loop.of(body) if j is not joint and j.kind == "revolute" and j.axis is not None
+    ]
+    for hinge in hinges:
+        if loop.hand in loop.bodies[hinge.other(body)]:
+            return (
+                f'.  With hand = "{hinge.name}" the loop is derived, if a rod closes it; then '
+                f"{loop.hand} follows from {joint.name} and {hinge.name}, as the end of an arm"
+            )
+    return ""
+
+
 def on_cylinder(loop: Loop, far: Joint, rod: str) -> str:
     """What is said of a leg whose end may slide along the axis about which it turns."""
     block = far.other(rod) if rod in far.between else ""
@@ -86,4 +103,4 @@ def on_cylinder(loop: Loop, far: Joint, rod: str) -> str:
     )
 
 
-__all__ = ["ball_on_line", "carried", "on_cylinder", "two_motors"]
+__all__ = ["ball_on_line", "carried", "hinged_on", "on_cylinder", "two_motors"]

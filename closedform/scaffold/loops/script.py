@@ -18,6 +18,7 @@ from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 from closedform.scaffold.loops.guides import GuideLine, guide
 from closedform.scaffold.loops.hinges import hinged
 from closedform.scaffold.loops.idle import without_idle
+from closedform.scaffold.loops.inverted import inverted
 from closedform.scaffold.loops.legs import TURNING, UPRIGHT, Legs, LoopLeg
 from closedform.scaffold.loops.linkages import LinkageLines, linkage
 from closedform.scaffold.loops.mirrored import mirrored
@@ -80,7 +81,7 @@ BY_LEG = {
 
 def loop_script(name: str, loop: Loop, origin: str) -> tuple[str, str]:
     """The derivation of a loop, as Python, and the kind of the mechanism in words."""
-    loop = with_arcs(without_idle(on_line(loop)))
+    loop = inverted(with_arcs(without_idle(on_line(loop))))
     origin, way, table = file_name(origin), _way(loop), Table()
     for joint in (leg.joint for leg in way.legs) if way.legs else loop.joints.values():
         if joint.driven:

@@ -105,6 +105,7 @@ from closedform.loops.parallel import parallel as parallel
 from closedform.loops.parallel_axes import ParallelAxes as ParallelAxes
 from closedform.loops.platform import platform as platform
 from closedform.loops.platform_legs import Half as Half
+from closedform.loops.screws import Screws as Screws
 from closedform.loops.sliding import Sliding as Sliding
 from closedform.loops.sliding_forward import sliding_linkage as sliding_linkage
 from closedform.loops.slotted import Lever as Lever

@@ -25,6 +25,7 @@ from closedform.loops.leg_by_leg import (
 from closedform.loops.letters import letters
 from closedform.loops.modes import EQUATIONS, NO_MODE, Exported, export
 from closedform.loops.reached import bounds_of, export_reach
+from closedform.loops.screws import Screws, check_screws, export_slides
 from closedform.mechanics.frames import merge_angles
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
@@ -42,6 +43,8 @@ def coupled(
     driver: Crank | Slide | Stretch,
     follower: Crank | Slide,
     modes: Choice = POSITION,
+    *,
+    screws: Screws | None = None,
 ) -> None:
     """Derive and export a loop of a driven leg, a rod and a leg whose joint is the task.
 
@@ -55,6 +58,9 @@ def coupled(
         driver is a ``Stretch``, its joint is the rod of the follower
     modes
         the names of the assembly modes, by the sign of the determinant of ``jacobian_parallel``
+    screws
+        the places of the axes of an RCCC linkage, if both legs are cranks whose axes meet in the
+        origin; then ``slides`` is exported too
     """
     check_plain(d, (driver, follower))
     if driver.rod != follower.rod:
@@ -80,6 +86,11 @@ def coupled(
     rod = _forward(closed, modes)
     _draw(closed, rod)
     _velocity(closed, rod)
+    if screws:
+        check_screws(d, (driver, follower))
+        reached = driver.end() + rod.vector
+        cranks = cast("tuple[Crank, Crank]", (driver, follower))
+        export_slides(d, screws, cranks, (rod.program, rod.modes, reached), stated)
     _inverse(closed)
 
 

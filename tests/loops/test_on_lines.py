@@ -33,7 +33,7 @@ def rotated(w: np.ndarray) -> np.ndarray:
     """The rotation by a vector, whose length is its angle."""
     angle = np.linalg.norm(w)
     K = np.cross(np.eye(3), w / max(angle, 1e-300))
-    return np.eye(3) - np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
+    return np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
 
 
 def off(q: np.ndarray, p: np.ndarray, R: np.ndarray) -> np.ndarray:

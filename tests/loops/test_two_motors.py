@@ -6,7 +6,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from loop_files import derived, newton, script_of
+from loop_files import derived, newton, script_of, unbroken
 from places import TESTS
 
 from closedform import Across, Along, Derivation, Paper, Stretch, parallel, platform, real
@@ -131,7 +131,7 @@ def test_a_file_may_name_all_sliders_first(tmp_path: Path) -> None:
     head, joints = TEXT.split("[joints]\n")
     lines = joints.strip().splitlines()
     text = head + "[joints]\n" + "\n".join([lines[2], lines[0], lines[1], lines[3]])
-    script = script_of("prps", text, tmp_path)
+    script = unbroken(script_of("prps", text, tmp_path))
     assert script.index("Along(p1") < script.index("Across(q1") < script.index("Along(p2")
 
 

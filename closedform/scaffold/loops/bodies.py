@@ -47,6 +47,8 @@ class Loop:
     notes: list[str] = field(default_factory=list)
     said: list[str] = field(default_factory=list)
     """What the description of the mechanism says of parts that the script leaves out."""
+    screws: str = ""
+    """Where the axes of an RCCC linkage are, as it is written."""
 
     def of(self, body: str) -> list[Joint]:
         return [j for j in self.joints.values() if body in j.between]

@@ -50,7 +50,7 @@ from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 from closedform.scaffold.loops.copies import copy_numbered
 from closedform.scaffold.source import VARIABLES
 
-KINDS = ("revolute", "prismatic", "spherical", "universal")
+KINDS = ("revolute", "prismatic", "spherical", "universal", "cylindrical")
 USED = {
     "d",
     *VARIABLES.values(),
@@ -92,6 +92,7 @@ USED |= {
     "Rail",
     "Sleeve",
     "ThroughBall",
+    "Screws",
     "Slide",
     "Sliding",
     "Spindle",
@@ -112,9 +113,6 @@ OTHER_NAMES = {
     **dict.fromkeys(("cardan", "hooke"), "a joint of Cardan or Hooke is universal"),
     **dict.fromkeys(("hinge", "pin", "rotary", "turn"), "a hinge or a pin is revolute"),
     **dict.fromkeys(("slide", "slider", "linear", "sliding"), "a slide is prismatic"),
-    "cylindrical": "a cylindrical joint, which turns and slides along one axis, is supported on "
-    "the ground, with its slide driven; elsewhere it is a slide and a revolute joint, with a body "
-    "between them",
 }
 """What is meant by other names of joints."""
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")

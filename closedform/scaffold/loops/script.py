@@ -29,6 +29,7 @@ from closedform.scaffold.loops.on_lines import on_lines
 from closedform.scaffold.loops.on_pins import on_pins
 from closedform.scaffold.loops.on_rod import on_rod
 from closedform.scaffold.loops.rods import read_pairs, read_rods
+from closedform.scaffold.loops.screws import with_screws
 from closedform.scaffold.loops.sliding import sliding
 from closedform.scaffold.loops.slotted import slotted
 from closedform.scaffold.loops.spherical import with_arcs
@@ -81,7 +82,7 @@ BY_LEG = {
 
 def loop_script(name: str, loop: Loop, origin: str) -> tuple[str, str]:
     """The derivation of a loop, as Python, and the kind of the mechanism in words."""
-    loop = inverted(with_arcs(without_idle(on_line(loop))))
+    loop = inverted(with_arcs(without_idle(on_line(with_screws(loop)))))
     origin, way, table = file_name(origin), _way(loop), Table()
     for joint in (leg.joint for leg in way.legs) if way.legs else loop.joints.values():
         if joint.driven:
@@ -126,7 +127,8 @@ def _first_way(loop: Loop) -> _Way:
         found.check_all_used()
         return _Way(turning, [loop.hand])
     if follower and not follower.driven:
-        return _Way(_coupled(found, follower), [loop.hand])
+        screws = f"screws={loop.screws}" if loop.screws else ""
+        return _Way(_coupled(found, follower), [loop.hand], screws, function="coupled")
     if carried := on_rod(found):
         found.check_all_used()
         return _Way(carried[0], list(AXES[:2]), carried[1])
@@ -454,7 +456,9 @@ def _sentence(leg: LoopLeg) -> str:
 def _head(name: str, loop: Loop, way: _Way, origin: str) -> list[str]:
     task = way.task
     title = name.replace("_", " ").capitalize()
-    calls = sorted({c for e in way.parts for c in re.findall(r"\b([A-Z]\w+)\(", e)} - FUNCTIONS)
+    calls = sorted(
+        {c for e in (*way.parts, way.at) for c in re.findall(r"\b([A-Z]\w+)\(", e)} - FUNCTIONS
+    )
     names = sorted([*calls, "Derivation", "Paper", way.name, *["real"] * bool(task)])
     fractions = [number(given.get("value") or "1") for given in loop.parameters.values()]
     used = " ".join([*way.parts, way.at]) + "Rational(" * any(f.denominator != 1 for f in fractions)

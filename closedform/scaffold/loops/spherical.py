@@ -37,7 +37,11 @@ def with_arcs(loop: Loop) -> Loop:
     arc = loop.length(axes[1] - axes[0])
     joints |= {j.name: replace(j, at=driver.at) for j in (driver, follower)}
     loop.said.append(
-        "All axes meet in one point; the rod joins points of the axes at the distance 1 from it."
+        "The axes turn as their parallels through one point do, on which they are drawn; the rod "
+        "joins points of these at the distance 1 from it."
+        if loop.screws
+        else "All axes meet in one point; the rod joins points of the axes at the distance 1 from "
+        "it."
     )
     return replace(loop, bodies=bodies, joints=joints, rods={**loop.rods, coupler: arc})
 

@@ -1,0 +1,85 @@
+"""An RCCC linkage, against screws about its four axes."""
+
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from loop_files import derived, newton, script_of
+from places import TESTS
+from sympy import Rational, sqrt
+
+from closedform import Crank, Derivation, Paper, Screws, coupled, real
+from closedform.algebra.shapes import ShapeError
+from closedform.scaffold.inputs.tables import TableError
+
+TEXT = (TESTS / "held_out_loops" / "rccc.toml").read_text("utf-8")
+AXES = np.array([[0, 0, 1], [0.6, 0, 0.8], [0, 0.6, 0.8], [0, -0.6, 0.8]])
+PLACES = np.array([[0, 0, 0], [0, 0.1, 0.05], [0.3, 0.1, 0.05], [0.3, 0, 0]])
+OK = 0
+
+
+@pytest.fixture(scope="module")
+def rccc(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+    folder = tmp_path_factory.mktemp("rccc")
+    return derived("rccc", script_of("rccc", TEXT, folder), folder, crosscheck=True)
+
+
+def screw(k: int, angle: float, slide: float) -> np.ndarray:
+    """A turn about an axis and a slide along it."""
+    K = np.cross(np.eye(3), AXES[k])
+    T = np.eye(4)
+    T[:3, :3] = np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
+    T[:3, 3] = PLACES[k] - T[:3, :3] @ PLACES[k] + slide * AXES[k]
+    return T
+
+
+def off(theta: float, u: np.ndarray) -> np.ndarray:
+    """How far the loop is open, by the turns and slides of its three cylindrical joints."""
+    ahead = screw(0, theta, 0) @ screw(1, u[0], u[1]) @ screw(2, u[2], u[3])
+    return (ahead - screw(3, u[4], u[5]))[:3].ravel()
+
+
+def test_newton_finds_no_other_posture(rccc: ModuleType) -> None:
+    rng, found = np.random.default_rng(1), 0
+    for theta in rng.uniform(-3, 3, 25):
+        psi, slides = rccc.fk([theta]).p[:, 0], rccc.slides([theta])
+        for start in rng.uniform(-3, 3, (8, 6)):
+            u = newton(lambda u: off(theta, u), start)  # noqa: B023
+            if u is not None:
+                found += 1
+                gaps = np.abs(np.exp(1j * psi) - np.exp(1j * u[4]))
+                assert np.nanmin(gaps + np.abs(slides - u[1::2]).max(axis=1)) < 1e-6
+    assert found > 80
+
+
+def test_the_drawing_is_a_posture(rccc: ModuleType) -> None:
+    assert np.abs(rccc.fk([0]).p).min() < 1e-15
+    assert np.abs(rccc.slides([0])).max(axis=1).min() < 1e-15
+
+
+def test_slides_are_not_those_of_any_crank() -> None:
+    d = Derivation("toy", "Toy", Paper("toy", "Toys", ("A. Nonymous",)), "Axes.", task=["psi"])
+    theta, half = d.joint("theta"), Rational(1, 2)
+    long = Crank(theta, half, sqrt(2), (0, 0, 1), along=(1, 0, 0), across=(0, 1, 0))
+    other = Crank(real("psi"), 1, sqrt(2), (0, 0, 0), along=(0, 1, 0), across=(0, 0, 1))
+    screws = Screws(("a", "b", "c"), *[(0, 0, 0)] * 4)
+    with pytest.raises(ShapeError, match="ends are at the distance 1 from it"):
+        coupled(d, long, other, screws=screws)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('kind = "cylindrical", axis = [0, 0.6', 'kind = "spherical", axis = [0, 0.6', "four"),
+        ('hand = "psi"', 'hand = "s2"', "of which that on the ground is the task"),
+        (", axis = [0.6, 0, 0.8]", "", "s1 needs its axis"),
+        ('crank = {A = [0, "a", "h"]}', 'crank = {A = [0, "a", 0]}', "A, where s1 is, has to be"),
+    ],
+)
+def test_other_loops_with_cylinders_are_refused(
+    old: str, new: str, said: str, tmp_path: Path
+) -> None:
+    assert old in TEXT
+    with pytest.raises(TableError, match=said):
+        script_of("rccc", TEXT.replace(old, new), tmp_path)

@@ -14,8 +14,8 @@ import sympy as sp
 from closedform.lemmas.legs import Crank, Slide, Solution, vector
 from closedform.lemmas.lines import coordinate
 from closedform.lemmas.links import degenerate, polar_lemma
-from closedform.lemmas.registry import theorem
 from closedform.lemmas.sine_cosine import linear_pair
+from closedform.lemmas.unit_vector import last_entry
 from closedform.loops.balls import ASIDE, TARGET, TILT_X, TILT_Y, TWIST, Turns, Z
 from closedform.loops.leg_by_leg import SIGN, LegByLeg, named, named_in, record_lemma, size_of
 from closedform.loops.lines_hand import (
@@ -44,15 +44,6 @@ FREE = "the lines leave the twist of the hand free"
 HALF_TURN = (
     "tilt_y is between -90 and 90 degrees; other angles of the same posture differ by half a turn "
     "in each of both tilts and the twist."
-)
-
-theorem(
-    "last entry of a unit vector",
-    statement=r"""Let $h = \sqrt{a^2 + b^2}$.  A unit vector with the first entries $a$ and $b$
-exists if and only if $h \le 1$.  Its last entry is $c = \sigma\sqrt{(1 - h)(1 + h)}$ with
-$\sigma = \pm 1$.""",
-    proof=r"""The squares of the entries add up to one, so $c^2 = 1 - h^2 = (1 - h)(1 + h)$, which
-has the sign of $1 - h$.""",
 )
 
 
@@ -120,33 +111,6 @@ def _require_triangle(m: OnLines, f: Program) -> tuple[sp.Expr, list[str]]:
     return area, [f"INVALID: also unless {said}."]
 
 
-def _last_entry(
-    m: OnLines, f: Program, row: tuple[sp.Symbol, sp.Symbol], scale: sp.Expr
-) -> tuple[Link, sp.Symbol]:
-    """The last entry of the last row of R, with the sign of the mode."""
-    (u, v), start = row, len(f.body)
-    flat = f.let("flat", sp.sqrt(u**2 + v**2), nonnegative=True)
-    below = f.bound("below", 1 - flat, scale, "the heights of the balls fit the hand")
-    last = f.let("last", SIDE * sp.sqrt(below) * sp.sqrt(1 + flat))
-    lemma = Lemma(
-        "last entry of a unit vector",
-        r"c = \sigma\sqrt{(1 - h)(1 + h)},\quad h = \sqrt{a^2 + b^2}",
-        (LAST**2 + u**2 + v**2 - 1,),
-        {LAST: last},
-        2,
-        signs=(SIDE,),
-        roles=(("c", LAST), ("a", u), ("b", v)),
-    )
-    link = Link(
-        unknowns=(LAST,),
-        equations=lemma.equations,
-        lemma=lemma,
-        body=tuple(f.body[start:]),
-        means={last: LAST},
-    )
-    return link, last
-
-
 def _tilts(
     f: Program, row: tuple[sp.Symbol, sp.Symbol], last: sp.Symbol
 ) -> tuple[list[Link], Turns]:
@@ -188,7 +152,7 @@ def _forward(m: OnLines, loop: Step) -> Posture:
     heights = [named_in(f, f"h_{k}", e) for k, e in enumerate(m.heights, 1)]
     u, v = (f.let(n, e / area) for n, e in zip("uv", m.level(heights), strict=True))
     scale = f.let("leeway", size * m.spread / sp.Abs(area), nonnegative=True)
-    level, last = _last_entry(m, f, (u, v), scale)
+    level, last = last_entry(f, (LAST, u, v), SIDE, scale, "the heights of the balls fit the hand")
     tilting, tilts = _tilts(f, (u, v), last)
     T = f.matrix("T", tilts.tilted[:2, :2])
     flat = [named(f, f"f{k}", T * leg.place) for k, leg in m.numbered]

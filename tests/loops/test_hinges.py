@@ -1,5 +1,6 @@
 """Hands on hinged legs against their drawings: Exechon heads, and a hand on hinged sliders."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
@@ -291,3 +292,96 @@ def test_rates_are_infinite_only_where_a_divisor_may_cancel(
     assert not check_forward(d, d["jacobian_inverse"], backend).failures
     wrong = replace(backend, function=lambda _: lambda x, *_: np.full((len(x), 4, 4), np.inf))
     assert check_forward(d, d["jacobian_inverse"], wrong).failures
+
+
+PRU_UPR = """
+hand = "P"
+[bodies]
+ground = {A1 = [0.3, 0, 0], A2 = [-0.3, 0, 0], A3 = [0, 0.3, 0]}
+slider1 = {A1 = [0.3, 0, 0]}
+slider2 = {A2 = [-0.3, 0, 0]}
+rod1 = {length = 0.4}
+rod2 = {length = 0.4}
+tube = {}
+piston = {}
+hand = {P = [0, 0, 0], C1 = [0.1, 0, 0], C2 = [-0.1, 0, 0], C3 = [0, 0.1, 0]}
+[joints]
+q1 = {between = ["ground", "slider1"], at = "A1", kind = "prismatic", axis = [0, 0, 1], driven = true}
+q2 = {between = ["ground", "slider2"], at = "A2", kind = "prismatic", axis = [0, 0, 1], driven = true}
+q3 = {between = ["tube", "piston"], at = "A3", kind = "prismatic", driven = true}
+a1 = {between = ["slider1", "rod1"], at = "A1", axis = [0, 1, 0]}
+a2 = {between = ["slider2", "rod2"], at = "A2", axis = [0, 1, 0]}
+a3 = {between = ["ground", "tube"], at = "A3", kind = "universal", axis = [0, 1, 0]}
+c1 = {between = ["rod1", "hand"], at = "C1", kind = "universal", axis = [1, 0, 0]}
+c2 = {between = ["rod2", "hand"], at = "C2", kind = "universal", axis = [1, 0, 0]}
+c3 = {between = ["piston", "hand"], at = "C3", axis = [1, 0, 0]}
+"""  # noqa: E501
+
+
+UPR_RPU = """
+hand = "P"
+[bodies]
+ground = {A1 = [0.3, 0, 0], A2 = [-0.3, 0, 0], A3 = [0, 0.3, 0]}
+tube1 = {}
+tube2 = {}
+tube3 = {}
+piston1 = {}
+piston2 = {}
+piston3 = {}
+hand = {P = [0, 0, 0], C1 = [0.1, 0, 0], C2 = [-0.1, 0, 0], C3 = [0, 0.1, 0]}
+[joints]
+q1 = {between = ["tube1", "piston1"], at = "A1", kind = "prismatic", driven = true}
+q2 = {between = ["tube2", "piston2"], at = "A2", kind = "prismatic", driven = true}
+q3 = {between = ["tube3", "piston3"], at = "A3", kind = "prismatic", driven = true}
+a1 = {between = ["ground", "tube1"], at = "A1", kind = "universal", axis = [1, 0, 0]}
+a2 = {between = ["ground", "tube2"], at = "A2", kind = "universal", axis = [1, 0, 0]}
+a3 = {between = ["ground", "tube3"], at = "A3", axis = [1, 0, 0]}
+c1 = {between = ["piston1", "hand"], at = "C1", axis = [0, 1, 0]}
+c2 = {between = ["piston2", "hand"], at = "C2", axis = [0, 1, 0]}
+c3 = {between = ["piston3", "hand"], at = "C3", kind = "universal", axis = [0, 1, 0]}
+"""
+Vectors = tuple[np.ndarray, np.ndarray]
+
+
+def pru_upr(q: np.ndarray, p: np.ndarray, R: np.ndarray) -> tuple[list[float], list[float]]:
+    """What the legs leave open, and the target of a pose."""
+    rods = p + 0.1 * np.array([R[:, 0], -R[:, 0], R[:, 1]])
+    rods -= [[0.3, 0, q[0]], [-0.3, 0, q[1]], [0, 0.3, 0]]
+    gaps = np.linalg.norm(rods, axis=1) - [0.4, 0.4, q[2]]
+    turns = np.arctan2(-R[2, 0], R[0, 0]), np.arctan2(-R[1, 2], R[1, 1])
+    return [*gaps, rods[0, 1], rods[1, 1], rods[2] @ R[:, 0]], [-p[2], *turns]
+
+
+def upr_rpu(q: np.ndarray, p: np.ndarray, R: np.ndarray) -> tuple[list[float], list[float]]:
+    rods = p + 0.1 * np.array([R[:, 0], -R[:, 0], R[:, 1]])
+    rods -= [[0.3, 0, 0], [-0.3, 0, 0], [0, 0.3, 0]]
+    gaps = np.linalg.norm(rods, axis=1) - q
+    turn = np.arctan2(R[2, 1], R[1, 1])
+    ahead = p[2] * np.cos(turn) - p[1] * np.sin(turn)
+    target = [ahead, turn, np.arctan2(R[0, 2], R[0, 0])]
+    return [*gaps, rods[0] @ R[:, 1], rods[1] @ R[:, 1], rods[2, 0]], target
+
+
+@pytest.mark.parametrize(("text", "seen"), [(PRU_UPR, pru_upr), (UPR_RPU, upr_rpu)])
+def test_a_leg_with_the_axes_of_the_plane_is_hinged(
+    text: str, seen: Callable, tmp_path: Path
+) -> None:
+    """2-PRU + UPR and 2-UPR + RPU, against Newton's method on what each leg leaves the hand."""
+    m = derived(seen.__name__, script_of(seen.__name__, text, tmp_path), tmp_path)
+    rng, found = np.random.default_rng(6), 0
+
+    def pose(u: np.ndarray) -> Vectors:
+        angle, K = np.linalg.norm(u[3:]), np.cross(np.eye(3), u[3:] / np.linalg.norm(u[3:]))
+        return u[:3], np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
+
+    for q in rng.uniform(0.1, 0.4, (12, 3)) + (0.2 if seen is upr_rpu else 0):
+        for start in rng.normal(0, 1, (8, 6)) * (0.3, 0.1, 0.5, 1, 1, 1):
+            u = newton(lambda u: np.array(seen(q, *pose(u))[0]), start)  # noqa: B023
+            if u is None:
+                continue
+            (p, R), (_, x) = pose(u), seen(q, *pose(u))
+            T = m.hand_pose(x)
+            assert np.allclose(T[:3, :3], R, atol=1e-6) and np.allclose(T[:3, 3], p, atol=1e-6)
+            assert np.nanmin(np.abs(m.ik(x).q - q).max(axis=-1)) < 1e-6
+            found += 1
+    assert found > 30

@@ -96,7 +96,11 @@ def test_the_slide_may_be_named_at_another_point(tmp_path: Path) -> None:
     [
         (", second = [0, 1, 0]", "", "two axes at right angles, where the hand is not turned"),
         ("second = [0, 1, 0]", "second = [1, 1, 0]", "axis and second of u have to be at right"),
-        ('kind = "universal", axis', 'kind = "spherical", axis', "carries a universal joint at P"),
+        (
+            'kind = "universal", axis',
+            'kind = "spherical", axis',
+            "leave the hand four degrees of freedom",
+        ),
     ],
 )
 def test_other_joints_are_told_of(old: str, new: str, told: str, tmp_path: Path) -> None:

@@ -56,12 +56,18 @@ def _mast(found: Legs) -> GuideLine | None:
     """A universal joint at the point of the hand, on a passive slide of the ground."""
     loop = found.loop
     for turning in loop.joints.values():
-        if turning.kind != "universal" or turning.at != loop.hand or GROUND in turning.between:
+        if turning.kind not in DRIVEN or turning.at != loop.hand or GROUND in turning.between:
             continue
         for post in turning.between:
             onto = [j for j in loop.of(post) if j is not turning]
             if [j.kind for j in onto] != ["prismatic"] or GROUND not in onto[0].between:
                 continue
+            if not onto[0].driven and turning.kind == "spherical":
+                raise loop.error(
+                    f"{onto[0].name} and {turning.name} leave the hand four degrees of freedom: a "
+                    f"slide along a mast, and a ball joint.  This is supported if {turning.name} "
+                    f"is a universal joint, with three driven legs, as on a swash plate"
+                )
             if not onto[0].driven:
                 return _on_mast(found, onto[0], turning, post)
     return None

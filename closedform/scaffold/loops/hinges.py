@@ -24,14 +24,22 @@ def hinged(found: Legs, legs: Sequence[LoopLeg]) -> tuple[list[LoopLeg], GuideLi
     ends = {leg.joint.name: ends_of(found, leg.joint) for leg in legs}
     inside = {name: e for name, e in ends.items() if _turns(*e)}
     standing = {name: e for name, e in ends.items() if _stands(*e)}
+    on_hand: list[str] = []
+    on_ground: list[str] = []
+    if inside and standing and _same_axes(standing, inside):
+        # to the plane of most legs, the others add no more than a hinge
+        if len(inside) < len(standing):
+            on_hand, inside = [*inside], {}
+        else:
+            on_ground, standing = [*standing], {}
     if inside and standing:
         raise found.loop.error(
             f"the legs of {listed([*inside])} keep the hand in a plane that turns, and those of "
             f"{listed([*standing])} in one that stands still; one or the other is supported"
         )
     inside = inside or standing
-    on_hand = [name for name, e in ends.items() if name not in inside and _on_hand(*e)]
-    on_ground = [name for name, e in ends.items() if name not in inside and _on_ground(*e)]
+    on_hand += [name for name, e in ends.items() if name not in inside and _on_hand(*e)]
+    on_ground += [name for name, e in ends.items() if name not in inside and _on_ground(*e)]
     if not inside and not on_hand and len(on_ground) in (0, TRIPOD):
         return _in_planes(found, legs, [ends[name][0] for name in on_ground])
     _check_balls(found, {name: ends[name] for name in on_hand})
@@ -132,6 +140,18 @@ def _turns(near: Joint, far: Joint) -> bool:
 def _stands(near: Joint, far: Joint) -> bool:
     """Whether a leg keeps an axis of the hand in a plane of the ground."""
     return _hinge(near) and far.kind == "universal" and far.axis is not None
+
+
+def _same_axes(
+    standing: Mapping[str, tuple[Joint, Joint]], inside: Mapping[str, tuple[Joint, Joint]]
+) -> bool:
+    """Whether the legs of both kinds have parallel axes on the ground, and on the hand."""
+    ends = zip(*standing.values(), strict=True), zip(*inside.values(), strict=True)
+    for some, others in zip(*ends, strict=True):
+        first, *axes = [j.axis for j in (*some, *others) if j.axis is not None]
+        if any(map(sp.simplify, (e for axis in axes for e in first.cross(axis)))):
+            return False
+    return True
 
 
 def _on_hand(near: Joint, far: Joint) -> bool:

@@ -1,10 +1,11 @@
 """Single loops of four axes through one point, such as a joint of Cardan."""
 
+import itertools
 from pathlib import Path
 
 import numpy as np
 import pytest
-from loop_files import derived, script_of
+from loop_files import derived, newton, script_of
 from places import TESTS
 
 from closedform.scaffold.inputs.tables import TableError
@@ -72,3 +73,53 @@ psi = {between = ["ground", "last"], at = "O", axis = ["sin(al)", 0, "cos(al)"]}
     psi, status = mechanism.fk(q[:, None])
     assert not status.any()
     assert np.allclose(np.tan(psi[..., 0]) * np.cos(0.4), np.tan(q)[:, None])
+
+
+EYE = """
+hand = "O"
+copies = 3
+[bodies]
+ground = {O = [0, 0, 0.1]}
+lower1 = {}
+upper1 = {}
+hand = {}
+[joints]
+q1 = {between = ["ground", "lower1"], at = "O", axis = [0.6, 0, -0.8], driven = true}
+m1 = {between = ["lower1", "upper1"], at = "O", axis = [0.28, 0.96, 0]}
+n1 = {between = ["upper1", "hand"], at = "O", axis = [0.6, 0, 0.8]}
+"""
+
+
+def spun(axis: np.ndarray, angle: float) -> np.ndarray:
+    """A turn about an axis."""
+    K = np.cross(np.eye(3), axis)
+    return np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
+
+
+def test_three_legs_of_three_axes_hold_a_hand(tmp_path: Path) -> None:
+    """An Agile Eye with other arcs, against the turns of its nine joints."""
+    eye = derived("eye", script_of("eye", EYE, tmp_path), tmp_path)
+    rng, found = np.random.default_rng(7), 0
+    thirds = [spun(np.array([0, 0, 1]), 2 * np.pi * k / 3) for k in range(3)]
+    axes = [turn @ np.array([[0.6, 0, -0.8], [0.28, 0.96, 0], [0.6, 0, 0.8]]).T for turn in thirds]
+    for _ in range(10):
+        w = rng.normal(0, 0.4, 3)
+        R = spun(w / np.linalg.norm(w), np.linalg.norm(w))
+        q, status = eye.ik(R)
+        for k, start in itertools.product(range(3), rng.uniform(-3, 3, (6, 3))):
+            a, m, n = axes[k].T
+            chain = newton(
+                lambda u: (spun(a, u[0]) @ spun(m, u[1]) @ spun(n, u[2]) - R).ravel(),  # noqa: B023
+                start,
+            )
+            if chain is not None:
+                found += 1
+                assert np.nanmin(np.abs(np.exp(1j * q[:, k]) - np.exp(1j * chain[0]))) < 1e-6
+        assert (status != 0).all() or np.abs(eye.singularities(R, q[status == 0][0])).min() > 0
+    assert found > 60
+    assert np.abs(eye.ik(np.eye(3)).q).max(axis=-1).min() < 1e-15
+
+
+def test_the_hand_is_where_the_axes_meet(tmp_path: Path) -> None:
+    with pytest.raises(TableError, match="the hand P is not a point of a body"):
+        script_of("eye", EYE.replace('hand = "O"', 'hand = "P"'), tmp_path)

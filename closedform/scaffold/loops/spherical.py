@@ -1,20 +1,30 @@
-"""Reads a single loop of four axes through one point, such as a joint of Cardan, as two arcs."""
+"""Reads spherical mechanisms, all of whose axes pass one point: an arc is a rod between its ends.
+
+A single loop of four axes is such as a joint of Cardan, and three legs of three axes each hold a
+hand that turns about the point.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from closedform.scaffold.loops.bodies import GROUND, Loop
+import sympy as sp
+
+from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
 
 SPACE = 3
 JOINTS = 4
+LEGS = 3
+"""How many legs of a spherical hand, and how many axes of each."""
 
 
 def with_arcs(loop: Loop) -> Loop:
-    """The loop with a rod between points at the distance 1 on the axes of the coupler.
+    """The loop with rods between points at the distance 1 on the axes of couplers.
 
     Only the angles between its axes count if all of them meet.  Any other loop stays as it is.
     """
+    if legs := _legs(loop):
+        return _on_ball(loop, legs)
     follower = loop.joints.get(loop.hand)
     drivers = [j for j in loop.joints.values() if j.driven]
     if loop.dimensions != SPACE or follower is None or len(drivers) != 1 or not _meet(loop):
@@ -51,13 +61,73 @@ def _meet(loop: Loop) -> bool:
 
     The bodies need not have this point themselves.
     """
+    single = len(loop.joints) == len(loop.bodies) == JOINTS
+    return single and _through_one_point(loop)
+
+
+def _through_one_point(loop: Loop) -> bool:
+    """Whether all joints are revolute, with axes through the only point of the bodies."""
     joints = [*loop.joints.values()]
-    if len(joints) != JOINTS or len(loop.bodies) != JOINTS or loop.rods or loop.parallelograms:
+    if loop.rods or loop.parallelograms:
         return False
     places = {tuple(at) for points in loop.bodies.values() for at in points.values()}
     turning = all(j.kind == "revolute" and j.axis is not None for j in joints)
     placed = all(any(j.at in loop.bodies[b] for b in (*j.between, GROUND)) for j in joints)
     return turning and placed and len(places) == 1
+
+
+def _legs(loop: Loop) -> list[tuple[Joint, Joint, Joint]]:
+    """The joints of three legs of three axes through the point of the hand; none if there are none.
+
+    Each leads from the ground to the hand by a driven body and another one.
+    """
+    drivers = [j for j in loop.of(GROUND) if j.driven]
+    named = any(loop.hand in points for points in loop.bodies.values())
+    if loop.dimensions != SPACE or len(drivers) != LEGS or not named:
+        return []
+    if not _through_one_point(loop):
+        return []
+    found, hands = [], set()
+    for first in drivers:
+        path, body = [first], first.other(GROUND)
+        while len(path) < LEGS and len(onward := [j for j in loop.of(body) if j not in path]) == 1:
+            path.append(onward[0])
+            body = onward[0].other(body)
+        hands.add(body)
+        found.append((path[0], path[1], path[2]) if len(path) == LEGS else None)
+    legs = [leg for leg in found if leg]
+    around = len(hands) == 1 and GROUND not in hands and len(legs) == LEGS
+    return legs if around and len(loop.joints) == LEGS**2 else []
+
+
+def _on_ball(loop: Loop, legs: list[tuple[Joint, Joint, Joint]]) -> Loop:
+    """The same with the hand on a ball joint, and rods for the arcs that lead to it."""
+    bodies, joints, rods = dict(loop.bodies), dict(loop.joints), dict(loop.rods)
+    at = legs[0][0].at
+    centre = next(points[at] for points in loop.bodies.values() if at in points)
+    hand = next(b for b in legs[0][2].between if b not in legs[0][1].between)
+    bodies[GROUND] = {loop.hand: centre}
+    bodies[hand] = {loop.hand: sp.zeros(SPACE, 1)}
+    for first, middle, last in legs:
+        (arc,) = {*middle.between} & {*last.between}
+        assert middle.axis is not None
+        assert last.axis is not None
+        near, far = f"{middle.name}_end", f"{last.name}_end"
+        bodies[first.other(GROUND)] = {near: centre + middle.axis}
+        bodies[hand][far] = last.axis
+        bodies[arc], rods[arc] = {}, loop.length(last.axis - middle.axis)
+        joints[first.name] = replace(first, at=loop.hand)
+        joints[middle.name] = replace(middle, kind="spherical", at=near, axis=None)
+        joints[last.name] = replace(last, kind="spherical", at=far, axis=None)
+    ball = next(n for n in ("ball", "ball_joint", "ball_of_hand") if n not in joints)
+    joints[ball] = Joint(
+        name=ball, kind="spherical", between=(GROUND, hand), at=loop.hand, axis=None, driven=False
+    )
+    loop.said.append(
+        f"All axes meet in {loop.hand}, about which the hand turns as on a ball joint; the rods "
+        f"join points of the axes at the distance 1 from it."
+    )
+    return replace(loop, bodies=bodies, joints=joints, rods=rods)
 
 
 __all__ = ["with_arcs"]

@@ -137,6 +137,9 @@ c3 = {between = ["p3", "platform"], at = "C3", axis = [1, 0, 0]}
 def test_planes_that_turn_and_stand_still_are_told_apart(tmp_path: Path) -> None:
     text = EXECHON.replace('at = "A1", kind = "universal"', 'at = "A1"')
     text = text.replace('at = "C1", axis', 'at = "C1", kind = "universal", axis')
+    with pytest.raises(TableError, match="hand two degrees of freedom"):
+        script_of("exechon", text, tmp_path)
+    text = text.replace('at = "A1", axis = [1, 0, 0]', 'at = "A1", axis = [0, 0, 1]')
     with pytest.raises(TableError, match="in a plane that turns, and those of q1 in one that"):
         script_of("exechon", text, tmp_path)
 

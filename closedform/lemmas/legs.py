@@ -154,6 +154,14 @@ class Naming:
         under = self.bound("under", r + aside, meaning)
         return self.let(name, sp.sqrt(over) * sp.sqrt(under), nonnegative=True)
 
+    def lost(self, r: sp.Expr, fore: sp.Expr) -> sp.Symbol:
+        """By which factor ``fore``, the part of a rod in a plane, has larger errors than the rod.
+
+        Where the rod is nearly at right angles to the plane, this part has lost digits.
+        """
+        least = self.size * HALF_DIGITS
+        return self.let("lost", sp.Max(1, r / (fore + least)), positive=True)
+
     def vanishes(self, name: str, value: sp.Expr, meaning: str, free: sp.Symbol) -> sp.Symbol:
         return self.program.vanishes(f"{name}{self.tag}", value, self.size, meaning, (free,))
 
@@ -219,9 +227,7 @@ class Crank:
         if aside != 0:
             s = chain.half_chord("fore", r, aside, "the rod reaches the plane of the crank")
             missed = sp.Max(0, sp.Abs(aside) - r)
-            # where the rod is nearly at right angles to the plane, s has lost digits that r has
-            least = chain.size * HALF_DIGITS
-            lost = chain.let("lost", sp.Max(1, r / (s + least)), positive=True)
+            lost = chain.lost(r, s)
             scale = scale * lost
         fore, beside, plainly = s, aside, {}
         if aside != 0:
@@ -325,8 +331,7 @@ class Slide(Slider):
             beside = chain.let("beside", w.dot(n))
             pair = replace(chain, tag=f"_pair{chain.tag}")
             fore = pair.half_chord("fore", r, beside, "the rods reach across the axes")
-            least = chain.size * HALF_DIGITS  # as for a crank
-            lost = chain.let("lost", sp.Max(1, r / (fore + least)), positive=True)
+            lost = chain.lost(r, fore)
             missed = sp.Max(0, sp.Abs(beside) - r)
             r = chain.let("reach", sp.Add(*self.rod.links) + fore, nonnegative=True)
             w, chain = w - beside * n, replace(chain, size=chain.size * lost)

@@ -113,6 +113,14 @@ class _Loop:
         """The driver, as a leg of any kind."""
         return cast("Leg", self.driver)
 
+    def size(self, given: Crank | Slide | Stretch) -> sp.Expr:
+        """The sum of the lengths of the loop, and of the travel of the leg whose joint is given.
+
+        Other parameters, such as those of the slides of an RCCC linkage, do not count.
+        """
+        legs = (self.driven, self.follower)
+        return size_of(self.d, legs, _slid(given), among=self.equation.free_symbols)
+
 
 @dataclass(frozen=True)
 class _Rod:
@@ -132,7 +140,7 @@ def _forward(loop: _Loop, choice: Choice) -> _Rod:
     f, sigma = d.program(), real("sigma_assembly")
     modes = branches((sigma, choice))
     d.assembly_modes = modes.labels
-    size = f.let("size", size_of(d, (driver, follower), _slid(driver)))
+    size = f.let("size", loop.size(driver))
     names = Naming(f, size, "_2", MOVED if _slid(driver) else SHARE)
     found = follower.solve(names, driver.end() - follower.base, sigma)
     d.step(
@@ -265,7 +273,7 @@ def export_rates(
 def _inverse(loop: _Loop) -> None:
     d, driver, follower = loop.d, loop.driver, loop.follower
     g, sigma, x = d.program(), real("sigma_driver"), follower.joint
-    size = g.let("size", size_of(d, (driver, follower), _slid(follower)))
+    size = g.let("size", loop.size(follower))
     found = loop.driven.solve(Naming(g, size, "_1"), follower.end() - driver.base, sigma)
     inside = bounds_of(g)
     A = g.let("A", found.rod.dot(follower.rate))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -218,9 +218,14 @@ def size_of(
     d: Derivation,
     legs: Sequence[Sized],
     moved: Sequence[sp.Expr] = (),
+    *,
+    among: Set[sp.Basic] | None = None,
 ) -> sp.Expr:
-    """The sum of the lengths of a mechanism and of the travel of its slides."""
-    lengths = [p for p in d.parameters if p.unit != "rad"]
+    """The sum of the lengths of a mechanism and of the travel of its slides.
+
+    With ``among``, other parameters are left out.
+    """
+    lengths = [p for p in d.parameters if p.unit != "rad" and (among is None or p.symbol in among)]
     sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
     return sp.Add(*sized, *map(sp.Abs, moved), *map(_in_numbers, legs))
 

@@ -58,6 +58,16 @@ def test_the_drawing_is_a_posture(rccc: ModuleType) -> None:
     assert np.abs(rccc.slides([0])).max(axis=1).min() < 1e-15
 
 
+def test_the_unit_of_the_lengths_does_not_count(rccc: ModuleType) -> None:
+    """Rotations were singular where lengths are in millimetres: only angles count for them."""
+    far = rccc.Parameters(a=100, h=50, f=300)
+    for psi in np.linspace(-3, 3, 40):
+        assert [*rccc.ik([psi], far).status] == [*rccc.ik([psi]).status]
+        assert rccc.workspace_contains([psi], far) == rccc.workspace_contains([psi])
+    for theta in np.linspace(-3, 3, 40):
+        assert np.allclose(rccc.slides([theta], far), 1000 * rccc.slides([theta]), equal_nan=True)
+
+
 def test_slides_are_not_those_of_any_crank() -> None:
     d = Derivation("toy", "Toy", Paper("toy", "Toys", ("A. Nonymous",)), "Axes.", task=["psi"])
     theta, half = d.joint("theta"), Rational(1, 2)

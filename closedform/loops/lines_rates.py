@@ -37,12 +37,12 @@ def state_velocity(m: OnLines, at: Posture, loop: Step) -> None:
     det = exact.tilts.y.c * row[2] * m.area
     d.step(
         "Velocity and singular sets",
-        "The derivatives of the heights of the corners give A*dx = B*dq for the rates of the task. "
-        " B is diagonal: entry i says how fast joint i moves its line up, and is zero where the "
-        "line moves sideways (serial).  The determinant of A is cos(tilt_y)*n_z times the area of "
-        "the corners, up to its sign: it is zero where the hand is on edge (parallel), and both "
-        "modes of n_z meet there.  Both twists meet where a*cos(twist) - b*sin(twist) is zero: the "
-        "lines do not fix the twist there.",
+        "The derivatives of the heights of the corners give A*dx = B*dq for the rates of the "
+        "task.  B is diagonal: entry i says how fast joint i moves its line up, and is zero where "
+        "the line moves sideways (serial).  The determinant of A is cos(tilt_y)*n_z times the area "
+        "of the corners, up to its sign: it is zero where the hand is on edge (parallel), and both "
+        "modes of n_z meet there.  Both twists meet where mu_1*cos(twist) - mu_2*sin(twist) is "
+        "zero: the lines do not fix the twist there.",
         {"A": A, **{f"B_{{{k}{k}}}": e for k, e in enumerate(lifts, 1)}},
         proves="A and B are the derivatives.",
         equal=[

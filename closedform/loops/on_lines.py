@@ -18,6 +18,7 @@ from closedform.lemmas.sine_cosine import linear_pair
 from closedform.lemmas.unit_vector import last_entry
 from closedform.loops.balls import ASIDE, TARGET, TILT_X, TILT_Y, TWIST, Turns, Z
 from closedform.loops.leg_by_leg import SIGN, LegByLeg, named, named_in, record_lemma, size_of
+from closedform.loops.letters import letters
 from closedform.loops.lines_hand import (
     BallOnLine,
     OnLines,
@@ -80,15 +81,16 @@ def _close(m: OnLines) -> Step:
     d.explain({"R": "rotation of the hand", r"\mathbf p": "position of the point of the hand"})
     rows = [(str(k), leg.leg.end().T, leg.normal.T, leg.place.T) for k, leg in m.numbered]
     last = exact.tilted[2, :]
+    r, n, e = letters(d, "rne")
     d.loop = loop = d.step(
         "The loop",
-        "The joint of leg i moves the point b of a horizontal line, and n is a normal of the line, "
-        "horizontal too.  The corner e of the hand, in its frame, is a ball on this line.  So it "
-        "is as high as b, and as far along n.  R turns the hand by tilt_x about the x axis of the "
-        "base, by tilt_y about its y axis, and by the twist about its z axis.  The twist leaves "
-        "the last row of R as it is.",
+        f"The joint of leg i moves the point {r} of a horizontal line, and {n} is a normal of the "
+        f"line, horizontal too.  The corner {e} of the hand, in its frame, is a ball on this "
+        f"line.  So it is as high as {r}, and as far along {n}.  R turns the hand by tilt_x about "
+        f"the x axis of the base, by tilt_y about its y axis, and by the twist about its z axis.  "
+        f"The twist leaves the last row of R as it is.",
         {"R": exact.rotation},
-        rows=[("i", "b", "n", "e"), *rows],
+        rows=[("i", r, n, e), *rows],
         proves="R is a rotation, and the last row is that of the tilts alone.",
         equal=[
             (exact.rotation.T * exact.rotation, sp.eye(3)),
@@ -149,19 +151,20 @@ def _forward(m: OnLines, loop: Step) -> Posture:
     d.assembly_modes = modes.labels
     size = f.let("size", size_of(d, m.legs, m.sliders))
     area, notes = _require_triangle(m, f)
-    heights = [named_in(f, f"h_{k}", e) for k, e in enumerate(m.heights, 1)]
-    u, v = (f.let(n, e / area) for n, e in zip("uv", m.level(heights), strict=True))
+    high, *row = letters(d, "huv")
+    heights = [named_in(f, f"{high}_{k}", e) for k, e in enumerate(m.heights, 1)]
+    u, v = (f.let(n, e / area) for n, e in zip(row, m.level(heights), strict=True))
     scale = f.let("leeway", size * m.spread / sp.Abs(area), nonnegative=True)
     level, last = last_entry(f, (LAST, u, v), SIDE, scale, "the heights of the balls fit the hand")
     tilting, tilts = _tilts(f, (u, v), last)
     T = f.matrix("T", tilts.tilted[:2, :2])
     flat = [named(f, f"f{k}", T * leg.place) for k, leg in m.numbered]
     beside = [named_in(f, f"y_{k}", e) for k, e in enumerate(m.beside, 1)]
-    equation = zip("abc", (*m.twisting(flat), m.weighted(beside)), strict=True)
+    equation = (*m.twisting(flat), m.weighted(beside))
     spun, pair, root = yaw_by_amplitude(
         f,
         TWIST,
-        [named_in(f, n, e) for n, e in equation],
+        [named_in(f, f"mu_{k}", e) for k, e in enumerate(equation, 1)],
         SPUN,
         size,
         missed=lambda _: size / 4,
@@ -255,7 +258,8 @@ def _solved_forward(m: OnLines) -> tuple[sp.Expr, ...]:
 def _state_forward(m: OnLines, loop: Step) -> None:
     """The step on the assembly modes."""
     d, exact = m.d, exact_pose()
-    heights = [real(f"h_{k}") for k, _ in m.numbered]
+    high, first, second, weight = letters(d, "huvw")
+    heights = [real(f"{high}_{k}") for k, _ in m.numbered]
     u, v = (e / m.area for e in m.level(heights))
     z = heights[0] - m.rise((u, v), 0)
     beside = [real(f"y_{k}") for k, _ in m.numbered]
@@ -268,17 +272,24 @@ def _state_forward(m: OnLines, loop: Step) -> None:
     ]
     met = dict(zip(place, m.centre(beside, flat, t), strict=True))
     normals = zip(m.weights, m.legs, strict=True)
-    d.explain({"u": "first entry of the last row of R", "v": "second entry of this row"})
+    d.explain(
+        {
+            first: "first entry of the last row of R",
+            second: "second entry of this row",
+            weight: "weights, with which the normals of the lines add up to zero",
+        }
+    )
     d.step(
         "Forward: the heights, then the twist",
-        "The heights h of the balls are three linear equations for the height of the hand and the "
-        "first two entries u and v of the last row of R.  The last one is n_z, with either sign: "
-        "the z axis of the hand points up or down.  With rho, the length of v and n_z, this row is "
-        "that of the tilts.  The normals of the lines, each times a weight w, add up to zero.  So "
-        "the sum of their equations does not contain the point of the hand: it is "
-        "a*sin(twist) + b*cos(twist) = c, and has two solutions.  So there are four assembly "
-        "modes.  Two lines that are not parallel give the point.",
-        {"u": u, "v": v, "w": sp.Matrix([m.weights])},
+        f"The heights {high}_i of the balls are three linear equations for the height of the hand "
+        f"and the first two entries {first} and {second} of the last row of R.  This row is a unit "
+        f"vector, so its last entry n_z has one of two signs: the z axis of the hand points up or "
+        f"down.  The row gives the tilts; rho is the length of ({second}, n_z).  The normals of "
+        f"the lines, each times a weight {weight}, add up to zero.  So the sum of their equations "
+        f"does not contain the point of the hand: it is "
+        f"mu_1*sin(twist) + mu_2*cos(twist) = mu_3, and has two solutions.  So there are "
+        f"four assembly modes.  Two lines that are not parallel give the point.",
+        {first: u, second: v, weight: sp.Matrix([m.weights])},
         proves="The linear equations hold for any heights.  The last row of R is "
         "-sin(tilt_y), cos(tilt_y)*sin(tilt_x), cos(tilt_y)*cos(tilt_x).  The weighted equations "
         "add up to that of the twist, for any point of the hand, and the point satisfies two of "
@@ -319,8 +330,8 @@ def _inverse(m: OnLines, loop: Step) -> None:
         off = g.let(f"off_{k}", Z + m.rise(T[2, :], k - 1) - leg.base[2])
         known |= _solve(m, solved, k, off)
     flat = [named(g, f"f{k}", T[:2, :2] * leg.place) for k, leg in m.numbered]
-    a, b = (g.let(f"{n}_twist", e) for n, e in zip("ab", m.twisting(flat), strict=True))
-    c = g.let("c_twist", m.weighted([e.xreplace(known) for e in m.beside]))
+    a, b = (g.let(f"mu_{k}", e) for k, e in enumerate(m.twisting(flat), 1))
+    c = g.let("mu_3", m.weighted([e.xreplace(known) for e in m.beside]))
     h = g.let("h_twist", sp.sqrt(a**2 + b**2), nonnegative=True)
     g.bound("twists", h - sp.Abs(c), solved.size / 4, "the corners of the hand reach their lines")
     g.determined(

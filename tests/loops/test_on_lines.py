@@ -1,16 +1,18 @@
 """A hand whose balls slide along three horizontal lines (CaPaMan), against rigid bodies."""
 
+import re
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
-from loop_files import derived, newton, script_of
+from loop_files import derived, newton, read_script, script_of
 from places import TESTS
 from sympy import Rational, sqrt
 
 from closedform import BallOnLine, Crank, Derivation, Paper, Slide, on_lines, prove
 from closedform.algebra.shapes import ShapeError
+from closedform.emit.pages import pages
 from closedform.scaffold.inputs.tables import TableError
 
 TEXT = (TESTS / "held_out_loops" / "capaman.toml").read_text("utf-8")
@@ -108,6 +110,19 @@ def test_derivatives(capaman: ModuleType) -> None:
     np.testing.assert_allclose(capaman.determinant(q)[tame], np.linalg.det(J[tame]), rtol=1e-9)
     spin = capaman.singularities(q)[..., 4] * [1, -1, 1, -1]
     assert (spin[capaman.fk(q).status == OK] >= 0).all()
+
+
+def test_the_article_has_no_names_of_the_program(tmp_path: Path) -> None:
+    """The pose had the twist under names that no line of it defines, and letters meant two things.
+
+    The letters b, c and h are those of parameters.
+    """
+    d = read_script(script_of("capaman", TEXT, tmp_path))
+    (article,) = pages(d, prove(d), ["latex"]).files.values()
+    assert r"\mathrm{twist} = \operatorname{atan2}" in article
+    assert not re.search(r"mathrm\{(root|reach|length)\}|(?<![a-z])[abch]_\{[0-3]\}", article)
+    step = article.partition(r"\subsection{The loop}")[2].partition(r"\subsection")[0]
+    assert "$r$" in step and "point $b$" not in step
 
 
 def toy() -> Derivation:

@@ -21,7 +21,7 @@ from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.inequalities import equality, inequalities
 from closedform.emit.backends.latex.listing import Line, merged, parts_first, unless, whole
 from closedform.emit.backends.latex.names import is_word, program_name
-from closedform.emit.backends.latex.plain import divides_by_root, without_common_factors
+from closedform.emit.backends.latex.plain import angle_of, divides_by_root, without_common_factors
 from closedform.emit.backends.latex.rotations import is_turned
 from closedform.emit.backends.latex.sheet import Sheet
 from closedform.emit.backends.latex.subject import Subject
@@ -420,13 +420,11 @@ class Algorithm:
                 yield from self._whole(symbol)
                 return
             fresh = symbol in self.needed and symbol not in self.printed
-            replaced = symbol in self.known and not self.is_pair(symbol)
-            if fresh and not replaced:
+            if fresh and (symbol not in self.known or self.is_pair(symbol)):
                 self.printed.add(symbol)
-                left, value = self.known.get(symbol, symbol), self.value(symbol)
+                left, value = self._equation(symbol)
                 if self.page.math(left) != self.page.math(value):
-                    for text in self.texts(left, value):
-                        yield "let", text, ""
+                    yield from (("let", text, "") for text in self.texts(left, value))
             if isinstance(statement, Bound):
                 yield "bound", symbol, self.page.prose(statement.meaning)
         elif isinstance(statement, Match):
@@ -436,6 +434,14 @@ class Algorithm:
                 yield "unless", equality(self.page, value), meaning
         elif isinstance(statement, Require):
             yield "invalid", self._requirement(statement), ""
+
+    def _equation(self, symbol: sp.Symbol) -> tuple[sp.Basic, sp.Expr]:
+        """Both sides for a name; a sine of an angle that the model leaves out has the angle."""
+        angle, names = angle_of(symbol, self.model.replaced if self.model else {})
+        if not self.model or angle not in self.model.values.keys() - self.printed:
+            return self.known.get(symbol, symbol), self.value(symbol)
+        self.printed |= {angle, *names}
+        return angle, self.model.full(self.model.values[angle])
 
     def _vector(self, symbol: sp.Symbol, value: Any) -> str:
         """A vector in others, or in its coordinates."""

@@ -412,6 +412,17 @@ def angles_of_readers(lemma: Lemma) -> list[sp.Symbol]:
     return [n for n, e in lemma.plainly.items() if n not in made and e != 1]
 
 
+def angle_of(
+    name: sp.Symbol, names: Mapping[sp.Basic, sp.Basic]
+) -> tuple[sp.Symbol | None, list[sp.Basic]]:
+    """The angle whose sine or cosine a name stands for, and all names of both; or None."""
+    meaning = names.get(name)
+    angle = meaning.args[0] if isinstance(meaning, sp.sin | sp.cos) else None
+    if not isinstance(angle, sp.Symbol):
+        return None, []
+    return angle, [n for n, e in names.items() if e in (sp.sin(angle), sp.cos(angle))]
+
+
 def _angles_before(angle: sp.Symbol, lemmas: Sequence[Lemma]) -> dict[sp.Symbol, sp.Expr]:
     """The angles that no program has and that this angle is the first to need."""
     found: dict[sp.Symbol, sp.Expr] = {}
@@ -447,6 +458,7 @@ def divides_by_root(factor: sp.Expr, roots: Mapping[sp.Symbol, sp.Expr]) -> bool
 
 __all__ = [
     "Plain",
+    "angle_of",
     "angles_of_readers",
     "divides_by_root",
     "is_rounding",

@@ -200,7 +200,11 @@ class Crank:
 
     def _turned(self, pair: Pair) -> sp.Matrix:
         length = sp.sympify(self.length, strict=True)
-        return length * (pair.c * vector(self.along) + pair.s * vector(self.across))
+        u, v = vector(self.along), vector(self.across)
+        if length.is_number:  # roots of both cancel
+            u, v = ((length * w).applyfunc(sp.expand) for w in (u, v))
+            return pair.c * u + pair.s * v
+        return length * (pair.c * u + pair.s * v)
 
     def end(self) -> sp.Matrix:
         return self.base + self._turned(Pair(sp.sin(self.joint), sp.cos(self.joint)))

@@ -178,6 +178,8 @@ def test_what_does_not_hold_the_hand_says_why() -> None:
     ("old", "other", "message"),
     [
         (", parallelogram = [0, 0.08, 0]", "", "crank1"),
+        ("copies = 3", "copies = 2", "lines needs 3 legs, and has 2"),
+        ("copies = 3", "copies = 4", "lines needs 3 legs, and has 4"),
         ('C1 = ["c", 0, 0]', 'C1 = ["c", 0, "h"]', "C1 is above or below P"),
         ('"prismatic", axis = [1, 0, 0]', '"prismatic", axis = [1, 0, 1]', "degree eight"),
     ],

@@ -83,6 +83,12 @@ def test_slides_are_not_those_of_any_crank() -> None:
     [
         ('kind = "cylindrical", axis = [0, 0.6', 'kind = "spherical", axis = [0, 0.6', "four"),
         ('hand = "psi"', 'hand = "s2"', "of which that on the ground is the task"),
+        (
+            "[0, 0.6, 0.8]",
+            "[-0.6, 0, -0.8]",
+            "s1 and s2, the joints of coupler, have",
+        ),
+        ("[0.6, 0, 0.8]", "[0, 0, 1]", "theta and s1, the joints of crank, have parallel axes"),
         (", axis = [0.6, 0, 0.8]", "", "s1 needs its axis"),
         ('crank = {A = [0, "a", "h"]}', 'crank = {A = [0, "a", 0]}', "A, where s1 is, has to be"),
     ],

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from loop_files import derived, newton, script_of
+import sympy as sp
+from loop_files import derived, newton, read_script, script_of
 from places import TESTS
 
 from closedform.scaffold.inputs.tables import TableError
@@ -118,6 +119,26 @@ def test_three_legs_of_three_axes_hold_a_hand(tmp_path: Path) -> None:
         assert (status != 0).all() or np.abs(eye.singularities(R, q[status == 0][0])).min() > 0
     assert found > 60
     assert np.abs(eye.ik(np.eye(3)).q).max(axis=-1).min() < 1e-15
+
+
+def test_ends_of_cranks_are_told_without_roots(tmp_path: Path) -> None:
+    """The table of an Agile Eye was wider than the page."""
+    d = read_script(script_of("eye", EYE, tmp_path))
+    ends = [row[1] for row in d.steps[0].rows[1:]]
+    assert len(ends) == 3
+    assert {e.base for end in ends for e in end.atoms(sp.Pow) if e.is_number} <= {3}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("[0.6, 0, 0.8]", "[0.28, 0.96, 0]", "m1 and n1, the joints of upper1, have parallel axes"),
+        ("[0.28, 0.96, 0]", "[-0.6, 0, 0.8]", "q1 and m1, the joints of lower1, have parallel"),
+    ],
+)
+def test_an_arc_has_an_angle(old: str, new: str, said: str, tmp_path: Path) -> None:
+    with pytest.raises(TableError, match=said):
+        script_of("eye", EYE.replace(old, new), tmp_path)
 
 
 def test_the_hand_is_where_the_axes_meet(tmp_path: Path) -> None:

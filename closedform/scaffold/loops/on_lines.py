@@ -15,10 +15,16 @@ def on_lines(found: Legs) -> list[LoopLeg] | None:
     """The legs of such a hand; None if it is of another kind."""
     loop, driven = found.loop, [j for j in found.driven() if GROUND in j.between]
     hands = [body for body, at in loop.bodies.items() if loop.hand in at and body != GROUND]
-    if loop.dimensions != len(AXES) or len(driven) != LEGS or len(hands) != 1:
+    if loop.dimensions != len(AXES) or not driven or len(hands) != 1:
         return None
-    chains = [_chain(found, joint, hands[0]) for joint in driven]
-    return [_leg(found, hands[0], *chain) for chain in chains if chain] if all(chains) else None
+    chains = [chain for joint in driven if (chain := _chain(found, joint, hands[0]))]
+    if len(chains) != len(driven):
+        return None
+    if len(chains) != LEGS:
+        raise loop.error(
+            f"a hand whose balls slide along lines needs {LEGS} legs, and has {len(chains)}"
+        )
+    return [_leg(found, hands[0], *chain) for chain in chains]
 
 
 def _chain(found: Legs, joint: Joint, hand: str) -> tuple[Joint, Joint, Joint] | None:

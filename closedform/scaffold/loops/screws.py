@@ -7,6 +7,7 @@ from dataclasses import replace
 import sympy as sp
 
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
+from closedform.scaffold.loops.spherical import check_arcs
 from closedform.scaffold.source import literal, source
 
 BODIES = 4
@@ -27,7 +28,8 @@ def with_screws(loop: Loop) -> Loop:
     cylinders = [j for j in loop.joints.values() if j.kind == "cylindrical"]
     if not cylinders:
         return loop
-    (driver, first, second, task) = _in_order(loop)
+    driver, first, second, task = _in_order(loop)
+    check_arcs(loop)
     names = [literal(j.name) for j in (first, second, task)]
     places = [_place(loop, j) for j in (driver, first, second, task)]
     joints = {n: replace(j, kind="revolute", at=CENTRE) for n, j in loop.joints.items()}

@@ -29,6 +29,7 @@ def with_arcs(loop: Loop) -> Loop:
     drivers = [j for j in loop.joints.values() if j.driven]
     if loop.dimensions != SPACE or follower is None or len(drivers) != 1 or not _meet(loop):
         return loop
+    check_arcs(loop)
     (driver,) = drivers
     ends = [j for j in loop.joints.values() if j not in (driver, follower)]
     moved = [j.other(GROUND) for j in (driver, follower) if GROUND in j.between]
@@ -54,6 +55,20 @@ def with_arcs(loop: Loop) -> Loop:
         "it."
     )
     return replace(loop, bodies=bodies, joints=joints, rods={**loop.rods, coupler: arc})
+
+
+def check_arcs(loop: Loop) -> None:
+    """Refuse a moving body between two axes with the same direction, which has no angle."""
+    for body in loop.bodies:
+        axes = [(j.name, j.axis) for j in loop.of(body) if j.axis is not None]
+        if body == GROUND or len(axes) != 2:
+            continue
+        (first, u), (second, v) = axes
+        if not any(map(sp.simplify, u.cross(v))):
+            raise loop.error(
+                f"{first} and {second}, the joints of {body}, have parallel axes; there must be an "
+                f"angle between them"
+            )
 
 
 def _meet(loop: Loop) -> bool:
@@ -102,6 +117,7 @@ def _legs(loop: Loop) -> list[tuple[Joint, Joint, Joint]]:
 
 def _on_ball(loop: Loop, legs: list[tuple[Joint, Joint, Joint]]) -> Loop:
     """The same with the hand on a ball joint, and rods for the arcs that lead to it."""
+    check_arcs(loop)
     bodies, joints, rods = dict(loop.bodies), dict(loop.joints), dict(loop.rods)
     at = legs[0][0].at
     centre = next(points[at] for points in loop.bodies.values() if at in points)
@@ -130,4 +146,4 @@ def _on_ball(loop: Loop, legs: list[tuple[Joint, Joint, Joint]]) -> Loop:
     return replace(loop, bodies=bodies, joints=joints, rods=rods)
 
 
-__all__ = ["with_arcs"]
+__all__ = ["check_arcs", "with_arcs"]

@@ -90,7 +90,7 @@ def coupled(
         check_screws(d, (driver, follower))
         reached = driver.end() + rod.vector
         cranks = cast("tuple[Crank, Crank]", (driver, follower))
-        export_slides(d, screws, cranks, (rod.program, rod.modes, reached), stated)
+        export_slides(d, screws, cranks, (rod.program, rod.modes, reached))
     _inverse(closed)
 
 

@@ -20,7 +20,7 @@ from closedform.loops.letters import letters
 from closedform.loops.modes import export
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Branches, Program, real
-from closedform.model.step import Step
+from closedform.model.names import listed
 
 SPACE = 3
 NEEDED = (
@@ -85,22 +85,19 @@ def export_slides(
     screws: Screws,
     legs: tuple[Crank, Crank],
     at: tuple[Program, Branches, sp.Matrix],
-    loop: Step,
 ) -> None:
     """Export ``slides``, how far the linkage slides along its three cylindrical joints.
 
     Parameters
     ----------
     d
-        the derivation of the spherical four-bar linkage
+        the derivation of the spherical four-bar linkage, whose step on the loop is ``d.loop``
     screws
         the places of the axes
     legs
         both cranks, whose ends are on the middle axes
     at
         the program of ``fk`` with its modes, and the end of the follower in its names
-    loop
-        the step that states the loop
     """
     driver, follower = legs
     program, modes, reached = at
@@ -127,7 +124,7 @@ def export_slides(
             -v.dot(t.cross(c)) / volume,
         ]
 
-    _state(d, legs, arms, gap, loop)
+    _state(d, screws, legs, arms, gap)
     p = Program(list(program.body), program.taken)
     v, t = named(p, "v", driver.end()), named(p, "t", reached)
     c = named(p, "c", gap(v, t))
@@ -139,8 +136,8 @@ def export_slides(
         [
             (
                 "slides",
-                f"The slides {', '.join(screws.names)} along both middle axes and along that of "
-                "the follower.",
+                f"The slides in the joints {listed(screws.names)}: along both middle axes and "
+                "along that of the follower.",
                 {"s": slid(v, t, c, volume)},
                 ("Not finite at a parallel singularity.",),
             )
@@ -151,10 +148,10 @@ def export_slides(
 
 def _state(
     d: Derivation,
+    screws: Screws,
     legs: tuple[Crank, Crank],
     arms: tuple[_Carried, _Carried, _Carried],
     gap: Any,
-    loop: Step,
 ) -> None:
     """The step on the slides."""
     driver, follower = legs
@@ -170,6 +167,7 @@ def _state(
         spun = sp.cos(q) * start + sp.sin(q) * axis.cross(start)
         spun += (1 - sp.cos(q)) * axis.dot(start) * axis
         turned.append((arm.at(axis, leg.end()), spun))
+    ends = [rf"\mathbf {letters(d, 'b')[0]}_{k}" for k in (1, 2)]
     V, T, W, C = (rf"\mathbf {e}" for e in letters(d, "vtwc"))
     d.explain(
         {
@@ -177,18 +175,23 @@ def _state(
             T: "direction of the middle axis on the follower",
             W: "direction of the axis of the follower",
             C: "what the slides close",
+            **{f"s_{k}": f"slide in the joint {name}" for k, name in enumerate(screws.names, 1)},
         }
     )
     d.step(
         "Slides",
-        f"The middle axes have the directions {V[-1]} and {T[-1]}, which are the ends of both "
-        f"cranks, and the axis of the follower has the direction {W[-1]}.  They carry the points "
-        f"of the bodies along: what is fixed to two axes keeps its parts along both and across.  "
-        f"So the vector {C[-1]} from the end of the coupler to the follower, where nothing has "
-        f"slid, is known.  The slides close it: s_1*{V[-1]} + s_2*{T[-1]} - s_3*{W[-1]} = "
-        f"{C[-1]}.  These are three linear equations, whose determinant vanishes where the three "
-        f"axes are in one plane (parallel).",
+        f"The middle axes have the directions {V[-1]} and {T[-1]}, in which the ends of both "
+        f"cranks are, and the axis of the follower has the direction {W[-1]}.  A vector that leads "
+        f"from one axis of a body to the other one is fixed to both: it keeps its parts along both "
+        f"axes and across them.  So it is known where each body would bring the point of the "
+        f"middle axis on the follower if nothing slid.  The vector {C[-1]} leads from the place "
+        f"by the driver and the coupler to the place by the follower, and the slides close it: "
+        f"s_1*{V[-1]} + s_2*{T[-1]} - s_3*{W[-1]} = {C[-1]}.  These are three linear equations, "
+        f"whose determinant vanishes where the three axes are in one plane (parallel).",
         {
+            V: ends[0],
+            T: ends[1],
+            W: w,
             C: gap(v, t),
             "s_1": rf"\frac{{{C}\cdot({T}\times {W})}}{{{V}\cdot({T}\times {W})}}",
             "s_2": rf"\frac{{{V}\cdot({C}\times {W})}}{{{V}\cdot({T}\times {W})}}",
@@ -199,7 +202,7 @@ def _state(
             (s[0] * v + s[1] * t - s[2] * n, volume * c),
             *turned,
         ],
-        uses=[loop],
+        uses=[d.loop] if d.loop else [],
     )
 
 

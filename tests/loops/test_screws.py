@@ -5,12 +5,13 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from loop_files import derived, newton, script_of
+from loop_files import derived, newton, read_script, script_of
 from places import TESTS
 from sympy import Rational, sqrt
 
-from closedform import Crank, Derivation, Paper, Screws, coupled, real
+from closedform import Crank, Derivation, Paper, Screws, coupled, prove, real
 from closedform.algebra.shapes import ShapeError
+from closedform.emit.pages import pages
 from closedform.scaffold.inputs.tables import TableError
 
 TEXT = (TESTS / "held_out_loops" / "rccc.toml").read_text("utf-8")
@@ -56,6 +57,15 @@ def test_newton_finds_no_other_posture(rccc: ModuleType) -> None:
 def test_the_drawing_is_a_posture(rccc: ModuleType) -> None:
     assert np.abs(rccc.fk([0]).p).min() < 1e-15
     assert np.abs(rccc.slides([0])).max(axis=1).min() < 1e-15
+
+
+def test_the_article_says_what_slides(tmp_path: Path) -> None:
+    """Directions that no equation defined, and a slide with the name of an angle."""
+    d = read_script(script_of("rccc", TEXT, tmp_path))
+    assert d.mechanism.startswith("Joints s1, s2 and psi are cylindrical.  The axes turn as")
+    (article,) = pages(d, prove(d), ["latex"]).files.values()
+    assert r"\mathbf v &= \mathbf b_1" in article and r"\mathbf t &= \mathbf b_2" in article
+    assert r"slide in the joint $\psi$" in article and "direction $w$" not in article
 
 
 def test_the_unit_of_the_lengths_does_not_count(rccc: ModuleType) -> None:

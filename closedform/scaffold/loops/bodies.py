@@ -45,6 +45,8 @@ class Loop:
     joints: dict[str, Joint] = field(default_factory=dict)
     parameters: dict[str, dict[str, str]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    seen: list[str] = field(default_factory=list)
+    """What the description of the mechanism begins with: how the loop is seen."""
     said: list[str] = field(default_factory=list)
     """What the description of the mechanism says of parts that the script leaves out."""
     screws: str = ""

@@ -36,10 +36,11 @@ def inverted(loop: Loop) -> Loop:
             bodies[body] = {joint.at: bodies[other][joint.at], **bodies[body]}
     joints = {name: _renamed(joint, names) for name, joint in loop.joints.items()}
     joints[driver.name] = replace(joints[driver.name], axis=-driver.axis)
-    moves = "turns about" if driver.kind == "revolute" else "slides along"
-    loop.said.append(
-        f"The loop is seen from {still}, which stands still, while the ground {moves} the axis of "
-        f"{driver.name} the other way."
+    turns = driver.kind == "revolute"
+    moves, leg = ("turns about", "crank") if turns else ("slides along", "slider")
+    loop.seen.append(
+        f"The loop is seen from {still}, which stands still here, while the ground {moves} the "
+        f"axis of {driver.name} the other way.  So the {leg} of {driver.name} is the ground."
     )
     return replace(
         loop,

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import sympy as sp
 
+from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 from closedform.scaffold.loops.spherical import check_arcs
 from closedform.scaffold.source import literal, source
@@ -30,12 +31,13 @@ def with_screws(loop: Loop) -> Loop:
         return loop
     driver, first, second, task = _in_order(loop)
     check_arcs(loop)
-    names = [literal(j.name) for j in (first, second, task)]
+    names = [j.name for j in (first, second, task)]
+    loop.seen.append(f"Joints {listed(names)} are cylindrical.")
     places = [_place(loop, j) for j in (driver, first, second, task)]
     joints = {n: replace(j, kind="revolute", at=CENTRE) for n, j in loop.joints.items()}
     bodies: dict[str, dict[str, sp.Matrix]] = {name: {} for name in loop.bodies}
     bodies[GROUND] = {CENTRE: sp.zeros(3, 1)}
-    screws = f"Screws(({', '.join(names)}), {', '.join(places)})"
+    screws = f"Screws(({', '.join(map(literal, names))}), {', '.join(places)})"
     return replace(loop, bodies=bodies, joints=joints, screws=screws)
 
 

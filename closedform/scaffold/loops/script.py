@@ -474,7 +474,7 @@ def _head(name: str, loop: Loop, way: _Way, origin: str) -> list[str]:
         f'    "{name}",',
         f'    "{title}",',
         f'    Paper("{name}", "{title}", ("the file {origin}",)),',
-        *wrapped_literal("  ".join([way.words, *loop.said])),
+        *wrapped_literal("  ".join([*loop.seen, way.words, *loop.said])),
         *([f"    task=[{', '.join(literal(x) for x in task)}],"] if task else []),
         ")",
     ]

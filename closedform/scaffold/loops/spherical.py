@@ -47,7 +47,7 @@ def with_arcs(loop: Loop) -> Loop:
     bodies[coupler] = {}
     arc = loop.length(axes[1] - axes[0])
     joints |= {j.name: replace(j, at=driver.at) for j in (driver, follower)}
-    loop.said.append(
+    loop.seen.append(
         "The axes turn as their parallels through one point do, on which they are drawn; the rod "
         "joins points of these at the distance 1 from it."
         if loop.screws
@@ -139,7 +139,7 @@ def _on_ball(loop: Loop, legs: list[tuple[Joint, Joint, Joint]]) -> Loop:
     joints[ball] = Joint(
         name=ball, kind="spherical", between=(GROUND, hand), at=loop.hand, axis=None, driven=False
     )
-    loop.said.append(
+    loop.seen.append(
         f"All axes meet in {loop.hand}, about which the hand turns as on a ball joint; the rods "
         f"join points of the axes at the distance 1 from it."
     )

@@ -243,4 +243,13 @@ class Posture:
     """The derivative of the equation of the twist, up to its sign."""
 
 
-__all__ = ["TASK", "BallOnLine", "OnLines", "Posture", "Twisted", "as_turns", "exact_pose"]
+__all__ = [
+    "TASK",
+    "BallOnLine",
+    "OnLines",
+    "Posture",
+    "Twisted",
+    "as_turns",
+    "exact_pose",
+    "turned",
+]

@@ -29,6 +29,7 @@ def _rows(m: OnLines, pose: Twisted) -> sp.Matrix:
 
 
 def state_velocity(m: OnLines, at: Posture, loop: Step) -> None:
+    """The step on the velocity, and the Jacobians and the singular set in all assembly modes."""
     d, v, exact = m.d, Program(list(at.program.body), at.program.taken), exact_pose()
     A = _rows(m, exact)
     row = exact.tilted[2, :]

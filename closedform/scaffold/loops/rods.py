@@ -140,6 +140,8 @@ def check_short_side(loop: Loop, joint: Joint, rod: str, end: str) -> None:
     if side is None or body in loop.parallelograms:
         return
     flat = loop.dimensions == 2
+    if flat and sum(j.driven for j in loop.joints.values()) > 2:
+        return  # the hand has to turn, which no parallelogram allows
     if flat or joint.axis is None or _differ(joint.axis.cross(side), sp.zeros(3, 1)):
         instead = (
             "or leave that of the rod out if both rods end in the same point"

@@ -135,7 +135,7 @@ def _on_ball(loop: Loop, legs: list[tuple[Joint, Joint, Joint]]) -> Loop:
         joints[first.name] = replace(first, at=loop.hand)
         joints[middle.name] = replace(middle, kind="spherical", at=near, axis=None)
         joints[last.name] = replace(last, kind="spherical", at=far, axis=None)
-    ball = next(n for n in ("ball", "ball_joint", "ball_of_hand") if n not in joints)
+    ball = next(n for n in ("ball", *(f"ball{k}" for k in range(len(joints)))) if n not in joints)
     joints[ball] = Joint(
         name=ball, kind="spherical", between=(GROUND, hand), at=loop.hand, axis=None, driven=False
     )

@@ -96,9 +96,13 @@ def two_sines(
     missed = PLAY * within
     allowance = program.let("play_along", missed * (1 + choose(spent, loose, 0)))
     program.bound("kept_along", left, allowance, "a sine is at most 1")
-    lacking = (sp.Abs(left) - left) / 2 * lean / (lean**2 + aside**2)
-    eased = sp.Piecewise((lacking, rest >= 0), (-lacking, True))
-    part = program.let("eased", choose(spent, part + whole * eased, part))
+    lacking = left * lean / (lean**2 + aside**2)
+    eased = sp.Piecewise((lacking, rest < 0), (-lacking, True))
+    # the sine of y starts from a limit that it is beyond, and it stops at a limit
+    inside = sp.Max(-whole, sp.Min(whole, part))
+    eased = sp.Max(-whole, sp.Min(whole, inside + whole * eased))
+    eased = sp.Piecewise((eased, left < 0), (part, True))
+    part = program.let("eased", choose(spent, eased, part))
     cy, sy = _from_sine(program, str(y), part, whole, scale, play=within)
     along = program.let("along_u", ahead - sy * lean)
     cx, sx = _from_sine(program, str(x), along, size, scale, play=missed)
@@ -154,7 +158,7 @@ def _from_sine(
 ) -> tuple[sp.Symbol, sp.Symbol]:
     """Cosine and sine of the angle with ``sin x = part / whole`` and a cosine not negative."""
     below, above = (
-        program.bound(f"{name}_{x}", value, play, meaning, above=scale)
+        program.bound(f"{name}_{x}", value, play, meaning, above=scale + whole)
         for name, value, meaning in (
             ("below", whole - part, "a sine is at most 1"),
             ("above", whole + part, "a sine is at least -1"),

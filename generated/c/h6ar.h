@@ -13,9 +13,9 @@
  *   jacobian: 133 add, 30 compare and select, 18 divide, 190 multiply, 6 sincos, 3 sqrt
  *   determinant: 32 compare and select, 38 add, 5 divide, 75 multiply, 5 sincos, 3 sqrt
  *   singularities: 32 compare and select, 43 add, 4 divide, 64 multiply, 5 sincos, 3 sqrt
- *   ik: 725 compare and select, 539 add, 29 atan2, 104 divide, 812 multiply, 1 reduce to a turn, 3
+ *   ik: 749 compare and select, 540 add, 29 atan2, 104 divide, 813 multiply, 1 reduce to a turn, 3
  *     sincos, 54 sqrt
- *   ik where nothing vanishes: 264 compare and select, 174 add, 16 atan2, 15 divide, 196 multiply,
+ *   ik where nothing vanishes: 264 compare and select, 177 add, 16 atan2, 15 divide, 203 multiply,
  *     1 reduce to a turn, 3 sincos, 25 sqrt
  *   wrist_length: 21 compare and select, 6 add, 1 divide, 7 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add

@@ -12,9 +12,9 @@
 #   jacobian: 133 add, 30 compare and select, 18 divide, 190 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 5 divide, 75 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 4 divide, 64 multiply, 5 sincos, 3 sqrt
-#   ik: 725 compare and select, 539 add, 29 atan2, 104 divide, 812 multiply, 1 reduce to a turn, 3
+#   ik: 749 compare and select, 540 add, 29 atan2, 104 divide, 813 multiply, 1 reduce to a turn, 3
 #     sincos, 54 sqrt
-#   ik where nothing vanishes: 264 compare and select, 174 add, 16 atan2, 15 divide, 196 multiply,
+#   ik where nothing vanishes: 264 compare and select, 177 add, 16 atan2, 15 divide, 203 multiply,
 #     1 reduce to a turn, 3 sincos, 25 sqrt
 #   wrist_length: 21 compare and select, 6 add, 1 divide, 7 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
@@ -1892,1319 +1892,1352 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del sigma_uv
     t162 = _runtime.select(parallel, t154 * _runtime.sign(v_2_beta), t161)
     t163 = whole_y + t162
-    t164 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
-    below_beta_0 = np.maximum(t163, t164)
-    t165 = whole_y - t162
-    above_beta_0 = np.maximum(t165, t164)
-    t166 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
+    t164 = 16.0 * play
+    t165 = _runtime.VANISHING * (_runtime.VANISHING * (t164 + 16.0 * whole_y))
+    below_beta_0 = np.maximum(t163, t165)
+    t166 = whole_y - t162
+    above_beta_0 = np.maximum(t166, t165)
+    t167 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
     del above_beta_0, below_beta_0
-    t167 = t154 - v_2_beta * t166
-    del t166
-    left_along = L1 - np.abs(t167)
-    t168 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
-    t169 = _runtime.VANISHING * play
-    spent_along = t168 <= t169
-    del t168
-    t170 = spent_along | spent_alpha | spent_beta
-    t171 = 1.0 / (t103 * t103)
+    t168 = t154 - v_2_beta * t167
+    del t167
+    left_along = L1 - np.abs(t168)
+    t169 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t170 = _runtime.VANISHING * play
+    spent_along = t169 <= t170
+    del t169
+    t171 = spent_along | spent_alpha | spent_beta
+    t172 = 1.0 / (t103 * t103)
     del t103
-    t172 = _runtime.select(t92, -(t10 * tilt * t171), 0.0)
-    waist_turn = _runtime.select(t170, (turn_alpha + turn_beta) * t172, 0.0)
+    t173 = _runtime.select(t92, -(t10 * tilt * t172), 0.0)
+    waist_turn = _runtime.select(t171, (turn_alpha + turn_beta) * t173, 0.0)
     nowhere = h <= _runtime.VANISHING * lengths
     del h
-    t173 = np.arctan2(x, y)
-    t174 = _runtime.select(tangent, np.arctan2(t53, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
+    t174 = np.arctan2(x, y)
+    t175 = _runtime.select(tangent, np.arctan2(t53, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
     del above, below, root, t53
-    t175 = _runtime.select(nowhere, 0.0, t173 - t174)
-    t176 = _runtime.wrap(np.arctan2(waist_turn, 1.0) - t175)
+    t176 = _runtime.select(nowhere, 0.0, t174 - t175)
+    t177 = _runtime.wrap(np.arctan2(waist_turn, 1.0) - t176)
     del waist_turn
-    t177 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t178 = t177 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t177
-    t179 = t178 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
+    t178 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t179 = t178 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
     del t178
-    t180 = t179 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
+    t180 = t179 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs)
     del t179
-    t181 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t182 = _runtime.select(0.0 < L1 * d * t15, 0.0, 1.0)
+    t181 = t180 & (0.0 <= al) & (0.0 <= loff) & (0.0 <= lp)
+    del t180
+    t182 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t183 = _runtime.select(0.0 < L1 * d * t15, 0.0, 1.0)
     del t15
-    t183 = t180 & t181 & (np.abs(t182) <= _runtime.ROTATION)
-    del t180, t181, t182
-    invalid = np.logical_not(t183)
-    del t183
-    t184 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
+    t184 = t181 & t182 & (np.abs(t183) <= _runtime.ROTATION)
+    del t181, t182, t183
+    invalid = np.logical_not(t184)
+    del t184
+    t185 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
     del c_psi, s_psi
-    t185 = -(_runtime.FEASIBILITY * (t4 * t184))
-    del t184, t4
-    t186 = (-_runtime.FEASIBILITY <= c_phi) & (t185 <= t5)
+    t186 = -(_runtime.FEASIBILITY * (t4 * t185))
+    del t185, t4
+    t187 = (-_runtime.FEASIBILITY <= c_phi) & (t186 <= t5)
     del c_phi, t5
-    t187 = -(_runtime.FEASIBILITY * slack)
-    t188 = t186 & (t185 <= t6) & (t187 <= t12) & (t187 <= t11)
-    del t11, t12, t185, t186, t187, t6
-    t189 = _runtime.FEASIBILITY * ((L1 * 2.0 + t56) * slack)
+    t188 = -(_runtime.FEASIBILITY * slack)
+    t189 = t187 & (t186 <= t6) & (t188 <= t12) & (t188 <= t11)
+    del t11, t12, t186, t187, t188, t6
+    t190 = _runtime.FEASIBILITY * ((L1 * 2.0 + t56) * slack)
     del t56
-    t190 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t191 = _runtime.FEASIBILITY * ((t190 + 2.0 * np.abs(t48)) * slack)
-    del t190, t48
-    t192 = t188 & (-t189 <= t59) & (-t191 <= t58)
-    del t188, t189, t191, t58, t59
-    t193 = _runtime.select(spent_alpha, gain_1_alpha + gain_0_alpha, 0.0)
+    t191 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t192 = _runtime.FEASIBILITY * ((t191 + 2.0 * np.abs(t48)) * slack)
+    del t191, t48
+    t193 = t189 & (-t190 <= t59) & (-t192 <= t58)
+    del t189, t190, t192, t58, t59
+    t194 = _runtime.select(spent_alpha, gain_1_alpha + gain_0_alpha, 0.0)
     del gain_0_alpha, gain_1_alpha
     leniency = _runtime.select(tangent & t93, 16384.0, 4.0)
-    t194 = (t83 + t193) * _runtime.select(spent_alpha, leniency, 1.0)
-    del t193
-    t195 = t192 & (-(_runtime.FEASIBILITY * t194) <= -t80)
-    del t194, t80
-    t196 = _runtime.select(spent_beta, gain_1_beta + gain_0_beta, 0.0)
+    t195 = (t83 + t194) * _runtime.select(spent_alpha, leniency, 1.0)
+    del t194
+    t196 = t193 & (-(_runtime.FEASIBILITY * t195) <= -t80)
+    del t195, t80
+    t197 = _runtime.select(spent_beta, gain_1_beta + gain_0_beta, 0.0)
     del gain_0_beta, gain_1_beta
-    t197 = (t132 + t196) * _runtime.select(spent_beta, leniency, 1.0)
-    del t196
-    t198 = t195 & (-(_runtime.FEASIBILITY * t197) <= -t130)
-    del t130, t195, t197
-    t199 = _runtime.select(spent_alpha | spent_beta, leniency, 1.0)
-    t200 = -(_runtime.FEASIBILITY * (play * t199))
-    t201 = t198 & (t200 <= t161 - t159) & (t200 <= -(t159 + t161))
-    del t161, t198
-    t202 = 32.0 * play
-    t203 = t199 * t202
-    del t199
-    t204 = L1 / 1000000000.0
-    t205 = _runtime.select(spent_along, t160 / (t204 - t159), 0.0)
+    t198 = (t132 + t197) * _runtime.select(spent_beta, leniency, 1.0)
+    del t197
+    t199 = t196 & (-(_runtime.FEASIBILITY * t198) <= -t130)
+    del t130, t196, t198
+    t200 = _runtime.select(spent_alpha | spent_beta, leniency, 1.0)
+    t201 = -(_runtime.FEASIBILITY * (play * t200))
+    t202 = t199 & (t201 <= t161 - t159) & (t201 <= -(t159 + t161))
+    del t161, t199
+    t203 = 32.0 * play
+    t204 = t200 * t203
+    del t200
+    t205 = L1 / 1000000000.0
+    t206 = _runtime.select(spent_along, t160 / (t205 - t159), 0.0)
     del t160
-    t206 = -(_runtime.FEASIBILITY * (t203 * (1.0 + t205)))
-    del t205
-    t207 = t201 & (t200 <= t163) & (t200 <= t165) & (t206 <= left_along)
-    del t163, t165, t201, t206
-    t208 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
-    del left_along
-    t209 = t208 / (t159 * t159 + v_2_beta * v_2_beta) * _runtime.sign(-t167)
-    del t159, t167, t208
-    t210 = _runtime.select(spent_along, t162 + whole_y * t209, t162)
-    del spent_along, t162, t209
-    t211 = whole_y + t210
-    t212 = whole_y - t210
-    del t210, whole_y
-    t213 = -(_runtime.FEASIBILITY * t203)
-    del t203
-    below_beta = np.maximum(t211, t164)
-    above_beta = np.maximum(t212, t164)
-    t214 = 1.0 / (below_beta + above_beta)
-    t215 = (below_beta - above_beta) * t214
-    t216 = t154 - v_2_beta * t215
+    t207 = -(_runtime.FEASIBILITY * (t204 * (1.0 + t206)))
+    del t206
+    t208 = t202 & (t201 <= t163) & (t201 <= t166) & (t207 <= left_along)
+    del t163, t166, t202, t207
+    t209 = v_2_beta * left_along / (t159 * t159 + v_2_beta * v_2_beta)
+    del t159
+    t210 = whole_y * _runtime.select(-t168 < 0.0, t209, -t209)
+    del t168, t209
+    t211 = np.maximum(-whole_y, np.minimum(-t162, whole_y))
+    t212 = np.maximum(-whole_y, np.minimum(whole_y, t210 + t211))
+    del t210, t211
+    t213 = _runtime.select(left_along < 0.0, t212, -t162)
+    del left_along, t212
+    eased = _runtime.select(spent_along, t213, -t162)
+    del spent_along, t162, t213
+    t214 = whole_y - eased
+    t215 = whole_y + eased
+    del eased, whole_y
+    t216 = -(_runtime.FEASIBILITY * t204)
+    del t204
+    below_beta = np.maximum(t214, t165)
+    above_beta = np.maximum(t215, t165)
+    del t165
+    t217 = 1.0 / (below_beta + above_beta)
+    t218 = (below_beta - above_beta) * t217
+    t219 = t154 - v_2_beta * t218
     del t154, v_2_beta
-    t217 = L1 + t216
-    t218 = t207 & (t200 <= t211) & (t200 <= t212) & (t213 <= t217)
-    del t200, t207, t211, t212
-    t219 = L1 - t216
-    unreachable = np.logical_not(t218 & (t213 <= t219))
-    del t213, t218
-    t220 = _runtime.poison(invalid | unreachable)
-    t221 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
-    t222 = np.arctan2(lean_alpha + lean_beta, 1.0 - lean_alpha * lean_beta)
+    t220 = L1 + t219
+    t221 = t208 & (t201 <= t214) & (t201 <= t215) & (t216 <= t220)
+    del t201, t208, t214, t215
+    t222 = L1 - t219
+    unreachable = np.logical_not(t221 & (t216 <= t222))
+    del t216, t221
+    t223 = _runtime.poison(invalid | unreachable)
+    t224 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
+    t225 = np.arctan2(lean_alpha + lean_beta, 1.0 - lean_alpha * lean_beta)
     del lean_alpha, lean_beta
-    t223 = t221 + t222
-    del t221
-    below_alpha = np.maximum(t217, t164)
-    del t217
-    above_alpha = np.maximum(t219, t164)
-    del t219
-    t224 = 1.0 / (below_alpha + above_alpha)
-    t225 = (below_alpha - above_alpha) * t224
-    t226 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t226 = t224 + t225
+    del t224
+    t227 = _runtime.VANISHING * (_runtime.VANISHING * (L1 * 16.0 + t164))
+    below_alpha = np.maximum(t220, t227)
+    del t220
+    above_alpha = np.maximum(t222, t227)
+    del t222
+    t228 = 1.0 / (below_alpha + above_alpha)
+    t229 = (below_alpha - above_alpha) * t228
+    t230 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
     del above_alpha, below_alpha
-    t227 = np.arctan2(t225, t224 * t226)
-    del t224, t226
-    t228 = np.arctan2(s_lag, c_lag)
+    t231 = np.arctan2(t229, t228 * t230)
+    del t228, t230
+    t232 = np.arctan2(s_lag, c_lag)
     del c_lag, s_lag
-    t229 = _runtime.select(short, 0.0, np.arctan2(t62, t71))
+    t233 = _runtime.select(short, 0.0, np.arctan2(t62, t71))
     del t62, t71
-    t230 = t228 - t229
-    t231 = np.arctan2(fore_turn_alpha + fore_turn_beta, 1.0 - fore_turn_alpha * fore_turn_beta)
+    t234 = t232 - t233
+    t235 = np.arctan2(fore_turn_alpha + fore_turn_beta, 1.0 - fore_turn_alpha * fore_turn_beta)
     del fore_turn_alpha, fore_turn_beta
-    t232 = t230 - (t222 - t231)
-    del t222, t231
-    t233 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
+    t236 = t234 - (t225 - t235)
+    del t225, t235
+    t237 = 2.0 * np.sqrt(above_beta) * np.sqrt(below_beta)
     del above_beta, below_beta
-    t234 = t227 - np.arctan2(t215, t214 * t233)
-    del t214, t233
-    t235 = _runtime.wrap(principal_pitch)
+    t238 = t231 - np.arctan2(t218, t217 * t237)
+    del t217, t237
+    t239 = _runtime.wrap(principal_pitch)
     del principal_pitch
     out_front_elbow_down = t61 + t64
     del t61, t64
     up_front_elbow_down = t65 - t66
     del t65, t66
-    t236 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
-    t237 = 1.0 / np.sqrt(t236)
-    del t236
-    t238 = out_front_elbow_down * t237
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t238)
-    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t237)
-    del t237
-    t239 = higher * stheta2A_front_elbow_down
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t239
+    t240 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
+    t241 = 1.0 / np.sqrt(t240)
+    del t240
+    t242 = out_front_elbow_down * t241
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t242)
+    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t241)
+    del t241
+    t243 = higher * stheta2A_front_elbow_down
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t243
     s_relative_front_elbow_down = t72 + t73
     del t72, t73
     c_relative_front_elbow_down = t74 - t75
     del t74, t75
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    t240 = ahead * stheta2A_front_elbow_down
-    t241 = t240 - higher * ctheta2A_front_elbow_down
+    t244 = ahead * stheta2A_front_elbow_down
+    t245 = t244 - higher * ctheta2A_front_elbow_down
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
-    t242 = p_1_front_elbow_down * v_2_front_elbow_down + t241 * v_1_front_elbow_down
+    t246 = p_1_front_elbow_down * v_2_front_elbow_down + t245 * v_1_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t243 = np.abs(whole_alpha_front_elbow_down)
-    t244 = np.abs(t242) - t243
-    t245 = np.maximum(t244 * 9.094947017729282e-13, -t244)
-    spent_alpha_front_elbow_down = t245 <= t84
-    del t245
-    t246 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
+    t247 = np.abs(whole_alpha_front_elbow_down)
+    t248 = np.abs(t246) - t247
+    t249 = np.maximum(t248 * 9.094947017729282e-13, -t248)
+    spent_alpha_front_elbow_down = t249 <= t84
+    del t249
+    t250 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
-    slope_aside_alpha_front_elbow_down = L1 * t246
-    t247 = np.abs(slope_aside_alpha_front_elbow_down)
+    slope_aside_alpha_front_elbow_down = L1 * t250
+    t251 = np.abs(slope_aside_alpha_front_elbow_down)
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
-    t248 = np.abs(tilt_front_elbow_down)
-    t249 = t89 & (t90 <= t248)
+    t252 = np.abs(tilt_front_elbow_down)
+    t253 = t89 & (t90 <= t252)
     del t89, t90
-    wider_front_elbow_down = _runtime.select(t249 & t93, 128.0, 1.0)
+    wider_front_elbow_down = _runtime.select(t253 & t93, 128.0, 1.0)
     del t93
-    t250 = L1 + t88 * wider_front_elbow_down / 2000000.0
-    t251 = wider_front_elbow_down * wider_front_elbow_down
-    t252 = 1.0 / (slack * t251)
-    del t251
-    t253 = t250 * t252
-    del t250
-    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t253, 1.0)
-    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t247 / heavy_1_alpha_front_elbow_down, 0.0)
-    t254 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
-    t255 = stheta2A_front_elbow_down * tilt_front_elbow_down
-    aside_rate_front_elbow_down = _runtime.select(t249, -(t99 * t255), 0.0)
+    t254 = L1 + t88 * wider_front_elbow_down / 2000000.0
+    t255 = wider_front_elbow_down * wider_front_elbow_down
+    t256 = 1.0 / (slack * t255)
     del t255
-    t256 = slope_aside_alpha_front_elbow_down * aside_rate_front_elbow_down
-    fore_rate_front_elbow_down = _runtime.select(t249, ctheta2A_front_elbow_down, 1.0)
+    t257 = t254 * t256
+    del t254
+    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t257, 1.0)
+    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t251 / heavy_1_alpha_front_elbow_down, 0.0)
+    t258 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
+    t259 = stheta2A_front_elbow_down * tilt_front_elbow_down
+    aside_rate_front_elbow_down = _runtime.select(t253, -(t99 * t259), 0.0)
+    del t259
+    t260 = slope_aside_alpha_front_elbow_down * aside_rate_front_elbow_down
+    fore_rate_front_elbow_down = _runtime.select(t253, ctheta2A_front_elbow_down, 1.0)
     del ctheta2A_front_elbow_down
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
     del L_2W, a_3W, c_relative_front_elbow_down, s_relative_front_elbow_down
-    t257 = t246 * drawn_front_elbow_down
-    del t246
-    t258 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t241
-    t259 = fore_rate_front_elbow_down * (t257 - _runtime.sign(-t242) * t258)
-    del t242, t258
-    slope_alpha_front_elbow_down = t256 - t259
-    del t256, t259
-    t260 = np.abs(slope_alpha_front_elbow_down)
-    t261 = t248 * _runtime.select(t249, t105, 1.0)
-    del t105, t248
-    t262 = t87 * wider_front_elbow_down
+    t261 = t250 * drawn_front_elbow_down
+    del t250
+    t262 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t245
+    t263 = fore_rate_front_elbow_down * (t261 - _runtime.sign(-t246) * t262)
+    del t246, t262
+    slope_alpha_front_elbow_down = t260 - t263
+    del t260, t263
+    t264 = np.abs(slope_alpha_front_elbow_down)
+    t265 = t252 * _runtime.select(t253, t105, 1.0)
+    del t105, t252
+    t266 = t87 * wider_front_elbow_down
     del wider_front_elbow_down
-    t263 = aside_rate_front_elbow_down + fore_rate_front_elbow_down
-    t264 = fore_rate_front_elbow_down * drawn_front_elbow_down
-    t265 = t263 - t99 * t264
-    del t263
-    t266 = fore_rate_front_elbow_down * fore_rate_front_elbow_down
-    t267 = tilt_front_elbow_down * tilt_front_elbow_down
-    t268 = _runtime.select(t249, t104, 0.0) * t267
-    del t104, t267
-    t269 = np.sqrt(L1 * (t265 * t265) + fore * t266 + t268)
-    del t265, t266
-    t270 = t252 * (t261 + t262 * t269 / 2000000.0)
-    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t270, 1.0)
-    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t260 / heavy_0_alpha_front_elbow_down, 0.0)
-    t271 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
-    t272 = _runtime.select(-t244 < 0.0, t254 / (t98 + t254 + t271), 0.0)
-    del t254, t271
-    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t272, 0.0)
-    del t272
-    t273 = _runtime.sign(slope_aside_alpha_front_elbow_down)
-    t274 = t83 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
+    t267 = aside_rate_front_elbow_down + fore_rate_front_elbow_down
+    t268 = fore_rate_front_elbow_down * drawn_front_elbow_down
+    t269 = t267 - t99 * t268
+    del t267
+    t270 = fore_rate_front_elbow_down * fore_rate_front_elbow_down
+    t271 = tilt_front_elbow_down * tilt_front_elbow_down
+    t272 = _runtime.select(t253, t104, 0.0) * t271
+    del t104, t271
+    t273 = np.sqrt(L1 * (t269 * t269) + fore * t270 + t272)
+    del t269, t270
+    t274 = t256 * (t265 + t266 * t273 / 2000000.0)
+    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t274, 1.0)
+    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t264 / heavy_0_alpha_front_elbow_down, 0.0)
+    t275 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
+    t276 = _runtime.select(-t248 < 0.0, t258 / (t98 + t258 + t275), 0.0)
+    del t258, t275
+    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t276, 0.0)
+    del t276
+    t277 = _runtime.sign(slope_aside_alpha_front_elbow_down)
+    t278 = t83 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
     del heavy_1_alpha_front_elbow_down
-    t275 = t244 * share_alpha_front_elbow_down * t273 / (t247 + t274)
-    del t274
-    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t275, 0.0)
-    del t275
-    lack_alpha_front_elbow_down = t244 * (1.0 - share_alpha_front_elbow_down)
+    t279 = t248 * share_alpha_front_elbow_down * t277 / (t251 + t278)
+    del t278
+    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t279, 0.0)
+    del t279
+    lack_alpha_front_elbow_down = t248 * (1.0 - share_alpha_front_elbow_down)
     del share_alpha_front_elbow_down
-    t276 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
-    t277 = t83 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
+    t280 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
+    t281 = t83 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
     del heavy_0_alpha_front_elbow_down
-    t278 = 1.0 / (t260 + t277)
-    del t260, t277
-    t279 = lack_alpha_front_elbow_down * t278
+    t282 = 1.0 / (t264 + t281)
+    del t264, t281
+    t283 = lack_alpha_front_elbow_down * t282
     del lack_alpha_front_elbow_down
-    t280 = (t276 * t278 <= 9.094947017729282e-13) & (0.0 < t279)
-    del t276, t278
-    t281 = _runtime.sign(slope_alpha_front_elbow_down) * _runtime.select(t280, t279, 0.0)
-    del slope_alpha_front_elbow_down, t279, t280
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t281, 0.0)
-    del t281
-    t282 = aside_rate_front_elbow_down * turn_alpha_front_elbow_down
-    t283 = fore_rate_front_elbow_down * turn_alpha_front_elbow_down
-    t284 = aside_alpha_front_elbow_down + t282 + t283 - t99 * (t264 * turn_alpha_front_elbow_down)
-    del t282
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t284, 0.0)
-    del t284
-    t285 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t286 = np.sqrt(1.0 + t285)
+    t284 = (t280 * t282 <= 9.094947017729282e-13) & (0.0 < t283)
+    del t280, t282
+    t285 = _runtime.sign(slope_alpha_front_elbow_down) * _runtime.select(t284, t283, 0.0)
+    del slope_alpha_front_elbow_down, t283, t284
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t285, 0.0)
     del t285
-    t287 = 1.0 / t286
-    t288 = p_1_front_elbow_down * t287 - t241 * lean_alpha_front_elbow_down * t287
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t288, p_1_front_elbow_down)
+    t286 = aside_rate_front_elbow_down * turn_alpha_front_elbow_down
+    t287 = fore_rate_front_elbow_down * turn_alpha_front_elbow_down
+    t288 = aside_alpha_front_elbow_down + t286 + t287 - t99 * (t268 * turn_alpha_front_elbow_down)
+    del t286
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t288, 0.0)
     del t288
+    t289 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t290 = np.sqrt(1.0 + t289)
+    del t289
+    t291 = 1.0 / t290
+    t292 = p_1_front_elbow_down * t291 - t245 * lean_alpha_front_elbow_down * t291
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t292, p_1_front_elbow_down)
+    del t292
     part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    fore_turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t283, 0.0)
-    del t283
-    t289 = fore_turn_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
-    t290 = 1.0 / (t286 * np.sqrt(1.0 + t289))
-    del t286, t289
-    t291 = lean_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
-    t292 = t290 + t290 * t291
-    del t291
-    t293 = fore_turn_alpha_front_elbow_down * t290 - lean_alpha_front_elbow_down * t290
-    del t290
-    t294 = v_1_front_elbow_down * t292 - v_2_front_elbow_down * t293
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t294, v_1_front_elbow_down)
+    fore_turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t287, 0.0)
+    del t287
+    t293 = fore_turn_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
+    t294 = 1.0 / (t290 * np.sqrt(1.0 + t293))
+    del t290, t293
+    t295 = lean_alpha_front_elbow_down * fore_turn_alpha_front_elbow_down
+    t296 = t294 + t294 * t295
+    del t295
+    t297 = fore_turn_alpha_front_elbow_down * t294 - lean_alpha_front_elbow_down * t294
     del t294
+    t298 = v_1_front_elbow_down * t296 - v_2_front_elbow_down * t297
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t298, v_1_front_elbow_down)
+    del t298
     whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t295 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
-    t296 = np.maximum(t295 * 9.094947017729282e-13, -t295)
-    spent_beta_front_elbow_down = t296 <= t133
-    del t296
-    t297 = p_1_front_elbow_down * lean_alpha_front_elbow_down
-    del p_1_front_elbow_down
-    t298 = _runtime.select(spent_alpha_front_elbow_down, t287 * t297 + t241 * t287, t241)
-    del t241, t287, t297
-    t299 = t298 * _runtime.sign(part_beta_front_elbow_down)
-    del part_beta_front_elbow_down
-    t300 = v_1_front_elbow_down * t293 + v_2_front_elbow_down * t292
-    del t292, t293
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t300, v_2_front_elbow_down)
+    t299 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
+    t300 = np.maximum(t299 * 9.094947017729282e-13, -t299)
+    spent_beta_front_elbow_down = t300 <= t133
     del t300
-    t301 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
+    t301 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    del p_1_front_elbow_down
+    t302 = _runtime.select(spent_alpha_front_elbow_down, t291 * t301 + t245 * t291, t245)
+    del t245, t291, t301
+    t303 = t302 * _runtime.sign(part_beta_front_elbow_down)
+    del part_beta_front_elbow_down
+    t304 = v_1_front_elbow_down * t297 + v_2_front_elbow_down * t296
+    del t296, t297
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t304, v_2_front_elbow_down)
+    del t304
+    t305 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
     del whole_beta_front_elbow_down
-    slope_aside_beta_front_elbow_down = L1 * (t299 + t301)
-    t302 = np.abs(slope_aside_beta_front_elbow_down)
-    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t253, 1.0)
-    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t302 / heavy_1_beta_front_elbow_down, 0.0)
-    t303 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
-    t304 = aside_rate_front_elbow_down * slope_aside_beta_front_elbow_down
-    t305 = L1 - drawn_front_elbow_down
-    t306 = fore_rate_front_elbow_down * (drawn_front_elbow_down * t301 - t299 * t305)
-    del t299, t301
-    slope_beta_front_elbow_down = t304 - t306
-    del t304, t306
-    t307 = np.abs(slope_beta_front_elbow_down)
-    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t270, 1.0)
-    del t270
-    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t307 / heavy_0_beta_front_elbow_down, 0.0)
-    t308 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
-    t309 = _runtime.select(-t295 < 0.0, t303 / (t139 + t303 + t308), 0.0)
-    del t303, t308
-    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t309, 0.0)
-    del t309
-    t310 = _runtime.sign(slope_aside_beta_front_elbow_down)
+    slope_aside_beta_front_elbow_down = L1 * (t303 + t305)
+    t306 = np.abs(slope_aside_beta_front_elbow_down)
+    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t257, 1.0)
+    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t306 / heavy_1_beta_front_elbow_down, 0.0)
+    t307 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
+    t308 = aside_rate_front_elbow_down * slope_aside_beta_front_elbow_down
+    t309 = L1 - drawn_front_elbow_down
+    t310 = fore_rate_front_elbow_down * (drawn_front_elbow_down * t305 - t303 * t309)
+    del t303, t305
+    slope_beta_front_elbow_down = t308 - t310
+    del t308, t310
+    t311 = np.abs(slope_beta_front_elbow_down)
+    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t274, 1.0)
+    del t274
+    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t311 / heavy_0_beta_front_elbow_down, 0.0)
+    t312 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
+    t313 = _runtime.select(-t299 < 0.0, t307 / (t139 + t307 + t312), 0.0)
+    del t307, t312
+    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t313, 0.0)
+    del t313
+    t314 = _runtime.sign(slope_aside_beta_front_elbow_down)
     del slope_aside_beta_front_elbow_down
-    t311 = t132 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
+    t315 = t132 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_1_beta_front_elbow_down
-    t312 = t295 * share_beta_front_elbow_down * t310 / (t302 + t311)
-    del t302, t310, t311
-    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t312, 0.0)
-    del t312
-    lack_beta_front_elbow_down = t295 * (1.0 - share_beta_front_elbow_down)
+    t316 = t299 * share_beta_front_elbow_down * t314 / (t306 + t315)
+    del t306, t314, t315
+    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t316, 0.0)
+    del t316
+    lack_beta_front_elbow_down = t299 * (1.0 - share_beta_front_elbow_down)
     del share_beta_front_elbow_down
-    t313 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
-    t314 = t132 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
+    t317 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
+    t318 = t132 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
     del heavy_0_beta_front_elbow_down
-    t315 = 1.0 / (t307 + t314)
-    del t307, t314
-    t316 = lack_beta_front_elbow_down * t315
+    t319 = 1.0 / (t311 + t318)
+    del t311, t318
+    t320 = lack_beta_front_elbow_down * t319
     del lack_beta_front_elbow_down
-    t317 = (t313 * t315 <= 9.094947017729282e-13) & (0.0 < t316)
-    del t313, t315
-    t318 = _runtime.sign(slope_beta_front_elbow_down) * _runtime.select(t317, t316, 0.0)
-    del slope_beta_front_elbow_down, t316, t317
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t318, 0.0)
-    del t318
-    t319 = aside_rate_front_elbow_down * turn_beta_front_elbow_down
-    del aside_rate_front_elbow_down
-    t320 = fore_rate_front_elbow_down * turn_beta_front_elbow_down
-    del fore_rate_front_elbow_down
-    t321 = aside_beta_front_elbow_down + t319 + t320 - t99 * (t264 * turn_beta_front_elbow_down)
-    del t264, t319
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t321, 0.0)
-    del t321
-    t322 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
-    t323 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
-    t324 = np.sqrt(1.0 + t323)
-    del t323
-    t325 = 1.0 / t324
-    t326 = _runtime.select(spent_beta_front_elbow_down, t322 * t325 + t298 * t325, t298)
+    t321 = (t317 * t319 <= 9.094947017729282e-13) & (0.0 < t320)
+    del t317, t319
+    t322 = _runtime.sign(slope_beta_front_elbow_down) * _runtime.select(t321, t320, 0.0)
+    del slope_beta_front_elbow_down, t320, t321
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t322, 0.0)
     del t322
-    fore_turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t320, 0.0)
-    del t320
-    t327 = fore_turn_beta_front_elbow_down * fore_turn_beta_front_elbow_down
-    t328 = 1.0 / (t324 * np.sqrt(1.0 + t327))
-    del t324, t327
-    t329 = fore_turn_beta_front_elbow_down * t328 - lean_beta_front_elbow_down * t328
-    t330 = lean_beta_front_elbow_down * fore_turn_beta_front_elbow_down
-    t331 = t328 + t328 * t330
-    del t328, t330
-    t332 = v_1_alpha_front_elbow_down * t329 + v_2_alpha_front_elbow_down * t331
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t332, v_2_alpha_front_elbow_down)
-    del t332
-    t333 = v_1_alpha_front_elbow_down * t331 - v_2_alpha_front_elbow_down * t329
-    del t329, t331, v_2_alpha_front_elbow_down
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t333, v_1_alpha_front_elbow_down)
-    del t333, v_1_alpha_front_elbow_down
-    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
-    t334 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
-    t335 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t334 <= _runtime.VANISHING * (64.0 * t335)
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t335, -t334)
-    t336 = t326 * _runtime.sign(v_2_beta_front_elbow_down)
-    t337 = p_1_alpha_front_elbow_down * t325 - t325 * (t298 * lean_beta_front_elbow_down)
-    del t298, t325
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t337, p_1_alpha_front_elbow_down)
-    del p_1_alpha_front_elbow_down, t337
-    t338 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
-    del sigma_uv_front_elbow_down
-    t339 = _runtime.select(parallel_front_elbow_down, t336, t338)
+    t323 = aside_rate_front_elbow_down * turn_beta_front_elbow_down
+    del aside_rate_front_elbow_down
+    t324 = fore_rate_front_elbow_down * turn_beta_front_elbow_down
+    del fore_rate_front_elbow_down
+    t325 = aside_beta_front_elbow_down + t323 + t324 - t99 * (t268 * turn_beta_front_elbow_down)
+    del t268, t323
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t325, 0.0)
+    del t325
+    t326 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t327 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
+    t328 = np.sqrt(1.0 + t327)
+    del t327
+    t329 = 1.0 / t328
+    t330 = _runtime.select(spent_beta_front_elbow_down, t326 * t329 + t302 * t329, t302)
+    del t326
+    fore_turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t324, 0.0)
+    del t324
+    t331 = fore_turn_beta_front_elbow_down * fore_turn_beta_front_elbow_down
+    t332 = 1.0 / (t328 * np.sqrt(1.0 + t331))
+    del t328, t331
+    t333 = fore_turn_beta_front_elbow_down * t332 - lean_beta_front_elbow_down * t332
+    t334 = lean_beta_front_elbow_down * fore_turn_beta_front_elbow_down
+    t335 = t332 + t332 * t334
+    del t332, t334
+    t336 = v_1_alpha_front_elbow_down * t333 + v_2_alpha_front_elbow_down * t335
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t336, v_2_alpha_front_elbow_down)
     del t336
-    t340 = whole_y_front_elbow_down + t339
-    below_beta_0_front_elbow_down = np.maximum(t340, t164)
-    t341 = whole_y_front_elbow_down - t339
-    above_beta_0_front_elbow_down = np.maximum(t341, t164)
-    t342 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    t337 = v_1_alpha_front_elbow_down * t335 - v_2_alpha_front_elbow_down * t333
+    del t333, t335, v_2_alpha_front_elbow_down
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t337, v_1_alpha_front_elbow_down)
+    del t337, v_1_alpha_front_elbow_down
+    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
+    t338 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    t339 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t338 <= _runtime.VANISHING * (64.0 * t339)
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t339, -t338)
+    t340 = t330 * _runtime.sign(v_2_beta_front_elbow_down)
+    t341 = p_1_alpha_front_elbow_down * t329 - t329 * (t302 * lean_beta_front_elbow_down)
+    del t302, t329
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t341, p_1_alpha_front_elbow_down)
+    del p_1_alpha_front_elbow_down, t341
+    t342 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    del sigma_uv_front_elbow_down
+    t343 = _runtime.select(parallel_front_elbow_down, t340, t342)
+    del t340
+    t344 = whole_y_front_elbow_down + t343
+    t345 = _runtime.VANISHING * (t164 + 16.0 * whole_y_front_elbow_down)
+    t346 = _runtime.VANISHING * t345
+    del t345
+    below_beta_0_front_elbow_down = np.maximum(t344, t346)
+    t347 = whole_y_front_elbow_down - t343
+    above_beta_0_front_elbow_down = np.maximum(t347, t346)
+    t348 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t343 = v_2_beta_front_elbow_down * (t342 / total_beta_0_front_elbow_down)
-    del t342, total_beta_0_front_elbow_down
-    t344 = t326 - t343
-    del t343
-    left_along_front_elbow_down = L1 - np.abs(t344)
-    t345 = left_along_front_elbow_down * 9.094947017729282e-13
-    t346 = np.maximum(-t345, left_along_front_elbow_down)
-    del t345
-    spent_along_front_elbow_down = t346 <= t169
-    del t346
-    t347 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
-    t348 = t347 | spent_beta_front_elbow_down
-    del t347
-    t349 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
-    t350 = _runtime.select(t249, -(t171 * (t10 * tilt_front_elbow_down)), 0.0)
-    del t10, t171
-    t351 = np.arctan2(_runtime.select(t348, t349 * t350, 0.0), 1.0)
+    t349 = v_2_beta_front_elbow_down * (t348 / total_beta_0_front_elbow_down)
+    del t348, total_beta_0_front_elbow_down
+    t350 = t330 - t349
     del t349
-    t352 = gain_1_alpha_front_elbow_down + gain_0_alpha_front_elbow_down
-    del gain_0_alpha_front_elbow_down, gain_1_alpha_front_elbow_down
-    t353 = _runtime.select(spent_alpha_front_elbow_down, t352, 0.0)
+    left_along_front_elbow_down = L1 - np.abs(t350)
+    t351 = left_along_front_elbow_down * 9.094947017729282e-13
+    t352 = np.maximum(-t351, left_along_front_elbow_down)
+    del t351
+    spent_along_front_elbow_down = t352 <= t170
     del t352
-    t354 = _runtime.select(spent_alpha_front_elbow_down, leniency, 1.0)
-    t355 = -(_runtime.FEASIBILITY * ((t83 + t353) * t354))
-    del t353, t354
-    t356 = gain_1_beta_front_elbow_down + gain_0_beta_front_elbow_down
+    t353 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
+    t354 = t353 | spent_beta_front_elbow_down
+    del t353
+    t355 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    t356 = _runtime.select(t253, -(t172 * (t10 * tilt_front_elbow_down)), 0.0)
+    del t10, t172
+    t357 = np.arctan2(_runtime.select(t354, t355 * t356, 0.0), 1.0)
+    del t355
+    t358 = gain_1_alpha_front_elbow_down + gain_0_alpha_front_elbow_down
+    del gain_0_alpha_front_elbow_down, gain_1_alpha_front_elbow_down
+    t359 = _runtime.select(spent_alpha_front_elbow_down, t358, 0.0)
+    del t358
+    t360 = _runtime.select(spent_alpha_front_elbow_down, leniency, 1.0)
+    t361 = -(_runtime.FEASIBILITY * ((t83 + t359) * t360))
+    del t359, t360
+    t362 = gain_1_beta_front_elbow_down + gain_0_beta_front_elbow_down
     del gain_0_beta_front_elbow_down, gain_1_beta_front_elbow_down
-    t357 = _runtime.select(spent_beta_front_elbow_down, t356, 0.0)
-    del t356
-    t358 = _runtime.select(spent_beta_front_elbow_down, leniency, 1.0)
-    t359 = _runtime.FEASIBILITY * ((t132 + t357) * t358)
-    del t357, t358
-    t360 = spent_alpha_front_elbow_down | spent_beta_front_elbow_down
-    t361 = _runtime.select(t360, leniency, 1.0)
-    del t360
-    t362 = -(_runtime.FEASIBILITY * (play * t361))
-    t363 = t192 & (t355 <= -t244) & (-t359 <= -t295) & (t362 <= t338 - t334)
-    del t244, t295, t355, t359
-    t364 = t363 & (t362 <= -(t334 + t338)) & (t362 <= t340)
-    del t338, t340, t363
-    t365 = t202 * t361
-    del t361
-    t366 = _runtime.select(spent_along_front_elbow_down, t335 / (t204 - t334), 0.0)
-    del t335
-    t367 = -(_runtime.FEASIBILITY * (t365 * (1.0 + t366)))
+    t363 = _runtime.select(spent_beta_front_elbow_down, t362, 0.0)
+    del t362
+    t364 = _runtime.select(spent_beta_front_elbow_down, leniency, 1.0)
+    t365 = _runtime.FEASIBILITY * ((t132 + t363) * t364)
+    del t363, t364
+    t366 = spent_alpha_front_elbow_down | spent_beta_front_elbow_down
+    t367 = _runtime.select(t366, leniency, 1.0)
     del t366
-    t368 = t364 & (t362 <= t341) & (t367 <= left_along_front_elbow_down)
-    del t341, t364, t367
-    t369 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
-    del left_along_front_elbow_down
-    t370 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t371 = v_2_beta_front_elbow_down * t369 / (t334 * t334 + t370)
-    del t334, t369, t370
-    t372 = whole_y_front_elbow_down * (t371 * _runtime.sign(-t344))
-    del t344, t371
-    t373 = _runtime.select(spent_along_front_elbow_down, t339 + t372, t339)
-    del spent_along_front_elbow_down, t339, t372
-    t374 = whole_y_front_elbow_down + t373
-    t375 = whole_y_front_elbow_down - t373
-    del t373, whole_y_front_elbow_down
-    t376 = -(_runtime.FEASIBILITY * t365)
-    del t365
-    below_beta_front_elbow_down = np.maximum(t374, t164)
-    above_beta_front_elbow_down = np.maximum(t375, t164)
-    t377 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t368 = -(_runtime.FEASIBILITY * (play * t367))
+    t369 = t193 & (t361 <= -t248) & (-t365 <= -t299) & (t368 <= t342 - t338)
+    del t248, t299, t361, t365
+    t370 = t369 & (t368 <= -(t338 + t342)) & (t368 <= t344)
+    del t342, t344, t369
+    t371 = t203 * t367
+    del t367
+    t372 = _runtime.select(spent_along_front_elbow_down, t339 / (t205 - t338), 0.0)
+    del t339
+    t373 = -(_runtime.FEASIBILITY * (t371 * (1.0 + t372)))
+    del t372
+    t374 = t370 & (t368 <= t347) & (t373 <= left_along_front_elbow_down)
+    del t347, t370, t373
+    t375 = v_2_beta_front_elbow_down * left_along_front_elbow_down
+    t376 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t377 = t375 / (t338 * t338 + t376)
+    del t338, t375, t376
+    t378 = whole_y_front_elbow_down * _runtime.select(-t350 < 0.0, t377, -t377)
+    del t350, t377
+    t379 = np.maximum(-whole_y_front_elbow_down, np.minimum(-t343, whole_y_front_elbow_down))
+    t380 = np.minimum(whole_y_front_elbow_down, t378 + t379)
+    del t378, t379
+    t381 = _runtime.select(left_along_front_elbow_down < 0.0, np.maximum(-whole_y_front_elbow_down, t380), -t343)
+    del left_along_front_elbow_down, t380
+    eased_front_elbow_down = _runtime.select(spent_along_front_elbow_down, t381, -t343)
+    del spent_along_front_elbow_down, t343, t381
+    t382 = whole_y_front_elbow_down - eased_front_elbow_down
+    t383 = whole_y_front_elbow_down + eased_front_elbow_down
+    del eased_front_elbow_down, whole_y_front_elbow_down
+    t384 = -(_runtime.FEASIBILITY * t371)
+    del t371
+    below_beta_front_elbow_down = np.maximum(t382, t346)
+    above_beta_front_elbow_down = np.maximum(t383, t346)
+    del t346
+    t385 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t378 = 1.0 / total_beta_front_elbow_down
+    t386 = 1.0 / total_beta_front_elbow_down
     del total_beta_front_elbow_down
-    t379 = t377 * t378
-    del t377
-    t380 = t326 - v_2_beta_front_elbow_down * t379
-    del t326, v_2_beta_front_elbow_down
-    t381 = L1 + t380
-    t382 = t368 & (t362 <= t374) & (t362 <= t375) & (t376 <= t381)
-    del t362, t368, t374, t375
-    t383 = L1 - t380
-    unreachable_2 = np.logical_not(t382 & (t376 <= t383))
-    del t376, t382
-    t384 = _runtime.poison(invalid | unreachable_2)
-    t385 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
-    t386 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
-    t387 = lean_alpha_front_elbow_down * lean_beta_front_elbow_down
-    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t388 = np.arctan2(t386, 1.0 - t387)
-    del t386, t387
-    t389 = _runtime.select(folded, 0.0, t385) + t388
+    t387 = t385 * t386
     del t385
-    below_alpha_front_elbow_down = np.maximum(t381, t164)
-    del t381
-    above_alpha_front_elbow_down = np.maximum(t383, t164)
-    del t383
-    t390 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t388 = t330 - v_2_beta_front_elbow_down * t387
+    del t330, v_2_beta_front_elbow_down
+    t389 = L1 + t388
+    t390 = t374 & (t368 <= t382) & (t368 <= t383) & (t384 <= t389)
+    del t368, t374, t382, t383
+    t391 = L1 - t388
+    unreachable_2 = np.logical_not(t390 & (t384 <= t391))
+    del t384, t390
+    t392 = _runtime.poison(invalid | unreachable_2)
+    t393 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
+    t394 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    t395 = lean_alpha_front_elbow_down * lean_beta_front_elbow_down
+    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
+    t396 = np.arctan2(t394, 1.0 - t395)
+    del t394, t395
+    t397 = _runtime.select(folded, 0.0, t393) + t396
+    del t393
+    below_alpha_front_elbow_down = np.maximum(t389, t227)
+    del t389
+    above_alpha_front_elbow_down = np.maximum(t391, t227)
+    del t391
+    t398 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t391 = 1.0 / total_alpha_front_elbow_down
+    t399 = 1.0 / total_alpha_front_elbow_down
     del total_alpha_front_elbow_down
-    t392 = t390 * t391
-    del t390
-    t393 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t400 = t398 * t399
+    del t398
+    t401 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t394 = np.arctan2(t392, t391 * t393)
-    del t391, t393
-    t395 = t228 + t229
-    del t228, t229
-    t396 = fore_turn_alpha_front_elbow_down + fore_turn_beta_front_elbow_down
-    t397 = fore_turn_alpha_front_elbow_down * fore_turn_beta_front_elbow_down
+    t402 = np.arctan2(t400, t399 * t401)
+    del t399, t401
+    t403 = t232 + t233
+    del t232, t233
+    t404 = fore_turn_alpha_front_elbow_down + fore_turn_beta_front_elbow_down
+    t405 = fore_turn_alpha_front_elbow_down * fore_turn_beta_front_elbow_down
     del fore_turn_alpha_front_elbow_down, fore_turn_beta_front_elbow_down
-    t398 = t395 - (t388 - np.arctan2(t396, 1.0 - t397))
-    del t388, t396, t397
-    t399 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
+    t406 = t403 - (t396 - np.arctan2(t404, 1.0 - t405))
+    del t396, t404, t405
+    t407 = 2.0 * np.sqrt(above_beta_front_elbow_down) * np.sqrt(below_beta_front_elbow_down)
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t400 = t394 - np.arctan2(t379, t378 * t399)
-    del t378, t399
+    t408 = t402 - np.arctan2(t387, t386 * t407)
+    del t386, t407
     ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t68)
     del t68
     p_1_rear_elbow_up = t69 + ahead * ctheta2A_rear_elbow_up
     del t69
-    t401 = t76 - higher * ctheta2A_rear_elbow_up
+    t409 = t76 - higher * ctheta2A_rear_elbow_up
     del t76
-    t402 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t401
-    margin_alpha_rear_elbow_up = t243 - np.abs(t402)
-    del t243
-    t403 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t404 = np.maximum(-t403, margin_alpha_rear_elbow_up)
-    del t403
-    spent_alpha_rear_elbow_up = t404 <= t84
-    del t404
-    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t253, 1.0)
-    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t247 / heavy_1_alpha_rear_elbow_up, 0.0)
-    t405 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
-    aside_rate_rear_elbow_up = _runtime.select(t249, -(t99 * (stheta2A * tilt_front_elbow_down)), 0.0)
+    t410 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t409
+    margin_alpha_rear_elbow_up = t247 - np.abs(t410)
+    del t247
+    t411 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t412 = np.maximum(-t411, margin_alpha_rear_elbow_up)
+    del t411
+    spent_alpha_rear_elbow_up = t412 <= t84
+    del t412
+    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t257, 1.0)
+    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t251 / heavy_1_alpha_rear_elbow_up, 0.0)
+    t413 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
+    aside_rate_rear_elbow_up = _runtime.select(t253, -(t99 * (stheta2A * tilt_front_elbow_down)), 0.0)
     del stheta2A, tilt_front_elbow_down
-    t406 = slope_aside_alpha_front_elbow_down * aside_rate_rear_elbow_up
+    t414 = slope_aside_alpha_front_elbow_down * aside_rate_rear_elbow_up
     del slope_aside_alpha_front_elbow_down
-    fore_rate_rear_elbow_up = _runtime.select(t249, ctheta2A_rear_elbow_up, 1.0)
-    del ctheta2A_rear_elbow_up, t249
-    t407 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t401
-    t408 = fore_rate_rear_elbow_up * (t257 - _runtime.sign(-t402) * t407)
-    del t257, t402, t407
-    slope_alpha_rear_elbow_up = t406 - t408
-    del t406, t408
-    t409 = np.abs(slope_alpha_rear_elbow_up)
-    t410 = aside_rate_rear_elbow_up + fore_rate_rear_elbow_up
-    t411 = drawn_front_elbow_down * fore_rate_rear_elbow_up
-    t412 = t410 - t99 * t411
-    del t410
-    t413 = fore_rate_rear_elbow_up * fore_rate_rear_elbow_up
-    t414 = np.sqrt(t268 + L1 * (t412 * t412) + fore * t413)
-    del t268, t412, t413
-    t415 = t252 * (t261 + t262 * t414 / 2000000.0)
-    del t252, t262
-    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t415, 1.0)
-    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t409 / heavy_0_alpha_rear_elbow_up, 0.0)
-    t416 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
-    t417 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t405 / (t98 + t405 + t416), 0.0)
-    del t405, t416
-    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t417, 0.0)
-    del t417
-    t418 = t273 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
-    del t273
-    t419 = t83 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
+    fore_rate_rear_elbow_up = _runtime.select(t253, ctheta2A_rear_elbow_up, 1.0)
+    del ctheta2A_rear_elbow_up, t253
+    t415 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t409
+    t416 = fore_rate_rear_elbow_up * (t261 - _runtime.sign(-t410) * t415)
+    del t261, t410, t415
+    slope_alpha_rear_elbow_up = t414 - t416
+    del t414, t416
+    t417 = np.abs(slope_alpha_rear_elbow_up)
+    t418 = aside_rate_rear_elbow_up + fore_rate_rear_elbow_up
+    t419 = drawn_front_elbow_down * fore_rate_rear_elbow_up
+    t420 = t418 - t99 * t419
+    del t418
+    t421 = fore_rate_rear_elbow_up * fore_rate_rear_elbow_up
+    t422 = np.sqrt(t272 + L1 * (t420 * t420) + fore * t421)
+    del t272, t420, t421
+    t423 = t256 * (t265 + t266 * t422 / 2000000.0)
+    del t256, t266
+    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t423, 1.0)
+    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t417 / heavy_0_alpha_rear_elbow_up, 0.0)
+    t424 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
+    t425 = _runtime.select(margin_alpha_rear_elbow_up < 0.0, t413 / (t98 + t413 + t424), 0.0)
+    del t413, t424
+    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t425, 0.0)
+    del t425
+    t426 = t277 * margin_alpha_rear_elbow_up * share_alpha_rear_elbow_up
+    del t277
+    t427 = t83 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_up
-    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t418 / (t247 + t419)), 0.0)
-    del t247, t418, t419
-    t420 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
+    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t426 / (t251 + t427)), 0.0)
+    del t251, t426, t427
+    t428 = margin_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
     del share_alpha_rear_elbow_up
-    t421 = t83 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
-    t422 = 1.0 / (t409 + t421)
-    del t409, t421
-    t423 = -(heavy_0_alpha_rear_elbow_up * t420 * t422) <= 9.094947017729282e-13
+    t429 = t83 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
+    t430 = 1.0 / (t417 + t429)
+    del t417, t429
+    t431 = -(heavy_0_alpha_rear_elbow_up * t428 * t430) <= 9.094947017729282e-13
     del heavy_0_alpha_rear_elbow_up
-    t424 = -(t420 * t422)
-    del t420, t422
-    t425 = _runtime.select(t423 & (0.0 < t424), t424, 0.0)
-    del t423, t424
-    t426 = _runtime.sign(slope_alpha_rear_elbow_up) * t425
-    del slope_alpha_rear_elbow_up, t425
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t426, 0.0)
-    del t426
-    t427 = aside_rate_rear_elbow_up * turn_alpha_rear_elbow_up
-    t428 = fore_rate_rear_elbow_up * turn_alpha_rear_elbow_up
-    t429 = aside_alpha_rear_elbow_up + t427 + t428 - t99 * (t411 * turn_alpha_rear_elbow_up)
-    del t427
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t429, 0.0)
-    del t429
-    t430 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t431 = np.sqrt(1.0 + t430)
-    del t430
-    t432 = 1.0 / t431
-    t433 = p_1_rear_elbow_up * t432 - t401 * lean_alpha_rear_elbow_up * t432
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t433, p_1_rear_elbow_up)
-    del t433
-    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    fore_turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t428, 0.0)
-    del t428
-    t434 = fore_turn_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
-    t435 = 1.0 / (t431 * np.sqrt(1.0 + t434))
-    del t431, t434
-    t436 = lean_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
-    t437 = t435 + t435 * t436
-    del t436
-    t438 = fore_turn_alpha_rear_elbow_up * t435 - lean_alpha_rear_elbow_up * t435
+    t432 = -(t428 * t430)
+    del t428, t430
+    t433 = _runtime.select(t431 & (0.0 < t432), t432, 0.0)
+    del t431, t432
+    t434 = _runtime.sign(slope_alpha_rear_elbow_up) * t433
+    del slope_alpha_rear_elbow_up, t433
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t434, 0.0)
+    del t434
+    t435 = aside_rate_rear_elbow_up * turn_alpha_rear_elbow_up
+    t436 = fore_rate_rear_elbow_up * turn_alpha_rear_elbow_up
+    t437 = aside_alpha_rear_elbow_up + t435 + t436 - t99 * (t419 * turn_alpha_rear_elbow_up)
     del t435
-    t439 = v_1_front_elbow_down * t437 - v_2_front_elbow_down * t438
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t439, v_1_front_elbow_down)
-    del t439
-    whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t440 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
-    t441 = np.maximum(t440 * 9.094947017729282e-13, -t440)
-    spent_beta_rear_elbow_up = t441 <= t133
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t437, 0.0)
+    del t437
+    t438 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t439 = np.sqrt(1.0 + t438)
+    del t438
+    t440 = 1.0 / t439
+    t441 = p_1_rear_elbow_up * t440 - t409 * lean_alpha_rear_elbow_up * t440
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t441, p_1_rear_elbow_up)
     del t441
-    t442 = t432 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
+    part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
+    fore_turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t436, 0.0)
+    del t436
+    t442 = fore_turn_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
+    t443 = 1.0 / (t439 * np.sqrt(1.0 + t442))
+    del t439, t442
+    t444 = lean_alpha_rear_elbow_up * fore_turn_alpha_rear_elbow_up
+    t445 = t443 + t443 * t444
+    del t444
+    t446 = fore_turn_alpha_rear_elbow_up * t443 - lean_alpha_rear_elbow_up * t443
+    del t443
+    t447 = v_1_front_elbow_down * t445 - v_2_front_elbow_down * t446
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t447, v_1_front_elbow_down)
+    del t447
+    whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
+    t448 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    t449 = np.maximum(t448 * 9.094947017729282e-13, -t448)
+    spent_beta_rear_elbow_up = t449 <= t133
+    del t449
+    t450 = t440 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
     del p_1_rear_elbow_up
-    t443 = _runtime.select(spent_alpha_rear_elbow_up, t442 + t401 * t432, t401)
-    del t401, t432, t442
-    t444 = t443 * _runtime.sign(part_beta_rear_elbow_up)
+    t451 = _runtime.select(spent_alpha_rear_elbow_up, t450 + t409 * t440, t409)
+    del t409, t440, t450
+    t452 = t451 * _runtime.sign(part_beta_rear_elbow_up)
     del part_beta_rear_elbow_up
-    t445 = v_1_front_elbow_down * t438 + v_2_front_elbow_down * t437
-    del t437, t438, v_1_front_elbow_down
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t445, v_2_front_elbow_down)
-    del t445, v_2_front_elbow_down
-    t446 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
+    t453 = v_1_front_elbow_down * t446 + v_2_front_elbow_down * t445
+    del t445, t446, v_1_front_elbow_down
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t453, v_2_front_elbow_down)
+    del t453, v_2_front_elbow_down
+    t454 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
     del whole_beta_rear_elbow_up
-    slope_aside_beta_rear_elbow_up = L1 * (t444 + t446)
-    t447 = np.abs(slope_aside_beta_rear_elbow_up)
-    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t253, 1.0)
-    del t253
-    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t447 / heavy_1_beta_rear_elbow_up, 0.0)
-    t448 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
-    t449 = aside_rate_rear_elbow_up * slope_aside_beta_rear_elbow_up
-    t450 = fore_rate_rear_elbow_up * (drawn_front_elbow_down * t446 - t305 * t444)
-    del drawn_front_elbow_down, t305, t444, t446
-    slope_beta_rear_elbow_up = t449 - t450
-    del t449, t450
-    t451 = np.abs(slope_beta_rear_elbow_up)
-    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t415, 1.0)
-    del t415
-    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t451 / heavy_0_beta_rear_elbow_up, 0.0)
-    t452 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
-    t453 = _runtime.select(-t440 < 0.0, t448 / (t139 + t448 + t452), 0.0)
-    del t448, t452
-    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t453, 0.0)
-    del t453
-    t454 = _runtime.sign(slope_aside_beta_rear_elbow_up)
+    slope_aside_beta_rear_elbow_up = L1 * (t452 + t454)
+    t455 = np.abs(slope_aside_beta_rear_elbow_up)
+    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t257, 1.0)
+    del t257
+    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t455 / heavy_1_beta_rear_elbow_up, 0.0)
+    t456 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
+    t457 = aside_rate_rear_elbow_up * slope_aside_beta_rear_elbow_up
+    t458 = fore_rate_rear_elbow_up * (drawn_front_elbow_down * t454 - t309 * t452)
+    del drawn_front_elbow_down, t309, t452, t454
+    slope_beta_rear_elbow_up = t457 - t458
+    del t457, t458
+    t459 = np.abs(slope_beta_rear_elbow_up)
+    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t423, 1.0)
+    del t423
+    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t459 / heavy_0_beta_rear_elbow_up, 0.0)
+    t460 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
+    t461 = _runtime.select(-t448 < 0.0, t456 / (t139 + t456 + t460), 0.0)
+    del t456, t460
+    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t461, 0.0)
+    del t461
+    t462 = _runtime.sign(slope_aside_beta_rear_elbow_up)
     del slope_aside_beta_rear_elbow_up
-    t455 = t132 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
+    t463 = t132 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_beta_rear_elbow_up
-    t456 = t440 * share_beta_rear_elbow_up * t454 / (t447 + t455)
-    del t447, t454, t455
-    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t456, 0.0)
-    del t456
-    lack_beta_rear_elbow_up = t440 * (1.0 - share_beta_rear_elbow_up)
-    del share_beta_rear_elbow_up
-    t457 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
-    t458 = t132 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
-    del heavy_0_beta_rear_elbow_up
-    t459 = 1.0 / (t451 + t458)
-    del t451, t458
-    t460 = lack_beta_rear_elbow_up * t459
-    del lack_beta_rear_elbow_up
-    t461 = (t457 * t459 <= 9.094947017729282e-13) & (0.0 < t460)
-    del t457, t459
-    t462 = _runtime.sign(slope_beta_rear_elbow_up) * _runtime.select(t461, t460, 0.0)
-    del slope_beta_rear_elbow_up, t460, t461
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t462, 0.0)
-    del t462
-    t463 = aside_rate_rear_elbow_up * turn_beta_rear_elbow_up
-    del aside_rate_rear_elbow_up
-    t464 = fore_rate_rear_elbow_up * turn_beta_rear_elbow_up
-    del fore_rate_rear_elbow_up
-    t465 = aside_beta_rear_elbow_up + t463 + t464 - t99 * (t411 * turn_beta_rear_elbow_up)
-    del t411, t463
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t465, 0.0)
-    del t465
-    t466 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
-    t467 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t468 = np.sqrt(1.0 + t467)
-    del t467
-    t469 = 1.0 / t468
-    t470 = _runtime.select(spent_beta_rear_elbow_up, t466 * t469 + t443 * t469, t443)
-    del t466
-    fore_turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t464, 0.0)
+    t464 = t448 * share_beta_rear_elbow_up * t462 / (t455 + t463)
+    del t455, t462, t463
+    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t464, 0.0)
     del t464
-    t471 = fore_turn_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
-    t472 = 1.0 / (t468 * np.sqrt(1.0 + t471))
-    del t468, t471
-    t473 = fore_turn_beta_rear_elbow_up * t472 - lean_beta_rear_elbow_up * t472
-    t474 = lean_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
-    t475 = t472 + t472 * t474
-    del t472, t474
-    t476 = v_1_alpha_rear_elbow_up * t473 + v_2_alpha_rear_elbow_up * t475
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t476, v_2_alpha_rear_elbow_up)
-    del t476
-    t477 = v_1_alpha_rear_elbow_up * t475 - v_2_alpha_rear_elbow_up * t473
-    del t473, t475, v_2_alpha_rear_elbow_up
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t477, v_1_alpha_rear_elbow_up)
-    del t477, v_1_alpha_rear_elbow_up
+    lack_beta_rear_elbow_up = t448 * (1.0 - share_beta_rear_elbow_up)
+    del share_beta_rear_elbow_up
+    t465 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
+    t466 = t132 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
+    del heavy_0_beta_rear_elbow_up
+    t467 = 1.0 / (t459 + t466)
+    del t459, t466
+    t468 = lack_beta_rear_elbow_up * t467
+    del lack_beta_rear_elbow_up
+    t469 = (t465 * t467 <= 9.094947017729282e-13) & (0.0 < t468)
+    del t465, t467
+    t470 = _runtime.sign(slope_beta_rear_elbow_up) * _runtime.select(t469, t468, 0.0)
+    del slope_beta_rear_elbow_up, t468, t469
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t470, 0.0)
+    del t470
+    t471 = aside_rate_rear_elbow_up * turn_beta_rear_elbow_up
+    del aside_rate_rear_elbow_up
+    t472 = fore_rate_rear_elbow_up * turn_beta_rear_elbow_up
+    del fore_rate_rear_elbow_up
+    t473 = aside_beta_rear_elbow_up + t471 + t472 - t99 * (t419 * turn_beta_rear_elbow_up)
+    del t419, t471
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t473, 0.0)
+    del t473
+    t474 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t475 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t476 = np.sqrt(1.0 + t475)
+    del t475
+    t477 = 1.0 / t476
+    t478 = _runtime.select(spent_beta_rear_elbow_up, t474 * t477 + t451 * t477, t451)
+    del t474
+    fore_turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t472, 0.0)
+    del t472
+    t479 = fore_turn_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    t480 = 1.0 / (t476 * np.sqrt(1.0 + t479))
+    del t476, t479
+    t481 = fore_turn_beta_rear_elbow_up * t480 - lean_beta_rear_elbow_up * t480
+    t482 = lean_beta_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    t483 = t480 + t480 * t482
+    del t480, t482
+    t484 = v_1_alpha_rear_elbow_up * t481 + v_2_alpha_rear_elbow_up * t483
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t484, v_2_alpha_rear_elbow_up)
+    del t484
+    t485 = v_1_alpha_rear_elbow_up * t483 - v_2_alpha_rear_elbow_up * t481
+    del t481, t483, v_2_alpha_rear_elbow_up
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t485, v_1_alpha_rear_elbow_up)
+    del t485, v_1_alpha_rear_elbow_up
     sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
-    t478 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    t479 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t478 <= _runtime.VANISHING * (64.0 * t479)
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t479, -t478)
-    t480 = p_1_alpha_rear_elbow_up * t469 - t469 * (t443 * lean_beta_rear_elbow_up)
-    del t443, t469
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t480, p_1_alpha_rear_elbow_up)
-    del p_1_alpha_rear_elbow_up, t480
-    t481 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t486 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    t487 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t486 <= _runtime.VANISHING * (64.0 * t487)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t487, -t486)
+    t488 = p_1_alpha_rear_elbow_up * t477 - t477 * (t451 * lean_beta_rear_elbow_up)
+    del t451, t477
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t488, p_1_alpha_rear_elbow_up)
+    del p_1_alpha_rear_elbow_up, t488
+    t489 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
     del sigma_uv_rear_elbow_up
-    t482 = _runtime.select(parallel_rear_elbow_up, t470 * _runtime.sign(v_2_beta_rear_elbow_up), t481)
-    t483 = whole_y_rear_elbow_up + t482
-    below_beta_0_rear_elbow_up = np.maximum(t483, t164)
-    t484 = whole_y_rear_elbow_up - t482
-    above_beta_0_rear_elbow_up = np.maximum(t484, t164)
-    t485 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    t490 = _runtime.select(parallel_rear_elbow_up, t478 * _runtime.sign(v_2_beta_rear_elbow_up), t489)
+    t491 = whole_y_rear_elbow_up + t490
+    t492 = _runtime.VANISHING * (t164 + 16.0 * whole_y_rear_elbow_up)
+    t493 = _runtime.VANISHING * t492
+    del t492
+    below_beta_0_rear_elbow_up = np.maximum(t491, t493)
+    t494 = whole_y_rear_elbow_up - t490
+    above_beta_0_rear_elbow_up = np.maximum(t494, t493)
+    t495 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t486 = v_2_beta_rear_elbow_up * (t485 / total_beta_0_rear_elbow_up)
-    del t485, total_beta_0_rear_elbow_up
-    t487 = t470 - t486
-    del t486
-    left_along_rear_elbow_up = L1 - np.abs(t487)
-    t488 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t488, left_along_rear_elbow_up) <= t169
-    del t488
-    t489 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
-    t490 = t489 | spent_beta_rear_elbow_up
-    del t489
-    t491 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
-    t492 = np.arctan2(_runtime.select(t490, t350 * t491, 0.0), 1.0)
-    del t350, t491
-    t493 = _runtime.select(nowhere, 0.0, t173 + t174)
-    del t173, t174
-    t494 = gain_1_alpha_rear_elbow_up + gain_0_alpha_rear_elbow_up
-    del gain_0_alpha_rear_elbow_up, gain_1_alpha_rear_elbow_up
-    t495 = _runtime.select(spent_alpha_rear_elbow_up, t494, 0.0)
-    del t494
-    t496 = _runtime.select(spent_alpha_rear_elbow_up, leniency, 1.0)
-    t497 = -(_runtime.FEASIBILITY * ((t83 + t495) * t496))
-    del t495, t496
-    t498 = gain_1_beta_rear_elbow_up + gain_0_beta_rear_elbow_up
-    del gain_0_beta_rear_elbow_up, gain_1_beta_rear_elbow_up
-    t499 = _runtime.select(spent_beta_rear_elbow_up, t498, 0.0)
+    t496 = v_2_beta_rear_elbow_up * (t495 / total_beta_0_rear_elbow_up)
+    del t495, total_beta_0_rear_elbow_up
+    t497 = t478 - t496
+    del t496
+    left_along_rear_elbow_up = L1 - np.abs(t497)
+    t498 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t498, left_along_rear_elbow_up) <= t170
     del t498
-    t500 = _runtime.select(spent_beta_rear_elbow_up, leniency, 1.0)
-    t501 = _runtime.FEASIBILITY * ((t132 + t499) * t500)
-    del t499, t500
-    t502 = t192 & (t497 <= margin_alpha_rear_elbow_up) & (-t501 <= -t440)
-    del margin_alpha_rear_elbow_up, t440, t497, t501
-    t503 = spent_alpha_rear_elbow_up | spent_beta_rear_elbow_up
-    t504 = _runtime.select(t503, leniency, 1.0)
-    del t503
-    t505 = -(_runtime.FEASIBILITY * (play * t504))
-    t506 = t502 & (t505 <= t481 - t478) & (t505 <= -(t478 + t481))
-    del t481, t502
-    t507 = t202 * t504
+    t499 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
+    t500 = t499 | spent_beta_rear_elbow_up
+    del t499
+    t501 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    t502 = np.arctan2(_runtime.select(t500, t356 * t501, 0.0), 1.0)
+    del t356, t501
+    t503 = _runtime.select(nowhere, 0.0, t174 + t175)
+    del t174, t175
+    t504 = gain_1_alpha_rear_elbow_up + gain_0_alpha_rear_elbow_up
+    del gain_0_alpha_rear_elbow_up, gain_1_alpha_rear_elbow_up
+    t505 = _runtime.select(spent_alpha_rear_elbow_up, t504, 0.0)
     del t504
-    t508 = _runtime.select(spent_along_rear_elbow_up, t479 / (t204 - t478), 0.0)
-    del t479
-    t509 = -(_runtime.FEASIBILITY * (t507 * (1.0 + t508)))
+    t506 = _runtime.select(spent_alpha_rear_elbow_up, leniency, 1.0)
+    t507 = -(_runtime.FEASIBILITY * ((t83 + t505) * t506))
+    del t505, t506
+    t508 = gain_1_beta_rear_elbow_up + gain_0_beta_rear_elbow_up
+    del gain_0_beta_rear_elbow_up, gain_1_beta_rear_elbow_up
+    t509 = _runtime.select(spent_beta_rear_elbow_up, t508, 0.0)
     del t508
-    t510 = t506 & (t505 <= t483) & (t505 <= t484) & (t509 <= left_along_rear_elbow_up)
-    del t483, t484, t506, t509
-    t511 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
-    del left_along_rear_elbow_up
-    t512 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t513 = v_2_beta_rear_elbow_up * t511 / (t478 * t478 + t512)
-    del t478, t511, t512
-    t514 = whole_y_rear_elbow_up * (t513 * _runtime.sign(-t487))
-    del t487, t513
-    t515 = _runtime.select(spent_along_rear_elbow_up, t482 + t514, t482)
-    del spent_along_rear_elbow_up, t482, t514
-    t516 = whole_y_rear_elbow_up + t515
-    t517 = whole_y_rear_elbow_up - t515
-    del t515, whole_y_rear_elbow_up
-    t518 = -(_runtime.FEASIBILITY * t507)
-    del t507
-    below_beta_rear_elbow_up = np.maximum(t516, t164)
-    above_beta_rear_elbow_up = np.maximum(t517, t164)
-    t519 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t510 = _runtime.select(spent_beta_rear_elbow_up, leniency, 1.0)
+    t511 = _runtime.FEASIBILITY * ((t132 + t509) * t510)
+    del t509, t510
+    t512 = t193 & (t507 <= margin_alpha_rear_elbow_up) & (-t511 <= -t448)
+    del margin_alpha_rear_elbow_up, t448, t507, t511
+    t513 = spent_alpha_rear_elbow_up | spent_beta_rear_elbow_up
+    t514 = _runtime.select(t513, leniency, 1.0)
+    del t513
+    t515 = -(_runtime.FEASIBILITY * (play * t514))
+    t516 = t512 & (t515 <= t489 - t486) & (t515 <= -(t486 + t489))
+    del t489, t512
+    t517 = t203 * t514
+    del t514
+    t518 = _runtime.select(spent_along_rear_elbow_up, t487 / (t205 - t486), 0.0)
+    del t487
+    t519 = -(_runtime.FEASIBILITY * (t517 * (1.0 + t518)))
+    del t518
+    t520 = t516 & (t515 <= t491) & (t515 <= t494) & (t519 <= left_along_rear_elbow_up)
+    del t491, t494, t516, t519
+    t521 = v_2_beta_rear_elbow_up * left_along_rear_elbow_up
+    t522 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t523 = t521 / (t486 * t486 + t522)
+    del t486, t521, t522
+    t524 = whole_y_rear_elbow_up * _runtime.select(-t497 < 0.0, t523, -t523)
+    del t497, t523
+    t525 = np.maximum(-whole_y_rear_elbow_up, np.minimum(-t490, whole_y_rear_elbow_up))
+    t526 = np.minimum(whole_y_rear_elbow_up, t524 + t525)
+    del t524, t525
+    t527 = _runtime.select(left_along_rear_elbow_up < 0.0, np.maximum(-whole_y_rear_elbow_up, t526), -t490)
+    del left_along_rear_elbow_up, t526
+    eased_rear_elbow_up = _runtime.select(spent_along_rear_elbow_up, t527, -t490)
+    del spent_along_rear_elbow_up, t490, t527
+    t528 = whole_y_rear_elbow_up - eased_rear_elbow_up
+    t529 = whole_y_rear_elbow_up + eased_rear_elbow_up
+    del eased_rear_elbow_up, whole_y_rear_elbow_up
+    t530 = -(_runtime.FEASIBILITY * t517)
+    del t517
+    below_beta_rear_elbow_up = np.maximum(t528, t493)
+    above_beta_rear_elbow_up = np.maximum(t529, t493)
+    del t493
+    t531 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t520 = 1.0 / total_beta_rear_elbow_up
+    t532 = 1.0 / total_beta_rear_elbow_up
     del total_beta_rear_elbow_up
-    t521 = t519 * t520
-    del t519
-    t522 = t470 - v_2_beta_rear_elbow_up * t521
-    del t470, v_2_beta_rear_elbow_up
-    t523 = L1 + t522
-    t524 = t510 & (t505 <= t516) & (t505 <= t517) & (t518 <= t523)
-    del t505, t510, t516, t517
-    t525 = L1 - t522
-    unreachable_3 = np.logical_not(t524 & (t518 <= t525))
-    del t518, t524
-    t526 = _runtime.poison(invalid | unreachable_3)
-    t527 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
+    t533 = t531 * t532
+    del t531
+    t534 = t478 - v_2_beta_rear_elbow_up * t533
+    del t478, v_2_beta_rear_elbow_up
+    t535 = L1 + t534
+    t536 = t520 & (t515 <= t528) & (t515 <= t529) & (t530 <= t535)
+    del t515, t520, t528, t529
+    t537 = L1 - t534
+    unreachable_3 = np.logical_not(t536 & (t530 <= t537))
+    del t530, t536
+    t538 = _runtime.poison(invalid | unreachable_3)
+    t539 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
     del out_2, up
-    t528 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
-    t529 = lean_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t540 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    t541 = lean_alpha_rear_elbow_up * lean_beta_rear_elbow_up
     del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t530 = np.arctan2(t528, 1.0 - t529)
-    del t528, t529
-    t531 = t527 + t530
-    del t527
-    below_alpha_rear_elbow_up = np.maximum(t523, t164)
-    del t523
-    above_alpha_rear_elbow_up = np.maximum(t525, t164)
-    del t525
-    t532 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t542 = np.arctan2(t540, 1.0 - t541)
+    del t540, t541
+    t543 = t539 + t542
+    del t539
+    below_alpha_rear_elbow_up = np.maximum(t535, t227)
+    del t535
+    above_alpha_rear_elbow_up = np.maximum(t537, t227)
+    del t537
+    t544 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t533 = 1.0 / total_alpha_rear_elbow_up
+    t545 = 1.0 / total_alpha_rear_elbow_up
     del total_alpha_rear_elbow_up
-    t534 = t532 * t533
-    del t532
-    t535 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
-    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t536 = np.arctan2(t534, t533 * t535)
-    del t533, t535
-    t537 = fore_turn_alpha_rear_elbow_up + fore_turn_beta_rear_elbow_up
-    t538 = fore_turn_alpha_rear_elbow_up * fore_turn_beta_rear_elbow_up
-    del fore_turn_alpha_rear_elbow_up, fore_turn_beta_rear_elbow_up
-    t539 = t395 - (t530 - np.arctan2(t537, 1.0 - t538))
-    del t395, t530, t537, t538
-    t540 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
-    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t541 = t536 - np.arctan2(t521, t520 * t540)
-    del t520, t540
-    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t238)
-    del t238
-    p_1_rear_elbow_down = t239 + ahead * ctheta2A_rear_elbow_down
-    del ahead, t239
-    t542 = t240 - higher * ctheta2A_rear_elbow_down
-    del higher, t240
-    t543 = v_2 * p_1_rear_elbow_down + v_1 * t542
-    margin_alpha_rear_elbow_down = t79 - np.abs(t543)
-    del t79
-    t544 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t545 = np.maximum(-t544, margin_alpha_rear_elbow_down)
+    t546 = t544 * t545
     del t544
-    spent_alpha_rear_elbow_down = t545 <= t84
-    del t545, t84
+    t547 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
+    t548 = np.arctan2(t546, t545 * t547)
+    del t545, t547
+    t549 = fore_turn_alpha_rear_elbow_up + fore_turn_beta_rear_elbow_up
+    t550 = fore_turn_alpha_rear_elbow_up * fore_turn_beta_rear_elbow_up
+    del fore_turn_alpha_rear_elbow_up, fore_turn_beta_rear_elbow_up
+    t551 = t403 - (t542 - np.arctan2(t549, 1.0 - t550))
+    del t403, t542, t549, t550
+    t552 = 2.0 * np.sqrt(above_beta_rear_elbow_up) * np.sqrt(below_beta_rear_elbow_up)
+    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
+    t553 = t548 - np.arctan2(t533, t532 * t552)
+    del t532, t552
+    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t242)
+    del t242
+    p_1_rear_elbow_down = t243 + ahead * ctheta2A_rear_elbow_down
+    del ahead, t243
+    t554 = t244 - higher * ctheta2A_rear_elbow_down
+    del higher, t244
+    t555 = v_2 * p_1_rear_elbow_down + v_1 * t554
+    margin_alpha_rear_elbow_down = t79 - np.abs(t555)
+    del t79
+    t556 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t557 = np.maximum(-t556, margin_alpha_rear_elbow_down)
+    del t556
+    spent_alpha_rear_elbow_down = t557 <= t84
+    del t557, t84
     heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t95, 1.0)
     gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t86 / heavy_1_alpha_rear_elbow_down, 0.0)
-    t546 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
+    t558 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
     aside_rate_rear_elbow_down = _runtime.select(t92, -(t99 * (tilt * stheta2A_front_elbow_down)), 0.0)
     del stheta2A_front_elbow_down, tilt
-    t547 = slope_aside_alpha * aside_rate_rear_elbow_down
+    t559 = slope_aside_alpha * aside_rate_rear_elbow_down
     del slope_aside_alpha
     fore_rate_rear_elbow_down = _runtime.select(t92, ctheta2A_rear_elbow_down, 1.0)
     del ctheta2A_rear_elbow_down, t92
-    t548 = _runtime.sign(-t543) * (v_1 * p_1_rear_elbow_down - v_2 * t542)
-    del t543
-    slope_alpha_rear_elbow_down = t547 - fore_rate_rear_elbow_down * (t100 - t548)
-    del t100, t547, t548
-    t549 = np.abs(slope_alpha_rear_elbow_down)
-    t550 = aside_rate_rear_elbow_down + fore_rate_rear_elbow_down
-    t551 = drawn * fore_rate_rear_elbow_down
-    t552 = t550 - t99 * t551
-    del t550
-    t553 = fore_rate_rear_elbow_down * fore_rate_rear_elbow_down
-    t554 = np.sqrt(t111 + L1 * (t552 * t552) + fore * t553)
-    del fore, t111, t552, t553
-    t555 = t94 * (t106 + t107 * t554 / 2000000.0)
+    t560 = _runtime.sign(-t555) * (v_1 * p_1_rear_elbow_down - v_2 * t554)
+    del t555
+    slope_alpha_rear_elbow_down = t559 - fore_rate_rear_elbow_down * (t100 - t560)
+    del t100, t559, t560
+    t561 = np.abs(slope_alpha_rear_elbow_down)
+    t562 = aside_rate_rear_elbow_down + fore_rate_rear_elbow_down
+    t563 = drawn * fore_rate_rear_elbow_down
+    t564 = t562 - t99 * t563
+    del t562
+    t565 = fore_rate_rear_elbow_down * fore_rate_rear_elbow_down
+    t566 = np.sqrt(t111 + L1 * (t564 * t564) + fore * t565)
+    del fore, t111, t564, t565
+    t567 = t94 * (t106 + t107 * t566 / 2000000.0)
     del t107, t94
-    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t555, 1.0)
-    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t549 / heavy_0_alpha_rear_elbow_down, 0.0)
-    t556 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
-    t557 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t546 / (t98 + t546 + t556), 0.0)
-    del t546, t556, t98
-    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t557, 0.0)
-    del t557
-    t558 = t115 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
-    del t115
-    t559 = t83 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
-    del heavy_1_alpha_rear_elbow_down
-    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t558 / (t86 + t559)), 0.0)
-    del t558, t559, t86
-    t560 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
-    del share_alpha_rear_elbow_down
-    t561 = t83 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
-    t562 = 1.0 / (t549 + t561)
-    del t549, t561
-    t563 = -(heavy_0_alpha_rear_elbow_down * t560 * t562)
-    del heavy_0_alpha_rear_elbow_down
-    t564 = -(t560 * t562)
-    del t560, t562
-    t565 = (t563 <= 9.094947017729282e-13) & (0.0 < t564)
-    del t563
-    t566 = _runtime.sign(slope_alpha_rear_elbow_down) * _runtime.select(t565, t564, 0.0)
-    del slope_alpha_rear_elbow_down, t564, t565
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t566, 0.0)
-    del t566
-    t567 = aside_rate_rear_elbow_down * turn_alpha_rear_elbow_down
-    t568 = fore_rate_rear_elbow_down * turn_alpha_rear_elbow_down
-    t569 = aside_alpha_rear_elbow_down + t567 + t568 - t99 * (t551 * turn_alpha_rear_elbow_down)
-    del t567
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t569, 0.0)
+    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t567, 1.0)
+    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t561 / heavy_0_alpha_rear_elbow_down, 0.0)
+    t568 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
+    t569 = _runtime.select(margin_alpha_rear_elbow_down < 0.0, t558 / (t98 + t558 + t568), 0.0)
+    del t558, t568, t98
+    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t569, 0.0)
     del t569
-    t570 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t571 = np.sqrt(1.0 + t570)
-    del t570
-    t572 = 1.0 / t571
-    t573 = p_1_rear_elbow_down * t572 - t542 * lean_alpha_rear_elbow_down * t572
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t573, p_1_rear_elbow_down)
-    del t573
-    part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    fore_turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t568, 0.0)
-    del t568
-    t574 = fore_turn_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
-    t575 = 1.0 / (t571 * np.sqrt(1.0 + t574))
-    del t571, t574
-    t576 = lean_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
-    t577 = t575 + t575 * t576
-    del t576
-    t578 = fore_turn_alpha_rear_elbow_down * t575 - lean_alpha_rear_elbow_down * t575
+    t570 = t115 * margin_alpha_rear_elbow_down * share_alpha_rear_elbow_down
+    del t115
+    t571 = t83 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_rear_elbow_down
+    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t570 / (t86 + t571)), 0.0)
+    del t570, t571, t86
+    t572 = margin_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
+    del share_alpha_rear_elbow_down
+    t573 = t83 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
+    t574 = 1.0 / (t561 + t573)
+    del t561, t573
+    t575 = -(heavy_0_alpha_rear_elbow_down * t572 * t574)
+    del heavy_0_alpha_rear_elbow_down
+    t576 = -(t572 * t574)
+    del t572, t574
+    t577 = (t575 <= 9.094947017729282e-13) & (0.0 < t576)
     del t575
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t577 - v_2 * t578, v_1)
+    t578 = _runtime.sign(slope_alpha_rear_elbow_down) * _runtime.select(t577, t576, 0.0)
+    del slope_alpha_rear_elbow_down, t576, t577
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t578, 0.0)
+    del t578
+    t579 = aside_rate_rear_elbow_down * turn_alpha_rear_elbow_down
+    t580 = fore_rate_rear_elbow_down * turn_alpha_rear_elbow_down
+    t581 = aside_alpha_rear_elbow_down + t579 + t580 - t99 * (t563 * turn_alpha_rear_elbow_down)
+    del t579
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t581, 0.0)
+    del t581
+    t582 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t583 = np.sqrt(1.0 + t582)
+    del t582
+    t584 = 1.0 / t583
+    t585 = p_1_rear_elbow_down * t584 - t554 * lean_alpha_rear_elbow_down * t584
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t585, p_1_rear_elbow_down)
+    del t585
+    part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
+    fore_turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t580, 0.0)
+    del t580
+    t586 = fore_turn_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
+    t587 = 1.0 / (t583 * np.sqrt(1.0 + t586))
+    del t583, t586
+    t588 = lean_alpha_rear_elbow_down * fore_turn_alpha_rear_elbow_down
+    t589 = t587 + t587 * t588
+    del t588
+    t590 = fore_turn_alpha_rear_elbow_down * t587 - lean_alpha_rear_elbow_down * t587
+    del t587
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t589 - v_2 * t590, v_1)
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t579 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
-    t580 = np.maximum(t579 * 9.094947017729282e-13, -t579)
-    spent_beta_rear_elbow_down = t580 <= t133
-    del t133, t580
-    t581 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    t591 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    t592 = np.maximum(t591 * 9.094947017729282e-13, -t591)
+    spent_beta_rear_elbow_down = t592 <= t133
+    del t133, t592
+    t593 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
     del p_1_rear_elbow_down
-    t582 = _runtime.select(spent_alpha_rear_elbow_down, t572 * t581 + t542 * t572, t542)
-    del t542, t572, t581
-    t583 = t582 * _runtime.sign(part_beta_rear_elbow_down)
+    t594 = _runtime.select(spent_alpha_rear_elbow_down, t584 * t593 + t554 * t584, t554)
+    del t554, t584, t593
+    t595 = t594 * _runtime.sign(part_beta_rear_elbow_down)
     del part_beta_rear_elbow_down
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t578 + v_2 * t577, v_2)
-    del t577, t578, v_1, v_2
-    t584 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t590 + v_2 * t589, v_2)
+    del t589, t590, v_1, v_2
+    t596 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
     del whole_beta_rear_elbow_down
-    slope_aside_beta_rear_elbow_down = L1 * (t583 + t584)
-    t585 = np.abs(slope_aside_beta_rear_elbow_down)
+    slope_aside_beta_rear_elbow_down = L1 * (t595 + t596)
+    t597 = np.abs(slope_aside_beta_rear_elbow_down)
     heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t95, 1.0)
     del t95
-    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t585 / heavy_1_beta_rear_elbow_down, 0.0)
-    t586 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
-    t587 = aside_rate_rear_elbow_down * slope_aside_beta_rear_elbow_down
-    t588 = fore_rate_rear_elbow_down * (drawn * t584 - t140 * t583)
-    del drawn, t140, t583, t584
-    slope_beta_rear_elbow_down = t587 - t588
-    del t587, t588
-    t589 = np.abs(slope_beta_rear_elbow_down)
-    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t555, 1.0)
-    del t555
-    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t589 / heavy_0_beta_rear_elbow_down, 0.0)
-    t590 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
-    t591 = _runtime.select(-t579 < 0.0, t586 / (t139 + t586 + t590), 0.0)
-    del t139, t586, t590
-    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t591, 0.0)
-    del t591
-    t592 = _runtime.sign(slope_aside_beta_rear_elbow_down)
-    del slope_aside_beta_rear_elbow_down
-    t593 = t132 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
-    del heavy_1_beta_rear_elbow_down
-    t594 = t579 * share_beta_rear_elbow_down * t592 / (t585 + t593)
-    del t585, t592, t593
-    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t594, 0.0)
-    del t594
-    lack_beta_rear_elbow_down = t579 * (1.0 - share_beta_rear_elbow_down)
-    del share_beta_rear_elbow_down
-    t595 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
-    t596 = t132 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
-    del heavy_0_beta_rear_elbow_down
-    t597 = 1.0 / (t589 + t596)
-    del t589, t596
-    t598 = lack_beta_rear_elbow_down * t597
-    del lack_beta_rear_elbow_down
-    t599 = (t595 * t597 <= 9.094947017729282e-13) & (0.0 < t598)
-    del t595, t597
-    t600 = _runtime.sign(slope_beta_rear_elbow_down) * _runtime.select(t599, t598, 0.0)
-    del slope_beta_rear_elbow_down, t598, t599
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t600, 0.0)
-    del t600
-    t601 = aside_rate_rear_elbow_down * turn_beta_rear_elbow_down
-    del aside_rate_rear_elbow_down
-    t602 = fore_rate_rear_elbow_down * turn_beta_rear_elbow_down
-    del fore_rate_rear_elbow_down
-    t603 = aside_beta_rear_elbow_down + t601 + t602 - t99 * (t551 * turn_beta_rear_elbow_down)
-    del t551, t601, t99
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t603, 0.0)
+    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t597 / heavy_1_beta_rear_elbow_down, 0.0)
+    t598 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
+    t599 = aside_rate_rear_elbow_down * slope_aside_beta_rear_elbow_down
+    t600 = fore_rate_rear_elbow_down * (drawn * t596 - t140 * t595)
+    del drawn, t140, t595, t596
+    slope_beta_rear_elbow_down = t599 - t600
+    del t599, t600
+    t601 = np.abs(slope_beta_rear_elbow_down)
+    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t567, 1.0)
+    del t567
+    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t601 / heavy_0_beta_rear_elbow_down, 0.0)
+    t602 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
+    t603 = _runtime.select(-t591 < 0.0, t598 / (t139 + t598 + t602), 0.0)
+    del t139, t598, t602
+    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t603, 0.0)
     del t603
-    t604 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
-    t605 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t606 = np.sqrt(1.0 + t605)
-    del t605
-    t607 = 1.0 / t606
-    t608 = _runtime.select(spent_beta_rear_elbow_down, t604 * t607 + t582 * t607, t582)
-    del t604
-    fore_turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t602, 0.0)
-    del t602
-    t609 = fore_turn_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
-    t610 = 1.0 / (t606 * np.sqrt(1.0 + t609))
-    del t606, t609
-    t611 = fore_turn_beta_rear_elbow_down * t610 - lean_beta_rear_elbow_down * t610
-    t612 = lean_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
-    t613 = t610 + t610 * t612
-    del t610, t612
-    t614 = v_1_alpha_rear_elbow_down * t611 + v_2_alpha_rear_elbow_down * t613
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t614, v_2_alpha_rear_elbow_down)
+    t604 = _runtime.sign(slope_aside_beta_rear_elbow_down)
+    del slope_aside_beta_rear_elbow_down
+    t605 = t132 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_beta_rear_elbow_down
+    t606 = t591 * share_beta_rear_elbow_down * t604 / (t597 + t605)
+    del t597, t604, t605
+    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t606, 0.0)
+    del t606
+    lack_beta_rear_elbow_down = t591 * (1.0 - share_beta_rear_elbow_down)
+    del share_beta_rear_elbow_down
+    t607 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
+    t608 = t132 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_0_beta_rear_elbow_down
+    t609 = 1.0 / (t601 + t608)
+    del t601, t608
+    t610 = lack_beta_rear_elbow_down * t609
+    del lack_beta_rear_elbow_down
+    t611 = (t607 * t609 <= 9.094947017729282e-13) & (0.0 < t610)
+    del t607, t609
+    t612 = _runtime.sign(slope_beta_rear_elbow_down) * _runtime.select(t611, t610, 0.0)
+    del slope_beta_rear_elbow_down, t610, t611
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t612, 0.0)
+    del t612
+    t613 = aside_rate_rear_elbow_down * turn_beta_rear_elbow_down
+    del aside_rate_rear_elbow_down
+    t614 = fore_rate_rear_elbow_down * turn_beta_rear_elbow_down
+    del fore_rate_rear_elbow_down
+    t615 = aside_beta_rear_elbow_down + t613 + t614 - t99 * (t563 * turn_beta_rear_elbow_down)
+    del t563, t613, t99
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t615, 0.0)
+    del t615
+    t616 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t617 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t618 = np.sqrt(1.0 + t617)
+    del t617
+    t619 = 1.0 / t618
+    t620 = _runtime.select(spent_beta_rear_elbow_down, t616 * t619 + t594 * t619, t594)
+    del t616
+    fore_turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t614, 0.0)
     del t614
-    t615 = v_1_alpha_rear_elbow_down * t613 - v_2_alpha_rear_elbow_down * t611
-    del t611, t613, v_2_alpha_rear_elbow_down
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t615, v_1_alpha_rear_elbow_down)
-    del t615, v_1_alpha_rear_elbow_down
+    t621 = fore_turn_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t622 = 1.0 / (t618 * np.sqrt(1.0 + t621))
+    del t618, t621
+    t623 = fore_turn_beta_rear_elbow_down * t622 - lean_beta_rear_elbow_down * t622
+    t624 = lean_beta_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t625 = t622 + t622 * t624
+    del t622, t624
+    t626 = v_1_alpha_rear_elbow_down * t623 + v_2_alpha_rear_elbow_down * t625
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t626, v_2_alpha_rear_elbow_down)
+    del t626
+    t627 = v_1_alpha_rear_elbow_down * t625 - v_2_alpha_rear_elbow_down * t623
+    del t623, t625, v_2_alpha_rear_elbow_down
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t627, v_1_alpha_rear_elbow_down)
+    del t627, v_1_alpha_rear_elbow_down
     sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
-    t616 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
-    t617 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t616 <= _runtime.VANISHING * (64.0 * t617)
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t617, -t616)
-    t618 = t608 * _runtime.sign(v_2_beta_rear_elbow_down)
-    t619 = p_1_alpha_rear_elbow_down * t607 - t607 * (t582 * lean_beta_rear_elbow_down)
-    del t582, t607
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t619, p_1_alpha_rear_elbow_down)
-    del p_1_alpha_rear_elbow_down, t619
-    t620 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t628 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    t629 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t628 <= _runtime.VANISHING * (64.0 * t629)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t629, -t628)
+    t630 = t620 * _runtime.sign(v_2_beta_rear_elbow_down)
+    t631 = p_1_alpha_rear_elbow_down * t619 - t619 * (t594 * lean_beta_rear_elbow_down)
+    del t594, t619
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t631, p_1_alpha_rear_elbow_down)
+    del p_1_alpha_rear_elbow_down, t631
+    t632 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
     del sigma_uv_rear_elbow_down
-    t621 = _runtime.select(parallel_rear_elbow_down, t618, t620)
-    del t618
-    t622 = whole_y_rear_elbow_down + t621
-    below_beta_0_rear_elbow_down = np.maximum(t622, t164)
-    t623 = whole_y_rear_elbow_down - t621
-    above_beta_0_rear_elbow_down = np.maximum(t623, t164)
-    t624 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t633 = _runtime.select(parallel_rear_elbow_down, t630, t632)
+    del t630
+    t634 = whole_y_rear_elbow_down + t633
+    t635 = _runtime.VANISHING * (t164 + 16.0 * whole_y_rear_elbow_down)
+    del t164
+    t636 = _runtime.VANISHING * t635
+    del t635
+    below_beta_0_rear_elbow_down = np.maximum(t634, t636)
+    t637 = whole_y_rear_elbow_down - t633
+    above_beta_0_rear_elbow_down = np.maximum(t637, t636)
+    t638 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t625 = v_2_beta_rear_elbow_down * (t624 / total_beta_0_rear_elbow_down)
-    del t624, total_beta_0_rear_elbow_down
-    t626 = t608 - t625
-    del t625
-    left_along_rear_elbow_down = L1 - np.abs(t626)
-    t627 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t628 = np.maximum(-t627, left_along_rear_elbow_down)
-    del t627
-    spent_along_rear_elbow_down = t628 <= t169
-    del t169, t628
-    t629 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
-    t630 = t629 | spent_beta_rear_elbow_down
-    del t629
-    t631 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
-    t632 = np.arctan2(_runtime.select(t630, t172 * t631, 0.0), 1.0)
-    del t172, t631
-    t633 = gain_1_alpha_rear_elbow_down + gain_0_alpha_rear_elbow_down
+    t639 = v_2_beta_rear_elbow_down * (t638 / total_beta_0_rear_elbow_down)
+    del t638, total_beta_0_rear_elbow_down
+    t640 = t620 - t639
+    del t639
+    left_along_rear_elbow_down = L1 - np.abs(t640)
+    t641 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t642 = np.maximum(-t641, left_along_rear_elbow_down)
+    del t641
+    spent_along_rear_elbow_down = t642 <= t170
+    del t170, t642
+    t643 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
+    t644 = t643 | spent_beta_rear_elbow_down
+    del t643
+    t645 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    t646 = np.arctan2(_runtime.select(t644, t173 * t645, 0.0), 1.0)
+    del t173, t645
+    t647 = gain_1_alpha_rear_elbow_down + gain_0_alpha_rear_elbow_down
     del gain_0_alpha_rear_elbow_down, gain_1_alpha_rear_elbow_down
-    t634 = _runtime.select(spent_alpha_rear_elbow_down, t633, 0.0)
-    del t633
-    t635 = _runtime.select(spent_alpha_rear_elbow_down, leniency, 1.0)
-    t636 = -(_runtime.FEASIBILITY * ((t83 + t634) * t635))
-    del t634, t635, t83
-    t637 = t192 & (t636 <= margin_alpha_rear_elbow_down)
-    del margin_alpha_rear_elbow_down, t192, t636
-    t638 = gain_1_beta_rear_elbow_down + gain_0_beta_rear_elbow_down
-    del gain_0_beta_rear_elbow_down, gain_1_beta_rear_elbow_down
-    t639 = _runtime.select(spent_beta_rear_elbow_down, t638, 0.0)
-    del t638
-    t640 = _runtime.select(spent_beta_rear_elbow_down, leniency, 1.0)
-    t641 = _runtime.FEASIBILITY * ((t132 + t639) * t640)
-    del t132, t639, t640
-    t642 = spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down
-    t643 = _runtime.select(t642, leniency, 1.0)
-    del leniency, t642
-    t644 = -(_runtime.FEASIBILITY * (play * t643))
-    del play
-    t645 = t637 & (-t641 <= -t579) & (t644 <= t620 - t616)
-    del t579, t637, t641
-    t646 = t645 & (t644 <= -(t616 + t620)) & (t644 <= t622)
-    del t620, t622, t645
-    t647 = t202 * t643
-    del t202, t643
-    t648 = _runtime.select(spent_along_rear_elbow_down, t617 / (t204 - t616), 0.0)
-    del t204, t617
-    t649 = -(_runtime.FEASIBILITY * (t647 * (1.0 + t648)))
-    del t648
-    t650 = t646 & (t644 <= t623) & (t649 <= left_along_rear_elbow_down)
-    del t623, t646, t649
-    t651 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
-    del left_along_rear_elbow_down
-    t652 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t653 = v_2_beta_rear_elbow_down * t651 / (t616 * t616 + t652)
-    del t616, t651, t652
-    t654 = whole_y_rear_elbow_down * (t653 * _runtime.sign(-t626))
-    del t626, t653
-    t655 = _runtime.select(spent_along_rear_elbow_down, t621 + t654, t621)
-    del spent_along_rear_elbow_down, t621, t654
-    t656 = whole_y_rear_elbow_down + t655
-    t657 = whole_y_rear_elbow_down - t655
-    del t655, whole_y_rear_elbow_down
-    t658 = -(_runtime.FEASIBILITY * t647)
+    t648 = _runtime.select(spent_alpha_rear_elbow_down, t647, 0.0)
     del t647
-    below_beta_rear_elbow_down = np.maximum(t656, t164)
-    above_beta_rear_elbow_down = np.maximum(t657, t164)
-    t659 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
-    total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t660 = 1.0 / total_beta_rear_elbow_down
-    del total_beta_rear_elbow_down
-    t661 = t659 * t660
-    del t659
-    t662 = t608 - v_2_beta_rear_elbow_down * t661
-    del t608, v_2_beta_rear_elbow_down
-    t663 = L1 + t662
-    t664 = t650 & (t644 <= t656) & (t644 <= t657) & (t658 <= t663)
-    del t644, t650, t656, t657
-    t665 = L1 - t662
-    unreachable_4 = np.logical_not(t664 & (t658 <= t665))
-    del t658, t664
-    t666 = _runtime.poison(invalid | unreachable_4)
-    t667 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
-    del out_front_elbow_down, up_front_elbow_down
-    t668 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
-    t669 = lean_alpha_rear_elbow_down * lean_beta_rear_elbow_down
-    del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t670 = np.arctan2(t668, 1.0 - t669)
+    t649 = _runtime.select(spent_alpha_rear_elbow_down, leniency, 1.0)
+    t650 = -(_runtime.FEASIBILITY * ((t83 + t648) * t649))
+    del t648, t649, t83
+    t651 = t193 & (t650 <= margin_alpha_rear_elbow_down)
+    del margin_alpha_rear_elbow_down, t193, t650
+    t652 = gain_1_beta_rear_elbow_down + gain_0_beta_rear_elbow_down
+    del gain_0_beta_rear_elbow_down, gain_1_beta_rear_elbow_down
+    t653 = _runtime.select(spent_beta_rear_elbow_down, t652, 0.0)
+    del t652
+    t654 = _runtime.select(spent_beta_rear_elbow_down, leniency, 1.0)
+    t655 = _runtime.FEASIBILITY * ((t132 + t653) * t654)
+    del t132, t653, t654
+    t656 = spent_alpha_rear_elbow_down | spent_beta_rear_elbow_down
+    t657 = _runtime.select(t656, leniency, 1.0)
+    del leniency, t656
+    t658 = -(_runtime.FEASIBILITY * (play * t657))
+    del play
+    t659 = t651 & (-t655 <= -t591) & (t658 <= t632 - t628)
+    del t591, t651, t655
+    t660 = t659 & (t658 <= -(t628 + t632)) & (t658 <= t634)
+    del t632, t634, t659
+    t661 = t203 * t657
+    del t203, t657
+    t662 = _runtime.select(spent_along_rear_elbow_down, t629 / (t205 - t628), 0.0)
+    del t205, t629
+    t663 = -(_runtime.FEASIBILITY * (t661 * (1.0 + t662)))
+    del t662
+    t664 = t660 & (t658 <= t637) & (t663 <= left_along_rear_elbow_down)
+    del t637, t660, t663
+    t665 = v_2_beta_rear_elbow_down * left_along_rear_elbow_down
+    t666 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t667 = t665 / (t628 * t628 + t666)
+    del t628, t665, t666
+    t668 = whole_y_rear_elbow_down * _runtime.select(-t640 < 0.0, t667, -t667)
+    del t640, t667
+    t669 = np.maximum(-whole_y_rear_elbow_down, np.minimum(-t633, whole_y_rear_elbow_down))
+    t670 = np.minimum(whole_y_rear_elbow_down, t668 + t669)
     del t668, t669
-    t671 = _runtime.select(folded, 0.0, t667) + t670
-    del t667
-    below_alpha_rear_elbow_down = np.maximum(t663, t164)
-    del t663
-    above_alpha_rear_elbow_down = np.maximum(t665, t164)
-    del t164, t665
-    t672 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t671 = _runtime.select(left_along_rear_elbow_down < 0.0, np.maximum(-whole_y_rear_elbow_down, t670), -t633)
+    del left_along_rear_elbow_down, t670
+    eased_rear_elbow_down = _runtime.select(spent_along_rear_elbow_down, t671, -t633)
+    del spent_along_rear_elbow_down, t633, t671
+    t672 = whole_y_rear_elbow_down - eased_rear_elbow_down
+    t673 = whole_y_rear_elbow_down + eased_rear_elbow_down
+    del eased_rear_elbow_down, whole_y_rear_elbow_down
+    t674 = -(_runtime.FEASIBILITY * t661)
+    del t661
+    below_beta_rear_elbow_down = np.maximum(t672, t636)
+    above_beta_rear_elbow_down = np.maximum(t673, t636)
+    del t636
+    t675 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
+    t676 = 1.0 / total_beta_rear_elbow_down
+    del total_beta_rear_elbow_down
+    t677 = t675 * t676
+    del t675
+    t678 = t620 - v_2_beta_rear_elbow_down * t677
+    del t620, v_2_beta_rear_elbow_down
+    t679 = L1 + t678
+    t680 = t664 & (t658 <= t672) & (t658 <= t673) & (t674 <= t679)
+    del t658, t664, t672, t673
+    t681 = L1 - t678
+    unreachable_4 = np.logical_not(t680 & (t674 <= t681))
+    del t674, t680
+    t682 = _runtime.poison(invalid | unreachable_4)
+    t683 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
+    del out_front_elbow_down, up_front_elbow_down
+    t684 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    t685 = lean_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
+    t686 = np.arctan2(t684, 1.0 - t685)
+    del t684, t685
+    t687 = _runtime.select(folded, 0.0, t683) + t686
+    del t683
+    below_alpha_rear_elbow_down = np.maximum(t679, t227)
+    del t679
+    above_alpha_rear_elbow_down = np.maximum(t681, t227)
+    del t227, t681
+    t688 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t673 = 1.0 / total_alpha_rear_elbow_down
+    t689 = 1.0 / total_alpha_rear_elbow_down
     del total_alpha_rear_elbow_down
-    t674 = t672 * t673
-    del t672
-    t675 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t690 = t688 * t689
+    del t688
+    t691 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t676 = np.arctan2(t674, t673 * t675)
-    del t673, t675
-    t677 = fore_turn_alpha_rear_elbow_down + fore_turn_beta_rear_elbow_down
-    t678 = fore_turn_alpha_rear_elbow_down * fore_turn_beta_rear_elbow_down
+    t692 = np.arctan2(t690, t689 * t691)
+    del t689, t691
+    t693 = fore_turn_alpha_rear_elbow_down + fore_turn_beta_rear_elbow_down
+    t694 = fore_turn_alpha_rear_elbow_down * fore_turn_beta_rear_elbow_down
     del fore_turn_alpha_rear_elbow_down, fore_turn_beta_rear_elbow_down
-    t679 = t230 - (t670 - np.arctan2(t677, 1.0 - t678))
-    del t230, t670, t677, t678
-    t680 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
+    t695 = t234 - (t686 - np.arctan2(t693, 1.0 - t694))
+    del t234, t686, t693, t694
+    t696 = 2.0 * np.sqrt(above_beta_rear_elbow_down) * np.sqrt(below_beta_rear_elbow_down)
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t681 = t676 - np.arctan2(t661, t660 * t680)
-    del t660, t680
-    t682 = (wrist <= al * _runtime.DETERMINED) | nowhere
+    t697 = t692 - np.arctan2(t677, t676 * t696)
+    del t676, t696
+    t698 = (wrist <= al * _runtime.DETERMINED) | nowhere
     del nowhere
-    t683 = t682 | folded | short
-    del folded, short, t682
-    t684 = 1.0 / slack
+    t699 = t698 | folded | short
+    del folded, short, t698
+    t700 = 1.0 / slack
     del slack
-    t685 = t684 * (t106 + t87 * t112 / 2000000.0)
+    t701 = t700 * (t106 + t87 * t112 / 2000000.0)
     del t112
-    t686 = 1099511627776.0 * _runtime.select(spent_alpha, t685, 1.0)
-    t687 = t684 * (L1 + t88 / 2000000.0)
+    t702 = 1099511627776.0 * _runtime.select(spent_alpha, t701, 1.0)
+    t703 = t700 * (L1 + t88 / 2000000.0)
     del t88
-    t688 = 1099511627776.0 * _runtime.select(spent_alpha, t687, 1.0)
-    t689 = 1.0 - t686 * np.abs(turn_alpha) - t688 * np.abs(aside_alpha)
-    del aside_alpha, t686, t688, turn_alpha
-    t690 = _runtime.select(spent_alpha, t689, 1.0) <= _runtime.DETERMINED
-    del spent_alpha, t689
-    t691 = 1099511627776.0 * _runtime.select(spent_beta, t685, 1.0)
-    del t685
-    t692 = 1099511627776.0 * _runtime.select(spent_beta, t687, 1.0)
-    t693 = 1.0 - t691 * np.abs(turn_beta) - t692 * np.abs(aside_beta)
-    del aside_beta, t691, t692, turn_beta
-    t694 = _runtime.select(spent_beta, t693, 1.0) <= _runtime.DETERMINED
-    del spent_beta, t693
-    t695 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
-    t696 = t695 + al * 0.015625 + d * 0.015625 + d1 * 0.015625
-    del t695
-    t697 = t696 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
-    del t696
-    t698 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
-    del t_phi, t_psi
-    t699 = np.minimum(np.maximum(d, t697) * t698, wrist * lengths / al)
-    del t697, t698, wrist
-    t700 = np.abs(p_1_beta + v_1_beta * t215) + np.abs(t216 - L1 * t225)
-    del p_1_beta, t215, t216, t225, v_1_beta
-    t701 = 1125899906842624.0 * _runtime.select(t170, t700, 0.0)
-    del t700
-    t702 = _runtime.select(t170, t699, 1.0) <= _runtime.DETERMINED * t701
+    t704 = 1099511627776.0 * _runtime.select(spent_alpha, t703, 1.0)
+    t705 = 1.0 - t702 * np.abs(turn_alpha) - t704 * np.abs(aside_alpha)
+    del aside_alpha, t702, t704, turn_alpha
+    t706 = _runtime.select(spent_alpha, t705, 1.0) <= _runtime.DETERMINED
+    del spent_alpha, t705
+    t707 = 1099511627776.0 * _runtime.select(spent_beta, t701, 1.0)
     del t701
-    t703 = lengths - 4.0 * by_wrist
+    t708 = 1099511627776.0 * _runtime.select(spent_beta, t703, 1.0)
+    t709 = 1.0 - t707 * np.abs(turn_beta) - t708 * np.abs(aside_beta)
+    del aside_beta, t707, t708, turn_beta
+    t710 = _runtime.select(spent_beta, t709, 1.0) <= _runtime.DETERMINED
+    del spent_beta, t709
+    t711 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
+    t712 = t711 + al * 0.015625 + d * 0.015625 + d1 * 0.015625
+    del t711
+    t713 = t712 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
+    del t712
+    t714 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
+    del t_phi, t_psi
+    t715 = np.minimum(np.maximum(d, t713) * t714, wrist * lengths / al)
+    del t713, t714, wrist
+    t716 = np.abs(p_1_beta + v_1_beta * t218) + np.abs(t219 - L1 * t229)
+    del p_1_beta, t218, t219, t229, v_1_beta
+    t717 = 1125899906842624.0 * _runtime.select(t171, t716, 0.0)
+    del t716
+    t718 = _runtime.select(t171, t715, 1.0) <= _runtime.DETERMINED * t717
+    del t717
+    t719 = lengths - 4.0 * by_wrist
     del by_wrist
-    t704 = _runtime.select(t170 | tangent, t703, lengths)
-    del t170
-    t705 = _runtime.DETERMINED * lengths
-    t706 = t683 | t690 | t694 | parallel | t702 | (t704 <= t705)
-    del parallel, t690, t694, t702, t704
-    t707 = t684 * (t261 + t87 * t269 / 2000000.0)
-    del t269
-    usual_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t707, 1.0)
-    t708 = 1099511627776.0 * usual_0_alpha_front_elbow_down
+    t720 = _runtime.select(t171 | tangent, t719, lengths)
+    del t171
+    t721 = _runtime.DETERMINED * lengths
+    t722 = t699 | t706 | t710 | parallel | t718 | (t720 <= t721)
+    del parallel, t706, t710, t718, t720
+    t723 = t700 * (t265 + t87 * t273 / 2000000.0)
+    del t273
+    usual_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t723, 1.0)
+    t724 = 1099511627776.0 * usual_0_alpha_front_elbow_down
     del usual_0_alpha_front_elbow_down
-    t709 = 1.0 - t708 * np.abs(turn_alpha_front_elbow_down)
-    del t708, turn_alpha_front_elbow_down
-    usual_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t687, 1.0)
-    t710 = 1099511627776.0 * usual_1_alpha_front_elbow_down
+    t725 = 1.0 - t724 * np.abs(turn_alpha_front_elbow_down)
+    del t724, turn_alpha_front_elbow_down
+    usual_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t703, 1.0)
+    t726 = 1099511627776.0 * usual_1_alpha_front_elbow_down
     del usual_1_alpha_front_elbow_down
-    t711 = t709 - t710 * np.abs(aside_alpha_front_elbow_down)
-    del aside_alpha_front_elbow_down, t709, t710
-    t712 = _runtime.select(spent_alpha_front_elbow_down, t711, 1.0)
-    del spent_alpha_front_elbow_down, t711
-    usual_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t707, 1.0)
-    del t707
-    t713 = 1099511627776.0 * usual_0_beta_front_elbow_down
+    t727 = t725 - t726 * np.abs(aside_alpha_front_elbow_down)
+    del aside_alpha_front_elbow_down, t725, t726
+    t728 = _runtime.select(spent_alpha_front_elbow_down, t727, 1.0)
+    del spent_alpha_front_elbow_down, t727
+    usual_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t723, 1.0)
+    del t723
+    t729 = 1099511627776.0 * usual_0_beta_front_elbow_down
     del usual_0_beta_front_elbow_down
-    t714 = 1.0 - t713 * np.abs(turn_beta_front_elbow_down)
-    del t713, turn_beta_front_elbow_down
-    usual_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t687, 1.0)
-    t715 = 1099511627776.0 * usual_1_beta_front_elbow_down
+    t730 = 1.0 - t729 * np.abs(turn_beta_front_elbow_down)
+    del t729, turn_beta_front_elbow_down
+    usual_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t703, 1.0)
+    t731 = 1099511627776.0 * usual_1_beta_front_elbow_down
     del usual_1_beta_front_elbow_down
-    t716 = t714 - t715 * np.abs(aside_beta_front_elbow_down)
-    del aside_beta_front_elbow_down, t714, t715
-    t717 = _runtime.select(spent_beta_front_elbow_down, t716, 1.0)
-    del spent_beta_front_elbow_down, t716
-    t718 = t683 | (t712 <= _runtime.DETERMINED) | (t717 <= _runtime.DETERMINED)
-    del t712, t717
-    t719 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t379
-    del p_1_beta_front_elbow_down, t379, v_1_beta_front_elbow_down
-    missed_front_elbow_down = _runtime.select(t348, np.abs(t719) + np.abs(t380 - L1 * t392), 0.0)
-    del t380, t392, t719
-    t720 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
+    t732 = t730 - t731 * np.abs(aside_beta_front_elbow_down)
+    del aside_beta_front_elbow_down, t730, t731
+    t733 = _runtime.select(spent_beta_front_elbow_down, t732, 1.0)
+    del spent_beta_front_elbow_down, t732
+    t734 = t699 | (t728 <= _runtime.DETERMINED) | (t733 <= _runtime.DETERMINED)
+    del t728, t733
+    t735 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t387
+    del p_1_beta_front_elbow_down, t387, v_1_beta_front_elbow_down
+    missed_front_elbow_down = _runtime.select(t354, np.abs(t735) + np.abs(t388 - L1 * t400), 0.0)
+    del t388, t400, t735
+    t736 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
     del missed_front_elbow_down
-    t721 = t718 | parallel_front_elbow_down | (_runtime.select(t348, t699, 1.0) <= t720)
-    del parallel_front_elbow_down, t718, t720
-    t722 = _runtime.select(t348 | tangent, t703, lengths)
-    del t348
-    t723 = _runtime.status(invalid, unreachable_2, t721 | (t722 <= t705))
-    del t721, t722, unreachable_2
-    t724 = t684 * (t261 + t87 * t414 / 2000000.0)
-    del t261, t414
-    usual_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t724, 1.0)
-    t725 = 1099511627776.0 * usual_0_alpha_rear_elbow_up
+    t737 = t734 | parallel_front_elbow_down | (_runtime.select(t354, t715, 1.0) <= t736)
+    del parallel_front_elbow_down, t734, t736
+    t738 = _runtime.select(t354 | tangent, t719, lengths)
+    del t354
+    t739 = _runtime.status(invalid, unreachable_2, t737 | (t738 <= t721))
+    del t737, t738, unreachable_2
+    t740 = t700 * (t265 + t87 * t422 / 2000000.0)
+    del t265, t422
+    usual_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t740, 1.0)
+    t741 = 1099511627776.0 * usual_0_alpha_rear_elbow_up
     del usual_0_alpha_rear_elbow_up
-    t726 = 1.0 - t725 * np.abs(turn_alpha_rear_elbow_up)
-    del t725, turn_alpha_rear_elbow_up
-    usual_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t687, 1.0)
-    t727 = 1099511627776.0 * usual_1_alpha_rear_elbow_up
+    t742 = 1.0 - t741 * np.abs(turn_alpha_rear_elbow_up)
+    del t741, turn_alpha_rear_elbow_up
+    usual_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t703, 1.0)
+    t743 = 1099511627776.0 * usual_1_alpha_rear_elbow_up
     del usual_1_alpha_rear_elbow_up
-    t728 = t726 - t727 * np.abs(aside_alpha_rear_elbow_up)
-    del aside_alpha_rear_elbow_up, t726, t727
-    t729 = _runtime.select(spent_alpha_rear_elbow_up, t728, 1.0)
-    del spent_alpha_rear_elbow_up, t728
-    usual_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t724, 1.0)
-    del t724
-    t730 = 1099511627776.0 * usual_0_beta_rear_elbow_up * np.abs(turn_beta_rear_elbow_up)
+    t744 = t742 - t743 * np.abs(aside_alpha_rear_elbow_up)
+    del aside_alpha_rear_elbow_up, t742, t743
+    t745 = _runtime.select(spent_alpha_rear_elbow_up, t744, 1.0)
+    del spent_alpha_rear_elbow_up, t744
+    usual_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t740, 1.0)
+    del t740
+    t746 = 1099511627776.0 * usual_0_beta_rear_elbow_up * np.abs(turn_beta_rear_elbow_up)
     del turn_beta_rear_elbow_up, usual_0_beta_rear_elbow_up
-    usual_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t687, 1.0)
-    t731 = 1099511627776.0 * usual_1_beta_rear_elbow_up * np.abs(aside_beta_rear_elbow_up)
+    usual_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t703, 1.0)
+    t747 = 1099511627776.0 * usual_1_beta_rear_elbow_up * np.abs(aside_beta_rear_elbow_up)
     del aside_beta_rear_elbow_up, usual_1_beta_rear_elbow_up
-    t732 = _runtime.select(spent_beta_rear_elbow_up, 1.0 - t730 - t731, 1.0)
-    del spent_beta_rear_elbow_up, t730, t731
-    t733 = t683 | (t729 <= _runtime.DETERMINED) | (t732 <= _runtime.DETERMINED)
-    del t729, t732
-    t734 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t521
-    del p_1_beta_rear_elbow_up, t521, v_1_beta_rear_elbow_up
-    missed_rear_elbow_up = _runtime.select(t490, np.abs(t734) + np.abs(t522 - L1 * t534), 0.0)
-    del t522, t534, t734
-    t735 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
+    t748 = _runtime.select(spent_beta_rear_elbow_up, 1.0 - t746 - t747, 1.0)
+    del spent_beta_rear_elbow_up, t746, t747
+    t749 = t699 | (t745 <= _runtime.DETERMINED) | (t748 <= _runtime.DETERMINED)
+    del t745, t748
+    t750 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t533
+    del p_1_beta_rear_elbow_up, t533, v_1_beta_rear_elbow_up
+    missed_rear_elbow_up = _runtime.select(t500, np.abs(t750) + np.abs(t534 - L1 * t546), 0.0)
+    del t534, t546, t750
+    t751 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
     del missed_rear_elbow_up
-    t736 = t733 | parallel_rear_elbow_up | (_runtime.select(t490, t699, 1.0) <= t735)
-    del parallel_rear_elbow_up, t733, t735
-    t737 = _runtime.select(t490 | tangent, t703, lengths)
-    del t490
-    t738 = _runtime.status(invalid, unreachable_3, t736 | (t737 <= t705))
-    del t736, t737, unreachable_3
-    t739 = t684 * (t106 + t87 * t554 / 2000000.0)
-    del t106, t554, t684, t87
-    usual_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t739, 1.0)
-    t740 = 1099511627776.0 * usual_0_alpha_rear_elbow_down
+    t752 = t749 | parallel_rear_elbow_up | (_runtime.select(t500, t715, 1.0) <= t751)
+    del parallel_rear_elbow_up, t749, t751
+    t753 = _runtime.select(t500 | tangent, t719, lengths)
+    del t500
+    t754 = _runtime.status(invalid, unreachable_3, t752 | (t753 <= t721))
+    del t752, t753, unreachable_3
+    t755 = t700 * (t106 + t87 * t566 / 2000000.0)
+    del t106, t566, t700, t87
+    usual_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t755, 1.0)
+    t756 = 1099511627776.0 * usual_0_alpha_rear_elbow_down
     del usual_0_alpha_rear_elbow_down
-    t741 = 1.0 - t740 * np.abs(turn_alpha_rear_elbow_down)
-    del t740, turn_alpha_rear_elbow_down
-    usual_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t687, 1.0)
-    t742 = 1099511627776.0 * usual_1_alpha_rear_elbow_down
+    t757 = 1.0 - t756 * np.abs(turn_alpha_rear_elbow_down)
+    del t756, turn_alpha_rear_elbow_down
+    usual_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t703, 1.0)
+    t758 = 1099511627776.0 * usual_1_alpha_rear_elbow_down
     del usual_1_alpha_rear_elbow_down
-    t743 = t741 - t742 * np.abs(aside_alpha_rear_elbow_down)
-    del aside_alpha_rear_elbow_down, t741, t742
-    t744 = _runtime.select(spent_alpha_rear_elbow_down, t743, 1.0)
-    del spent_alpha_rear_elbow_down, t743
-    usual_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t739, 1.0)
-    del t739
-    t745 = 1099511627776.0 * usual_0_beta_rear_elbow_down
+    t759 = t757 - t758 * np.abs(aside_alpha_rear_elbow_down)
+    del aside_alpha_rear_elbow_down, t757, t758
+    t760 = _runtime.select(spent_alpha_rear_elbow_down, t759, 1.0)
+    del spent_alpha_rear_elbow_down, t759
+    usual_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t755, 1.0)
+    del t755
+    t761 = 1099511627776.0 * usual_0_beta_rear_elbow_down
     del usual_0_beta_rear_elbow_down
-    t746 = 1.0 - t745 * np.abs(turn_beta_rear_elbow_down)
-    del t745, turn_beta_rear_elbow_down
-    usual_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t687, 1.0)
-    del t687
-    t747 = 1099511627776.0 * usual_1_beta_rear_elbow_down
+    t762 = 1.0 - t761 * np.abs(turn_beta_rear_elbow_down)
+    del t761, turn_beta_rear_elbow_down
+    usual_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t703, 1.0)
+    del t703
+    t763 = 1099511627776.0 * usual_1_beta_rear_elbow_down
     del usual_1_beta_rear_elbow_down
-    t748 = t746 - t747 * np.abs(aside_beta_rear_elbow_down)
-    del aside_beta_rear_elbow_down, t746, t747
-    t749 = _runtime.select(spent_beta_rear_elbow_down, t748, 1.0)
-    del spent_beta_rear_elbow_down, t748
-    t750 = t683 | (t744 <= _runtime.DETERMINED) | (t749 <= _runtime.DETERMINED)
-    del t683, t744, t749
-    t751 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t661
-    del p_1_beta_rear_elbow_down, t661, v_1_beta_rear_elbow_down
-    missed_rear_elbow_down = _runtime.select(t630, np.abs(t751) + np.abs(t662 - L1 * t674), 0.0)
-    del t662, t674, t751
-    t752 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
+    t764 = t762 - t763 * np.abs(aside_beta_rear_elbow_down)
+    del aside_beta_rear_elbow_down, t762, t763
+    t765 = _runtime.select(spent_beta_rear_elbow_down, t764, 1.0)
+    del spent_beta_rear_elbow_down, t764
+    t766 = t699 | (t760 <= _runtime.DETERMINED) | (t765 <= _runtime.DETERMINED)
+    del t699, t760, t765
+    t767 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t677
+    del p_1_beta_rear_elbow_down, t677, v_1_beta_rear_elbow_down
+    missed_rear_elbow_down = _runtime.select(t644, np.abs(t767) + np.abs(t678 - L1 * t690), 0.0)
+    del t678, t690, t767
+    t768 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
     del missed_rear_elbow_down
-    t753 = t750 | parallel_rear_elbow_down | (_runtime.select(t630, t699, 1.0) <= t752)
-    del parallel_rear_elbow_down, t699, t750, t752
-    t754 = _runtime.select(t630 | tangent, t703, lengths)
-    del lengths, t630, t703, tangent
-    t755 = _runtime.status(invalid, unreachable_4, t753 | (t754 <= t705))
-    del t705, t753, t754, unreachable_4
+    t769 = t766 | parallel_rear_elbow_down | (_runtime.select(t644, t715, 1.0) <= t768)
+    del parallel_rear_elbow_down, t715, t766, t768
+    t770 = _runtime.select(t644 | tangent, t719, lengths)
+    del lengths, t644, t719, tangent
+    t771 = _runtime.status(invalid, unreachable_4, t769 | (t770 <= t721))
+    del t721, t769, t770, unreachable_4
     return (
-        t176 + t220,
-        _runtime.wrap(t223 - t227) + t220,
-        _runtime.wrap(t232 + t234) + t220,
-        _runtime.wrap(t223 + t227) + t220,
-        _runtime.wrap(t232 - t234) + t220,
-        t235 + t220,
-        _runtime.wrap(t351 - t175) + t384,
-        _runtime.wrap(t389 - t394) + t384,
-        _runtime.wrap(t398 + t400) + t384,
-        _runtime.wrap(t389 + t394) + t384,
-        _runtime.wrap(t398 - t400) + t384,
-        t235 + t384,
-        _runtime.wrap(t492 - t493) + t526,
-        _runtime.wrap(t531 - t536) + t526,
-        _runtime.wrap(t539 + t541) + t526,
-        _runtime.wrap(t531 + t536) + t526,
-        _runtime.wrap(t539 - t541) + t526,
-        t235 + t526,
-        _runtime.wrap(t632 - t493) + t666,
-        _runtime.wrap(t671 - t676) + t666,
-        _runtime.wrap(t679 + t681) + t666,
-        _runtime.wrap(t671 + t676) + t666,
-        _runtime.wrap(t679 - t681) + t666,
-        t235 + t666,
-        _runtime.status(invalid, unreachable, t706),
-        t723,
-        t738,
-        t755,
+        t177 + t223,
+        _runtime.wrap(t226 - t231) + t223,
+        _runtime.wrap(t236 + t238) + t223,
+        _runtime.wrap(t226 + t231) + t223,
+        _runtime.wrap(t236 - t238) + t223,
+        t239 + t223,
+        _runtime.wrap(t357 - t176) + t392,
+        _runtime.wrap(t397 - t402) + t392,
+        _runtime.wrap(t406 + t408) + t392,
+        _runtime.wrap(t397 + t402) + t392,
+        _runtime.wrap(t406 - t408) + t392,
+        t239 + t392,
+        _runtime.wrap(t502 - t503) + t538,
+        _runtime.wrap(t543 - t548) + t538,
+        _runtime.wrap(t551 + t553) + t538,
+        _runtime.wrap(t543 + t548) + t538,
+        _runtime.wrap(t551 - t553) + t538,
+        t239 + t538,
+        _runtime.wrap(t646 - t503) + t682,
+        _runtime.wrap(t687 - t692) + t682,
+        _runtime.wrap(t695 + t697) + t682,
+        _runtime.wrap(t687 + t692) + t682,
+        _runtime.wrap(t695 - t697) + t682,
+        t239 + t682,
+        _runtime.status(invalid, unreachable, t722),
+        t739,
+        t754,
+        t771,
     )
 
 
@@ -3375,43 +3408,45 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t77 = t72 <= t76
     t78 = t71 & t75 & t77
     t79 = -(_runtime.FEASIBILITY * (32.0 * play))
-    t80 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
-    below_beta_0 = np.maximum(t74, t80)
+    t80 = 16.0 * play
+    t81 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t73 - t80))
+    below_beta_0 = np.maximum(t74, -t81)
     del t74
-    above_beta_0 = np.maximum(t76, t80)
+    above_beta_0 = np.maximum(t76, -t81)
     del t76
-    t81 = 1.0 / (below_beta_0 + above_beta_0)
-    t82 = (below_beta_0 - above_beta_0) * t81
-    t83 = t65 - v_2 * t82
+    t82 = 1.0 / (below_beta_0 + above_beta_0)
+    t83 = (below_beta_0 - above_beta_0) * t82
+    t84 = t65 - v_2 * t83
     del t65
-    left_along = L1 - np.abs(t83)
-    t84 = t78 & t75 & t77 & (t79 <= left_along) & t75 & t77
+    left_along = L1 - np.abs(t84)
+    t85 = t78 & t75 & t77 & (t79 <= left_along) & t75 & t77
     del t75, t77
-    t85 = L1 + t83
-    t86 = L1 - t83
-    del t83
-    unreachable = np.logical_not(t84 & (t79 <= t85) & (t79 <= t86))
+    t86 = L1 + t84
+    t87 = L1 - t84
     del t84
-    t87 = _runtime.poison(invalid | unreachable)
-    t88 = np.arctan2(up, -out_rear_elbow_up)
-    below_alpha = np.maximum(t85, t80)
+    unreachable = np.logical_not(t85 & (t79 <= t86) & (t79 <= t87))
     del t85
-    above_alpha = np.maximum(t86, t80)
+    t88 = _runtime.poison(invalid | unreachable)
+    t89 = np.arctan2(up, -out_rear_elbow_up)
+    t90 = _runtime.VANISHING * (_runtime.VANISHING * (L1 * 16.0 + t80))
+    below_alpha = np.maximum(t86, t90)
     del t86
-    t89 = 1.0 / (below_alpha + above_alpha)
-    t90 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
-    t91 = np.arctan2((below_alpha - above_alpha) * t89, t89 * t90)
-    del above_alpha, below_alpha, t89, t90
-    t92 = 2.0 * np.sqrt(above_beta_0) * np.sqrt(below_beta_0)
+    above_alpha = np.maximum(t87, t90)
+    del t87
+    t91 = 1.0 / (below_alpha + above_alpha)
+    t92 = 2.0 * np.sqrt(above_alpha) * np.sqrt(below_alpha)
+    t93 = np.arctan2((below_alpha - above_alpha) * t91, t91 * t92)
+    del above_alpha, below_alpha, t91, t92
+    t94 = 2.0 * np.sqrt(above_beta_0) * np.sqrt(below_beta_0)
     del above_beta_0, below_beta_0
-    t93 = t91 - np.arctan2(t82, t81 * t92)
-    del t81, t82, t92
-    t94 = np.arctan2(t50, t48)
+    t95 = t93 - np.arctan2(t83, t82 * t94)
+    del t82, t83, t94
+    t96 = np.arctan2(t50, t48)
     del t48, t50
-    t95 = np.arctan2(L_2W, a_3W)
+    t97 = np.arctan2(L_2W, a_3W)
     del L_2W, a_3W
-    t96 = t94 - t95
-    t97 = _runtime.wrap(principal_pitch)
+    t98 = t96 - t97
+    t99 = _runtime.wrap(principal_pitch)
     del principal_pitch
     c_relative_front_elbow_down = t49 - t51
     del t49, t51
@@ -3419,316 +3454,318 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t52, t53
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t98 = np.abs(whole_alpha_front_elbow_down)
+    t100 = np.abs(whole_alpha_front_elbow_down)
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
     del c_relative_front_elbow_down, s_relative_front_elbow_down
     out_front_elbow_down = t58 + t59
     del t58, t59
-    t99 = t56 - t57
+    t101 = t56 - t57
     del t56, t57
-    t100 = out_front_elbow_down * out_front_elbow_down + t99 * t99
-    t101 = 1.0 / np.sqrt(t100)
-    del t100
-    ctheta2A_front_elbow_down = out_front_elbow_down * t101
-    t102 = ahead * ctheta2A_front_elbow_down
-    t103 = t99 * t101
-    del t101
-    t104 = higher * t103
-    p_1_front_elbow_down = t102 - t104
-    t105 = ahead * t103
-    del ahead, t103
-    t106 = higher * ctheta2A_front_elbow_down
+    t102 = out_front_elbow_down * out_front_elbow_down + t101 * t101
+    t103 = 1.0 / np.sqrt(t102)
+    del t102
+    ctheta2A_front_elbow_down = out_front_elbow_down * t103
+    t104 = ahead * ctheta2A_front_elbow_down
+    t105 = t101 * t103
+    del t103
+    t106 = higher * t105
+    p_1_front_elbow_down = t104 - t106
+    t107 = ahead * t105
+    del ahead, t105
+    t108 = higher * ctheta2A_front_elbow_down
     del ctheta2A_front_elbow_down, higher
-    t107 = t105 + t106
-    t108 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t107
-    margin_alpha_front_elbow_down = t98 - np.abs(t108)
-    del t108
-    t109 = t43 & (t45 <= margin_alpha_front_elbow_down)
-    margin_beta_front_elbow_down = t98 - np.abs(L1 * p_1_front_elbow_down)
-    t110 = t109 & (t70 <= margin_beta_front_elbow_down)
+    t109 = t107 + t108
+    t110 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t109
+    margin_alpha_front_elbow_down = t100 - np.abs(t110)
+    del t110
+    t111 = t43 & (t45 <= margin_alpha_front_elbow_down)
+    margin_beta_front_elbow_down = t100 - np.abs(L1 * p_1_front_elbow_down)
+    t112 = t111 & (t70 <= margin_beta_front_elbow_down)
     sigma_uv_front_elbow_down = _runtime.sign(-whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
-    t111 = sigma_uv_front_elbow_down * p_1_front_elbow_down
+    t113 = sigma_uv_front_elbow_down * p_1_front_elbow_down
     del p_1_front_elbow_down
-    t112 = v_1_front_elbow_down * sigma_uv_front_elbow_down
-    t113 = t111 - t112
-    t114 = t72 <= t113
-    t115 = -(t112 + t111)
-    del t111
+    t114 = v_1_front_elbow_down * sigma_uv_front_elbow_down
+    t115 = t113 - t114
     t116 = t72 <= t115
-    t117 = t110 & t114 & t116
-    below_beta_0_front_elbow_down = np.maximum(t113, t80)
+    t117 = -(t114 + t113)
     del t113
-    above_beta_0_front_elbow_down = np.maximum(t115, t80)
+    t118 = t72 <= t117
+    t119 = t112 & t116 & t118
+    t120 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t114 - t80))
+    del t80
+    below_beta_0_front_elbow_down = np.maximum(t115, -t120)
     del t115
-    t118 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    above_beta_0_front_elbow_down = np.maximum(t117, -t120)
+    del t117
+    t121 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
-    t119 = 1.0 / total_beta_0_front_elbow_down
+    t122 = 1.0 / total_beta_0_front_elbow_down
     del total_beta_0_front_elbow_down
-    t120 = t118 * t119
-    del t118
-    along_u_front_elbow_down = t107 + v_2_front_elbow_down * t120
-    del t107
+    t123 = t121 * t122
+    del t121
+    along_u_front_elbow_down = t109 + v_2_front_elbow_down * t123
+    del t109
     left_along_front_elbow_down = L1 - np.abs(-along_u_front_elbow_down)
-    t121 = t117 & t114 & t116 & (t79 <= left_along_front_elbow_down)
-    t122 = L1 - along_u_front_elbow_down
-    t123 = L1 + along_u_front_elbow_down
+    t124 = t119 & t116 & t118 & (t79 <= left_along_front_elbow_down)
+    t125 = L1 - along_u_front_elbow_down
+    t126 = L1 + along_u_front_elbow_down
     del along_u_front_elbow_down
-    t124 = t121 & t114 & t116 & (t79 <= t122) & (t79 <= t123)
-    del t114, t116, t121
-    unreachable_2 = np.logical_not(t124)
-    del t124
-    t125 = _runtime.poison(invalid | unreachable_2)
-    t126 = np.arctan2(-t99, out_front_elbow_down)
-    below_alpha_front_elbow_down = np.maximum(t122, t80)
-    del t122
-    above_alpha_front_elbow_down = np.maximum(t123, t80)
-    del t123
-    t127 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t127 = t124 & t116 & t118 & (t79 <= t125) & (t79 <= t126)
+    del t116, t118, t124
+    unreachable_2 = np.logical_not(t127)
+    del t127
+    t128 = _runtime.poison(invalid | unreachable_2)
+    t129 = np.arctan2(-t101, out_front_elbow_down)
+    below_alpha_front_elbow_down = np.maximum(t125, t90)
+    del t125
+    above_alpha_front_elbow_down = np.maximum(t126, t90)
+    del t126
+    t130 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
-    t128 = 1.0 / total_alpha_front_elbow_down
+    t131 = 1.0 / total_alpha_front_elbow_down
     del total_alpha_front_elbow_down
-    t129 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
+    t132 = 2.0 * np.sqrt(above_alpha_front_elbow_down) * np.sqrt(below_alpha_front_elbow_down)
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t130 = np.arctan2(t127 * t128, t128 * t129)
-    del t127, t128, t129
-    t131 = t94 + t95
-    del t94, t95
-    t132 = 2.0 * np.sqrt(above_beta_0_front_elbow_down) * np.sqrt(below_beta_0_front_elbow_down)
+    t133 = np.arctan2(t130 * t131, t131 * t132)
+    del t130, t131, t132
+    t134 = t96 + t97
+    del t96, t97
+    t135 = 2.0 * np.sqrt(above_beta_0_front_elbow_down) * np.sqrt(below_beta_0_front_elbow_down)
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t133 = t130 - np.arctan2(t120, t119 * t132)
-    del t119, t120, t132
-    t134 = _runtime.wrap(-(t13 + t12))
+    t136 = t133 - np.arctan2(t123, t122 * t135)
+    del t122, t123, t135
+    t137 = _runtime.wrap(-(t13 + t12))
     del t12, t13
-    t135 = t66 + t67
+    t138 = t66 + t67
     del t66, t67
-    t136 = t62 - t64
+    t139 = t62 - t64
     del t62, t64
-    t137 = v_2_front_elbow_down * t135 + v_1_front_elbow_down * t136
+    t140 = v_2_front_elbow_down * t138 + v_1_front_elbow_down * t139
     del v_1_front_elbow_down
-    margin_alpha_rear_elbow_up = t98 - np.abs(t137)
-    del t137
-    t138 = t43 & (t45 <= margin_alpha_rear_elbow_up)
-    margin_beta_rear_elbow_up = t98 - np.abs(L1 * t135)
-    del t98
-    t139 = t138 & (t70 <= margin_beta_rear_elbow_up)
-    t140 = sigma_uv_front_elbow_down * t135
-    del sigma_uv_front_elbow_down, t135
-    t141 = t140 - t112
-    t142 = t72 <= t141
-    t143 = -(t112 + t140)
+    margin_alpha_rear_elbow_up = t100 - np.abs(t140)
     del t140
-    t144 = t72 <= t143
-    t145 = t139 & t142 & t144
-    below_beta_0_rear_elbow_up = np.maximum(t141, t80)
-    del t141
-    above_beta_0_rear_elbow_up = np.maximum(t143, t80)
+    t141 = t43 & (t45 <= margin_alpha_rear_elbow_up)
+    margin_beta_rear_elbow_up = t100 - np.abs(L1 * t138)
+    del t100
+    t142 = t141 & (t70 <= margin_beta_rear_elbow_up)
+    t143 = sigma_uv_front_elbow_down * t138
+    del sigma_uv_front_elbow_down, t138
+    t144 = t143 - t114
+    t145 = t72 <= t144
+    t146 = -(t114 + t143)
     del t143
-    t146 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    t147 = t72 <= t146
+    t148 = t142 & t145 & t147
+    below_beta_0_rear_elbow_up = np.maximum(t144, -t120)
+    del t144
+    above_beta_0_rear_elbow_up = np.maximum(t146, -t120)
+    del t120, t146
+    t149 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
-    t147 = 1.0 / total_beta_0_rear_elbow_up
+    t150 = 1.0 / total_beta_0_rear_elbow_up
     del total_beta_0_rear_elbow_up
-    t148 = t146 * t147
-    del t146
-    t149 = t136 - v_2_front_elbow_down * t148
-    del t136
-    left_along_rear_elbow_up = L1 - np.abs(t149)
-    t150 = t145 & t142 & t144 & (t79 <= left_along_rear_elbow_up)
-    t151 = L1 + t149
-    t152 = L1 - t149
+    t151 = t149 * t150
     del t149
-    t153 = t150 & t142 & t144 & (t79 <= t151) & (t79 <= t152)
-    del t142, t144, t150
-    unreachable_3 = np.logical_not(t153)
-    del t153
-    t154 = _runtime.poison(invalid | unreachable_3)
-    t155 = np.arctan2(up, out_rear_elbow_up)
-    del out_rear_elbow_up, up
-    below_alpha_rear_elbow_up = np.maximum(t151, t80)
-    del t151
-    above_alpha_rear_elbow_up = np.maximum(t152, t80)
+    t152 = t139 - v_2_front_elbow_down * t151
+    del t139
+    left_along_rear_elbow_up = L1 - np.abs(t152)
+    t153 = t148 & t145 & t147 & (t79 <= left_along_rear_elbow_up)
+    t154 = L1 + t152
+    t155 = L1 - t152
     del t152
-    t156 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t156 = t153 & t145 & t147 & (t79 <= t154) & (t79 <= t155)
+    del t145, t147, t153
+    unreachable_3 = np.logical_not(t156)
+    del t156
+    t157 = _runtime.poison(invalid | unreachable_3)
+    t158 = np.arctan2(up, out_rear_elbow_up)
+    del out_rear_elbow_up, up
+    below_alpha_rear_elbow_up = np.maximum(t154, t90)
+    del t154
+    above_alpha_rear_elbow_up = np.maximum(t155, t90)
+    del t155
+    t159 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
-    t157 = 1.0 / total_alpha_rear_elbow_up
+    t160 = 1.0 / total_alpha_rear_elbow_up
     del total_alpha_rear_elbow_up
-    t158 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
+    t161 = 2.0 * np.sqrt(above_alpha_rear_elbow_up) * np.sqrt(below_alpha_rear_elbow_up)
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t159 = np.arctan2(t156 * t157, t157 * t158)
-    del t156, t157, t158
-    t160 = 2.0 * np.sqrt(above_beta_0_rear_elbow_up) * np.sqrt(below_beta_0_rear_elbow_up)
+    t162 = np.arctan2(t159 * t160, t160 * t161)
+    del t159, t160, t161
+    t163 = 2.0 * np.sqrt(above_beta_0_rear_elbow_up) * np.sqrt(below_beta_0_rear_elbow_up)
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t161 = t159 - np.arctan2(t148, t147 * t160)
-    del t147, t148, t160
-    t162 = t102 + t104
-    del t102, t104
-    t163 = t105 - t106
-    del t105, t106
-    margin_alpha_rear_elbow_down = t54 - np.abs(-(v_2 * t162 + v_1 * t163))
+    t164 = t162 - np.arctan2(t151, t150 * t163)
+    del t150, t151, t163
+    t165 = t104 + t106
+    del t104, t106
+    t166 = t107 - t108
+    del t107, t108
+    margin_alpha_rear_elbow_down = t54 - np.abs(-(v_2 * t165 + v_1 * t166))
     del v_1
-    t164 = t43 & (t45 <= margin_alpha_rear_elbow_down)
+    t167 = t43 & (t45 <= margin_alpha_rear_elbow_down)
     del t45
-    margin_beta_rear_elbow_down = t54 - np.abs(-(L1 * t162))
+    margin_beta_rear_elbow_down = t54 - np.abs(-(L1 * t165))
     del t54
-    t165 = t164 & (t70 <= margin_beta_rear_elbow_down)
+    t168 = t167 & (t70 <= margin_beta_rear_elbow_down)
     del t70
-    part_y_rear_elbow_down = sigma_uv * t162
-    del sigma_uv, t162
-    t166 = -(t73 + part_y_rear_elbow_down)
-    t167 = t72 <= t166
-    t168 = part_y_rear_elbow_down - t73
+    part_y_rear_elbow_down = sigma_uv * t165
+    del sigma_uv, t165
+    t169 = -(t73 + part_y_rear_elbow_down)
+    t170 = t72 <= t169
+    t171 = part_y_rear_elbow_down - t73
     del part_y_rear_elbow_down
-    t169 = t72 <= t168
+    t172 = t72 <= t171
     del t72
-    t170 = t165 & t167 & t169
-    below_beta_0_rear_elbow_down = np.maximum(t166, t80)
-    del t166
-    above_beta_0_rear_elbow_down = np.maximum(t168, t80)
-    del t168
-    t171 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t173 = t168 & t170 & t172
+    below_beta_0_rear_elbow_down = np.maximum(t169, -t81)
+    del t169
+    above_beta_0_rear_elbow_down = np.maximum(t171, -t81)
+    del t171, t81
+    t174 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
-    t172 = 1.0 / total_beta_0_rear_elbow_down
+    t175 = 1.0 / total_beta_0_rear_elbow_down
     del total_beta_0_rear_elbow_down
-    t173 = t171 * t172
-    del t171
-    along_u_rear_elbow_down = t163 + v_2 * t173
-    del t163
+    t176 = t174 * t175
+    del t174
+    along_u_rear_elbow_down = t166 + v_2 * t176
+    del t166
     left_along_rear_elbow_down = L1 - np.abs(-along_u_rear_elbow_down)
-    t174 = t170 & t167 & t169 & (t79 <= left_along_rear_elbow_down)
-    t175 = L1 - along_u_rear_elbow_down
-    t176 = L1 + along_u_rear_elbow_down
+    t177 = t173 & t170 & t172 & (t79 <= left_along_rear_elbow_down)
+    t178 = L1 - along_u_rear_elbow_down
+    t179 = L1 + along_u_rear_elbow_down
     del along_u_rear_elbow_down
-    t177 = t174 & t167 & t169 & (t79 <= t175) & (t79 <= t176)
-    del t167, t169, t174, t79
-    unreachable_4 = np.logical_not(t177)
-    del t177
-    t178 = _runtime.poison(invalid | unreachable_4)
-    t179 = np.arctan2(-t99, -out_front_elbow_down)
-    del out_front_elbow_down, t99
-    below_alpha_rear_elbow_down = np.maximum(t175, t80)
-    del t175
-    above_alpha_rear_elbow_down = np.maximum(t176, t80)
-    del t176, t80
-    t180 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t180 = t177 & t170 & t172 & (t79 <= t178) & (t79 <= t179)
+    del t170, t172, t177, t79
+    unreachable_4 = np.logical_not(t180)
+    del t180
+    t181 = _runtime.poison(invalid | unreachable_4)
+    t182 = np.arctan2(-t101, -out_front_elbow_down)
+    del out_front_elbow_down, t101
+    below_alpha_rear_elbow_down = np.maximum(t178, t90)
+    del t178
+    above_alpha_rear_elbow_down = np.maximum(t179, t90)
+    del t179, t90
+    t183 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
-    t181 = 1.0 / total_alpha_rear_elbow_down
+    t184 = 1.0 / total_alpha_rear_elbow_down
     del total_alpha_rear_elbow_down
-    t182 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
+    t185 = 2.0 * np.sqrt(above_alpha_rear_elbow_down) * np.sqrt(below_alpha_rear_elbow_down)
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t183 = np.arctan2(t180 * t181, t181 * t182)
-    del t180, t181, t182
-    t184 = 2.0 * np.sqrt(above_beta_0_rear_elbow_down) * np.sqrt(below_beta_0_rear_elbow_down)
+    t186 = np.arctan2(t183 * t184, t184 * t185)
+    del t183, t184, t185
+    t187 = 2.0 * np.sqrt(above_beta_0_rear_elbow_down) * np.sqrt(below_beta_0_rear_elbow_down)
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t185 = t183 - np.arctan2(t173, t172 * t184)
-    del t172, t173, t184
-    t186 = 1.0 <= _runtime.DETERMINED
-    t187 = (wrist <= al * _runtime.DETERMINED) | t186 | t186
-    del t186, wrist
-    t188 = t187 | (1.0 <= 0.0) | (lengths <= _runtime.DETERMINED * lengths)
-    del t187
-    t189 = _runtime.status(invalid, unreachable_2, t188)
+    t188 = t186 - np.arctan2(t176, t175 * t187)
+    del t175, t176, t187
+    t189 = 1.0 <= _runtime.DETERMINED
+    t190 = (wrist <= al * _runtime.DETERMINED) | t189 | t189
+    del t189, wrist
+    t191 = t190 | (1.0 <= 0.0) | (lengths <= _runtime.DETERMINED * lengths)
+    del t190
+    t192 = _runtime.status(invalid, unreachable_2, t191)
     del unreachable_2
-    t190 = _runtime.status(invalid, unreachable_3, t188)
+    t193 = _runtime.status(invalid, unreachable_3, t191)
     del unreachable_3
-    t191 = _runtime.status(invalid, unreachable_4, t188)
+    t194 = _runtime.status(invalid, unreachable_4, t191)
     del unreachable_4
-    t192 = h * slack
+    t195 = h * slack
     del slack
-    tangent = 4.0 * root * t35 - t192 * 0.00390625 <= _runtime.VANISHING * t192
-    del t192
-    t193 = tangent | (h <= _runtime.VANISHING * lengths)
+    tangent = 4.0 * root * t35 - t195 * 0.00390625 <= _runtime.VANISHING * t195
+    del t195
+    t196 = tangent | (h <= _runtime.VANISHING * lengths)
     del h, lengths, tangent
-    t194 = _runtime.VANISHING * t35
+    t197 = _runtime.VANISHING * t35
     del t35
-    t195 = (L1 * fore <= _runtime.VANISHING * t36) | (np.abs(t37) + np.abs(root) <= t194)
+    t198 = (L1 * fore <= _runtime.VANISHING * t36) | (np.abs(t37) + np.abs(root) <= t197)
     del root, t36, t37
-    t196 = np.maximum(-(margin_alpha * 9.094947017729282e-13), margin_alpha)
+    t199 = np.maximum(-(margin_alpha * 9.094947017729282e-13), margin_alpha)
     del margin_alpha
-    t197 = _runtime.VANISHING * play_alpha
+    t200 = _runtime.VANISHING * play_alpha
     del play_alpha
-    t198 = margin_alpha_front_elbow_down * 9.094947017729282e-13
-    t199 = np.maximum(-t198, margin_alpha_front_elbow_down)
-    del margin_alpha_front_elbow_down, t198
-    t200 = t195 | (fore <= t194) | (t196 <= t197) | (t199 <= t197)
-    del fore, t194, t195, t196, t199
-    t201 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
-    t202 = np.maximum(-t201, margin_alpha_rear_elbow_up)
-    del margin_alpha_rear_elbow_up, t201
-    t203 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
-    t204 = np.maximum(-t203, margin_alpha_rear_elbow_down)
-    del margin_alpha_rear_elbow_down, t203
-    t205 = t43 & (t200 | (t202 <= t197) | (t204 <= t197))
-    del t197, t200, t202, t204, t43
-    t206 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
+    t201 = margin_alpha_front_elbow_down * 9.094947017729282e-13
+    t202 = np.maximum(-t201, margin_alpha_front_elbow_down)
+    del margin_alpha_front_elbow_down, t201
+    t203 = t198 | (fore <= t197) | (t199 <= t200) | (t202 <= t200)
+    del fore, t197, t198, t199, t202
+    t204 = margin_alpha_rear_elbow_up * 9.094947017729282e-13
+    t205 = np.maximum(-t204, margin_alpha_rear_elbow_up)
+    del margin_alpha_rear_elbow_up, t204
+    t206 = margin_alpha_rear_elbow_down * 9.094947017729282e-13
+    t207 = np.maximum(-t206, margin_alpha_rear_elbow_down)
+    del margin_alpha_rear_elbow_down, t206
+    t208 = t43 & (t203 | (t205 <= t200) | (t207 <= t200))
+    del t200, t203, t205, t207, t43
+    t209 = np.maximum(-(margin_beta * 9.094947017729282e-13), margin_beta)
     del margin_beta
-    t207 = _runtime.VANISHING * play_beta
+    t210 = _runtime.VANISHING * play_beta
     del play_beta
     parallel = -t73 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
     del t73, v_2
-    t208 = (t32 & t193) | t205 | (t69 & (t206 <= t207)) | ((t71 | t165) & parallel)
-    del parallel, t165, t193, t205, t206, t32, t69, t71
-    t209 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t211 = (t32 & t196) | t208 | (t69 & (t209 <= t210)) | ((t71 | t168) & parallel)
+    del parallel, t168, t196, t208, t209, t32, t69, t71
+    t212 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
     del left_along
-    t210 = _runtime.VANISHING * play
+    t213 = _runtime.VANISHING * play
     del play
-    t211 = margin_beta_front_elbow_down * 9.094947017729282e-13
-    t212 = np.maximum(-t211, margin_beta_front_elbow_down)
-    del margin_beta_front_elbow_down, t211
-    t213 = t208 | (t78 & (t209 <= t210)) | (t109 & (t212 <= t207))
-    del t109, t208, t209, t212, t78
-    t214 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
+    t214 = margin_beta_front_elbow_down * 9.094947017729282e-13
+    t215 = np.maximum(-t214, margin_beta_front_elbow_down)
+    del margin_beta_front_elbow_down, t214
+    t216 = t211 | (t78 & (t212 <= t213)) | (t111 & (t215 <= t210))
+    del t111, t211, t212, t215, t78
+    t217 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
     del v_2_front_elbow_down
-    t215 = left_along_front_elbow_down * 9.094947017729282e-13
-    t216 = np.maximum(-t215, left_along_front_elbow_down)
-    del left_along_front_elbow_down, t215
-    t217 = t213 | ((t110 | t139) & (-t112 <= t214)) | (t117 & (t216 <= t210))
-    del t110, t112, t117, t139, t213, t214, t216
-    t218 = margin_beta_rear_elbow_up * 9.094947017729282e-13
-    spent_beta_rear_elbow_up = np.maximum(-t218, margin_beta_rear_elbow_up) <= t207
-    del margin_beta_rear_elbow_up, t218
-    t219 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t219, left_along_rear_elbow_up) <= t210
-    del left_along_rear_elbow_up, t219
-    t220 = t217 | (t138 & spent_beta_rear_elbow_up) | (t145 & spent_along_rear_elbow_up)
-    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t138, t145, t217
-    t221 = margin_beta_rear_elbow_down * 9.094947017729282e-13
-    t222 = np.maximum(-t221, margin_beta_rear_elbow_down)
-    del margin_beta_rear_elbow_down, t221
-    t223 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t224 = np.maximum(-t223, left_along_rear_elbow_down)
-    del left_along_rear_elbow_down, t223
-    t225 = t220 | (t164 & (t222 <= t207)) | (t170 & (t224 <= t210))
-    del t164, t170, t207, t210, t220, t222, t224
+    t218 = left_along_front_elbow_down * 9.094947017729282e-13
+    t219 = np.maximum(-t218, left_along_front_elbow_down)
+    del left_along_front_elbow_down, t218
+    t220 = t216 | ((t112 | t142) & (-t114 <= t217)) | (t119 & (t219 <= t213))
+    del t112, t114, t119, t142, t216, t217, t219
+    t221 = margin_beta_rear_elbow_up * 9.094947017729282e-13
+    spent_beta_rear_elbow_up = np.maximum(-t221, margin_beta_rear_elbow_up) <= t210
+    del margin_beta_rear_elbow_up, t221
+    t222 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t222, left_along_rear_elbow_up) <= t213
+    del left_along_rear_elbow_up, t222
+    t223 = t220 | (t141 & spent_beta_rear_elbow_up) | (t148 & spent_along_rear_elbow_up)
+    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t141, t148, t220
+    t224 = margin_beta_rear_elbow_down * 9.094947017729282e-13
+    t225 = np.maximum(-t224, margin_beta_rear_elbow_down)
+    del margin_beta_rear_elbow_down, t224
+    t226 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t227 = np.maximum(-t226, left_along_rear_elbow_down)
+    del left_along_rear_elbow_down, t226
+    t228 = t223 | (t167 & (t225 <= t210)) | (t173 & (t227 <= t213))
+    del t167, t173, t210, t213, t223, t225, t227
     return (
-        t14 + t87,
-        _runtime.wrap(t88 - t91) + t87,
-        _runtime.wrap(t93 - t96) + t87,
-        _runtime.wrap(t88 + t91) + t87,
-        _runtime.wrap(-(t96 + t93)) + t87,
-        t97 + t87,
-        t14 + t125,
-        _runtime.wrap(t126 - t130) + t125,
-        _runtime.wrap(t131 + t133) + t125,
-        _runtime.wrap(t126 + t130) + t125,
-        _runtime.wrap(t131 - t133) + t125,
-        t97 + t125,
-        t134 + t154,
-        _runtime.wrap(t155 - t159) + t154,
-        _runtime.wrap(t131 + t161) + t154,
-        _runtime.wrap(t155 + t159) + t154,
-        _runtime.wrap(t131 - t161) + t154,
-        t97 + t154,
-        t134 + t178,
-        _runtime.wrap(t179 - t183) + t178,
-        _runtime.wrap(t185 - t96) + t178,
-        _runtime.wrap(t179 + t183) + t178,
-        _runtime.wrap(-(t96 + t185)) + t178,
-        t97 + t178,
-        _runtime.status(invalid, unreachable, t188),
-        t189,
-        t190,
-        t191,
-        t225,
+        t14 + t88,
+        _runtime.wrap(t89 - t93) + t88,
+        _runtime.wrap(t95 - t98) + t88,
+        _runtime.wrap(t89 + t93) + t88,
+        _runtime.wrap(-(t98 + t95)) + t88,
+        t99 + t88,
+        t14 + t128,
+        _runtime.wrap(t129 - t133) + t128,
+        _runtime.wrap(t134 + t136) + t128,
+        _runtime.wrap(t129 + t133) + t128,
+        _runtime.wrap(t134 - t136) + t128,
+        t99 + t128,
+        t137 + t157,
+        _runtime.wrap(t158 - t162) + t157,
+        _runtime.wrap(t134 + t164) + t157,
+        _runtime.wrap(t158 + t162) + t157,
+        _runtime.wrap(t134 - t164) + t157,
+        t99 + t157,
+        t137 + t181,
+        _runtime.wrap(t182 - t186) + t181,
+        _runtime.wrap(t188 - t98) + t181,
+        _runtime.wrap(t182 + t186) + t181,
+        _runtime.wrap(-(t98 + t188)) + t181,
+        t99 + t181,
+        _runtime.status(invalid, unreachable, t191),
+        t192,
+        t193,
+        t194,
+        t228,
     )
 
 

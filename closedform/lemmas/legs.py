@@ -125,6 +125,16 @@ def cross_in_plane(a: sp.Matrix, b: sp.Matrix) -> sp.Expr:
     return a[0] * b[1] - a[1] * b[0]
 
 
+def turned_left(v: sp.Matrix) -> sp.Matrix:
+    """A vector of a plane, turned by a right angle to the left."""
+    return sp.Matrix([-v[1], v[0]])
+
+
+def closing_weights(vectors: Sequence[sp.Matrix]) -> tuple[sp.Expr, ...]:
+    """Factors with which three vectors of a plane add up to zero."""
+    return tuple(sp.simplify(cross_in_plane(vectors[k - 2], vectors[k - 1])) for k in range(3))
+
+
 @dataclass(frozen=True)
 class Naming:
     """Names the quantities of one leg in a program; ``size`` is the sum of all lengths.
@@ -479,6 +489,9 @@ __all__ = [
     "Solution",
     "Stretch",
     "Strut",
+    "closing_weights",
+    "cross_in_plane",
     "sign_of_leg",
+    "turned_left",
     "vector",
 ]

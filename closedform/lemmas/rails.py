@@ -9,7 +9,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.legs import Naming, Slider, Solution, cross_in_plane, vector
+from closedform.lemmas.legs import Naming, Slider, Solution, cross_in_plane, turned_left, vector
 from closedform.lemmas.missed import MOVED
 from closedform.lemmas.registry import theorem
 from closedform.lemmas.spheres import Meeting
@@ -67,7 +67,7 @@ class Rail(Slider):
     @property
     def normal(self) -> sp.Matrix:
         """The direction of the rail, turned by a right angle to the left."""
-        return sp.Matrix([-self.way[1], self.way[0]])
+        return turned_left(self.way)
 
     def pull(self, span: sp.Matrix) -> sp.Matrix:
         """The vector whose product with the velocity of the point is its row of A."""

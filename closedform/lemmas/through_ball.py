@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.legs import vector
+from closedform.lemmas.legs import turned_left, vector
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class ThroughBall:
     @property
     def normal(self) -> sp.Matrix:
         """The same, turned by a right angle to the left."""
-        return sp.Matrix([-self.way[1], self.way[0]])
+        return turned_left(self.way)
 
     def end(self) -> sp.Matrix:
         """The ball."""

@@ -9,7 +9,7 @@ from functools import cached_property
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.legs import cross_in_plane
+from closedform.lemmas.legs import closing_weights, cross_in_plane
 from closedform.lemmas.through_ball import ThroughBall
 from closedform.loops.leg_by_leg import size_of
 from closedform.model.derivation import Derivation
@@ -63,9 +63,8 @@ class OnBalls:
     @cached_property
     def weights(self) -> tuple[sp.Expr, ...]:
         """Factors with which the normals of the arms add up to zero."""
-        ways = [leg.way for leg in self.legs]
-        found = [sp.simplify(cross_in_plane(ways[k - 2], ways[k - 1])) for k in range(LEGS)]
-        return tuple(found if sp.Add(*found) >= 0 else [-w for w in found])
+        found = closing_weights([leg.way for leg in self.legs])
+        return found if sp.Add(*found) >= 0 else tuple(-w for w in found)
 
     @cached_property
     def sides(self) -> list[sp.Matrix]:

@@ -5,12 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.legs import Crank, Slide, cross_in_plane, vector
+from closedform.lemmas.legs import (
+    Crank,
+    Leg,
+    Slide,
+    closing_weights,
+    cross_in_plane,
+    turned_left,
+    vector,
+)
 from closedform.loops.balls import ASIDE, TILT_X, TILT_Y, TWIST, Turns, Z
 from closedform.loops.hand import check_order, check_plain, square
 from closedform.mechanics.frames import rotation
@@ -63,7 +71,7 @@ class BallOnLine:
     @property
     def normal(self) -> sp.Matrix:
         """The same, turned by a right angle to the left."""
-        return sp.Matrix([-self.way[1], self.way[0]])
+        return turned_left(self.way)
 
     @property
     def place(self) -> sp.Matrix:
@@ -99,7 +107,7 @@ class OnLines:
         name = self.d.name
         if len(self.legs) != LEGS:
             raise ShapeError(f"{name}: a hand whose balls slide along lines has three legs")
-        check_order(self.d, [leg.leg for leg in self.legs])  # type: ignore[misc]
+        check_order(self.d, [cast("Leg", leg.leg) for leg in self.legs])
         check_plain(self.d, [leg.leg for leg in self.legs])
         if list(self.d.task) not in ([], list(TASK)):
             raise ShapeError(f"{name}: the task of this hand must be {', '.join(TASK)}")
@@ -120,8 +128,7 @@ class OnLines:
     @cached_property
     def weights(self) -> tuple[sp.Expr, ...]:
         """Factors with which the normals of the lines add up to zero."""
-        n = [leg.normal for leg in self.legs]
-        return tuple(sp.simplify(cross_in_plane(n[k - 2], n[k - 1])) for k in range(LEGS))
+        return closing_weights([leg.normal for leg in self.legs])
 
     @cached_property
     def order(self) -> tuple[int, int]:
@@ -167,7 +174,7 @@ class OnLines:
         """What sin(twist) and cos(twist) are multiplied by, from the corners without the twist."""
         terms = [*zip(self.weights, self.legs, flat, strict=True)]
         return (
-            sp.Add(*(w * leg.normal.dot(turned(f)) for w, leg, f in terms)),
+            sp.Add(*(w * leg.normal.dot(turned_left(f)) for w, leg, f in terms)),
             sp.Add(*(w * leg.normal.dot(f) for w, leg, f in terms)),
         )
 
@@ -177,7 +184,7 @@ class OnLines:
 
     def centre(self, beside: Sequence[sp.Expr], flat: Sequence[sp.Matrix], pair: Pair) -> sp.Matrix:
         """The point of the hand, seen from above: where two lines, moved by its corners, meet."""
-        (i, k), ends = self.order, [pair.c * f + pair.s * turned(f) for f in flat]
+        (i, k), ends = self.order, [pair.c * f + pair.s * turned_left(f) for f in flat]
         first, second = self.legs[i], self.legs[k]
         g, h = (beside[j] - self.legs[j].normal.dot(ends[j]) for j in (i, k))
         across = sp.simplify(cross_in_plane(first.way, second.way))
@@ -213,11 +220,6 @@ class Twisted:
         return sp.Matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]]) * self.tilted
 
 
-def turned(v: sp.Matrix) -> sp.Matrix:
-    """A vector of the plane, turned by a right angle to the left."""
-    return sp.Matrix([-v[1], v[0]])
-
-
 def exact_pose() -> Twisted:
     """The hand in the angles of its target and the twist."""
     x, y, t = (Pair(sp.sin(e), sp.cos(e)) for e in (TILT_X, TILT_Y, TWIST))
@@ -251,5 +253,4 @@ __all__ = [
     "Twisted",
     "as_turns",
     "exact_pose",
-    "turned",
 ]

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from closedform.lemmas.legs import Crank, Slide, Solution, vector
+from closedform.lemmas.legs import Crank, Slide, Solution, turned_left, vector
 from closedform.lemmas.lines import coordinate
 from closedform.lemmas.links import degenerate, polar_lemma
 from closedform.lemmas.sine_cosine import linear_pair
@@ -26,7 +26,6 @@ from closedform.loops.lines_hand import (
     Twisted,
     as_turns,
     exact_pose,
-    turned,
 )
 from closedform.loops.lines_rates import draw, state_velocity
 from closedform.loops.slotted import turned_to_line
@@ -266,7 +265,7 @@ def _state_forward(m: OnLines, loop: Step) -> None:
     flat = [exact.tilted[:2, :2] * leg.place for leg in m.legs]
     a, b = m.twisting(flat)
     place, t = sp.Matrix([real("p_x"), real("p_y")]), exact.pair
-    ends = [t.c * f + t.s * turned(f) for f in flat]
+    ends = [t.c * f + t.s * turned_left(f) for f in flat]
     lines = [
         leg.normal.dot(place + end) - y for leg, end, y in zip(m.legs, ends, beside, strict=True)
     ]

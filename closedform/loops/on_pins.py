@@ -14,7 +14,16 @@ from typing import Any, cast
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.legs import Crank, Leg, Slide, Solution, cross_in_plane, vector
+from closedform.lemmas.legs import (
+    Crank,
+    Leg,
+    Slide,
+    Solution,
+    closing_weights,
+    cross_in_plane,
+    turned_left,
+    vector,
+)
 from closedform.lemmas.lines import FAR, coordinate, slide_to_line
 from closedform.lemmas.rails import named_number
 from closedform.loops.hand import check_order, in_space, square
@@ -55,7 +64,7 @@ class Sleeve:
     @property
     def normal(self) -> sp.Matrix:
         """The direction of the line, turned to the left, in the frame of the hand."""
-        return sp.Matrix([-self.way[1], self.way[0]])
+        return turned_left(self.way)
 
     @property
     def aside(self) -> sp.Expr:
@@ -109,9 +118,7 @@ class _OnPins:
     @cached_property
     def weights(self) -> tuple[sp.Expr, ...]:
         """Factors with which the normals of the lines add up to zero."""
-        a, b, c = (sleeve.normal for sleeve in self.legs)
-        pairs = ((b, c), (c, a), (a, b))
-        return tuple(sp.simplify(cross_in_plane(u, v)) for u, v in pairs)
+        return closing_weights([sleeve.normal for sleeve in self.legs])
 
     @cached_property
     def order(self) -> tuple[int, int, int]:

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import sympy as sp
 
-from closedform.lemmas.legs import Slide, Stretch, cross_in_plane
+from closedform.lemmas.legs import Slide, Stretch, cross_in_plane, turned_left
 from closedform.lemmas.missed import MOVED
 from closedform.lemmas.quartic import OnCircle, quartic_in
 from closedform.lemmas.rails import Rail, rail_and_circle, two_rails
@@ -33,11 +33,6 @@ RAILS = 2
 LINE, SIDE = real("sigma_line"), real("sigma_side")
 LINES = {1: "first", -1: "second"}
 TURN, ROD = real("sigma_turn"), real("sigma_rod")
-
-
-def turned(place: sp.Matrix) -> sp.Matrix:
-    """A vector of the plane, turned by a right angle to the left."""
-    return sp.Matrix([-place[1], place[0]])
 
 
 @dataclass(frozen=True)
@@ -94,7 +89,7 @@ class TwoRails:
 
         at = moved([leg.end() for leg in legs]) - m.legs[self.third].end()
         cosine = last - moved(places)
-        sine = turned(last) - moved([turned(e) for e in places])
+        sine = turned_left(last) - moved([turned_left(e) for e in places])
         return at, cosine.applyfunc(sp.factor_terms), sine.applyfunc(sp.factor_terms)
 
     @cached_property
@@ -120,7 +115,7 @@ class TwoRails:
         total = [sp.S.Zero] * 3
         for k, leg in zip(self.rails, self.legs, strict=True):
             along, place = weights[k] * leg.normal, m.places[k]
-            parts = turned(place), place, leg.end()
+            parts = turned_left(place), place, leg.end()
             total = [t + along.dot(v) for t, v in zip(total, parts, strict=True)]
         a, b, c = (sp.factor_terms(sp.expand(t)) for t in total)
         return sp.Matrix([[weights.get(k, 0) for k in range(3)]]), (a, b, c)

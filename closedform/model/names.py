@@ -44,6 +44,7 @@ C_LOCALS = frozenset({
     "params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start",
     "single", "opposite", "adjacent", "angles", "principals", "turned", "wide", "rare", "signs",
     "k", "exponent", "excess", "dimensions", "params_scaled", "one",
+    "steady", "steady_sines", "steady_cosines",
 })  # fmt: skip
 """Names of local variables in the generated C functions."""
 C_SUFFIXES = ("_i", "_stride", "_real", "_lanes")

@@ -282,31 +282,22 @@ CF_INLINE void delta_fk_common_batch(size_t n, const delta_params *params,
     (void)rare_stride;
     const delta_params local = *params;
     const real_t one = cf_one();
+    real_t steady_sines[3], steady_cosines[3];
+    const real_t steady[3] = { params->alpha1, params->alpha2, params->alpha3 };
+    cf_sincos_block_rounded(3, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_4, sines[4], cosines[4]);
-        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[5], cosines[5]);
+        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
+        cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[2], cosines[2]);
         real_t status_real[2][CLOSEDFORM_BLOCK];
         real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            const real_t sines_i[6] = { steady_sines[0], sines[0][i], steady_sines[1], sines[1][i], steady_sines[2], sines[2][i] };
+            const real_t cosines_i[6] = { steady_cosines[0], cosines[0][i], steady_cosines[1], cosines[1][i], steady_cosines[2], cosines[2][i] };
             real_t p_i[6];
             real_t status_i[2];
             real_t rare_i[1];
@@ -775,29 +766,20 @@ void delta_skeleton_batch(size_t n, const delta_params *params,
         delta_skeleton_other_sizes(n, params, q, q_stride, points, points_stride);
         return;
     }
+    real_t steady_sines[3], steady_cosines[3];
+    const real_t steady[3] = { params->alpha1, params->alpha2, params->alpha3 };
+    cf_sincos_block(3, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
-        cf_sincos_block(length, q + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + q_stride + start, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha3;
-        cf_sincos_block(length, angle_4, sines[4], cosines[4]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[5], cosines[5]);
+        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            const real_t sines_i[6] = { steady_sines[0], sines[0][i], sines[1][i], steady_sines[1], steady_sines[2], sines[2][i] };
+            const real_t cosines_i[6] = { steady_cosines[0], cosines[0][i], cosines[1][i], steady_cosines[1], steady_cosines[2], cosines[2][i] };
             real_t points_i[132];
             delta_skeleton_kernel(0, &local, q_i, sines_i, cosines_i, points_i);
             points[start + i] = points_i[0];
@@ -1192,30 +1174,21 @@ CF_INLINE void delta_jacobian_parallel_common_batch(size_t n, const delta_params
     (void)rare_stride;
     const delta_params local = *params;
     const real_t one = cf_one();
+    real_t steady_sines[3], steady_cosines[3];
+    const real_t steady[3] = { params->alpha1, params->alpha2, params->alpha3 };
+    cf_sincos_block_rounded(3, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
         cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
         cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[2], cosines[2]);
         real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], steady_sines[0], steady_sines[1], sines[2][i], steady_sines[2] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], steady_cosines[0], steady_cosines[1], cosines[2][i], steady_cosines[2] };
             real_t A_i[18];
             real_t rare_i[1];
             delta_jacobian_parallel_common_kernel(0, one, &local, q_i, sines_i, cosines_i, A_i, rare_i);
@@ -1583,30 +1556,21 @@ CF_INLINE void delta_jacobian_serial_common_batch(size_t n, const delta_params *
     (void)rare_stride;
     const delta_params local = *params;
     const real_t one = cf_one();
+    real_t steady_sines[3], steady_cosines[3];
+    const real_t steady[3] = { params->alpha1, params->alpha2, params->alpha3 };
+    cf_sincos_block_rounded(3, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
-        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
+        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
+        cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[2], cosines[2]);
         real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            const real_t sines_i[6] = { steady_sines[0], sines[0][i], sines[1][i], steady_sines[1], sines[2][i], steady_sines[2] };
+            const real_t cosines_i[6] = { steady_cosines[0], cosines[0][i], cosines[1][i], steady_cosines[1], cosines[2][i], steady_cosines[2] };
             real_t B_i[6];
             real_t rare_i[1];
             delta_jacobian_serial_common_kernel(0, one, &local, q_i, sines_i, cosines_i, B_i, rare_i);
@@ -1911,29 +1875,20 @@ void delta_jacobian_batch(size_t n, const delta_params *params,
         delta_jacobian_other_sizes(n, params, q, q_stride, J, J_stride);
         return;
     }
+    real_t steady_sines[3], steady_cosines[3];
+    const real_t steady[3] = { params->alpha1, params->alpha2, params->alpha3 };
+    cf_sincos_block(3, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
-        cf_sincos_block(length, q + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + q_stride + start, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha3;
-        cf_sincos_block(length, angle_4, sines[4], cosines[4]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[5], cosines[5]);
+        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            const real_t sines_i[6] = { steady_sines[0], sines[0][i], sines[1][i], steady_sines[1], steady_sines[2], sines[2][i] };
+            const real_t cosines_i[6] = { steady_cosines[0], cosines[0][i], cosines[1][i], steady_cosines[1], steady_cosines[2], cosines[2][i] };
             real_t J_i[18];
             delta_jacobian_kernel(0, &local, q_i, sines_i, cosines_i, J_i);
             J[start + i] = J_i[0];
@@ -2217,30 +2172,21 @@ CF_INLINE void delta_determinant_common_batch(size_t n, const delta_params *para
     (void)rare_stride;
     const delta_params local = *params;
     const real_t one = cf_one();
+    real_t steady_sines[3], steady_cosines[3];
+    const real_t steady[3] = { params->alpha1, params->alpha2, params->alpha3 };
+    cf_sincos_block_rounded(3, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
-        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
+        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
+        cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[2], cosines[2]);
         real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            const real_t sines_i[6] = { steady_sines[0], sines[0][i], sines[1][i], steady_sines[1], sines[2][i], steady_sines[2] };
+            const real_t cosines_i[6] = { steady_cosines[0], cosines[0][i], cosines[1][i], steady_cosines[1], cosines[2][i], steady_cosines[2] };
             real_t det_i[2];
             real_t rare_i[1];
             delta_determinant_common_kernel(0, one, &local, q_i, sines_i, cosines_i, det_i, rare_i);
@@ -2598,30 +2544,21 @@ CF_INLINE void delta_singularities_common_batch(size_t n, const delta_params *pa
     (void)rare_stride;
     const delta_params local = *params;
     const real_t one = cf_one();
+    real_t steady_sines[3], steady_cosines[3];
+    const real_t steady[3] = { params->alpha1, params->alpha2, params->alpha3 };
+    cf_sincos_block_rounded(3, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
-        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
+        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
+        cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[2], cosines[2]);
         real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            const real_t sines_i[6] = { steady_sines[0], sines[0][i], sines[1][i], steady_sines[1], sines[2][i], steady_sines[2] };
+            const real_t cosines_i[6] = { steady_cosines[0], cosines[0][i], cosines[1][i], steady_cosines[1], cosines[2][i], steady_cosines[2] };
             real_t factors_i[8];
             real_t rare_i[1];
             delta_singularities_common_kernel(0, one, &local, q_i, sines_i, cosines_i, factors_i, rare_i);
@@ -2914,29 +2851,20 @@ void delta_condition_number_batch(size_t n, const delta_params *params,
         delta_condition_number_other_sizes(n, params, q, q_stride, kappa, kappa_stride);
         return;
     }
+    real_t steady_sines[3], steady_cosines[3];
+    const real_t steady[3] = { params->alpha1, params->alpha2, params->alpha3 };
+    cf_sincos_block(3, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
         cf_sincos_block(length, q + start, sines[0], cosines[0]);
         cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha1;
-        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha3;
-        cf_sincos_block(length, angle_4, sines[4], cosines[4]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[5], cosines[5]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], steady_sines[0], steady_sines[1], steady_sines[2], sines[2][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], steady_cosines[0], steady_cosines[1], steady_cosines[2], cosines[2][i] };
             real_t kappa_i[2];
             delta_condition_number_kernel(0, &local, q_i, sines_i, cosines_i, kappa_i);
             kappa[start + i] = kappa_i[0];
@@ -3247,30 +3175,21 @@ CF_INLINE void delta_constraint_common_batch(size_t n, const delta_params *param
     (void)rare_stride;
     const delta_params local = *params;
     const real_t one = cf_one();
+    real_t steady_sines[3], steady_cosines[3];
+    const real_t steady[3] = { params->alpha3, params->alpha1, params->alpha2 };
+    cf_sincos_block_rounded(3, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        cf_sincos_block_rounded(length, one, q + start, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
-        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[5], cosines[5]);
+        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
+        cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block_rounded(length, one, q + 2 * q_stride + start, sines[2], cosines[2]);
         real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            const real_t sines_i[6] = { steady_sines[0], steady_sines[1], steady_sines[2], sines[0][i], sines[1][i], sines[2][i] };
+            const real_t cosines_i[6] = { steady_cosines[0], steady_cosines[1], steady_cosines[2], cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t factors_i[2];
             real_t rare_i[1];
             delta_constraint_common_kernel(0, one, &local, q_i, sines_i, cosines_i, factors_i, rare_i);
@@ -3879,27 +3798,17 @@ void delta_ik_batch(size_t n, const delta_params *params,
     const delta_params local = *params;
     const real_t one = cf_one();
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    real_t steady_sines[3], steady_cosines[3];
+    const real_t steady[3] = { params->alpha1, params->alpha2, params->alpha3 };
+    cf_sincos_block_rounded(3, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
         real_t status_real[8][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t x_i[3] = { x[start + i], x[x_stride + start + i], x[2 * x_stride + start + i] };
-            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
-            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
+            const real_t sines_i[3] = { steady_sines[0], steady_sines[1], steady_sines[2] };
+            const real_t cosines_i[3] = { steady_cosines[0], steady_cosines[1], steady_cosines[2] };
             real_t q_i[24];
             real_t status_i[8];
             delta_ik_kernel(0, one, &local, x_i, sines_i, cosines_i, q_i, status_i);
@@ -4158,27 +4067,17 @@ void delta_workspace_contains_batch(size_t n, const delta_params *params,
     const delta_params local = *params;
     const real_t one = cf_one();
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    real_t steady_sines[3], steady_cosines[3];
+    const real_t steady[3] = { params->alpha1, params->alpha2, params->alpha3 };
+    cf_sincos_block_rounded(3, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
         real_t inside_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t p_i[3] = { p[start + i], p[p_stride + start + i], p[2 * p_stride + start + i] };
-            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
-            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
+            const real_t sines_i[3] = { steady_sines[0], steady_sines[1], steady_sines[2] };
+            const real_t cosines_i[3] = { steady_cosines[0], steady_cosines[1], steady_cosines[2] };
             real_t inside_i[1];
             delta_workspace_contains_kernel(0, one, &local, p_i, sines_i, cosines_i, inside_i);
             inside_real[0][i] = inside_i[0];

@@ -329,38 +329,21 @@ CF_INLINE void spherical_five_bar_fk_common_batch(size_t n, const spherical_five
     (void)rare_stride;
     const spherical_five_bar_params local = *params;
     const real_t one = cf_one();
+    real_t steady_sines[5], steady_cosines[5];
+    const real_t steady[5] = { params->alpha1, params->gamma, params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_block_rounded(5, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
         cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->gamma;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
-        real_t angle_6[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_6, sines[6], cosines[6]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[1], cosines[1]);
         real_t status_real[2][CLOSEDFORM_BLOCK];
         real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
-            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
-            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+            const real_t sines_i[7] = { sines[0][i], steady_sines[0], steady_sines[1], steady_sines[2], sines[1][i], steady_sines[3], steady_sines[4] };
+            const real_t cosines_i[7] = { cosines[0][i], steady_cosines[0], steady_cosines[1], steady_cosines[2], cosines[1][i], steady_cosines[3], steady_cosines[4] };
             real_t p_i[6];
             real_t status_i[2];
             real_t rare_i[1];
@@ -834,37 +817,20 @@ CF_INLINE void spherical_five_bar_skeleton_common_batch(size_t n, const spherica
     (void)rare_stride;
     const spherical_five_bar_params local = *params;
     const real_t one = cf_one();
+    real_t steady_sines[5], steady_cosines[5];
+    const real_t steady[5] = { params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->alpha1, params->gamma, params->alpha2 };
+    cf_sincos_block_rounded(5, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->beta1 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->beta2 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->gamma;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
-        cf_sincos_block_rounded(length, one, q + start, sines[6], cosines[6]);
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
         real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
-            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
-            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+            const real_t sines_i[7] = { steady_sines[0], steady_sines[1], steady_sines[2], steady_sines[3], sines[0][i], steady_sines[4], sines[1][i] };
+            const real_t cosines_i[7] = { steady_cosines[0], steady_cosines[1], steady_cosines[2], steady_cosines[3], cosines[0][i], steady_cosines[4], cosines[1][i] };
             real_t points_i[36];
             real_t rare_i[1];
             spherical_five_bar_skeleton_common_kernel(0, one, &local, q_i, sines_i, cosines_i, points_i, rare_i);
@@ -1300,37 +1266,20 @@ CF_INLINE void spherical_five_bar_jacobian_parallel_common_batch(size_t n, const
     (void)rare_stride;
     const spherical_five_bar_params local = *params;
     const real_t one = cf_one();
+    real_t steady_sines[5], steady_cosines[5];
+    const real_t steady[5] = { params->alpha1, params->gamma, params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_block_rounded(5, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->gamma;
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
-        real_t angle_6[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_6, sines[6], cosines[6]);
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
         real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
-            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
-            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+            const real_t sines_i[7] = { steady_sines[0], steady_sines[1], sines[0][i], steady_sines[2], sines[1][i], steady_sines[3], steady_sines[4] };
+            const real_t cosines_i[7] = { steady_cosines[0], steady_cosines[1], cosines[0][i], steady_cosines[2], cosines[1][i], steady_cosines[3], steady_cosines[4] };
             real_t A_i[18];
             real_t rare_i[1];
             spherical_five_bar_jacobian_parallel_common_kernel(0, one, &local, q_i, sines_i, cosines_i, A_i, rare_i);
@@ -1725,37 +1674,20 @@ CF_INLINE void spherical_five_bar_jacobian_serial_common_batch(size_t n, const s
     (void)rare_stride;
     const spherical_five_bar_params local = *params;
     const real_t one = cf_one();
+    real_t steady_sines[5], steady_cosines[5];
+    const real_t steady[5] = { params->alpha1, params->gamma, params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_block_rounded(5, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
         cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->gamma;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
-        real_t angle_6[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_6, sines[6], cosines[6]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[1], cosines[1]);
         real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
-            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
-            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+            const real_t sines_i[7] = { sines[0][i], steady_sines[0], steady_sines[1], steady_sines[2], sines[1][i], steady_sines[3], steady_sines[4] };
+            const real_t cosines_i[7] = { cosines[0][i], steady_cosines[0], steady_cosines[1], steady_cosines[2], cosines[1][i], steady_cosines[3], steady_cosines[4] };
             real_t B_i[4];
             real_t rare_i[1];
             spherical_five_bar_jacobian_serial_common_kernel(0, one, &local, q_i, sines_i, cosines_i, B_i, rare_i);
@@ -2211,37 +2143,20 @@ CF_INLINE void spherical_five_bar_jacobian_common_batch(size_t n, const spherica
     (void)rare_stride;
     const spherical_five_bar_params local = *params;
     const real_t one = cf_one();
+    real_t steady_sines[5], steady_cosines[5];
+    const real_t steady[5] = { params->alpha1, params->gamma, params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_block_rounded(5, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
         cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->gamma;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
-        real_t angle_6[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_6, sines[6], cosines[6]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[1], cosines[1]);
         real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
-            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
-            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+            const real_t sines_i[7] = { sines[0][i], steady_sines[0], steady_sines[1], steady_sines[2], sines[1][i], steady_sines[3], steady_sines[4] };
+            const real_t cosines_i[7] = { cosines[0][i], steady_cosines[0], steady_cosines[1], steady_cosines[2], cosines[1][i], steady_cosines[3], steady_cosines[4] };
             real_t J_i[12];
             real_t rare_i[1];
             spherical_five_bar_jacobian_common_kernel(0, one, &local, q_i, sines_i, cosines_i, J_i, rare_i);
@@ -2637,37 +2552,20 @@ CF_INLINE void spherical_five_bar_singularities_common_batch(size_t n, const sph
     (void)rare_stride;
     const spherical_five_bar_params local = *params;
     const real_t one = cf_one();
+    real_t steady_sines[5], steady_cosines[5];
+    const real_t steady[5] = { params->alpha1, params->gamma, params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_block_rounded(5, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
         cf_sincos_block_rounded(length, one, q + start, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->gamma;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
-        real_t angle_6[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_6, sines[6], cosines[6]);
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[1], cosines[1]);
         real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
-            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
-            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+            const real_t sines_i[7] = { sines[0][i], steady_sines[0], steady_sines[1], steady_sines[2], sines[1][i], steady_sines[3], steady_sines[4] };
+            const real_t cosines_i[7] = { cosines[0][i], steady_cosines[0], steady_cosines[1], steady_cosines[2], cosines[1][i], steady_cosines[3], steady_cosines[4] };
             real_t factors_i[6];
             real_t rare_i[1];
             spherical_five_bar_singularities_common_kernel(0, one, &local, q_i, sines_i, cosines_i, factors_i, rare_i);
@@ -3148,37 +3046,20 @@ CF_INLINE void spherical_five_bar_condition_number_common_batch(size_t n, const 
     (void)rare_stride;
     const spherical_five_bar_params local = *params;
     const real_t one = cf_one();
+    real_t steady_sines[5], steady_cosines[5];
+    const real_t steady[5] = { params->alpha1, params->gamma, params->alpha2, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0) };
+    cf_sincos_block_rounded(5, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[7][CLOSEDFORM_BLOCK], cosines[7][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->gamma;
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        cf_sincos_block_rounded(length, one, q + start, sines[4], cosines[4]);
-        real_t angle_5[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_5[i] = params->beta1 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_5, sines[5], cosines[5]);
-        real_t angle_6[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_6[i] = params->beta2 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_6, sines[6], cosines[6]);
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
+        cf_sincos_block_rounded(length, one, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block_rounded(length, one, q + start, sines[1], cosines[1]);
         real_t rare_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
-            const real_t sines_i[7] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i], sines[6][i] };
-            const real_t cosines_i[7] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i], cosines[6][i] };
+            const real_t sines_i[7] = { steady_sines[0], steady_sines[1], sines[0][i], steady_sines[2], sines[1][i], steady_sines[3], steady_sines[4] };
+            const real_t cosines_i[7] = { steady_cosines[0], steady_cosines[1], cosines[0][i], steady_cosines[2], cosines[1][i], steady_cosines[3], steady_cosines[4] };
             real_t kappa_i[2];
             real_t rare_i[1];
             spherical_five_bar_condition_number_common_kernel(0, one, &local, q_i, sines_i, cosines_i, kappa_i, rare_i);
@@ -3525,35 +3406,17 @@ void spherical_five_bar_ik_batch(size_t n, const spherical_five_bar_params *para
     const spherical_five_bar_params local = *params;
     const real_t one = cf_one();
     const real_t dimensions = cf_abs(params->r);
+    real_t steady_sines[5], steady_cosines[5];
+    const real_t steady[5] = { params->alpha1, params->beta1 / CLOSEDFORM_C(2.0), params->beta2 / CLOSEDFORM_C(2.0), params->gamma, params->alpha2 };
+    cf_sincos_block_rounded(5, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[5][CLOSEDFORM_BLOCK], cosines[5][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->beta1 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->beta2 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->gamma;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_4, sines[4], cosines[4]);
         real_t status_real[4][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t x_i[3] = { x[start + i], x[x_stride + start + i], x[2 * x_stride + start + i] };
-            const real_t sines_i[5] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i] };
-            const real_t cosines_i[5] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i] };
+            const real_t sines_i[5] = { steady_sines[0], steady_sines[1], steady_sines[2], steady_sines[3], steady_sines[4] };
+            const real_t cosines_i[5] = { steady_cosines[0], steady_cosines[1], steady_cosines[2], steady_cosines[3], steady_cosines[4] };
             real_t q_i[8];
             real_t status_i[4];
             spherical_five_bar_ik_kernel(0, one, &local, x_i, sines_i, cosines_i, q_i, status_i);
@@ -3721,35 +3584,17 @@ void spherical_five_bar_workspace_contains_batch(size_t n, const spherical_five_
     const spherical_five_bar_params local = *params;
     const real_t one = cf_one();
     const real_t dimensions = cf_abs(params->r);
+    real_t steady_sines[5], steady_cosines[5];
+    const real_t steady[5] = { params->beta1 / CLOSEDFORM_C(2.0), params->alpha1, params->beta2 / CLOSEDFORM_C(2.0), params->gamma, params->alpha2 };
+    cf_sincos_block_rounded(5, one, steady, steady_sines, steady_cosines);
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[5][CLOSEDFORM_BLOCK], cosines[5][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->beta1 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->beta2 / CLOSEDFORM_C(2.0);
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
-        real_t angle_3[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_3[i] = params->gamma;
-        cf_sincos_block_rounded(length, one, angle_3, sines[3], cosines[3]);
-        real_t angle_4[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_4[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_4, sines[4], cosines[4]);
         real_t inside_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t p_i[3] = { p[start + i], p[p_stride + start + i], p[2 * p_stride + start + i] };
-            const real_t sines_i[5] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i] };
-            const real_t cosines_i[5] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i] };
+            const real_t sines_i[5] = { steady_sines[0], steady_sines[1], steady_sines[2], steady_sines[3], steady_sines[4] };
+            const real_t cosines_i[5] = { steady_cosines[0], steady_cosines[1], steady_cosines[2], steady_cosines[3], steady_cosines[4] };
             real_t inside_i[1];
             spherical_five_bar_workspace_contains_kernel(0, one, &local, p_i, sines_i, cosines_i, inside_i);
             inside_real[0][i] = inside_i[0];

@@ -51,6 +51,14 @@ def test_every_batch_loop_becomes_vectors(robot, real, build):
     assert {loops[line] for line in loops.keys() - vector} == set()
 
 
+def test_a_batch_computes_the_angles_of_its_parameters_once(robot, real):
+    """In a batch all postures have the same parameters: no loop over postures reads an angle."""
+    source = (C / f"{robot}.c").read_text()
+    blocks = re.findall(r"\n    for \(size_t start = 0;.*?\n    }\n", source, re.DOTALL)
+    assert len(blocks) >= len(set(batch_loops(source).values()))
+    assert not [block for block in blocks if "params->" in block]
+
+
 def planes_of(arguments: str, real: type, known: dict[str, np.ndarray]) -> list[np.ndarray]:
     """Planes for every array of a single call, the inputs filled: with an output of that name of an
     earlier function, so that an inverse gets what can be reached, or else at random.  A loop has

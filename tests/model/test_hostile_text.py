@@ -356,8 +356,8 @@ def test_markdown_is_escaped() -> None:
 
 TAKEN = """import lambda None np out params Any Parameters Status JOINTS _runtime double real_t
 uint8_t linux unix M_PI I errno NAN INT_MAX CF_PI cf_sqrt CLOSEDFORM_C closedform extension _native
-math stdint Stdio string CON n k start rare sines angle_0 single default runtime fields values
-status ik ik_batch ik_whole_kernel forward_batch robot_params ROBOT_DEFAULTS robot_ik_batch q
+math stdint Stdio string CON n k start rare sines steady angle_0 single default runtime fields
+values status ik ik_batch ik_whole_kernel forward_batch robot_params ROBOT_DEFAULTS robot_ik_batch q
 q_stride q_i target_i nan result np_2 sin gamma y1 self list count theta s h x_entry r Forward
 delete function typeof let yield eval parameters v o found index package fk_batch Math NaN"""
 NAMES = TAKEN.split()

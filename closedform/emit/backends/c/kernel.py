@@ -6,6 +6,7 @@ computes them as the lanes of a vector, a batch in blocks, and the compiler inli
 
 from __future__ import annotations
 
+import itertools
 import re
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
@@ -70,6 +71,7 @@ class CProgram:
     copies_params: bool
     needs_one: bool
     lanes: tuple[str, ...]
+    steady_angles: tuple[str, ...]
     angle_blocks: tuple[str, ...]
     loads: tuple[str, ...]
     stores: tuple[str, ...]
@@ -187,6 +189,7 @@ class Emission:
                     name,
                     [
                         *shared,
+                        *self._steady_angles(),
                         *self._angle_blocks(),
                         *self._loads(),
                         *self._stores(),
@@ -217,6 +220,7 @@ class Emission:
             copies_params=bool(self.parameters),
             needs_one=self.takes_one or bool(self.deciding_angles),
             lanes=tuple(self._lanes()),
+            steady_angles=tuple(self._steady_angles()),
             angle_blocks=tuple(self._angle_blocks()),
             loads=tuple(self._loads()),
             stores=tuple(self._stores()),
@@ -334,13 +338,33 @@ class Emission:
         text = f"{argument.name}[{k}]" if argument else f"params->{name}"
         return text if divisor == 1 else f"{text} / CLOSEDFORM_C({divisor}.0)"
 
+    def _is_steady(self, angle: Node) -> bool:
+        """Whether all postures of a batch have this angle, which comes from a parameter."""
+        return self._angle(angle)[1] is None
+
+    def _steady_angles(self) -> list[str]:
+        """The sines and cosines that all postures of a batch share."""
+        steady = [node for node in self.program.angles if self._is_steady(node)]
+        if not steady:
+            return []
+        n = len(steady)
+        deciding = any(node.id in self.deciding_angles for node in steady)
+        rounded, one = ("_rounded", ", one") if deciding else ("", "")
+        listed = ", ".join(map(self._place, steady))
+        return [
+            f"real_t steady_sines[{n}], steady_cosines[{n}];",
+            f"const real_t steady[{n}] = {{ {listed} }};",
+            f"cf_sincos_block{rounded}({n}{one}, steady, steady_sines, steady_cosines);",
+        ]
+
     def _angle_blocks(self) -> list[str]:
         """The sines, cosines and principal values of a block of postures."""
         lines = []
-        if self.program.angles:
-            size = f"[{len(self.program.angles)}][CLOSEDFORM_BLOCK]"
+        moving = [node for node in self.program.angles if not self._is_steady(node)]
+        if moving:
+            size = f"[{len(moving)}][CLOSEDFORM_BLOCK]"
             lines.append(f"real_t sines{size}, cosines{size};")
-        for j, node in enumerate(self.program.angles):
+        for j, node in enumerate(moving):
             source, more = self._plane(node, f"angle_{j}")
             rounded, one = ("_rounded", ", one") if node.id in self.deciding_angles else ("", "")
             block = f"cf_sincos_block{rounded}(length{one}, {source}, sines[{j}], cosines[{j}]);"
@@ -365,6 +389,18 @@ class Emission:
             f"    {name}[i] = {place}{part};",
         ]
 
+    def _shares(self, array: str) -> Iterator[str]:
+        """What one posture takes from the blocks, and from what all of them share."""
+        if array == "principals":
+            yield from (f"principals[{k}][i]" for k in range(len(self.program.turned)))
+            return
+        moving, steady = itertools.count(), itertools.count()
+        for node in self.program.angles:
+            if self._is_steady(node):
+                yield f"steady_{array}[{next(steady)}]"
+            else:
+                yield f"{array}[{next(moving)}][i]"
+
     def _stores(self) -> list[str]:
         return [
             f"{o.name}[{o.plane(k)} + i] = {o.name}_i[{k}];"
@@ -385,8 +421,8 @@ class Emission:
     def _loads(self) -> list[str]:
         lines = list(_loads(self.raw))
         for array in self.trig:
+            listed = ", ".join(self._shares(array))
             n = len(self.program.turned if array == "principals" else self.program.angles)
-            listed = ", ".join(f"{array}[{k}][i]" for k in range(n))
             lines.append(f"const real_t {array}_i[{n}] = {{ {listed} }};")
         lines += [f"real_t {o.name}_i[{o.size}];" for o in self.outputs]
         return lines

@@ -154,12 +154,10 @@ figures: native .venv/dev.stamp  ## draw every figure: PDF in build/figures, wha
 pdf: figures  ## compile the derivations to PDF, one for each mechanism, in build/pdf
 	@$(MAKE) --no-print-directory $(PDFS)
 
-# What TeX reads of the figures that were drawn; without any, there are none in the PDF.
 define TEX
 	@command -v pdflatex >/dev/null || { \
 		echo "make $(or $(MAKECMDGOALS),pdf) needs pdflatex; on Debian: apt install $(TEX_NEEDED)"; exit 1; }
-	@mkdir -p build/figures build/pdf/unfinished
-	@$(BIN)/python -m closedform.emit.backends.latex.figures build/figures
+	@mkdir -p build/pdf/unfinished
 endef
 define PDFLATEX
 TEXINPUTS=generated/latex:build/figures: pdflatex -interaction=nonstopmode -halt-on-error \

@@ -349,9 +349,10 @@ def plot_command(options: argparse.Namespace) -> None:
 
 
 def figures_command(options: argparse.Namespace) -> None:
-    """Draw every figure of every generated mechanism."""
+    """Draw every figure of mechanisms, which their articles then show."""
+    folder = options.output or figures.place(options.names)
     try:
-        for line in figures.draw_all(options.output, options.names, docs=options.docs):
+        for line in figures.draw_all(folder, options.names, docs=options.docs):
             console.write(line)
         if options.docs is not None:
             (options.docs / figures.PAGE).write_text(figures.page(), "utf-8")

@@ -1,4 +1,4 @@
-"""The command ``closedform figures``: every figure of every mechanism, and the page about them."""
+"""The command ``closedform figures``: every figure of mechanisms, and the page about them."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from closedform.cli.plot import catalogue, drawings, module, write
+from closedform.emit.backends.latex import figures as article
 from closedform.pipeline import scripts
 
 CAPTIONS, PLACES = "captions.json", "places.json"
 """The captions of figures, and where articles show them."""
 PAGE = "figures.md"
+BUILT = Path("build", "figures")
 OPENING = ("puma560", "branches")
 """The picture at the top of the README."""
 
@@ -22,24 +24,33 @@ def names() -> list[str]:
     return [source.name for source in scripts.sources()]
 
 
+def place(chosen: list[str]) -> Path:
+    """Where to draw: beside the article, if the mechanism was printed into a folder of its own."""
+    printed = [Path(name) for name in chosen if name.endswith(".py")]
+    beside = printed[0].parent.parent / "latex" if printed else BUILT
+    return beside if beside.is_dir() else BUILT
+
+
 def draw_all(
     folder: Path, chosen: list[str], suffix: str = ".pdf", docs: Path | None = None
 ) -> Iterator[str]:
     """Draw all figures of mechanisms, with their captions; a line for each mechanism.
 
-    What the pages in ``docs`` show is written there too, with a thumbnail of each mechanism.
+    A mechanism is chosen by its name, or by the file of a NumPy module that ``derive`` printed.
+    Articles find the figures that are PDF.  What the pages in ``docs`` show is written there too,
+    with a thumbnail of each mechanism.
     """
     folder.mkdir(parents=True, exist_ok=True)
     if docs is not None:
         (docs / "figures").mkdir(parents=True, exist_ok=True)
     captions, places = read(folder / CAPTIONS), read(folder / PLACES)
-    for name in chosen or names():
-        robot = module(name)
+    for which in chosen or names():
+        robot, name = module(which), Path(which).stem
         captions, places = (
             {k: t for k, t in texts.items() if not k.startswith(f"{name}-")}
             for texts in (captions, places)
         )
-        drawn = catalogue(name)
+        drawn = catalogue(name, robot)
         for figure in drawn:
             targets = [folder / f"{name}-{figure.name}{suffix}"]
             if docs is not None and (name, figure.name) in shown():
@@ -50,6 +61,7 @@ def draw_all(
         for target, texts in ((CAPTIONS, captions), (PLACES, places)):
             text = json.dumps(texts, indent=2, ensure_ascii=False)
             (folder / target).write_text(text + "\n", "utf-8")
+        article.write(folder, captions, places)
         if docs is not None:
             write(partial(thumbnail, name, robot), docs / "figures" / f"{name}.svg")
         yield f"{name}: {', '.join(f.name for f in drawn)}\n"

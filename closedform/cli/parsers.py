@@ -127,14 +127,20 @@ def new_options(parser: argparse.ArgumentParser) -> None:
 
 
 def figures_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("names", metavar="NAME", nargs="*", help="default: all mechanisms")
+    parser.add_argument(
+        "names",
+        metavar="NAME",
+        nargs="*",
+        help="mechanisms that closedform list names, or NumPy modules that derive printed, such as "
+        "out/numpy/my_arm.py; default: all mechanisms",
+    )
     parser.add_argument(
         "-o",
         "--output",
         metavar="DIR",
         type=Path,
-        default=Path("build/figures"),
-        help="for pdf files and their captions; default: build/figures",
+        help="for pdf files and their captions; default: build/figures, or the folder of the "
+        "article of a mechanism of yours, such as out/latex",
     )
     parser.add_argument(
         "--docs",

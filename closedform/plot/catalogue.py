@@ -19,6 +19,8 @@ from closedform.plot.sections import Limits, unsectioned
 from closedform.plot.style import new_panels, styled
 from closedform.plot.symbols import symbol
 
+PANELS = 16
+"""The most branches that are drawn side by side."""
 INVERSE = "ik"
 """The function whose section in an article has figures, beside the steps."""
 
@@ -151,13 +153,13 @@ def _shown(view: View) -> str:
 def fits(robot: ModuleType, figure: str) -> bool:
     """Whether a figure makes sense for a mechanism.
 
-    Branches are shown if there are several.  A map needs two joints; with one, the motion is
-    shown.
+    Branches are shown if there are several, and if they fit on a page.  A map needs two joints;
+    with one, the motion is shown.
     """
     r = Robot.of(robot)
     one = len(robot.JOINTS) == 1
     if figure == "branches":
-        return len(robot.BRANCHES) > 1
+        return 1 < len(robot.BRANCHES) <= PANELS
     if figure == "motion":
         return one and len(robot.TASK) == 1
     if figure not in ("workspace", "conditioning"):

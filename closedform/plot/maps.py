@@ -20,7 +20,7 @@ from closedform.plot.postures import spoken
 from closedform.plot.robot import JACOBIANS, Array, Robot, singular_values
 from closedform.plot.sections import DIRECTION, Grid, Limits, Window, answered, grid_over, task_grid
 from closedform.plot.style import colour, new_axes, styled
-from closedform.plot.symbols import equation, symbol
+from closedform.plot.symbols import factor, symbol
 
 NEAR_EDGE = 0.2
 """A factor below this part of its usual size beside the border counts as zero on it."""
@@ -112,8 +112,8 @@ def _singular_curves(
     factors = _of_branches(r, grid.targets, np.where(there[..., None], q, np.nan))
     edge = _beside_the_border(count)
     at_edge, signs = [], []
-    for k, name in enumerate(r.module.SINGULARITIES):
-        values = factors[..., k]
+    for k in range(len(r.module.SINGULARITIES)):
+        name, values = factor(r, k), factors[..., k]
         finite = np.abs(values[np.isfinite(values)])
         scale = float(np.quantile(finite, 0.95)) if finite.size else 0.0
         if scale == 0:
@@ -138,13 +138,12 @@ def _singular_curves(
         ax.plot(*curve.T, color="#222222", linewidth=0.8, zorder=2)
     if not borders:
         return signs
-    border = "branches end: " + "; ".join(map(equation, at_edge)) if at_edge else "branches end"
-    border = border if "$" in border else fill(border, WIDE)
-    return [Line2D([], [], color="#222222", linewidth=0.8, label=border), *signs]
+    border = "branches end: " + "; ".join(at_edge) if at_edge else "branches end"
+    return [Line2D([], [], color="#222222", linewidth=0.8, label=_broken(border)), *signs]
 
 
-def _broken(name: str) -> str:
-    return equation(name) if "=" in name else fill(name, WIDE)
+def _broken(text: str) -> str:
+    return text if "$" in text else fill(text, WIDE)
 
 
 def _lines(grid: Grid, values: Any, level: float) -> Iterator[Array]:
@@ -164,8 +163,10 @@ def _edges(grid: Grid, count: NDArray[np.int_]) -> Iterator[Array]:
 
 
 def _of_branches(r: Robot, targets: Array, q: Array) -> Array:
-    """The factors of each branch, in the assembly mode that reaches the target."""
+    """The factors of each branch, in the assembly mode that reaches the target; none if unknown."""
     of_branches = np.expand_dims(targets, q.ndim - 2)
+    if not r.has("singularities"):
+        return np.empty((*q.shape[:-1], 0))
     factors = np.asarray(r.measured("singularities", q, of_branches))
     if not r.modes:
         return factors
@@ -288,7 +289,7 @@ def singularities(
     drawn: dict[str, Any] = {}
     if grid.joints:
         factors = _factors(r, grid.targets)
-        for k, name in enumerate(robot.SINGULARITIES):
+        for k in range(len(robot.SINGULARITIES)):
             for mode in range(factors.shape[-2]):
                 values = factors[..., mode, k]
                 finite = values[np.isfinite(values)]
@@ -297,7 +298,7 @@ def singularities(
                     width = 1.4 * (len(robot.SINGULARITIES) - k)  # all show if they meet
                     style = {"levels": [0.0], "colors": [colour(k)], "linewidths": width}
                     ax.contour(*grid.sides, masked, **style)
-                    drawn[name] = Line2D([], [], color=colour(k), linewidth=width)
+                    drawn[factor(r, k)] = Line2D([], [], color=colour(k), linewidth=width)
     else:
         q, status = r.branches(grid.targets)
         drawn = {str(s.get_label()): s for s in _singular_curves(ax, r, grid, q, status)}

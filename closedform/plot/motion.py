@@ -13,7 +13,7 @@ from closedform.plot.postures import spoken
 from closedform.plot.robot import POSITION, Array, Robot
 from closedform.plot.sections import answered
 from closedform.plot.style import colour, new_panels, styled
-from closedform.plot.symbols import equation, symbol
+from closedform.plot.symbols import factor, symbol
 
 STEPS = 4001
 """Postures along a curve."""
@@ -53,21 +53,21 @@ def motion(robot: ModuleType, *, params: Any = None, unit: str = "") -> Any:
         for ax, values in ((above, images), (below, slopes)):
             ax.plot(q, values[:, k, 0], color=colour(k), linewidth=1.6, label=spoken(mode))
     signs = [Line2D([], [], color=colour(k), label=spoken(m)) for k, m in enumerate(modes) if m]
-    for n, name in enumerate(robot.SINGULARITIES):
+    for n in range(len(robot.SINGULARITIES)):
         shade = colour(len(modes) + n)
         dots = [(i, k) for k in range(len(modes)) for i in _zeros(factors[:, k, n])]
         dot: dict[str, Any] = {"color": shade, "marker": "o", "linestyle": "", "markersize": 5}
         for i, k in dots:
             above.plot(q[i], images[i, k, 0], zorder=3, clip_on=False, **dot)
         if dots:
-            signs.append(Line2D([], [], label=equation(name), **dot))
+            signs.append(Line2D([], [], label=factor(r, n), **dot))
     finite = np.abs(slopes[np.isfinite(slopes)])
     high = (min(finite.max(), MOST * np.median(finite)) if finite.size else 0.0) or 1.0
     below.set_ylim(-1.1 * high, 1.1 * high)
     unit_of = {True: f" ({unit})" if unit else "", False: " (rad)"}
-    letters = symbol(task).strip("$"), symbol(joint).strip("$")
+    letters = symbol(task).strip("$"), symbol(joint, r).strip("$")
     above.set(ylabel=symbol(task) + unit_of[task in POSITION])
-    below.set(xlabel=symbol(joint) + unit_of[bool(r.slides)])
+    below.set(xlabel=symbol(joint, r) + unit_of[bool(r.slides)])
     below.set(ylabel=rf"$d{letters[0]}/d{letters[1]}$")
     for ax in (above, below):
         ax.grid(alpha=0.3)

@@ -64,7 +64,7 @@ def name_all(drawn: Drawn, *, faint: Collection[str], lettered: bool) -> None:
     for name in spins:
         at, way = drawn.along[name]
         centre = room.beside(at, way)
-        drawn.diagram.spin(centre, way, symbol(name))
+        drawn.diagram.spin(centre, way, symbol(name, drawn.r))
         room.take(centre)
 
 
@@ -109,12 +109,12 @@ def _named_beside(drawn: Drawn, name: str, room: Room) -> bool:
     joint, place = drawn.skeleton.joints[name], drawn.place
     if joint.kind == "prismatic":
         a, b = joint.points
-        drawn.diagram.dimension(place[a], place[b], symbol(name))
+        drawn.diagram.dimension(place[a], place[b], symbol(name, drawn.r))
     elif name not in drawn.along:
-        drawn.diagram.label(place[joint.points[0]], symbol(name))
+        drawn.diagram.label(place[joint.points[0]], symbol(name, drawn.r))
     elif name not in drawn.r.module.JOINTS:
         if not _passive_arc(drawn, name, room):
-            drawn.diagram.label(drawn.along[name][0], symbol(name))
+            drawn.diagram.label(drawn.along[name][0], symbol(name, drawn.r))
     else:
         return len(joint.points) == 1 and _arc(drawn, name, room)
     return True
@@ -138,7 +138,8 @@ def _arc(drawn: Drawn, name: str, room: Room) -> bool:
     if abs(arm @ way) > SMALL * diagram.size or size < radius * diagram.size:
         end = at + (radius + 0.05) * diagram.size * across / size
         diagram.line([at, end], color=GROUND, linestyle=DASHED)
-    diagram.angle(at, back, way, turn, symbol(name), radius=radius, reference=radius + 0.05)
+    text = symbol(name, drawn.r)
+    diagram.angle(at, back, way, turn, text, radius=radius, reference=radius + 0.05)
     for part in (0.2, 0.5, 0.8):
         ray = np.cos(part * turn) * back + np.sin(part * turn) * np.cross(way, back)
         room.take(at + radius * diagram.size * ray / size)
@@ -160,10 +161,8 @@ def _passive_arc(drawn: Drawn, name: str, room: Room) -> bool:
             back = np.cos(turn) * arm - np.sin(turn) * np.cross(axis, arm)
             if point != foot and np.max(back) > (1 - EXACT) * np.linalg.norm(back):
                 radius = float(np.clip(ARC / abs(turn), *RADII))
-                reference = radius + 0.05
-                drawn.diagram.angle(
-                    at, back, axis, turn, symbol(name), radius=radius, reference=reference
-                )
+                text, reference = symbol(name, drawn.r), radius + 0.05
+                drawn.diagram.angle(at, back, axis, turn, text, radius=radius, reference=reference)
                 ray = np.cos(turn / 2) * back + np.sin(turn / 2) * np.cross(axis, back)
                 room.take(at + radius * drawn.diagram.size * ray / np.linalg.norm(back))
                 return True

@@ -62,7 +62,7 @@ def path(
     curves[:, angles] = _unwrapped(curves[:, angles])
     ax = new_axes(False, (5.6, 3.4)) if ax is None else ax
     for j, name in enumerate(robot.JOINTS):
-        ax.plot(curves[:, j], color=colour(j), label=symbol(name), linewidth=1.6)
+        ax.plot(curves[:, j], color=colour(j), label=symbol(name, r), linewidth=1.6)
     ax.set(xlabel="target", ylabel="angle in radians" if not r.slides else "joint")
     ax.set_title(f"branch {spoken(robot.BRANCHES[k])}")
     ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from closedform.plot.called import by_number
 from closedform.robots.mechanism import given_of
 
 Array = NDArray[np.float64]
@@ -122,6 +123,16 @@ class Robot:
     def is_angle(self, parameter: str) -> bool:
         """Whether a parameter is an angle, not a length."""
         return ", in rad" in (getattr(self.module.Parameters, parameter).__doc__ or "")
+
+    def called(self, name: str) -> str:
+        """What figures call a joint, or the name itself of anything else."""
+        return self._called.get(name, name)
+
+    @cached_property
+    def _called(self) -> dict[str, str]:
+        module = self.module
+        kinds = {name: joint.kind for name, joint in module.SKELETON.joints.items()}
+        return by_number(kinds, {*module.Parameters._fields, *module.TASK})
 
     @property
     def slides(self) -> list[int]:

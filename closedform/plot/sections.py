@@ -24,6 +24,8 @@ DIRECTION = ("longitude", "latitude")
 """The coordinates of a hand on a sphere, about z and above the plane of x and y."""
 SPHERE = ((-np.pi, np.pi), (-np.pi / 2, np.pi / 2))
 """The limits of these, which contain every direction."""
+RANK = 1e-6
+"""Singular values below this count as zero; they are those of differences."""
 TURN = (-np.pi / 2, np.pi / 2)
 """The limits of any other angle."""
 
@@ -71,7 +73,8 @@ def grid_over(r: Robot, plane: Sequence[str] | None, window: Window) -> Grid:
     sides = tuple(np.linspace(low, high, window.resolution) for low, high in ends)
     targets = np.broadcast_to(base, (window.resolution, window.resolution, len(names))).copy()
     targets[..., places[0]], targets[..., places[1]] = sides[0], sides[1][:, None]
-    return Grid((sides[0], sides[1]), targets, (plane[0], plane[1]), True)
+    called = r.called(plane[0]), r.called(plane[1])
+    return Grid((sides[0], sides[1]), targets, called, True)
 
 
 def task_grid(r: Robot, plane: Sequence[str] | None, window: Window) -> Grid:
@@ -127,13 +130,34 @@ def unsectioned(robot: ModuleType | Robot) -> str:
 
 def _without_position(r: Robot) -> str:
     """Why the position of a hand has no section; empty if it has one."""
-    count = len(positions(r, _image(r)))
+    places = positions(r, _image(r))
+    count = len(places)
     if not count:
         return f"the task of {r.name} has no position, so there is no section of its workspace"
     if count == 1 or count > len(r.module.JOINTS):
         held = "line" if count == 1 else "curve" if len(r.module.JOINTS) == 1 else "surface"
         return f"the hand of {r.name} moves on a {held}, of which there is no section"
+    free = _free(r, [*places.values()]) if r.has_forward_map and not r.modes else count
+    if free < count:
+        held = {1: "line", 2: "surface"}.get(free, "point")
+        return f"the hand of {r.name} in one direction stays on a {held}; there is no section"
     return ""
+
+
+def _free(r: Robot, places: Sequence[int]) -> int:
+    """In how many directions the hand can move without a turn."""
+    q, step = r.posture(), 1e-5
+    ahead, back = (
+        r.task(q + sign * step * np.eye(len(q))).reshape(len(q), -1) for sign in (1, -1)
+    )
+    rates = (ahead - back) / (2 * step)
+    size = np.ones(rates.shape[1])
+    size[list(places)] = r.size
+    turns = np.delete(rates, places, axis=1)
+    whole, turning = (
+        int(np.linalg.matrix_rank(m, tol=RANK)) if m.size else 0 for m in (rates / size, turns)
+    )
+    return whole - turning
 
 
 def _image(r: Robot) -> Array:
@@ -211,7 +235,7 @@ def _check_plane(r: Robot, plane: Sequence[str], *kinds: Sequence[str]) -> None:
 
 def _spoken(r: Robot, name: str) -> str:
     """A joint as in formulas, and any other angle in words."""
-    return f"{symbol(name)} =" if name in r.module.JOINTS else spoken(name)
+    return f"{symbol(name, r)} =" if name in r.module.JOINTS else spoken(name)
 
 
 def _coordinate(name: str, value: float, unit: str) -> str:

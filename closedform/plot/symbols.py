@@ -27,9 +27,24 @@ ARM = re.compile(r"(.*\d)([RL])")
 """A joint of the right or the left arm."""
 
 
-def symbol(name: str) -> str:
-    """A name such as ``theta2R`` or ``l3`` as a formula, as the texts write it."""
-    return f"${_formula(name)}$"
+LONG = 60
+"""From how many letters on a legend calls a factor of the singular set by its number."""
+
+
+def symbol(name: str, r: Robot | None = None) -> str:
+    """A name such as ``theta2R`` or ``l3`` as a formula, as the texts write it.
+
+    Joints of a robot ``r`` that are called by words have the letters of its article.
+    """
+    return f"${_formula(r.called(name) if r else name)}$"
+
+
+def factor(r: Robot, k: int) -> str:
+    """What a legend calls a factor of the singular set: its equation, if that is short."""
+    name: str = r.module.SINGULARITIES[k]
+    if "=" in name and len(name) > LONG:
+        return f"factor {k + 1} of the singular set"
+    return equation(re.sub(r"[A-Za-z]\w*", lambda found: r.called(found[0]), name))
 
 
 def _formula(name: str) -> str:

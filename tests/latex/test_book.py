@@ -1,6 +1,5 @@
 """The book: numbered equations, one meaning for each symbol, lemmas with proofs, and its pages."""
 
-import json
 import os
 import re
 import shutil
@@ -280,10 +279,8 @@ def test_figures_stand_at_their_steps() -> None:
 
 
 def test_figures_are_written_for_tex(tmp_path: Path) -> None:
-    (tmp_path / "captions.json").write_text(json.dumps({"toy-mechanism": "5 %"}))
-    (tmp_path / "places.json").write_text(json.dumps({"toy-mechanism": "Pose"}))
     (tmp_path / "toy-mechanism.pdf").touch()
-    figures.main(tmp_path)
+    figures.write(tmp_path, {"toy-mechanism": "5 %"}, {"toy-mechanism": "Pose"})
     assert r"\figures{step-pose}" in (tmp_path / "toy-figures.tex").read_text()
     assert r"\drawing{toy-mechanism}{5 \%}" in (tmp_path / "toy-figures.tex").read_text()
 
@@ -313,7 +310,7 @@ def test_the_book_compiles_and_fits(tmp_path: Path) -> None:
 
 def test_the_book_does_not_depend_on_the_hash_seed() -> None:
     script = (
-        "import sys; sys.path[:0] = ['tests', 'tests/latex']\n"
+        "import json, sys; sys.path[:0] = ['tests', 'tests/latex']\n"
         "from test_book import *\n"
         "print(article(toy()), json.dumps(lemmas.context(None, {})))\n"
     )

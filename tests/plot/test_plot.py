@@ -1,5 +1,6 @@
 """The figures: what is drawn, on which axes, and that files are the same on every run."""
 
+import re
 import shutil
 import subprocess
 import sys
@@ -345,6 +346,17 @@ def test_the_command_draws_a_printed_module(tmp_path: Path) -> None:
         target = tmp_path / f"{what}.svg"
         assert main(["plot", str(tmp_path / "numpy/my_arm.py"), what, "-o", str(target)]) == 0
         assert target.is_file()
+
+
+def test_figures_of_a_printed_module_go_to_its_article(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "generated/numpy", tmp_path / "numpy")
+    (tmp_path / "numpy/planar_2r.py").rename(tmp_path / "numpy/my_arm.py")
+    (tmp_path / "latex").mkdir()
+    assert main(["figures", str(tmp_path / "numpy/my_arm.py")]) == 0
+    shown = (tmp_path / "latex/my_arm-figures.tex").read_text("utf-8")
+    drawn = {p.stem for p in tmp_path.glob("latex/*.pdf")}
+    assert drawn == set(re.findall(r"\\drawing{(.*?)}", shown))
+    assert "my_arm-branches" in drawn
 
 
 def test_without_matplotlib_a_message_says_what_to_install() -> None:

@@ -1,15 +1,12 @@
-"""What TeX reads of the figures that ``make figures`` has drawn, for the articles and the book.
+"""What TeX reads of the figures that were drawn, for the articles and the book.
 
-``python -m closedform.emit.backends.latex.figures FOLDER`` reads ``captions.json``, which maps
-``ROBOT-what`` to a caption in the order of the pages, and ``places.json``, which maps it to the
-title of the step or to the section that it belongs to.  It writes ``ROBOT-figures.tex`` for each
-mechanism that has drawings ``ROBOT-what.pdf``.  Without them an article has no figures.
+Captions map ``ROBOT-what`` to a caption in the order of the pages, and places map it to the title
+of the step or to the section that it belongs to.  Each mechanism that has drawings
+``ROBOT-what.pdf`` gets a file ``ROBOT-figures.tex``.  Without it an article has no figures.
 """
 
 from __future__ import annotations
 
-import json
-import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -42,15 +39,8 @@ def _at(where: str, names: Sequence[str], captions: Mapping[str, str]) -> str:
     return "\n".join([rf"\figures{{{where}}}{{{told}", *drawings]) + "}\n"
 
 
-def main(folder: Path) -> None:
-    captions, places = (
-        json.loads(known.read_text("utf-8")) if known.is_file() else {}
-        for known in (folder / "captions.json", folder / "places.json")
-    )
+def write(folder: Path, captions: Mapping[str, str], places: Mapping[str, str]) -> None:
+    """Write the file of each mechanism whose figures are in a folder."""
     drawn = [p.stem for p in folder.glob("*.pdf")]
     for robot, text in pages(captions, drawn, places).items():
         (folder / f"{robot}-figures.tex").write_text(text, encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main(Path(sys.argv[1]))

@@ -278,9 +278,8 @@ def verify_command(options: argparse.Namespace) -> None:
         raise CommandError(f"not verified: {', '.join(failed)}")
 
 
-def new_command(options: argparse.Namespace) -> None:
-    """Write the derivation of an arm or a closed loop from a table or a file, with an inverse."""
-    kind, path = options.table[0], Path(options.table[1])
+def _check_file(options: argparse.Namespace, kind: str, path: Path) -> None:
+    """Refuse a file that ``new`` cannot read, and options that are for other files."""
     if kind not in {given.split()[0] for given in parsers.FILES}:
         raise CommandError(f"--from takes {parsers.READ}, not {kind}", 2)
     if not path.is_file():
@@ -293,6 +292,12 @@ def new_command(options: argparse.Namespace) -> None:
     of_tree = options.base or options.tool or options.ignore or options.hold
     if of_tree and kind not in ("urdf", "mjcf"):
         raise CommandError("--base, --tool, --ignore and --hold are for a URDF or MJCF file", 2)
+
+
+def new_command(options: argparse.Namespace) -> None:
+    """Write the derivation of an arm or a closed loop from a table or a file, with an inverse."""
+    kind, path = options.table[0], Path(options.table[1])
+    _check_file(options, kind, path)
     _require_extra()
     from closedform.pipeline import trial
     from closedform.scaffold.inputs.tree import Choice
@@ -327,6 +332,16 @@ def new_command(options: argparse.Namespace) -> None:
         console.write("".join(f"{line}\n" for line in script.explained))
     _write(options.output, {Path(target.name): script.text})
     console.write(f"{target}: {script.inverse}; next: closedform derive {target} -o out\n")
+    if kind in ("urdf", "mjcf"):
+        console.write(_then(options.name, "ik" if script.structure else "fk"))
+
+
+def _then(name: str, function: str) -> str:
+    """What to do after ``derive`` with a robot from a file: draw it, and see how to call it."""
+    return (
+        f"then: closedform figures {Path('out', 'numpy', name)}.py\n"
+        f'then: python -c "from out.numpy import {name} as arm; help(arm.{function})"\n'
+    )
 
 
 def claims_command(options: argparse.Namespace) -> None:

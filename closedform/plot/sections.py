@@ -147,9 +147,7 @@ def _without_position(r: Robot) -> str:
 def _free(r: Robot, places: Sequence[int]) -> int:
     """In how many directions the hand can move without a turn."""
     q, step = r.posture(), 1e-5
-    ahead, back = (
-        r.task(q + sign * step * np.eye(len(q))).reshape(len(q), -1) for sign in (1, -1)
-    )
+    ahead, back = (r.task(q + sign * step * np.eye(len(q))).reshape(len(q), -1) for sign in (1, -1))
     rates = (ahead - back) / (2 * step)
     size = np.ones(rates.shape[1])
     size[list(places)] = r.size

@@ -75,6 +75,7 @@ from closedform.lemmas.two_turns import TwoTurns as TwoTurns
 from closedform.lemmas.universal import Universal as Universal
 from closedform.lemmas.wrist import spin as spin
 from closedform.lemmas.wrist import tilt as tilt
+from closedform.lemmas.wrist import tilt_between as tilt_between
 from closedform.lemmas.zyz import Reaching as Reaching
 from closedform.lemmas.zyz import ReachingAcross as ReachingAcross
 from closedform.lemmas.zyz import zyz as zyz

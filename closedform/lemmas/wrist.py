@@ -126,6 +126,124 @@ def _unit() -> tuple[sp.Expr, sp.Expr, sp.Expr]:
 
 
 theorem(
+    "tilt of any wrist",
+    statement=r"""Let $g$, $w$ and $v$ be unit vectors whose angles with the third axis are $k$, $j$
+and $\tau$, with $h = \sin k\sin j > 0$.  The equation $g \cdot R_z(\theta)\,w = v_3$ has a solution
+if and only if $m = \cos(k - j) - \cos\tau$ and $n = \cos\tau - \cos(k + j)$ are not negative.
+Its solutions are then $\theta = \operatorname{atan2}(g_2 w_1 - g_1 w_2,\ g_1 w_1 + g_2 w_2) +
+\sigma\delta$ with $\sigma = \pm 1$ and $\delta = 2\operatorname{atan2}(\sqrt m, \sqrt n)$.""",
+    proof=r"""The left side is $g_3 w_3 + h\cos(\theta - \alpha)$ for the angle $\alpha$ of the
+stated $\operatorname{atan2}$, because the parts of $g$ and $w$ across the axis have the lengths
+$\sin k$ and $\sin j$.  So this is $a\sin\theta + b\cos\theta = c$ with $c = v_3 - g_3 w_3$ and
+$g_3 w_3 = \cos k\cos j$.  There $h - c = \cos(k - j) - v_3 = m$ and $h + c = v_3 - \cos(k + j) =
+n$.  Each cosine is computed as $1 - \sin^2/(1 + |\cos|) - (|\cos| - \cos)$, which keeps the digits
+of a small angle.""",
+    exception=r"""If $h = 0$, two axes of the wrist are one; then every $\theta$ is a solution, or
+none, and the joint is free.""",
+    rests_on=("a sin x + b cos x = c",),
+)
+
+
+@chain_lemma("g . Rz(x) w = v3, for unit vectors", "the pair of x")
+def tilt_between(
+    chain: Chain,
+    x: sp.Symbol,
+    axes: tuple[Sequence[sp.Expr], Sequence[sp.Expr]],
+    v: Sequence[sp.Expr],
+    choice: Choice,
+    *,
+    toward: Goal = ANYWHERE,
+    name: str = "",
+) -> Applied:
+    """``g . Rz(x) w = v3`` for a column v of a rotation: both solutions.
+
+    Seen from the middle joint of a wrist, g and w are its first and its last axis.  If their angles
+    with the middle one are parameters, they may be equal.  Then all three can be in line, and
+    ``a sin x + b cos x = c`` loses half of the digits of x there.
+
+    Parameters
+    ----------
+    chain
+        the chain that the lemma extends
+    x
+        the joint that is solved for
+    axes
+        the unit vectors g and w, which do not depend on joints
+    v
+        the column of the rotation
+    choice
+        the names of the two solutions
+    toward
+        what later joints have to reach; near a tangent, x is turned such that they do
+    name
+        the name of the sign and what other names end in, by default the number of the joint
+    """
+    p, tag = chain.program, name or label(x)
+    sigma = chain.sign(tag, choice)
+    (g1, g2, g3), (w1, w2, w3) = axes
+    v1, v2, v3 = v[:3]
+    a, b = g2 * w1 - g1 * w2, g1 * w1 + g2 * w2
+    first, last = sp.sqrt(sp.simplify(g1**2 + g2**2)), sp.sqrt(sp.simplify(w1**2 + w2**2))
+    h = p.let(f"h{tag}", first * last, nonnegative=True)
+
+    aside = p.let(f"aside_tilt{tag}", v1**2 + v2**2)
+    margins = []
+    for limit, side, meaning in (
+        ("least", 1, "the wrist tilts far enough"),
+        ("most", -1, "the wrist does not tilt as far"),
+    ):
+        sine = p.let(f"sine_{limit}{tag}", first * w3 - side * g3 * last)
+        within = p.let(f"{limit}{tag}", _versine(sine**2, h + side * g3 * w3))
+        margin = p.let(f"margin_{limit}{tag}", _versine(aside, side * v3) - within)
+        # what is missed of a cosine is more of a small angle
+        missed = 2**8 * sp.Max(0, -margin) / ROUNDING
+        p.determined(sp.sqrt(aside) + sp.Abs(sine), missed, "the wrist is at its limit")
+        margins.append(p.bound(f"{limit}_tilt{tag}", margin, sp.S.One, meaning))
+    below, above = margins
+    width = p.let(f"width{tag}", below + above, nonnegative=True)
+    flag = p.vanishes(f"level{tag}", h, 1, "two axes of the wrist are one", free=(x,))
+    cosine = p.let(f"level_at{tag}", (above - below) / 2)
+    at = Amplitude(x=x, a=a, b=b, c=cosine, sigma=sigma, h=h, below=below, above=above)
+    root = p.let(f"root{tag}", at.root, nonnegative=True)
+    found = toward.reached(
+        Tangency(
+            chain=chain,
+            at=at,
+            root=root,
+            width=width,
+            allowance=2 * ROUNDING,
+            suffix=tag,
+            free=flag,
+        )
+    )
+    chain.tangent.append(found.tangent)
+    pair, means = named(chain, x, found.pair)
+    lemma = Lemma(
+        "tilt of any wrist",
+        r"g \cdot R_z(\theta)\,w = v_3 \;\Rightarrow\; \theta = \operatorname{atan2}(g_2 w_1 - g_1 "
+        r"w_2,\ g_1 w_1 + g_2 w_2) + 2\sigma\operatorname{atan2}(\sqrt m, \sqrt n)",
+        (a * sp.sin(x) + b * sp.cos(x) + g3 * w3 - v3,),
+        {x: pair.angle},
+        2,
+        signs=(sigma,),
+        roles=(
+            (r"\theta", x), ("g", sp.Matrix([g1, g2, g3])), ("w", sp.Matrix([w1, w2, w3])),
+            ("v", sp.Matrix([v1, v2, v3])),
+        ),
+    )  # fmt: skip
+    meaning = f"two axes of the wrist are one; {x} is free, 0 is returned."
+    loci = [vanishing(g1, g2), vanishing(w1, w2)]
+    on_axis = [None if at is None else at | {v3: (g3 * w3).xreplace(at)} for at in loci]
+    cases = degenerate(flag, on_axis, x, meaning)
+    return Applied(lemma, pair, means, dict(zip((v1, v2, v3), _unit(), strict=True)), cases)
+
+
+def _versine(square: sp.Expr, cosine: sp.Expr) -> sp.Expr:
+    """1 minus a cosine, from it and from the square of the sine, with all digits."""
+    return sp.Piecewise((square / (1 + cosine), cosine > 0), (1 - cosine, True))
+
+
+theorem(
     "remaining rotation",
     statement=r"""Let $N$ be a rotation that keeps the third unit vector.  In $(-\pi, \pi]$ exactly
 one $\theta$ has $R_z(\theta) = N$, which is $\operatorname{atan2}(N_{21}, N_{11})$.""",

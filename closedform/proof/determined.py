@@ -94,15 +94,22 @@ def _determined(
 ) -> list[Expr]:
     """The columns of a matrix if it has full rank, otherwise those of its parts of full rank.
 
-    Parts share no row and no column.
+    Parts share no row and no column.  Of a part with too few rows, the column that the fewest rows
+    touch is left out with these rows.
     """
     if _has_full_rank(rows, len(columns), draw):
         return list(columns)
     found = []
     for part in _parts(rows, len(columns)):
         own = [[row[j] for j in part] for row in rows if any(row[j] != 0 for j in part)]
-        if _has_full_rank(own, len(part), draw):
-            found += [columns[j] for j in part]
+        within = [columns[j] for j in part]
+        if len(part) < len(columns) and _has_full_rank(own, len(part), draw):
+            found += within
+            continue
+        touched = [sum(row[k] != 0 for row in own) for k in range(len(part))]
+        least = touched.index(min(touched))
+        rest = [row[:least] + row[least + 1 :] for row in own if row[least] == 0]
+        found += _determined(rest, within[:least] + within[least + 1 :], draw) if rest else []
     return found
 
 

@@ -111,6 +111,17 @@ def test_out_of_reach_is_said(made: Printed, structure: str) -> None:
     assert not np.isin(status, (OK, SINGULAR)).any() and np.isnan(answers).all()
 
 
+def test_an_axis_beside_three_that_meet_may_be_parallel_to_one() -> None:
+    """One equation had coordinates of the target that no other has, and the proof took no rest."""
+    rows = [(A, pi / 2, D), (0, pi / 3, B), (0, pi / 4, 0), (B, 0, D), (C, pi / 2, 0), (0, 0, D)]
+    d, serial = arm(rows)
+    found = propose(serial)
+    assert found.structure == "axes 2, 3 and 4 meet in a point, 5 and 6 are skew"
+    solved(d, serial, found.source)
+    (inverse,) = prove(d).inverses
+    assert inverse.branches == found.branches == 8
+
+
 def test_axes_that_nearly_meet_are_named() -> None:
     """The distance of two skew axes divides rounding errors."""
     near = sp.Rational(1, 10**5)

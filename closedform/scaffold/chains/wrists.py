@@ -176,6 +176,11 @@ class WristMaker(Maker):
         past = self._past_turn(f"{between} * turned({{}}) * {source(w)}", middle)
         if sense:
             pair = self._tilt(first, middle, past)
+        elif not onward and _has_parameters(first, middle):
+            pair = f"pair{middle.number}"
+            axes = f"({source(first.end.T * Z)}, {source(w)})"
+            more = f", toward={past}" if past else ""
+            self.solve("tilt_between", f"{x}, {axes}, M[:, 2], {FLIP}{more}", pair, 2)
         else:
             row = [sp.Symbol(f"R_between[2, {i}]") for i in range(3)]
             g = sp.Matrix(row) if onward else first.end.T * Z
@@ -284,6 +289,11 @@ class WristMaker(Maker):
         self.solve("tilt", f"{x}, {source(k)}, M[:, 2], {FLIP}{more}", name, 2)
         self.add(f"{pair} = {self.untilted(middle, name)}")
         return pair
+
+
+def _has_parameters(first: Single, middle: Single) -> bool:
+    """Whether the angles of a wrist are parameters, which may be equal."""
+    return bool((first.end.T * Z).free_symbols | (middle.end * Z).free_symbols)
 
 
 def is_normal(wrist: Sequence[Single]) -> bool:

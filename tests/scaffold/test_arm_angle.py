@@ -18,9 +18,11 @@ from closedform.check.inverses import check_inverse
 from closedform.check.runners.python import module
 from closedform.check.truth import Solutions
 from closedform.check.values import check_forward
+from closedform.emit.backends.latex.article import document
+from closedform.emit.render import render
 from closedform.mechanics.arm import from_dh
 from closedform.model.derivation import Derivation, Paper
-from closedform.proof.prove import prove
+from closedform.proof.prove import Proof, prove
 from closedform.proof.require import ProofError
 from closedform.scaffold.chains.propose import NoChainError, propose
 
@@ -219,3 +221,10 @@ def test_what_has_no_arm_angle_is_told(rows: list, why: str) -> None:
 def test_only_seven_joints_have_one() -> None:
     with pytest.raises(NoChainError, match="arm_angle cannot be given"):
         propose(arm(KUKA[:6])[1], "arm_angle")
+
+
+def test_the_article_says_which_step_finds_the_matrix_of_the_upper_arm() -> None:
+    """No equation has it on its left side, so that no article was printed of such an arm."""
+    d = made(KUKA)
+    text = render("latex/robot.tex.jinja", document(d, Proof(d.name, d.paper.key, (), 0, ())))
+    assert "From $M$ of step 2 follow equations in $" in text

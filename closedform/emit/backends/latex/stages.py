@@ -335,12 +335,19 @@ class Stages:
             told += f", of which {listed(found)}"
         matrices = [j for j in before if j.strip("$") in letters.values()]
         if not where and matrices == before and len(before) == 1:  # the target is in the matrix
-            label = self.page.numbers.of(before[0].strip("$"))
-            return f"{told.replace(source, f'From {before[0]} in {reference([label])}', 1)} alone:"
+            found = f"From {before[0]} {self.where_found(before[0].strip('$'))}"
+            return f"{told.replace(source, found, 1)} alone:"
         if before:
             verb = "is" if len(before) == 1 else "are"
             return f"{told}, where {listed(before)} {verb} known:"
         return f"{told}:" if later or len(step) > 1 else f"{told} alone:"
+
+    def where_found(self, matrix: str) -> str:
+        """Where the matrix of a lemma stands: its equation, or the step that finds it."""
+        if label := self.page.numbers.of(matrix):
+            return f"in {reference([label])}"
+        steps = enumerate(self.steps, 1)
+        return f"of step {next(k for k, step in steps if step[0].lemma.matrix == matrix)}"
 
     def found_later(self, joints: Sequence[sp.Symbol], solving: Solving) -> dict[sp.Symbol, int]:
         """The joints that a later step finds, and its number: the lemma takes a sum with them."""

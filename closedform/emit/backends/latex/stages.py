@@ -335,8 +335,8 @@ class Stages:
             told += f", of which {listed(found)}"
         matrices = [j for j in before if j.strip("$") in letters.values()]
         if not where and matrices == before and len(before) == 1:  # the target is in the matrix
-            found = f"From {before[0]} {self.where_found(before[0].strip('$'))}"
-            return f"{told.replace(source, found, 1)} alone:"
+            place = f"From {before[0]} {self.where_found(before[0].strip('$'))}"
+            return f"{told.replace(source, place, 1)} alone:"
         if before:
             verb = "is" if len(before) == 1 else "are"
             return f"{told}, where {listed(before)} {verb} known:"

@@ -244,14 +244,7 @@ class Chain:
         return sp.Matrix([self.let(f"{name}_{i}", v) for i, v in zip("xyz", value, strict=False)])
 
     def matrix(self, name: str, value: sp.Matrix) -> sp.Matrix:
-        return sp.Matrix(
-            *value.shape,
-            [
-                self.let(f"{name}_{i + 1}{j + 1}", value[i, j])
-                for i in range(value.rows)
-                for j in range(value.cols)
-            ],
-        )
+        return sp.Matrix(*value.shape, lambda i, j: self.let(f"{name}_{i + 1}{j + 1}", value[i, j]))
 
     def direction(self, name: str, x: sp.Expr, y: sp.Expr) -> Pair:
         """The pair of ``atan2(y, x)`` for a vector of parameters; the pair of 0 if both vanish."""
@@ -460,7 +453,11 @@ class Chain:
         if total.free_symbols & parameters:
             total = self.by_angles(total, solved=True)  # in which the same offset cancels
         constant = [t for t in total.as_ordered_terms() if t.free_symbols <= parameters]
-        offset = sp.Add(*(t for t in constant if not (2 * t / sp.pi).is_Integer))
+        constant = [t for t in constant if not (2 * t / sp.pi).is_Integer]
+        offset = sp.Add(*constant)
+        for e in sorted(offset.atoms(sp.atan2) - self.directions.keys(), key=str):
+            if len(constant) > 1 and e.free_symbols:  # a sum of several may be any angle
+                self.direction(f"offset{len(self.directions)}", e.args[1], e.args[0])
         for angle in (total - offset).as_ordered_terms() if offset != 0 else ():
             if pair := self.pair_of(angle + offset, {}):
                 return pair.angle + substitute(total - offset - angle, self.values)

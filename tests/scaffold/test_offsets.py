@@ -26,10 +26,10 @@ def numbers(element: Any, key: str) -> np.ndarray:
     return np.array([float(x) for x in element.get(key).split()])
 
 
-def in_the_file(q: np.ndarray) -> np.ndarray:
-    """The pose of the hand, read from the file as numbers."""
+def in_the_file(q: np.ndarray, file: Path = ROMEO) -> np.ndarray:
+    """The pose of the hand, read from a file as numbers."""
     T, values = np.eye(4), list(np.moveaxis(q, -1, 0))
-    for joint in ElementTree.parse(ROMEO).getroot().iter("joint"):
+    for joint in ElementTree.parse(file).getroot().iter("joint"):
         origin, axis = joint.find("origin"), joint.find("axis")
         step = np.eye(4)
         for k, angle in zip((2, 1, 0), numbers(origin, "rpy")[::-1], strict=True):
@@ -187,3 +187,33 @@ def test_a_turn_with_roots_about_the_axis_of_a_joint_is_its_offset(tmp_path: Pat
         step[:3, 3] = xyz
         expected = expected @ step @ turned_by(axis, q[:, k])
     np.testing.assert_allclose([at(*row) for row in q], expected, atol=1e-4)
+
+
+THUMB = """<robot name="thumb">
+<link name="palm"/><link name="base"/><link name="pad"/><link name="end"/><link name="tip"/>
+<joint name="yaw" type="continuous"><parent link="palm"/><child link="base"/>
+<origin xyz="0 0 0" rpy="0 0 0"/><axis xyz="0 0 1"/></joint>
+<joint name="pitch" type="continuous"><parent link="base"/><child link="pad"/>
+<origin xyz="0.03 -0.008 0" rpy="-1.5707963267949 0.0375 -0.228"/><axis xyz="0 0 1"/></joint>
+<joint name="bend" type="continuous"><parent link="pad"/><child link="end"/>
+<origin xyz="0.05 0.005 0" rpy="0 0 -0.124"/><axis xyz="0 0 1"/></joint>
+<joint name="end" type="fixed"><parent link="end"/><child link="tip"/>
+<origin xyz="0.035 0.001 0" rpy="0 0 0"/></joint>
+</robot>"""
+"""Of the hand of a Fourier GR-1: the links are oblique in frames that are turned as well."""
+
+
+def test_a_sum_of_offsets_that_are_not_numbers_is_an_angle(tmp_path: Path) -> None:
+    """Nothing was printed: "the range of ... is not known, so it cannot be moved"."""
+    path = tmp_path / "thumb.urdf"
+    path.write_text(THUMB, "utf-8")
+    (tmp_path / "thumb.py").write_text(new("thumb", "urdf", path).text, "utf-8")
+    (source,) = scripts.find([str(tmp_path / "thumb.py")])
+    robot = printed(scripts.load(source), tmp_path / "printed")
+    q = np.random.default_rng(3).uniform(-np.pi, np.pi, (300, 3))
+    x = in_the_file(q, path)[:, :3, 3]
+    answers, status = robot.ik(x)
+    assert (np.abs(answers[status == OK]) <= np.pi).all()
+    away = np.abs(np.exp(1j * (answers - q[:, None])) - 1).max(axis=-1)
+    assert np.nanmin(away, axis=1).max() < 1e-7
+    assert np.nanmax(np.abs(robot.fk(answers) - x[:, None])) < 1e-13

@@ -8,15 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextvars import ContextVar
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import sympy as sp
 
-from closedform.algebra.expressions import Derivatives
 from closedform.algebra.operations import operations
-from closedform.mechanics import linkwise
+from closedform.mechanics import linkwise, mounted
 from closedform.mechanics.by_axes import AXES, by_axes
 from closedform.mechanics.entries import RowError, check_unit, constant, exact, rigid
 from closedform.mechanics.factored import factored_determinant
@@ -30,14 +29,13 @@ from closedform.mechanics.frames import (
     reduce_circle,
     rotation,
     simplest,
-    twist_matrix,
 )
 from closedform.mechanics.links import Group, Link, Motion, Row, groups_of
 from closedform.mechanics.linkwise import Named
 from closedform.mechanics.mobility import dependent_in_chain, dependent_joints, singular_everywhere
 from closedform.mechanics.places import Places
 from closedform.mechanics.skeleton import serial_skeleton, skeleton
-from closedform.mechanics.twists import SHIFT, SPELLED, TURN, TURNED, from_geometric
+from closedform.mechanics.twists import SHIFT, SPELLED, TURN, TURNED, differentiated
 from closedform.model.derivation import Derivation
 
 FORWARD_ALONE: ContextVar[bool] = ContextVar("FORWARD_ALONE", default=False)
@@ -62,6 +60,8 @@ class Serial:
     """The joints by parallel axes, between the frames ``lead`` and ``last``."""
     lead: sp.Matrix
     last: sp.Matrix
+    unmounted: Serial | None = None
+    """The same without the first of the moves, if that is a tilted mount."""
 
     @cached_property
     def _frames(self) -> Places:
@@ -69,18 +69,26 @@ class Serial:
 
     @cached_property
     def pose(self) -> sp.Matrix:
+        if self.unmounted:
+            return mounted.moved(self.moves[0], self.unmounted.pose)
         return self._frames.pose()
 
     @cached_property
     def space(self) -> sp.Matrix:
+        if self.unmounted:
+            return mounted.carried(self.moves[0], self.unmounted.space)
         return sp.Matrix.hstack(*(self._frames.at_base(k, j) for k, j in self.places))
 
     @cached_property
     def body(self) -> sp.Matrix:
+        if self.unmounted:
+            return self.unmounted.body
         return sp.Matrix.hstack(*(self._frames.at_end(k, j) for k, j in self.places))
 
     @cached_property
     def geometric(self) -> sp.Matrix:
+        if self.unmounted:
+            return mounted.turned(self.moves[0], self.unmounted.geometric)
         return sp.Matrix.hstack(*(self._frames.at_tool(k, j) for k, j in self.places))
 
     @cached_property
@@ -180,7 +188,7 @@ class Serial:
             proves=(
                 "T is the product of the motions, and what the printed code computes link by link."
             ),
-            equal=lambda: [(sp.prod(self.moves), self.pose), (pose.explicit, self.pose)],
+            equal=lambda: [*self._multiplied(), (pose.explicit, self.pose)],
         )
         d.explain({f"A_{i}": "motion from link to link" for i in range(1, len(self.moves) + 1)})
         _export(d, ("pose", POSE), q, {"T": pose}, equation="T")
@@ -192,21 +200,15 @@ class Serial:
         spelled = max(operations(self.space), operations(self.body)) <= SPELLED
 
         def equal() -> list[tuple[Any, Any]]:
-            pose, J, J_s, J_b = self.pose, self.geometric, self.space, self.body
-            moved = [pose.applyfunc(Derivatives(joint).of) for joint in q]
-            found = [
-                *(() if spelled else from_geometric(pose, J, J_s, J_b)),
-                *(long.equal(pose, J) if long else ()),
-                (J[:3, :], sp.Matrix.hstack(*(rate[:3, 3] for rate in moved))),
-                (J[3:, :], J_s[3:, :]),
+            apart, J, J_s, J_b = self.unmounted or self, self.geometric, self.space, self.body
+            twists = apart.geometric, apart.space, apart.body
+            return [
+                *differentiated(apart.pose, q, twists, spelled=spelled),
+                *(long.equal(self.pose, J) if long else ()),
                 (geometric.explicit, J),
                 (space.explicit, J_s),
                 (body.explicit, J_b),
             ]
-            for i, rate in enumerate(moved):
-                found.append((rate, twist_matrix(J_s[:, i]) * pose))
-                found.append((rate, pose * twist_matrix(J_b[:, i])))
-            return found
 
         d.step(
             "Jacobians",
@@ -214,7 +216,8 @@ class Serial:
             "revolute joint is its axis and the velocity that it gives to the origin; that of a "
             "prismatic joint is its direction.  Differentiating the pose gives the same."
             + ("" if spelled else TURNED)
-            + (AXES if long else ""),
+            + (AXES if long else "")
+            + (mounted.MOUNTED if self.unmounted else ""),
             (long.jacobian if long else {"J": self.geometric})
             | ({"J_s": self.space, "J_b": self.body} if spelled else {"J_s": SHIFT, "J_b": TURN}),
             proves=(
@@ -237,6 +240,12 @@ class Serial:
             summary = f"Twist (v; omega) of the tool in {frame} per joint rate."
             _export(d, (name, summary), q, {"J": found}, equation=equation)
         return self.pose if task is None else task.values
+
+    def _multiplied(self) -> list[tuple[sp.Matrix, sp.Matrix]]:
+        """The product of the motions beside the pose; first that of all but a mount."""
+        if self.unmounted is None:
+            return [(sp.prod(self.moves), self.pose)]
+        return [*self.unmounted._multiplied(), (self.moves[0] * self.unmounted.pose, self.pose)]
 
     def _export_pose_task(self, d: Derivation, pose: Named, geometric: Named) -> None:
         q = self.joints
@@ -539,10 +548,6 @@ def from_screws(
     home = rigid(d, home, "the pose at home")
     frame = frame_along(directions[0])
     lead = homogeneous(frame, tuple(points[0]))
-    if base is not None:
-        mount = rigid(d, base, "the base")
-        lead = reduce_circle((mount * lead).applyfunc(sp.expand))
-        moves.insert(0, mount)
     groups: list[Group] = []
     current: list[Row] = []
     for i, (joint, slides, _) in enumerate(motions):
@@ -557,7 +562,15 @@ def from_screws(
             groups.append(Group(tuple(current), _seen(frame, after)))
             frame, current = after, []
     moved = tuple(motion.joint for motion in motions)
-    return Serial(moved, (*moves, home), tuple(groups), lead, sp.eye(4))
+    arm = Serial(moved, (*moves, home), tuple(groups), lead, sp.eye(4))
+    return arm if base is None else _mounted(arm, rigid(d, base, "the base"))
+
+
+def _mounted(arm: Serial, mount: sp.Matrix) -> Serial:
+    """The arm, seen from the base on which its mount stands."""
+    lead = reduce_circle((mount * arm.lead).applyfunc(sp.expand))
+    apart = arm if mounted.is_tilted(mount) else None
+    return replace(arm, moves=(mount, *arm.moves), lead=lead, unmounted=apart)
 
 
 def _seen(frame: sp.Matrix, value: sp.Matrix) -> sp.Matrix:

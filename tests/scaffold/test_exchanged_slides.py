@@ -73,3 +73,25 @@ def test_a_slide_passes_every_joint_about_its_axis() -> None:
     assert sorted(found) == [
         (1, 2, 3, 4, 5, 6), (1, 2, 4, 3, 5, 6), (1, 3, 2, 4, 5, 6), (3, 1, 2, 4, 5, 6),
     ]  # fmt: skip
+
+
+def test_a_camera_on_a_head_that_pans_and_tilts_on_a_lift(tmp_path: Path) -> None:
+    """Three joints for a point, as in a Tiago: only the order of the table was tried."""
+    rows = [(0, 0, None, 0), (H, pi / 2, 1), (H, pi / 2, sp.Rational(1, 8))]
+    d, serial = arm(rows, "d1 t2 t3")
+    found = propose(serial)
+    assert found.name == "three joints for a point, in the order 2, 1, 3"
+    solved(d, serial, found.source)
+    assert prove(d).inverses[0].branches == found.branches == 4
+    serial.export(d)
+    robot = printed(d, tmp_path)
+    q = np.random.default_rng(6).uniform(-3, 3, (400, 3))
+    q[:100] = np.round(q[:100])
+    q[100:200, 2] = np.pi  # the camera comes to the axis of the pan
+    x = forward([[None if e is None else float(e) for e in row] for row in rows], q)[:, :3, 3]
+    answers, status = robot.ik(x)
+    reached = np.where((status == OK)[..., None], robot.fk(answers), x[:, None])
+    assert np.isin(status, (OK, SINGULAR)).any(axis=1).all()
+    assert np.abs(reached - x[:, None]).max() < 1e-12 * 4
+    off = np.abs(np.exp(1j * (answers - q[:, None])) - 1).max(axis=-1)
+    assert (np.nanmin(off, axis=1)[200:] < 1e-8).all()

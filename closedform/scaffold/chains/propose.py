@@ -293,13 +293,17 @@ def _moved(order: Singles, whole: Singles) -> str:
 
 def _with_coordinates(arm: Serial, whole: Singles, names: tuple[str, ...]) -> Iterator[_Candidate]:
     """Three joints for a point, and another one for its yaw."""
-    maker = SubproblemMaker(arm)
-    met = _met(whole, ((0, 2), (1, 2)))
-    if names == ("x", "y", "z"):
-        yield _Candidate("three joints for a point", maker, partial(maker.solved_point, met))
-    elif names == ("x", "y", "z", "yaw"):
-        write = partial(maker.solved_level, met)
-        yield _Candidate("three joints and a level tool", maker, write)
+    ways = {
+        ("x", "y", "z"): ("three joints for a point", SubproblemMaker.solved_point),
+        ("x", "y", "z", "yaw"): ("three joints and a level tool", SubproblemMaker.solved_level),
+    }
+    if names not in ways:
+        return
+    name, solve = ways[names]
+    for order in whole.orders():
+        met = _met(order, ((0, 2), (1, 2)))
+        maker = SubproblemMaker(arm)
+        yield _Candidate(f"{name}{_moved(order, whole)}", maker, partial(solve, maker, met))
 
 
 def _fewer_than_six(arm: Serial, whole: Singles) -> Iterator[_Candidate]:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 import sys
-import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -44,7 +43,7 @@ from closedform.scaffold.inputs.urdf import read_urdf
 from closedform.scaffold.limit import LimitError, bounded
 from closedform.scaffold.loops.file import read_loop
 from closedform.scaffold.loops.script import loop_script
-from closedform.scaffold.source import LINE, file_name, literal, source
+from closedform.scaffold.source import LINE, file_name, fitted, literal, source
 
 TIMEOUT = 60.0
 """Seconds after which a script is written without what was not found by then."""
@@ -210,8 +209,7 @@ def _head(name: str, table: Table, origin: str, negative: Sequence[str]) -> list
         '    "Say here how the mechanism is built, where its zero is and which way it turns.",',
         ")",
     ]
-    for note in table.notes:
-        lines += map(_comment, textwrap.wrap(f"{note}.", LINE - 2, break_long_words=False))
+    lines += [_comment(f"{note}.") for note in table.notes]
     for symbol, given in table.parameters.items():
         value = number(given.get("value") or "1")
         exact = f"{value.numerator}" if value.denominator == 1 else f'Rational("{value}")'
@@ -240,8 +238,9 @@ def _head(name: str, table: Table, origin: str, negative: Sequence[str]) -> list
 
 
 def _script(head: Sequence[str], inverse: _Inverse) -> str:
-    text = "\n".join([*head, "", *inverse.lines]) + "\n"
-    return text.replace("IMPORTS", _imports(text), 1)
+    text = "\n".join([*head, "", *inverse.lines])
+    imported = text.replace("IMPORTS", _imports(text), 1).split("\n")
+    return "\n".join(part for line in imported for part in fitted(line)) + "\n"
 
 
 def _negative(table: Table) -> list[str]:
@@ -437,7 +436,7 @@ def _without_inverse(
 ) -> _Inverse:
     reason = f"No inverse is proposed, because {found}.  {needed}"
     lines = [
-        *map(_comment, textwrap.wrap(reason, LINE - 2)),
+        _comment(reason),
         "# Write it here, lemma by lemma, instead of the last line of this file;",
         "# docs/adding-a-mechanism.md says how:",
         f"# {chain}",

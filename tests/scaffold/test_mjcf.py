@@ -100,7 +100,7 @@ def test_limits_and_what_is_said(scara: Path) -> None:
     assert "pos 0.3000004 is taken for 0.3" in notes
     assert "moves the tool, with its slides at 0, by at most 4.1e-07" in notes
     assert 'quill = d.joint("quill", "prismatic", limits=(Rational("0.0")' in script.text
-    assert 'shoulder = d.joint("shoulder", limits=(Rational("-2.09439510239319' in script.text
+    assert '"shoulder", limits=(Rational("-2.09439510239319' in script.text
     assert 'elbow = d.joint("elbow")' in script.text
     assert "an inverse with 2 branches is proposed" in script.inverse
 

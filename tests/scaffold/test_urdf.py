@@ -526,6 +526,21 @@ def test_names_of_joints_that_are_words_of_python_are_changed(tmp_path: Path) ->
     assert "4 branches" in new("palletiser", "urdf", path).inverse
 
 
+FINGER = (
+    "<robot>"
+    + joint("base", "palm", "first", "0 0 0.05", "0 1 0")
+    + joint("middle", "first", "second", "0 0 0.04", "0 1 0", more='<mimic joint="base"/>')
+    + joint("end", "second", "pad", "0 0 0.03", "{}", more='<mimic joint="base"/>')
+    + "</robot>"
+)
+TIPS = {
+    "0 1 0": "joints middle and end follow the motor of base about axes parallel to its own, as in "
+    "a finger.  The tip turns by 3 times the angle of the motor, and no lemma divides",
+    "0 -1 0": "The tip turns as the motor does, but an arm needs a motor for each joint, so",
+    "1 0 0": "the motor of base turns the arm about two axes at once",
+}
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -559,6 +574,7 @@ def test_names_of_joints_that_are_words_of_python_are_changed(tmp_path: Path) ->
             + "</robot>",
             "one of the two turns and the other slides, so that their inverse is not algebraic",
         ),
+        *((FINGER.format(tip), told) for tip, told in TIPS.items()),
     ],
 )
 def test_other_joints_that_mimic_are_refused(text: str, message: str, tmp_path: Path) -> None:

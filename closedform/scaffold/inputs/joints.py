@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from closedform.model.functions import real
+from closedform.model.names import listed
 from closedform.scaffold.inputs.tables import (
     Table,
     TableError,
@@ -144,7 +145,7 @@ class Mimic:
             (str(table.axes[k][0]), sense)
             for k in self._near(table)
             if table.joints[str(table.axes[k][0])] == kind
-            and (sense := self._sense(*table.axes[k][1:]))
+            and (sense := self.sense(*table.axes[k][1:]))
         ]
         near.sort(key=lambda found: found[0] != mimicked)
         whole = factor.is_Integer and kind == table.joints[mimicked]
@@ -157,7 +158,8 @@ class Mimic:
                 f"of another, as in a parallelogram, or if it slides in the direction of a "
                 f"neighbour, as in a telescope.  If such joints keep the hand level, as in a "
                 f"palletiser, write the arm as a table, with the lengths from the wrist to the "
-                f"hand in the row of the turret, as docs/adding-a-mechanism.md says"
+                f"hand in the row of the turret, as docs/adding-a-mechanism.md says.  To give it a "
+                f"motor of its own, leave its mimic element out of the file"
             )
         name, sense = near[0]
         own = table.couplings.get(name, real(f"m_{name}"))
@@ -202,7 +204,7 @@ class Mimic:
             for k in side:
                 yield k
                 joint, direction, _ = table.axes[k]
-                still = table.joints[str(joint)] == "prismatic" or self._along(direction)
+                still = table.joints[str(joint)] == "prismatic" or self.along(direction)
                 if self.joint.kind != "prismatic" or not still:
                     break
 
@@ -210,25 +212,71 @@ class Mimic:
     def axis(self) -> sp.Matrix:
         return (self.place[:3, :3] * self.joint.axis).applyfunc(sp.expand)
 
-    def _along(self, direction: Sequence[sp.Expr]) -> bool:
+    def along(self, direction: Sequence[sp.Expr]) -> bool:
         across = self.axis.cross(sp.Matrix(direction))
         return bool(across.applyfunc(sp.simplify).is_zero_matrix)
 
-    def _sense(self, direction: Sequence[sp.Expr], point: Sequence[sp.Expr]) -> int:
+    def sense(self, direction: Sequence[sp.Expr], point: Sequence[sp.Expr]) -> int:
         """1 or -1 if an axis is that of this joint, in its direction or against it; else 0.
 
         Only the direction matters of a joint that slides.
         """
         between_axes = sp.Matrix(point) - self.place[:3, 3]
-        if not self._along(direction):
+        if not self.along(direction):
             return 0
-        if self.joint.kind != "prismatic" and not self._along(between_axes):
+        if self.joint.kind != "prismatic" and not self.along(between_axes):
             return 0
+        return self.sign(direction)
+
+    def sign(self, direction: Sequence[sp.Expr]) -> int:
+        """1 or -1 if this joint turns as one about a parallel direction does, or against it."""
         return 1 if sp.simplify(self.axis.dot(sp.Matrix(direction))) > 0 else -1
+
+
+def _refuse_finger(mimics: Sequence[Mimic], table: Table) -> None:
+    """Refuse joints that follow one motor about parallel axes, which no other joint turns about."""
+    leaders = {symbol_of(mimic.joint.mimics) for mimic in mimics}
+    at = {str(joint): (direction, point) for joint, direction, point in table.axes}
+    if len(leaders) != 1 or any(mimic.slides for mimic in mimics):
+        return
+    (leader,) = leaders
+    if table.joints[leader] == "prismatic":
+        return
+    direction, point = at.pop(leader)
+    beside = [m for m in mimics if m.along(direction) and not m.sense(direction, point)]
+    others = [w for joint, (w, _) in at.items() if table.joints[joint] == "revolute"]
+    if len(beside) != len(mimics) or any(mimics[0].along(w) for w in others):
+        return
+    total = 1 + sum(m.joint.factor * m.sign(direction) for m in mimics)
+    names = [shown_name(m.joint.name) for m in mimics]
+    follow = "follow the motor of", "follows the motor of"
+    axes = "about axes parallel to its own", "about an axis parallel to its own"
+    one = len(names) == 1
+    raise TableError(
+        f"{mimics[0].file}: {'joint' if one else 'joints'} {listed(names)} {follow[one]} "
+        f"{shown_name(mimics[0].joint.mimics)} {axes[one]}, as in a finger.  {_turned_by(total)}, "
+        f"so there is no inverse.  To solve it as if each joint had a motor of its own, leave the "
+        f"mimic elements out of the file; or end the chain before them, with --tool "
+        f"{shown_name(mimics[0].joint.parent)}.  If bars couple the joints, write them as a loop "
+        f"file, as docs/closed-loops.md says"
+    )
+
+
+def _turned_by(total: sp.Rational) -> str:
+    """What a motor turns a tip by, and why this does not give its angle."""
+    if total == 0:
+        return "The tip does not turn, and an arm needs a joint for each motion of its tool"
+    if abs(total) == 1:
+        return "The tip turns as the motor does, but an arm needs a motor for each joint"
+    return (
+        f"The tip turns by {float(total):g} times the angle of the motor, and no lemma divides an "
+        f"angle"
+    )
 
 
 def couple(mimics: Sequence[Mimic], table: Table) -> None:
     """Add what joints that mimic others do to those that they are one with."""
+    _refuse_finger(mimics, table)
     for mimic in mimics:
         mimic.couple(table)
     for name, driven in table.couplings.items():

@@ -126,3 +126,26 @@ def test_the_stages_of_a_telescope_are_named(tmp_path: Path) -> None:
     assert "--hold arm2 --hold arm1 --hold arm0" in script.advice
     held = Choice(hold=dict.fromkeys(("arm2", "arm1", "arm0"), "0"))
     assert "an inverse with 2 branches" in new("stretch", "urdf", path, choice=held).inverse
+
+
+RAIL = """\
+joint, a, alpha, d, theta
+rail, 0, pi/2, rail, pi/2
+pan, 0.05, pi/2, 0.1, pan
+lift, 0.4, 0, 0, lift
+elbow, 0.35, 0, 0, elbow
+bend, 0, pi/2, 0.1, bend
+roll, 0, 0, 0.08, roll
+"""
+
+
+def test_an_arm_of_five_joints_on_a_rail_is_solved_if_the_rail_is_held(tmp_path: Path) -> None:
+    """It was said that no three axes are parallel; and that a held joint has to be renamed."""
+    path = tmp_path / "arm.csv"
+    path.write_text(RAIL, "utf-8")
+    script = new("arm", "dh", path)
+    assert "axes 3, 4 and 5 are parallel, and joint 1 beside them slides" in script.inverse
+    line = "# rail = 0.1 m: held"
+    assert line in script.advice
+    path.write_text(f"{RAIL}{line}\n", "utf-8")
+    assert "an inverse with 4 branches" in new("arm", "dh", path).inverse

@@ -12,6 +12,7 @@ from functools import cache, partial
 from typing import Any, NamedTuple
 
 from closedform.mechanics.arm import Serial
+from closedform.model.names import listed
 from closedform.scaffold.chains.arm_angle import NAME as ARM_ANGLE
 from closedform.scaffold.chains.arm_angle import ArmAngleMaker
 from closedform.scaffold.chains.chainlinks import Single, Singles, parallel, singles
@@ -141,7 +142,7 @@ def _refusal(
         error = _counted(error, solutions(whole.with_given(single.number, GIVEN)), with_it)
     elif n == 6 and not error.degree:
         progress("counting the solutions")
-        error = _counted(error if _has_three(whole) else NO_THREE, solutions(whole))
+        error = _counted(_beside_slides(whole) or _without_three(error, whole), solutions(whole))
     elif n == 6 and not any(joint.slides for joint in whole.joints):
         error = NoChainError(error.found, _numeric(error.needed), error.degree)
     elif n < 6 and arm.coordinates() is None and not error.degree:
@@ -183,18 +184,37 @@ NO_THREE = NoChainError(
 )
 
 
-def _has_three(whole: Singles) -> bool:
-    """Whether three neighbouring axes meet in a point or are parallel; slides may change places."""
-    if any(joint.slides for joint in whole.joints):
-        return any(
-            view.met(3, 3) is not None
-            for order in whole.orders()
-            for view in (order, order.reversed())
-        )
-    return any(
-        whole.met(k, 3) is not None or (parallel(whole.joints[k]) and parallel(whole.joints[k + 1]))
-        for k in range(len(whole.joints) - 2)
+def _beside_slides(whole: Singles) -> NoChainError | None:
+    """What to do with a slide beside three parallel axes; None if there is no such arm."""
+    slides = [joint for joint in whole.joints if joint.slides]
+    three = _three_parallel(whole)
+    if len(slides) != 1 or not three:
+        return None
+    (slide,) = slides
+    numbers = [f"{joint.number}" for joint in three]
+    return NoChainError(
+        f"axes {listed(numbers)} are parallel, and joint {slide.number} beside them slides",
+        f"The known chains of three parallel axes have no slide beside them.  If {slide.joint} may "
+        f"be an input, hold it, and the other five joints may have an inverse: {_held(slide)}",
     )
+
+
+def _three_parallel(whole: Singles) -> tuple[Single, ...]:
+    """The first three neighbours that turn about parallel axes; none if there are no such."""
+    for k in range(len(whole.joints) - 2):
+        three = whole.joints[k : k + 3]
+        if not any(j.slides for j in three) and all(map(parallel, three[:2])):
+            return three
+    return ()
+
+
+def _without_three(error: NoChainError, whole: Singles) -> NoChainError:
+    """The error, or another one if no three neighbouring axes meet in a point or are parallel."""
+    views, starts = [whole], list(range(len(whole.joints) - 2))
+    if any(joint.slides for joint in whole.joints):  # which may change places
+        views, starts = [v for o in whole.orders() for v in (o, o.reversed())], [3]
+    three = _three_parallel(whole) or any(v.met(k, 3) is not None for v in views for k in starts)
+    return error if three else NO_THREE
 
 
 def _counted(error: NoChainError, counted: Solutions | None, given: str = "") -> NoChainError:

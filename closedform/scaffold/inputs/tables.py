@@ -380,10 +380,8 @@ def _check_angle(angle: Any, text: str, where: str) -> None:
 def _joint(
     given: str, entries: Mapping[str, Any], where: str, table: Table
 ) -> tuple[str, str] | None:
-    """The joint of a row and its kind, or None if the row has no joint.
-
-    A symbol that has a value is a parameter.
-    """
+    """The joint of a row and its kind, or None if the row has none: one with a value is held."""
+    given = "" if given in table.parameters else given
     for column, kind in (("theta", "revolute"), ("d", "prismatic")):
         held = sorted(map(str, entries[column].free_symbols))
         names = [n for n in held if n not in table.parameters]

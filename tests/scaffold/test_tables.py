@@ -6,6 +6,7 @@ import pytest
 
 from closedform.cli.commands import main
 from closedform.pipeline.scripts import find, load
+from closedform.scaffold.inputs.tables import read_dh
 
 HEADER = "a, alpha, d, theta\n"
 AXIS = '[[axes]]\njoint = "t1"\ndirection = [0, 0, 1]\n'
@@ -229,3 +230,9 @@ def test_a_parameter_without_a_value_is_said(
     path.write_text(f"# b = 0.3 m: second\n{rows}", "utf-8")
     assert main(["new", "both", "--from", "dh", str(path), "-o", str(tmp_path)]) == 0
     assert "no value" not in capsys.readouterr().err
+
+
+def test_column_names_may_have_capitals(tmp_path: Path) -> None:
+    path = tmp_path / "table.csv"
+    path.write_text("Joint, A, Alpha, D, Theta\nt, 0.5, 0, 0, t\n", "utf-8")
+    assert list(read_dh(path).joints) == ["t"]

@@ -582,3 +582,16 @@ def test_other_joints_that_mimic_are_refused(text: str, message: str, tmp_path: 
     path.write_text(text, "utf-8")
     with pytest.raises(TableError, match=message):
         read_urdf(path)
+
+
+def test_angles_in_degrees_are_told_of(tmp_path: Path) -> None:
+    """A tool turned by 90 degrees got the parameter angle1 = 90 rad, and limits were taken so."""
+    path = tmp_path / "arm.urdf"
+    path.write_text(UR5.replace('rpy="0 0 0"', 'rpy="0 90 0"', 1), "utf-8")
+    with pytest.raises(TableError, match="rpy has 90, and angles of URDF are in radians; write "):
+        read_urdf(path)
+    limited = '<limit lower="0" upper="120" effort="1" velocity="1"/>'
+    text = "<robot>" + joint("one", "base", "arm", "0 0 0.4", "0 0 1", more=limited)
+    path.write_text(text + joint("two", "arm", "hand", "0.3 0 0", "0 0 1") + "</robot>", "utf-8")
+    notes = "\n".join(read_urdf(path).notes)
+    assert "joint one: its limits 0 and 120 are in radians; if degrees are meant" in notes

@@ -344,7 +344,7 @@ def add_joint(table: Table, joint: str, kind: str, where: str) -> None:
 
 
 def _header(cells: Sequence[str], where: str) -> list[str]:
-    header = [h.strip() for h in cells]
+    header = [h.strip().lower() for h in cells]
     names = ", ".join(COLUMNS)
     if missing := [c for c in COLUMNS if c not in header]:
         raise TableError(

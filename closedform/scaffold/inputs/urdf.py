@@ -5,9 +5,11 @@ A URDF file is data: entities and other declarations are refused, and every numb
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 from xml.parsers.expat import ExpatError, ParserCreate
 
@@ -107,6 +109,12 @@ def _joint(element: ElementTree.Element, file: str, *, aside: bool) -> Joint:
             (axis, "xyz", (1, 0, 0)),
         )
     )
+    for angle in rpy:
+        if _is_in_degrees(angle):
+            raise TableError(
+                f"{where}: rpy has {angle}, and angles of URDF are in radians; write "
+                f"{math.radians(float(angle)):.12g} for {angle} degrees"
+            )
     written = (placed(xyz, rpy), sp.Matrix(direction))
     xyz = [meant_length(e, f"{where}: xyz", notes) for e in xyz]
     rpy = [meant_number(e, f"{where}: rpy", notes) for e in rpy]
@@ -121,6 +129,11 @@ def _joint(element: ElementTree.Element, file: str, *, aside: bool) -> Joint:
     mimic = element.find("mimic")
     meant = placed(xyz, rpy)
     limits = None if kind == "continuous" else _limits(element.find("limit"), where, notes)
+    if limits and MOVING.get(kind) == "revolute" and any(map(_is_in_degrees, map(number, limits))):
+        notes.append(
+            f"{where}: its limits {' and '.join(limits)} are in radians; if degrees are meant, "
+            f"multiply them by pi/180"
+        )
     return Joint(
         name=name,
         kind=kind,
@@ -135,6 +148,11 @@ def _joint(element: ElementTree.Element, file: str, *, aside: bool) -> Joint:
         written=None if written == (meant, direction) else written,
         notes=tuple(notes),
     )
+
+
+def _is_in_degrees(angle: Any) -> bool:
+    """Whether an angle is a round number, and more than two turns in radians."""
+    return bool(4 * math.pi < abs(angle) <= 720 and angle % 5 == 0)
 
 
 def _number(element: ElementTree.Element | None, key: str, default: int, where: str) -> sp.Rational:

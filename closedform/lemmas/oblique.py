@@ -171,7 +171,32 @@ class _Wrist:
             )
         point = (turn.let("tilted", size * tilted), zero)
         rate = (turn.let("dtilted", size * dz), zero)
-        return Within(point, rate, rate[0] ** 2, zero, turn.let("most", size * reach))
+        found = Within(point, rate, rate[0] ** 2, zero, turn.let("most", size * reach))
+        return self._first_apart(found) if self.aligns_by_turn else found
+
+    def _first_apart(self, otherwise: Within) -> Within:
+        """How far the first two axes must be apart, where they are nearly in line.
+
+        Their cosine does not say so, but the sine between them is at least that by which the
+        direction of the outer axes differs from a right angle, or from the angle of the last two.
+        """
+        let, w, size = self.turn.let, self.goal.last, self.turn.chain.size
+        (*_, az), _ = self.axis
+        B, dB = self.onward
+        in_line = 4 * self._onward_across <= 1
+        least = let("least_apart", sp.Abs(az - B[2, 2] * w[2]) / sp.sqrt(w[0] ** 2 + w[1] ** 2))
+        (x, y), (dx, dy) = otherwise.point, otherwise.rate
+        names = "apart_x", "apart_y", "dapart_x", "dapart_y", "apart_low", "apart_high"
+        x, y, dx, dy, low, high = (
+            let(name, sp.Piecewise((size * there, in_line), (here, True)))
+            for name, there, here in zip(
+                names,
+                (B[2, 0], B[2, 1], dB[2, 0], dB[2, 1], least, 2),
+                (x, y, dx, dy, otherwise.low, otherwise.high),
+                strict=True,
+            )
+        )
+        return Within((x, y), (dx, dy), let("apart_bend", dx**2 + dy**2), low, high)
 
     @property
     def aligns_by_turn(self) -> bool:

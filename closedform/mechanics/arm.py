@@ -178,13 +178,16 @@ class Serial:
         self.require_regular(d.name)
         pose = linkwise.pose(d.program(), links)
         long = by_axes(d, self.pose, self.moves, q)
-        turns = self.pose.atoms(sp.sin, sp.cos)
+        turns, apart = self.pose.atoms(sp.sin, sp.cos), self.unmounted
+        shown = {"T": long.pose if long else self.pose}
+        jacobians = long.jacobian if long else {"J": self.geometric}
+        if apart:
+            shown, jacobians = mounted.shown(d, apart.pose, apart.geometric)
         d.step(
             "Pose",
             "T is the product of the motions from link to link."
             + "  Angles about parallel axes are added." * any(f.args[0].is_Add for f in turns),
-            {f"A_{i}": A for i, A in enumerate(self.moves, 1)}
-            | {"T": long.pose if long else self.pose},
+            {f"A_{i}": A for i, A in enumerate(self.moves, 1)} | shown,
             proves=(
                 "T is the product of the motions, and what the printed code computes link by link."
             ),
@@ -200,10 +203,11 @@ class Serial:
         spelled = max(operations(self.space), operations(self.body)) <= SPELLED
 
         def equal() -> list[tuple[Any, Any]]:
-            apart, J, J_s, J_b = self.unmounted or self, self.geometric, self.space, self.body
-            twists = apart.geometric, apart.space, apart.body
+            seen, J, J_s, J_b = apart or self, self.geometric, self.space, self.body
+            twists = seen.geometric, seen.space, seen.body
             return [
-                *differentiated(apart.pose, q, twists, spelled=spelled),
+                *differentiated(seen.pose, q, twists, spelled=spelled),
+                *([(mounted.turning(self.moves[0]) * seen.geometric, J)] if apart else []),
                 *(long.equal(self.pose, J) if long else ()),
                 (geometric.explicit, J),
                 (space.explicit, J_s),
@@ -217,8 +221,8 @@ class Serial:
             "prismatic joint is its direction.  Differentiating the pose gives the same."
             + ("" if spelled else TURNED)
             + (AXES if long else "")
-            + (mounted.MOUNTED if self.unmounted else ""),
-            (long.jacobian if long else {"J": self.geometric})
+            + (mounted.MOUNTED if apart else ""),
+            jacobians
             | ({"J_s": self.space, "J_b": self.body} if spelled else {"J_s": SHIFT, "J_b": TURN}),
             proves=(
                 "J is the derivative of the position, with the axes below it. The derivative of T "

@@ -6,20 +6,44 @@ entry.  So the arm is multiplied out and differentiated without it.
 
 from __future__ import annotations
 
+from typing import Any
+
 import sympy as sp
 
 from closedform.algebra.expansion import Expansion
 from closedform.mechanics.frames import adjoint
+from closedform.model.derivation import Derivation
 
 MOUNTED = (
-    "  The derivatives are compared for the arm without its mount A_1, which is at rest: it turns "
-    "and shifts both sides alike."
+    "  J_0 is that of the arm without its mount A_1, which is at rest, and R_1 is the rotation in "
+    "A_1.  The derivatives are compared without the mount: it turns and shifts both sides alike."
 )
+TURNED = r"\begin{bmatrix} R_1 & 0 \\ 0 & R_1 \end{bmatrix} J_0"
+"""The geometric Jacobian by that of the arm without its mount."""
 
 
 def is_tilted(mount: sp.Matrix) -> bool:
     """Whether a constant motion turns an axis of coordinates to a direction between them."""
     return any(e not in (-1, 0, 1) for e in mount[:3, :3])
+
+
+def shown(
+    d: Derivation, pose: sp.Matrix, geometric: sp.Matrix
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """How an article shows the pose and the geometric Jacobian: by those seen from the mount."""
+    d.explain(
+        {
+            "T_0": "pose of the tool, seen from the mount",
+            "J_0": "J without the mount",
+            "R_1": "rotation in A_1",
+        }
+    )
+    return {"T_0": pose, "T": "A_1 T_0"}, {"J_0": geometric, "J": TURNED}
+
+
+def turning(mount: sp.Matrix) -> sp.Matrix:
+    """What turns a geometric Jacobian as the mount does."""
+    return sp.diag(mount[:3, :3], mount[:3, :3])
 
 
 def moved(mount: sp.Matrix, pose: sp.Matrix) -> sp.Matrix:
@@ -29,7 +53,7 @@ def moved(mount: sp.Matrix, pose: sp.Matrix) -> sp.Matrix:
 
 def turned(mount: sp.Matrix, geometric: sp.Matrix) -> sp.Matrix:
     """A geometric Jacobian that is seen from the mount, in base axes."""
-    return _product(sp.diag(mount[:3, :3], mount[:3, :3]), geometric)
+    return _product(turning(mount), geometric)
 
 
 def carried(mount: sp.Matrix, space: sp.Matrix) -> sp.Matrix:
@@ -42,4 +66,4 @@ def _product(a: sp.Matrix, b: sp.Matrix) -> sp.Matrix:
     return ring.written(ring.times(ring.read(a), ring.read(b)))
 
 
-__all__ = ["MOUNTED", "carried", "is_tilted", "moved", "turned"]
+__all__ = ["MOUNTED", "carried", "is_tilted", "moved", "shown", "turned", "turning"]

@@ -7,9 +7,11 @@ from arms import differences, twists
 from numpy.typing import NDArray
 
 from closedform.algebra.operations import operations
+from closedform.emit.backends.latex.article import document
+from closedform.emit.render import render
 from closedform.mechanics.arm import Serial, from_screws
 from closedform.model.derivation import Derivation, Paper
-from closedform.proof.prove import prove
+from closedform.proof.prove import Proof, prove
 
 A, B = sp.Rational(2, 5), sp.Rational(3, 10)
 HOME = sp.Matrix([[1, 0, 0, A + B], [0, 0, 1, 0], [0, -1, 0, B], [0, 0, 0, 1]])
@@ -36,6 +38,8 @@ def test_the_derivatives_are_proved_without_the_mount() -> None:
     level, tilted = sizes
     assert tilted < 1.8 * level
     prove(d)
+    text = render("latex/robot.tex.jinja", document(d, Proof(d.name, d.paper.key, (), 0, ())))
+    assert "T &= A_1 T_0" in text and "rotation in $A_{1}$" in text
 
 
 def at(matrix: sp.Matrix, joints: tuple[sp.Symbol, ...], q: NDArray[np.float64]) -> NDArray:

@@ -336,7 +336,9 @@ class Solutions:
         for image, sized in zip(images, self._sized, strict=True):
             difference = (image - given).astype(float)
             turned = np.abs(np.angle(np.exp(1j * difference)))
-            by_size = np.abs(difference) / np.where(sized, size[:, None], 1.0)
+            with np.errstate(divide="ignore", invalid="ignore"):  # slides alone, all of them at 0
+                by_size = np.abs(difference) / np.where(sized, size[:, None], 1.0)
+            by_size = np.where(difference == 0, 0.0, by_size)
             missed.append((counted * np.where(self._turns, turned, by_size)).max(axis=-1))
         return np.asarray(np.fmin.reduce([*missed, np.full(len(given), np.inf)]))
 

@@ -10,6 +10,7 @@ from chains import arm, printed, solved
 from proposals import forward
 from sympy import pi
 
+from closedform.cli.commands import main
 from closedform.emit.backends.latex.article import document
 from closedform.emit.render import render
 from closedform.proof.prove import Proof, prove
@@ -188,3 +189,24 @@ def pi_halves(rng: np.random.Generator, shape: tuple[int, int]) -> np.ndarray:
     """Multiples of a right angle, and angles near them."""
     near = 10.0 ** rng.uniform(-16, -1, shape) * rng.choice([-1, 0, 1], shape)
     return rng.integers(-2, 3, shape) * np.pi / 2 + near
+
+
+BASE = """\
+axes = [
+    {joint = "x1", kind = "prismatic", direction = [1, 0, 0]},
+    {joint = "y1", kind = "prismatic", direction = [0, 1, 0]},
+    {joint = "heading", direction = [0, 0, 1], point = [0, 0, 0]},
+]
+[home]
+position = [0, 0, 0]
+"""
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_mobile_base_without_any_length_is_cross_checked(tmp_path: Path) -> None:
+    """Where both slides are at 0 it has no size, and the error relative to it was not a number."""
+    (tmp_path / "base.toml").write_text(BASE, "utf-8")
+    new_one = ["new", "base", "--from", "screws", str(tmp_path / "base.toml"), "-o", str(tmp_path)]
+    assert main(new_one) == 0
+    printed_to = ["-o", str(tmp_path / "out"), "--backend", "numpy", "-j1"]
+    assert main(["derive", str(tmp_path / "base.py"), *printed_to]) == 0

@@ -94,6 +94,7 @@ from closedform.loops.hinges import TurningPlane as TurningPlane
 from closedform.loops.hinges import TwoHinges as TwoHinges
 from closedform.loops.lines_hand import BallOnLine as BallOnLine
 from closedform.loops.linkage import Body as Body
+from closedform.loops.mast import BallOnMast as BallOnMast
 from closedform.loops.mast import Mast as Mast
 from closedform.loops.mirrored import mirrored as mirrored
 from closedform.loops.on_balls import on_balls as on_balls

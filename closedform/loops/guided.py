@@ -59,9 +59,9 @@ def guided(d: Derivation, guide: Holder, legs: Sequence[Leg | Hinged]) -> None:
         If it has no ``singularities``, they are named after the legs
     guide
         what holds the hand: a :class:`Guide` with three legs, a :class:`Gimbal` or a
-        :class:`Cross` with two, a :class:`Ball` or a :class:`Mast` with three, a :class:`Spindle`
-        with five.  The ``slide`` of a guide may be driven; then one of the legs is a ``Stretch``
-        with this joint
+        :class:`Cross` with two, a :class:`Ball` or a :class:`Mast` with three, a
+        :class:`BallOnMast` with four, a :class:`Spindle` with five.  The ``slide`` of a guide may
+        be driven; then one of the legs is a ``Stretch`` with this joint
     legs
         cranks, slides or legs that stretch; ``on_hand`` is seen from the point of the hand, where
         the hand is not turned
@@ -574,7 +574,7 @@ def _inverse(m: Guided, loop: Step) -> None:
                 if isinstance(guide, Hinges | ParallelAxes) and guide.left_out
                 else []
             ),
-            *(["INVALID: the matrix is not a proper rotation."] if guide.turning == 3 else []),
+            *(["INVALID: the matrix is not a proper rotation."] if "R" in guide.inputs else []),
             f"fk is not derived: the forward problem is an equation of degree {guide.degree}.",
         ],
     )

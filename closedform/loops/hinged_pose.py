@@ -11,7 +11,7 @@ from closedform.lemmas.legs import vector
 from closedform.loops.guides import Placed
 from closedform.loops.hinges import TILTED, Hinges, InPlane, StandingPlane, TurningPlane
 from closedform.loops.letters import letters
-from closedform.loops.mast import Mast
+from closedform.loops.mast import BallOnMast, Mast
 from closedform.loops.spindle import Spindle
 from closedform.loops.three_hinges import PSI, ThreeHinges
 from closedform.loops.tripod_legs import sum_of_cosines
@@ -46,6 +46,12 @@ MAST = (
     "turn_1 about an axis that stands still, and by turn_2 about an axis that the first turn "
     "moves.  R is the rotation of the hand, and its point p is the centre of the joint.  "
 )
+BALL = (
+    "A slide moves the ball joint along a mast by the travel.  The hand is turned by turn_1 about "
+    "an axis that stands still, by turn_2 about an axis that the first turn moves, and by turn_3 "
+    "about an axis of its own.  R is the rotation of the hand, and its point p is the centre of "
+    "the ball.  "
+)
 HINGED = (
     "A hinge keeps leg k in a plane, whose normal m is an axis of the ground, or of the hand.  "
     "So m is at right angles to the vector from the base of the leg to its end on the hand.  For "
@@ -67,6 +73,7 @@ WORDS: dict[type, str] = {
     StandingPlane: ON_AXIS,
     Spindle: LINE,
     Mast: MAST,
+    BallOnMast: BALL,
 }
 """How a target says what the pose is; without an entry it is a height, two tilts and a twist."""
 

@@ -1,4 +1,4 @@
-"""A hand on a universal joint that slides along a mast, as a swash plate."""
+"""A hand on a universal or a ball joint that slides along a mast, as a swash plate."""
 
 from __future__ import annotations
 
@@ -12,9 +12,11 @@ from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.legs import Leg, vector
 from closedform.loops.guides import TURNS, Turning
 from closedform.loops.hinges import Frame, Hinged, Hinges
+from closedform.loops.leg_by_leg import named
+from closedform.mechanics.frames import rotation
 from closedform.model.functions import Program, real
 
-TRAVEL = real("travel")
+TRAVEL, SPIN = real("travel"), real("turn_3")
 
 
 @dataclass(frozen=True)
@@ -69,4 +71,41 @@ class Mast(Hinges):
         )
 
 
-__all__ = ["Mast"]
+@dataclass(frozen=True)
+class BallOnMast(Mast):
+    """A passive slide on the ground that carries a ball joint, which holds the hand.
+
+    The hand is turned about ``first``, which stands still, about ``second``, which the first turn
+    moves, and then about an axis of its own: ``first x second``, where nothing is turned.  The
+    centre of the ball is the point of the hand.
+    """
+
+    turning: ClassVar[int] = 3
+    degree: ClassVar[int] = 28
+    what: ClassVar[str] = "a ball joint on a mast"
+    follow: ClassVar[str] = "the travel and the three turns follow"
+    left_out: ClassVar[str] = (
+        "SINGULAR too where turn_2 is a right angle: turn_1 and turn_3 turn the hand about the "
+        "same axis there."
+    )
+
+    @property
+    def coordinates(self) -> tuple[sp.Symbol, ...]:
+        return (*super().coordinates, SPIN)
+
+    def frame(self, p: Program, *, guarded: bool = False) -> Frame:
+        home = sp.Matrix.hstack(*self.joint.axes)
+        swung = home * rotation("x", TURNS[0])
+        tilted = swung * rotation("y", TURNS[1])
+        R = p.matrix("R", tilted * rotation("z", SPIN) * home.T)
+        none, way = sp.zeros(3, 1), vector(self.along)
+        own = (named(p, letter, at) for letter, at in (("v", swung.col(1)), ("u", tilted.col(2))))
+        return Frame(
+            rotation=R,
+            axes=(none, vector(self.first), *own),
+            shift=TRAVEL * way,
+            moves=(way, none, none, none),
+        )
+
+
+__all__ = ["BallOnMast", "Mast"]

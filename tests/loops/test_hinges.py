@@ -143,6 +143,11 @@ def test_newton_finds_no_pose_that_the_closed_form_lacks(robot: ModuleType) -> N
     assert len(found) > 12
 
 
+def test_only_a_matrix_is_told_to_be_a_rotation(robot: ModuleType) -> None:
+    """It was said of a height, two tilts and a twist."""
+    assert "proper rotation" not in (robot.ik.__doc__ or "")
+
+
 def test_the_jacobians_are_differences(robot: ModuleType) -> None:
     h, well = 1e-6, 0
     for x in targets(robot, 20, 5):

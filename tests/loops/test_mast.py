@@ -99,7 +99,7 @@ def test_the_slide_may_be_named_at_another_point(tmp_path: Path) -> None:
         (
             'kind = "universal", axis',
             'kind = "spherical", axis',
-            "leave the hand four degrees of freedom",
+            "leave the hand four degrees of freedom, so four joints are driven, not q1, q2 and q3",
         ),
     ],
 )
@@ -109,6 +109,13 @@ def test_other_joints_are_told_of(old: str, new: str, told: str, tmp_path: Path)
         text = text.replace(", axis = [1, 0, 0], second = [0, 1, 0]", "")
     assert text != TEXT
     with pytest.raises(TableError, match=told):
+        script_of("t", text, tmp_path)
+
+
+def test_a_driven_slide_of_a_mast_is_told_of(tmp_path: Path) -> None:
+    text = TEXT.replace('kind = "prismatic", axis', 'kind = "prismatic", driven = true, axis')
+    assert text != TEXT
+    with pytest.raises(TableError, match=r"m is the slide of a mast.* passive and one more leg"):
         script_of("t", text, tmp_path)
 
 

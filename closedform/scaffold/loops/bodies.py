@@ -103,4 +103,12 @@ def across_axis(axis: sp.Matrix, arm: sp.Matrix, start: sp.Matrix) -> tuple[sp.M
     return (arm - along).applyfunc(sp.simplify), start + along
 
 
-__all__ = ["AXES", "GROUND", "Joint", "Loop", "across_axis", "with_pivots"]
+def around(line: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
+    """Two unit vectors in numbers at right angles to a third one, which is their product."""
+    k = min(range(len(AXES)), key=lambda i: (abs(line[i]), i))
+    first = sp.eye(len(AXES)).col(k) - line[k] * line
+    first = (first / sp.sqrt(first.dot(first))).applyfunc(sp.simplify)
+    return first, line.cross(first).applyfunc(sp.simplify)
+
+
+__all__ = ["AXES", "GROUND", "Joint", "Loop", "across_axis", "around", "with_pivots"]

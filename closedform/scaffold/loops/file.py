@@ -72,6 +72,7 @@ USED |= {
     "Around",
     "Ball",
     "BallOnLine",
+    "BallOnMast",
     "Body",
     "Crank",
     "Cross",

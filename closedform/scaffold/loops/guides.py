@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from closedform.model.names import listed
-from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
+from closedform.scaffold.loops.bodies import GROUND, Joint, Loop, around
 from closedform.scaffold.loops.legs import Legs, middle_leg
 
 SPACE = 3
@@ -53,7 +53,7 @@ def guide(found: Legs) -> GuideLine | None:
 
 
 def _mast(found: Legs) -> GuideLine | None:
-    """A universal joint at the point of the hand, on a passive slide of the ground."""
+    """A universal or a ball joint at the point of the hand, on a passive slide of the ground."""
     loop = found.loop
     for turning in loop.joints.values():
         if turning.kind not in DRIVEN or turning.at != loop.hand or GROUND in turning.between:
@@ -62,14 +62,10 @@ def _mast(found: Legs) -> GuideLine | None:
             onto = [j for j in loop.of(post) if j is not turning]
             if [j.kind for j in onto] != ["prismatic"] or GROUND not in onto[0].between:
                 continue
-            if not onto[0].driven and turning.kind == "spherical":
-                raise loop.error(
-                    f"{onto[0].name} and {turning.name} leave the hand four degrees of freedom: a "
-                    f"slide along a mast, and a ball joint.  This is supported if {turning.name} "
-                    f"is a universal joint, with three driven legs, as on a swash plate"
-                )
-            if not onto[0].driven:
-                return _on_mast(found, onto[0], turning, post)
+            if onto[0].driven:
+                continue
+            on_mast = _on_mast if turning.kind == "universal" else _ball_on_mast
+            return on_mast(found, onto[0], turning, post)
     return None
 
 
@@ -82,19 +78,42 @@ def _on_mast(found: Legs, slide: Joint, turning: Joint, post: str) -> GuideLine:
             f"axis, which is fixed to {post}, and second, which is fixed to the hand"
         )
     _require_cross(loop, turning)
-    points = loop.bodies[post]
-    base = found.point(GROUND, slide)
+    base = _foot_of_mast(found, slide, turning, post)
+    _check_driven(found, slide, SPACE, f"{slide.name} and {turning.name}")
+    axes = ", ".join(map(found.at, (turning.axis, turning.second, slide.axis)))
+    return GuideLine(
+        f"Mast({base}, {axes})",
+        "a hand on a mast",
+        "A universal joint, which slides along a mast, holds the hand.",
+    )
+
+
+def _ball_on_mast(found: Legs, slide: Joint, turning: Joint, post: str) -> GuideLine:
+    loop = found.loop
+    if slide.axis is None or not all(e.is_number for e in slide.axis):
+        raise loop.error(
+            f"{turning.name} holds the hand on {post}, which {slide.name} moves; give {slide.name} "
+            f"its axis, in numbers"
+        )
+    base = _foot_of_mast(found, slide, turning, post)
+    _check_driven(found, slide, SPACE + 1, f"{slide.name} and {turning.name}")
+    axes = ", ".join(map(found.at, (*around(slide.axis), slide.axis)))
+    return GuideLine(
+        f"BallOnMast({base}, {axes})",
+        "a hand on a ball joint on a mast",
+        "A ball joint, which slides along a mast, holds the hand.",
+    )
+
+
+def _foot_of_mast(found: Legs, slide: Joint, turning: Joint, post: str) -> str:
+    """Where the joint that holds the hand is if the slide is at zero."""
+    loop = found.loop
+    points, base = loop.bodies[post], found.point(GROUND, slide)
     if slide.at in points and turning.at in points:
         base += points[turning.at] - points[slide.at]
     points.pop(loop.hand, None)  # the hand is the body that the joint carries
     found.used |= {slide.name, turning.name}
-    _check_driven(found, slide, SPACE, f"{slide.name} and {turning.name}")
-    axes = ", ".join(map(found.at, (turning.axis, turning.second, slide.axis)))
-    return GuideLine(
-        f"Mast({found.at(base)}, {axes})",
-        "a hand on a mast",
-        "A universal joint, which slides along a mast, holds the hand.",
-    )
+    return found.at(base)
 
 
 def _first_of_cross(found: Legs, second: Joint, hand: str) -> Joint | None:
@@ -148,7 +167,7 @@ def _cross(found: Legs, first: Joint, second: Joint) -> GuideLine:
 def _check_driven(found: Legs, held: Joint, needed: int, by: str) -> None:
     driven = found.driven()
     if len(driven) != needed:
-        count = {2: "two", 3: "three"}[needed]
+        count = {2: "two", 3: "three", 4: "four"}[needed]
         raise found.loop.error(
             f"{by} leave{'s' * (held.name == by)} the hand {count} degrees of freedom, so {count} "
             f"joints are driven, not {listed([j.name for j in driven])}"

@@ -17,8 +17,12 @@ from closedform.scaffold.loops.axial import TwoMotors, call_of, in_pairs, leg_on
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop, across_axis
 from closedform.scaffold.loops.halves import halves
 from closedform.scaffold.loops.refused import (
+    arcs,
+    ball_on_hand,
     ball_on_line,
+    beyond,
     carried,
+    driven_mast,
     hinged_on,
     on_cylinder,
     two_motors,
@@ -248,11 +252,12 @@ class Legs:
                 f"{joint.name} moves {body}, which must be joined to one rod, a body with a "
                 f"length or two points, or to one body by a passive slide; it is joined to "
                 f"{carried}"
-                + self.ball_on_hand(onward)
-                + "".join(ball_on_line(loop, j) for j in self.beyond(onward))
+                + ball_on_hand(loop, onward)
+                + "".join(ball_on_line(loop, j) for j in beyond(loop, onward))
                 + two_motors(loop, joint)
                 + hinged_on(loop, joint)
-                + self.arcs_told()
+                + driven_mast(loop, joint)
+                + arcs(loop)
                 + several_told(loop, body)
             )
         if joint.kind == "prismatic":
@@ -267,48 +272,6 @@ class Legs:
         place = self.place_of(leg.ball)
         call = f"{call_of(self, leg, joint)}{self.tail(place)})"
         return LoopLeg(joint, call, told(leg, joint), place, on_axis=True)
-
-    def arcs_told(self) -> str:
-        """What is said of a mechanism all of whose axes meet."""
-        joints = [*self.loop.joints.values()]
-        places = {j.at for j in joints}
-        turning = all(j.kind == "revolute" and j.axis is not None for j in joints)
-        if len(places) != 1 or not turning or self.loop.dimensions == 2:
-            return ""
-        (at,) = places
-        return (
-            f".  All axes meet in {at}, so this is a spherical mechanism.  Write each arc as a rod "
-            f"with ball joints at the ends, whose length is their distance, and hold the hand by a "
-            f"rod from {at}, or by a spherical joint there if it turns"
-        )
-
-    def beyond(self, onward: Sequence[Joint]) -> list[Joint]:
-        """The passive slides on the bodies that some joints lead to."""
-        return [
-            j
-            for first in onward
-            for body in first.between
-            for j in self.loop.of(body)
-            if j.kind == "prismatic" and not j.driven
-        ]
-
-    def ball_on_hand(self, onward: Sequence[Joint]) -> str:
-        """What is said of a ball that slides on the hand, as in a 3-PSP mechanism."""
-        loop = self.loop
-        if len(onward) != 1 or onward[0].kind != "spherical":
-            return ""
-        joint = onward[0]
-        for block in joint.between:
-            onto = [j for j in loop.of(block) if j is not joint]
-            if [j.kind for j in onto] == ["prismatic"] and not onto[0].driven:
-                hand = onto[0].other(block)
-                return (
-                    f".  With {joint.name} and {onto[0].name} a ball slides along a line of "
-                    f"{hand}, as in a 3-PSP mechanism.  This is supported if three sliders that "
-                    f"are parallel move three such balls, and the three lines meet in {loop.hand}, "
-                    f"which is the hand.  In a plane it is a hand on three pins"
-                )
-        return ""
 
     def slider(self, joint: Joint, near: Joint, rod: str) -> LoopLeg:
         """A driven slider with a rod, which is ``near`` where the slider carries it."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 
 PAIR = 2
@@ -54,6 +56,50 @@ def carried(loop: Loop, joint: Joint) -> str:
     )
 
 
+def arcs(loop: Loop) -> str:
+    """What is said of a mechanism all of whose axes meet."""
+    joints = [*loop.joints.values()]
+    places = {j.at for j in joints}
+    turning = all(j.kind == "revolute" and j.axis is not None for j in joints)
+    if len(places) != 1 or not turning or loop.dimensions == 2:
+        return ""
+    (at,) = places
+    return (
+        f".  All axes meet in {at}, so this is a spherical mechanism.  Write each arc as a rod "
+        f"with ball joints at the ends, whose length is their distance, and hold the hand by a "
+        f"rod from {at}, or by a spherical joint there if it turns"
+    )
+
+
+def beyond(loop: Loop, onward: Sequence[Joint]) -> list[Joint]:
+    """The passive slides on the bodies that some joints lead to."""
+    return [
+        j
+        for first in onward
+        for body in first.between
+        for j in loop.of(body)
+        if j.kind == "prismatic" and not j.driven
+    ]
+
+
+def ball_on_hand(loop: Loop, onward: Sequence[Joint]) -> str:
+    """What is said of a ball that slides on the hand, as in a 3-PSP mechanism."""
+    if len(onward) != 1 or onward[0].kind != "spherical":
+        return ""
+    joint = onward[0]
+    for block in joint.between:
+        onto = [j for j in loop.of(block) if j is not joint]
+        if [j.kind for j in onto] == ["prismatic"] and not onto[0].driven:
+            hand = onto[0].other(block)
+            return (
+                f".  With {joint.name} and {onto[0].name} a ball slides along a line of "
+                f"{hand}, as in a 3-PSP mechanism.  This is supported if three sliders that "
+                f"are parallel move three such balls, and the three lines meet in {loop.hand}, "
+                f"which is the hand.  In a plane it is a hand on three pins"
+            )
+    return ""
+
+
 def ball_on_line(loop: Loop, slide: Joint) -> str:
     """What is said of a passive slide in space whose ball ends a leg, as in a CaPaMan."""
     hands = [body for body, points in loop.bodies.items() if loop.hand in points]
@@ -67,6 +113,22 @@ def ball_on_line(loop: Loop, slide: Joint) -> str:
                 f"cranks that are parallelograms or have the axis of the line"
             )
     return ""
+
+
+def driven_mast(loop: Loop, slide: Joint) -> str:
+    """What is said of a driven slide that carries the joint on which the hand turns."""
+    post = slide.other(GROUND)
+    onward = [j for j in loop.of(post) if j is not slide]
+    turning = onward[0] if len(onward) == 1 else None
+    if slide.kind != "prismatic" or turning is None or turning.at != loop.hand:
+        return ""
+    if turning.kind not in ("universal", "spherical"):
+        return ""
+    return (
+        f".  {slide.name} is the slide of a mast, which is supported if it is passive and one more "
+        f"leg is driven.  Then {slide.name} is travel, a coordinate of the hand, and the joints of "
+        f"the legs that you have follow by the same formulas"
+    )
 
 
 def hinged_on(loop: Loop, joint: Joint) -> str:
@@ -103,4 +165,14 @@ def on_cylinder(loop: Loop, far: Joint, rod: str) -> str:
     )
 
 
-__all__ = ["ball_on_line", "carried", "hinged_on", "on_cylinder", "two_motors"]
+__all__ = [
+    "arcs",
+    "ball_on_hand",
+    "ball_on_line",
+    "beyond",
+    "carried",
+    "driven_mast",
+    "hinged_on",
+    "on_cylinder",
+    "two_motors",
+]

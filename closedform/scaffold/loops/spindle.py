@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from closedform.scaffold.loops.bodies import AXES
+from closedform.scaffold.loops.bodies import AXES, around
 from closedform.scaffold.loops.guides import GuideLine
 from closedform.scaffold.loops.legs import Legs, LoopLeg
 
@@ -29,11 +29,8 @@ def spindle(found: Legs, legs: Sequence[LoopLeg]) -> GuideLine | None:
     line = found.direction(ends[0], found.loop.length(ends[0]))
     if not all(e.is_number for e in line):
         return None
-    k = min(range(len(AXES)), key=lambda i: (abs(line[i]), i))
-    first = sp.eye(len(AXES)).col(k) - line[k] * line
-    first = found.direction(first, sp.sqrt(first.dot(first)))
-    second = line.cross(first).applyfunc(sp.simplify)
-    return GuideLine(f"Spindle((0, 0, 0), {found.at(first)}, {found.at(second)})", KIND, WORDS)
+    axes = ", ".join(map(found.at, around(line)))
+    return GuideLine(f"Spindle((0, 0, 0), {axes})", KIND, WORDS)
 
 
 __all__ = ["NEEDED", "spindle"]

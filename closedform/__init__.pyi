@@ -80,6 +80,8 @@ from closedform.lemmas.zyz import Reaching as Reaching
 from closedform.lemmas.zyz import ReachingAcross as ReachingAcross
 from closedform.lemmas.zyz import zyz as zyz
 from closedform.lemmas.zyz import zyz_angles as zyz_angles
+from closedform.loops.bennett import Hinge as Hinge
+from closedform.loops.bennett import bennett as bennett
 from closedform.loops.coupled import coupled as coupled
 from closedform.loops.drives import parallelogram_drive as parallelogram_drive
 from closedform.loops.dyads import linkage as linkage

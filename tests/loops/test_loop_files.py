@@ -59,7 +59,7 @@ b = {between = ["rod", "lever"], at = "B", axis = [0, 0, 1]}
 
 def test_a_rod_in_space_is_not_held_by_axes_that_are_not_parallel(tmp_path: Path) -> None:
     """The loop would stand still, or be a Bennett linkage; it was read as one with ball joints."""
-    with pytest.raises(TableError, match=r"a and b would hold the rod by an axis.*Bennett"):
+    with pytest.raises(TableError, match=r"a and b would hold .* by an axis.*Bennett"):
         script_of("bennett", BENNETT, tmp_path)
     level = BENNETT.replace("[0, 3, 4]", "[0, 0, 1]")
     assert "coupled(" in script_of("level", level, tmp_path)

@@ -46,7 +46,7 @@ def test_other_axes_through_one_point(tmp_path: Path) -> None:
 
 
 def test_axes_that_do_not_meet_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(TableError, match="shaft1, which must be joined to one rod"):
+    with pytest.raises(TableError, match="should meet in one point, all joints are at this point"):
         script_of(
             "t", CARDAN.replace("cross = {O = [0, 0, 0]}", "cross = {O = [0, 0, 1]}"), tmp_path
         )

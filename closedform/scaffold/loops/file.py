@@ -65,6 +65,7 @@ USED = {
 }
 USED |= {"slotted", "guided", "sliding_linkage", "on_pins", "on_balls", "on_lines", "mirrored"}
 USED |= {
+    "bennett",
     "Derivation",
     "Paper",
     "Across",
@@ -81,6 +82,7 @@ USED |= {
     "Gimbal",
     "Guide",
     "Half",
+    "Hinge",
     "Hinged",
     "Lever",
     "Mast",

@@ -13,6 +13,7 @@ import sympy as sp
 from closedform.algebra.formulas import number
 from closedform.model.names import listed
 from closedform.scaffold.inputs.tables import Table, TableError, add_joint
+from closedform.scaffold.loops.bennett import bennett
 from closedform.scaffold.loops.between_links import between_links
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 from closedform.scaffold.loops.guides import GuideLine, guide
@@ -64,6 +65,7 @@ KINDS = {
     "on_balls": "a hand on three balls",
     "on_lines": "a hand on three lines",
     "mirrored": "a mirrored hand",
+    "bennett": "a Bennett linkage",
     "coupled": "a single loop",
     "slotted": "a pin on a line",
     "two_arms": "a hand on two arms",
@@ -120,15 +122,11 @@ def _first_way(loop: Loop) -> _Way:
         return _bodies(loop, lines)
     if arms := two_arms(loop):
         return _Way(arms, [], function="two_arms")
+    if follower and not follower.driven:
+        return _single(loop, follower)
     read_rods(loop)
     read_pairs(loop)
     found = Legs(loop)
-    if follower and not follower.driven and (turning := slotted(found, follower)):
-        found.check_all_used()
-        return _Way(turning, [loop.hand])
-    if follower and not follower.driven:
-        screws = f"screws={loop.screws}" if loop.screws else ""
-        return _Way(_coupled(found, follower), [loop.hand], screws, function="coupled")
     if carried := on_rod(found):
         found.check_all_used()
         return _Way(carried[0], list(AXES[:2]), carried[1])
@@ -146,6 +144,21 @@ def _first_way(loop: Loop) -> _Way:
             f"the hand {loop.hand} is not a point of a body, nor where a joint is, nor a joint"
         )
     return _on_legs(found)
+
+
+def _single(loop: Loop, follower: Joint) -> _Way:
+    """A single loop, whose task is a joint."""
+    found = Legs(loop)
+    if hinges := bennett(found, follower):
+        found.check_all_used()
+        return _Way(hinges, [loop.hand], loop.hand, function="bennett")
+    read_rods(loop)
+    read_pairs(loop)
+    if turning := slotted(found, follower):
+        found.check_all_used()
+        return _Way(turning, [loop.hand])
+    screws = f"screws={loop.screws}" if loop.screws else ""
+    return _Way(_coupled(found, follower), [loop.hand], screws, function="coupled")
 
 
 def _on_legs(found: Legs) -> _Way:
@@ -338,10 +351,9 @@ def _check_axes(loop: Loop, driver: Joint, follower: Joint) -> None:
         raise loop.error(
             f"{listed(held)} would hold the rod by an axis.  In space four axes leave a loop a "
             f"motion only if they are parallel, meet in one point, or as in a Bennett linkage, "
-            f"which is not supported; there the tangents of half the angles of two neighbouring "
-            f"joints have a constant product, which is a formula to write in Python.  "
-            f"If they meet in one point, leave the axis of {listed(held)} "
-            f'out; if the rod has ball joints, write kind = "spherical"'
+            f"which is four revolute joints that all have an axis.  If they meet in one point, "
+            f"leave the axis of {listed(held)} out; if the rod has ball joints, write "
+            f'kind = "spherical"'
         )
 
 
@@ -509,7 +521,7 @@ def _body(table: Table, way: _Way) -> list[str]:
     if way.name == "two_arms":
         turning = way.legs[1].joint.name
         lines.append(f'{turning} = d.joint("{turning}", passive=True)')
-    if way.name in ("coupled", "slotted") or (way.linkage and len(way.task) == 1):
+    if way.name in ("coupled", "slotted", "bennett") or (way.linkage and len(way.task) == 1):
         (x,) = way.task
         hand = [f"    ({x},),"] * bool(way.linkage)
         lines += [f'{x} = real("{x}")', f"{way.name}(", "    d,", *hand]

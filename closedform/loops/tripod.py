@@ -18,7 +18,7 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.lemmas.legs import Crank, Slide, Stretch, vector
+from closedform.lemmas.legs import Crank, Slide, Stretch
 from closedform.loops.hand import rate_of, square
 from closedform.loops.leg_by_leg import MISSED, LegByLeg, named_in, signs_of_modes, size_of
 from closedform.loops.tripod_legs import Placed, Tripod, Upright
@@ -366,7 +366,7 @@ def _draw(m: Tripod) -> None:
     lengths: dict[tuple[str, str], sp.Expr] = {}
     closing: dict[tuple[str, str], sp.Expr] = {}
     joints: dict[sp.Symbol, tuple[str, ...]] = {}
-    corners = [sp.Matrix([*vector(leg.corner)]) for leg in m.legs]
+    corners = [leg.end for leg in m.legs]
     for k, (number, leg) in enumerate(m.numbered):
         base, far = f"A{number}", f"C{number}"
         near = base if isinstance(leg.leg, Stretch) else f"B{number}"
@@ -415,7 +415,7 @@ def _inverse(m: Tripod, loop: Step) -> None:
     free = next(s.symbol for s in g.body if isinstance(s, Vanishes))
     rows = m.rows(placed, [s.rod for s in solved.found], choose(free, 1, placed.delta))
     volume = g.let("Delta", sp.Matrix.vstack(*rows).det())
-    spread = sp.Add(*(square(vector(leg.corner)) for leg in m.legs)) / 3
+    spread = sp.Add(*(square(leg.flat) for leg in m.legs)) / 3
     least = g.let("least", solved.lengths(legs) * spread, nonnegative=True)
     meet = "the rods or the planes of the legs do not hold the hand"
     g.determined(
@@ -427,12 +427,13 @@ def _inverse(m: Tripod, loop: Step) -> None:
         missed=solved.missed,
         size=solved.size,
     )
+    middle = "centre" if m.legs[0].end[2] == 0 else "z axis"
     d.step(
         "Inverse: leg by leg",
         f"The target gives the corners, and each leg is solved alone.  {solved.on_modes}Near a "
         "parallel or a constraint singularity rounded joints do not determine the hand.  The "
         "status is SINGULAR if the determinant of A is less than 2^-10 of Lambda, the product of "
-        "the lengths of the rods and the mean square distance of the corners from the centre of "
+        f"the lengths of the rods and the mean square distance of the corners from the {middle} of "
         "the hand, or if delta is less than 2^-10 of e, the sum of the coordinates of the "
         f"corners.  {MISSED}",
         {},

@@ -27,7 +27,7 @@ class Upright:
     The plane contains the z axis and ``heading``, a horizontal unit vector in numbers.  In this
     plane the ``leg`` is seen with two coordinates: the distance from the z axis along ``heading``,
     and the height.  ``corner`` is the end of the leg on the hand, as x and y in the frame of the
-    hand.
+    hand, and z if the point of the hand is not in the plane of the corners.
     """
 
     leg: Leg
@@ -37,6 +37,16 @@ class Upright:
     @property
     def along(self) -> sp.Matrix:
         return vector(self.heading)
+
+    @property
+    def flat(self) -> sp.Matrix:
+        """The x and y of the corner."""
+        return vector(self.corner)[:2, 0]
+
+    @property
+    def end(self) -> sp.Matrix:
+        """The corner, seen from the point of the hand."""
+        return sp.Matrix([*vector(self.corner), 0][:3])
 
     @property
     def normal(self) -> sp.Matrix:
@@ -100,7 +110,7 @@ class Tripod:
         for upright in self.legs:
             leg = upright.leg
             if not isinstance(leg, Crank | Slide | Stretch) or not all(
-                len(v) == 2 for v in (upright.heading, upright.corner, leg.base, leg.rate)
+                len(v) == 2 for v in (upright.heading, upright.flat, leg.base, leg.rate)
             ):
                 raise ShapeError(
                     f"{name}: a leg of a tripod must be a crank, a slide or a stretching leg in "
@@ -108,6 +118,11 @@ class Tripod:
                 )
             if not square(upright.along).is_number or sp.simplify(square(upright.along) - 1) != 0:
                 raise ShapeError(f"{name}: a heading must be a unit vector, in numbers")
+        if any(sp.simplify(e.end[2] - self.legs[0].end[2]) != 0 for e in self.legs):
+            raise ShapeError(
+                f"{name}: the corners must have the same z in the frame of the hand, or the twist "
+                f"is another one"
+            )
         check_order(self.d, [upright.leg for upright in self.legs])
         check_plain(self.d, [upright.leg for upright in self.legs])
         if any(weight == 0 for weight in self.weights):
@@ -128,7 +143,7 @@ class Tripod:
     @property
     def size(self) -> sp.Expr:
         """The sum of the distances of the corners from the axes of the hand."""
-        return sp.Add(*(sp.Abs(e) for leg in self.legs for e in vector(leg.corner)))
+        return sp.Add(*(sp.Abs(e) for leg in self.legs for e in leg.flat))
 
     @cached_property
     def weights(self) -> tuple[sp.Expr, ...]:
@@ -155,7 +170,7 @@ class Tripod:
         """
         total = sp.S.Zero
         for weight, leg in zip(self.weights, self.legs, strict=True):
-            x, y = vector(leg.corner)
+            x, y = leg.flat
             e = sp.Matrix([-y, x, 0] if turned else [x, y, 0])
             total += weight * leg.normal.dot((self.tilted * e)[:2, 0])
         return sp.collect(sp.expand(total), [sp.cos(t) for t in self.target])
@@ -204,8 +219,7 @@ class Tripod:
         R = p.matrix("R", sp.Matrix.hstack(*columns))
         arms = []
         for k, leg in self.numbered:
-            x, y = vector(leg.corner)
-            arm = R.col(0) * x + R.col(1) * y
+            arm = R * leg.end
             arms.append(
                 sp.Matrix([named_in(p, f"h{k}_{i}", e) for i, e in zip("xyz", arm, strict=True)])
             )
@@ -228,7 +242,7 @@ class Tripod:
         """The hand in the angles of the target and the twist psi, without a program."""
         psi = real("psi")
         turned = self.tilted * rotation("z", psi)
-        arms = tuple(turned * sp.Matrix([*vector(leg.corner), 0]) for leg in self.legs)
+        arms = tuple(turned * leg.end for leg in self.legs)
         n = [leg.normal for leg in self.legs]
         off = [n[k].dot(arms[k][:2, 0]) for k in range(2)]
         sideways = sp.Matrix([n[0].T, n[1].T]).LUsolve(-sp.Matrix(off))

@@ -40,9 +40,13 @@ tripod(d, [
     Upright(stretch, away, (-c, -c)),
 ])
 """
+LIFTED = UNEVEN.replace('"uneven", "Uneven"', '"lifted", "Lifted"').replace(
+    "    Upright(crank, (1, 0), (a, 0)),", "    Upright(crank, (1, 0), (a, 0, -c)),"
+).replace("(0, a)),", "(0, a, -c)),").replace("(-c, -c)),", "(-c, -c, -c)),")  # fmt: skip
+"""The point of the hand is above the ends of the legs."""
 HEADINGS = {
     "sprint": np.array([[1, 0], [-0.5, np.sqrt(0.75)], [-0.5, -np.sqrt(0.75)]]),
-    "uneven": np.array([[1, 0], [0, 1], [-0.6, -0.8]]),
+    **dict.fromkeys(("uneven", "lifted"), np.array([[1, 0], [0, 1], [-0.6, -0.8]])),
 }
 
 
@@ -56,6 +60,11 @@ def uneven(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
     return derived("uneven", UNEVEN, tmp_path_factory.mktemp("uneven"))
 
 
+@pytest.fixture(scope="module")
+def lifted(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+    return derived("lifted", LIFTED, tmp_path_factory.mktemp("lifted"), crosscheck=True)
+
+
 @pytest.fixture
 def tripod(request: pytest.FixtureRequest) -> tuple[ModuleType, np.ndarray, np.ndarray]:
     """A module, the headings of its planes and the corners of its hand."""
@@ -63,10 +72,12 @@ def tripod(request: pytest.FixtureRequest) -> tuple[ModuleType, np.ndarray, np.n
     _, a, *_ = module.Parameters()
     headings = HEADINGS[request.param]
     corners = a * headings if request.param == "sprint" else np.array([[a, 0], [0, a], [-0.15] * 2])
+    if request.param == "lifted":
+        corners = np.pad(corners, ((0, 0), (0, 1)), constant_values=-0.15)
     return module, headings, corners
 
 
-both = pytest.mark.parametrize("tripod", ["sprint", "uneven"], indirect=True)
+both = pytest.mark.parametrize("tripod", ["sprint", "uneven", "lifted"], indirect=True)
 
 
 def poses(x: np.ndarray, twist: np.ndarray) -> np.ndarray:
@@ -81,7 +92,7 @@ def poses(x: np.ndarray, twist: np.ndarray) -> np.ndarray:
 
 
 def corners_at(T: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    local = np.pad(corners, ((0, 0), (0, 1)))
+    local = np.pad(corners, ((0, 0), (0, 3 - corners.shape[1])))
     return T[..., None, :3, 3] + np.einsum("...ij,kj->...ki", T[..., :3, :3], local)
 
 
@@ -149,7 +160,8 @@ def test_two_twists_keep_the_corners_in_their_planes(tripod) -> None:
     normals = np.stack([-headings[:, 1], headings[:, 0]], -1)
     angles = np.linspace(-np.pi, np.pi, 2001)
     for x in targets(20, 3):
-        arms = np.einsum("nij,kj->nki", poses(np.tile(x, (2001, 1)), angles)[:, :2, :2], corners)
+        R, axes = poses(np.tile(x, (2001, 1)), angles), corners.shape[1]
+        arms = np.einsum("nij,kj->nki", R[:, :2, :axes], corners)
         off = np.einsum("nki,ki->nk", arms, normals)
         sideways = np.linalg.solve(normals[:2], -off[:, :2, None])[..., 0]
         aside = off[:, 2] + sideways @ normals[2]
@@ -308,6 +320,12 @@ def test_a_tripod_from_a_file_is_the_one_from_legs(
     assert all(sp.simplify(a - b) == 0 for a, b in zip(first, second, strict=True))
 
 
+def test_the_point_of_the_hand_may_be_beside_the_plane_of_the_corners(tmp_path: Path) -> None:
+    text = FROM_FILE.replace('C1 = ["a", 0, 0]', 'C1 = ["a", 0, "-l/4"]')
+    script = script_of("loop", text, tmp_path)
+    assert text != FROM_FILE and "corner=(a, 0, -l/4)" in script
+
+
 @pytest.mark.parametrize(
     ("old", "other", "said"),
     [
@@ -319,7 +337,11 @@ def test_a_tripod_from_a_file_is_the_one_from_legs(
         ("axis = [0, 1, 0]}", "axis = [0, 1, 1]}", "h1 keeps .* its axis is horizontal"),
         ("axis = [0, -1, 0], d", "axis = [0, -1, 1], d", "of theta1 and h1 have to be parallel"),
         ('"b + l", 0, 0', '"b + l", "l", 0', "has to contain the z axis"),
-        ('C2 = [0, "a", 0]', 'C2 = [0, "a", "a"]', "at the height of P in its frame"),
+        (
+            'C2 = [0, "a", 0]',
+            'C2 = [0, "a", "a"]',
+            "the rods on hand have to be at the same height in its frame",
+        ),
     ],
 )
 def test_a_file_that_is_not_a_tripod_says_why(

@@ -35,7 +35,14 @@ def uprights(found: Legs) -> list[LoopLeg]:
     hinges = [hinge(found, j) for j in driven]
     if found.loop.dimensions != LEGS or len(driven) != LEGS or None in hinges:
         return []
-    return [_upright(found, j, h) for j, h in zip(driven, hinges, strict=True) if h is not None]
+    legs = [_upright(found, j, h) for j, h in zip(driven, hinges, strict=True) if h is not None]
+    if any(sp.simplify(leg.place[2] - legs[0].place[2]) != 0 for leg in legs):
+        body = found.turning
+        raise found.loop.error(
+            f"the ends of the rods on {body} have to be at the same height in its frame, or they "
+            f"twist it otherwise"
+        )
+    return legs
 
 
 def _upright(found: Legs, joint: Joint, hinged: Joint) -> LoopLeg:
@@ -67,13 +74,9 @@ def _upright(found: Legs, joint: Joint, hinged: Joint) -> LoopLeg:
             f"the plane of the leg of {joint.name}, which is normal to the axis of {hinged.name}, "
             f"has to contain the z axis; put the origin where the planes of the three legs meet"
         )
-    if leg.place[2] != 0:
-        raise loop.error(
-            f"the ends of the rods on the hand have to be at the height of {loop.hand} in its frame"
-        )
-    x, y = (source(e) for e in leg.place[:2, 0])
+    corner = ", ".join(map(source, leg.place if leg.place[2] != 0 else leg.place[:2, 0]))
     way = f"({source(heading[0])}, {source(heading[1])})"
-    call = f"Upright({leg.call}, {way}, corner=({x}, {y}))"
+    call = f"Upright({leg.call}, {way}, corner=({corner}))"
     return replace(leg, call=call)
 
 

@@ -19,7 +19,8 @@ from closedform.loops.from_hand import export_inverse, turned
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import MISSED, named, where_free
 from closedform.loops.linkage import GROUND, Linkage
-from closedform.mechanics.assur import Dyad, Held, Order, order
+from closedform.loops.parallelograms import home, parallel_to_ground, state
+from closedform.mechanics.assur import Dyad, Held, Order, Parallel, order
 from closedform.model.functions import Program, choose, real
 from closedform.model.inverse import Link
 from closedform.model.step import Step
@@ -40,9 +41,15 @@ def inverse(m: Linkage, loop: Step) -> None:
     known = [GROUND, *[m.follower] * bool(m.follower)]
     bars = {name: at for name, at in m.points.items() if name not in m.cylinders}
     found = order(bars, known, [m.at] * bool(m.at), sought=m.driven)
+    if found.left and len(m.d.actuated) > 1 and m.at:
+        even = parallel_to_ground(m)
+        again = order(bars, known, [m.at], sought=m.driven, parallel=even)
+        found = found if again.left or again.held else again
     if found.left:
         m.d.no_inverse(f"with the hand held, {found.undone}")
         return
+    if found.parallel:
+        loop = state(m, [step.body for step in found.parallel], loop)
     there = {m.at, *(p for at in bars.values() for p in at)}
     for name in m.cylinders:
         if loose := [p for p in m.points[name] if p not in there]:
@@ -87,6 +94,8 @@ class _Reverse:
                 self._stretch(step, k)
             elif isinstance(step, Held):
                 self._hold(step, k)
+            elif isinstance(step, Parallel):
+                self._beside(step)
             else:
                 driven = [body for body in step.bodies if body in self.m.driven]
                 if len(driven) == 1:
@@ -106,6 +115,15 @@ class _Reverse:
                 place = m.point_on(body, (near, far, point), self.at)
                 self.at[point] = named(self.program, f"p{point}", place)
                 self.meant[point] = m.point_on(body, (near, far, point), self.meant)
+
+    def _beside(self, step: Parallel) -> None:
+        """A body that is parallel to the ground, from one of its points."""
+        m, turn = self.m, home(self.m, step.body)
+        for point in m.points[step.body]:
+            if point not in self.at:
+                span = (turn * m.span(step.body, step.near, point)).applyfunc(sp.simplify)
+                self.at[point] = named(self.program, f"p{point}", self.at[step.near] + span)
+                self.meant[point] = self.meant[step.near] + span
 
     def _crank(self, step: Dyad, body: str, k: int) -> None:
         """A driven body and the bar that it moves."""
@@ -199,7 +217,7 @@ class _Reverse:
         """A body whose points are known: their distances have to be right."""
         m, p = self.m, self.program
         near, far, *others = step.points
-        for point in (far, *others):
+        for point in () if step.implied else (far, *others):
             between = square(self.at[point] - self.at[near])
             apart = p.let(f"apart_{k}{point}", sp.sqrt(between), nonnegative=True)
             gap = apart - m.length(step.body, near, point)
@@ -272,6 +290,7 @@ class _Reverse:
             solves={"ik": ()},
         )
         apart = m.require_apart(g)
+        parallel = bool(self.order.parallel)
         passive = [s for s in self.order.dyads if not {*s.bodies} & {*m.driven}]
         export_inverse(
             d,
@@ -292,12 +311,14 @@ class _Reverse:
                 * bool(passive),
                 "SINGULAR also near a parallel singularity, where both bars of a dyad are in line.",
                 *apart,
+                *["Left out: the postures in which a parallelogram is crossed."] * parallel,
             ),
             links=self.links,
             equations=self.equations,
             passive=self.passive,
             angles=tuple(m.hand) if m.follower else (),
             on_curve=on_curve,
+            images="" if parallel else "fk",
         )
 
     def _told(self) -> str:

@@ -81,6 +81,7 @@ def export_inverse(
     passive: Sequence[sp.Symbol],
     angles: Sequence[sp.Symbol],
     on_curve: bool,
+    images: str = "fk",
 ) -> None:
     """Export ``ik``, what it claims, and the reach of a hand that is not on a curve.
 
@@ -108,6 +109,8 @@ def export_inverse(
         the coordinates of the hand that are angles
     on_curve
         whether one joint moves the hand, so that it is on a curve
+    images
+        the function all of whose results have the joints as a solution; empty if there is none
     """
     chosen = [(sigma, SIGN) for sigma in signs]
     working = branches(*chosen) if chosen else SINGLE
@@ -132,7 +135,7 @@ def export_inverse(
             d.actuated,
             (sp.S.Zero,) * len(equations),
             tuple(equations),
-            images="fk",
+            images=images,
             links=tuple(links),
             passive=tuple(passive),
             angles=tuple(angles),

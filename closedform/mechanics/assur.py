@@ -27,13 +27,27 @@ class Held:
 
     body: str
     points: tuple[str, ...]
+    implied: bool = False
+    """Whether their distances are right because two bars of a parallelogram are alike."""
+
+
+@dataclass(frozen=True)
+class Parallel:
+    """A body that parallelograms keep parallel to the ground; ``near`` is its known point.
+
+    ``bars`` are the two bars of each parallelogram, from the ground to the body.
+    """
+
+    body: str
+    near: str
+    bars: tuple[tuple[str, str], ...]
 
 
 @dataclass
 class Order:
     """The steps in which the bodies become known, and the bodies that are left."""
 
-    steps: list[Dyad | Held] = field(default_factory=list)
+    steps: list[Dyad | Held | Parallel] = field(default_factory=list)
     left: list[str] = field(default_factory=list)
 
     @property
@@ -42,7 +56,11 @@ class Order:
 
     @property
     def held(self) -> list[Held]:
-        return [s for s in self.steps if isinstance(s, Held)]
+        return [s for s in self.steps if isinstance(s, Held) and not s.implied]
+
+    @property
+    def parallel(self) -> list[Parallel]:
+        return [s for s in self.steps if isinstance(s, Parallel)]
 
     @property
     def undone(self) -> str:
@@ -58,21 +76,43 @@ def order(
     points: Iterable[str] = (),
     *,
     sought: Iterable[str] = (),
+    parallel: Iterable[Parallel] = (),
 ) -> Order:
     """The order for bodies with named points, of which some are ``known``.
 
     Bodies that have a point of the same name are pinned together there.  ``points`` are known
     besides those of the known bodies.  Dyads with the ``sought`` bodies come as early as they can.
+    Bodies that are ``parallel`` to the ground are known by one point.
     """
     on = {name: tuple(dict.fromkeys(at)) for name, at in bodies.items()}
     there = {p for name in known for p in on[name]} | set(points)
     found = Order(left=[name for name in on if name not in set(known)])
-    while step := _next(on, found.left, there, {*sought}):
+    even = {p.body: p for p in parallel}
+    while step := _beside(on, found, there, even) or _next(on, found.left, there, {*sought}):
         solved = step.bodies if isinstance(step, Dyad) else (step.body,)
         found.steps.append(step)
         found.left = [name for name in found.left if name not in solved]
         there |= {p for name in solved for p in on[name]}
     return found
+
+
+def _beside(
+    on: Mapping[str, Sequence[str]], found: Order, there: set[str], even: Mapping[str, Parallel]
+) -> Parallel | Held | None:
+    """A body that is parallel to the ground, or a bar that only repeats what another one says."""
+    for name in found.left:
+        near = tuple(p for p in on[name] if p in there)
+        if near and name in even:
+            return Parallel(name, near[0], even[name].bars)
+        if len(near) > 1 and _repeats(name, found):
+            return Held(name, near, implied=True)
+    return None
+
+
+def _repeats(bar: str, found: Order) -> bool:
+    """Whether the other bar of a parallelogram that was used is known already."""
+    pairs = {pair for step in found.parallel for pair in step.bars if bar in pair}
+    return any(not ({*pair} - {bar}) & {*found.left} for pair in pairs)
 
 
 def _next(
@@ -112,4 +152,4 @@ def freedoms(bodies: Mapping[str, Iterable[str]]) -> int:
     return 3 * (len(bodies) - 1) - 2 * sum(n - 1 for n in holders.values())
 
 
-__all__ = ["Dyad", "Held", "Order", "freedoms", "needed_for", "order"]
+__all__ = ["Dyad", "Held", "Order", "Parallel", "freedoms", "needed_for", "order"]

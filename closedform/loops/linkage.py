@@ -22,7 +22,7 @@ import sympy as sp
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.legs import Crank, vector
 from closedform.loops.hand import square
-from closedform.mechanics.assur import Dyad, Order, freedoms, needed_for, order
+from closedform.mechanics.assur import Dyad, Order, degrees, freedoms, needed_for, order
 from closedform.mechanics.lengths import lengths_in_numbers
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Program, choose, real
@@ -90,7 +90,7 @@ class Linkage:
         if free != len(self.driven):
             raise ShapeError(
                 f"{name}: {len(self.d.actuated)} joints are driven, but by the count of its bodies "
-                f"and pins the linkage has {free + len(self.cylinders)} degrees of freedom"
+                f"and pins the linkage has {degrees(free + len(self.cylinders))}"
             )
         if held := self.order.held:
             raise ShapeError(

@@ -18,6 +18,7 @@ from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.legs import vector
 from closedform.loops.hand import square
 from closedform.loops.linkage import GROUND, Body
+from closedform.mechanics.assur import degrees
 from closedform.mechanics.assur_slides import (
     Group,
     Meet,
@@ -111,7 +112,7 @@ class SlidingLinkage:
         if self.freedoms != len(self.d.actuated):
             raise ShapeError(
                 f"{name}: {len(self.d.actuated)} joints are driven, but by the count of its "
-                f"bodies, pins and slides the linkage has {self.freedoms} degrees of freedom"
+                f"bodies, pins and slides the linkage has {degrees(self.freedoms)}"
             )
         if held := self.order.held:
             raise ShapeError(f"{name}: {held[0].body} cannot move, or could not if it were longer")

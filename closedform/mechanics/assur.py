@@ -152,4 +152,9 @@ def freedoms(bodies: Mapping[str, Iterable[str]]) -> int:
     return 3 * (len(bodies) - 1) - 2 * sum(n - 1 for n in holders.values())
 
 
-__all__ = ["Dyad", "Held", "Order", "Parallel", "freedoms", "needed_for", "order"]
+def degrees(free: int) -> str:
+    """A number of degrees of freedom, in words."""
+    return f"{free} degree{'s' * (free != 1)} of freedom"
+
+
+__all__ = ["Dyad", "Held", "Order", "Parallel", "degrees", "freedoms", "needed_for", "order"]

@@ -338,3 +338,107 @@ def test_a_message_says_of_which_degree_it_would_be(file: str, told: str, tmp_pa
     """These said what a leg must be joined to, and nothing of the mechanism."""
     with pytest.raises(TableError, match=told):
         script_of("refused", file, tmp_path)
+
+
+QUADRUPED = """
+hand = "F"
+[bodies]
+ground = {O = [0, 0, 0]}
+hip = {O = [0, 0, 0], H = [0, 0.06, 0]}
+thigh = {H = [0, 0, 0], K = [0, 0, -0.2]}
+crank = {H = [0, 0, 0], B = [0.03, 0, 0]}
+rod = {length = 0.2}
+shank = {K = [0, 0, 0], C = [0.03, 0, 0], F = [0, 0, -0.2]}
+[joints]
+q0 = {between = ["ground", "hip"], at = "O", axis = [1, 0, 0], driven = true}
+q1 = {between = ["hip", "thigh"], at = "H", axis = [0, 1, 0], driven = true}
+q2 = {between = ["hip", "crank"], at = "H", axis = [0, 1, 0], driven = true}
+b = {between = ["crank", "rod"], at = "B", axis = [0, 1, 0]}
+c = {between = ["rod", "shank"], at = "C", axis = [0, 1, 0]}
+k = {between = ["thigh", "shank"], at = "K", axis = [0, 1, 0]}
+"""
+OMNI_WRIST = """
+hand = "P"
+copies = 4
+[bodies]
+ground = {O = [0, 0, 0], A1 = [0.1, 0, 0]}
+low1 = {B1 = [0.1, 0, 0.1]}
+mid1 = {}
+up1 = {}
+hand = {P = [0, 0, 0], C1 = [0.1, 0, 0]}
+[joints]
+q1 = {between = ["ground", "low1"], at = "A1", axis = [1, 0, 0], driven = true}
+b1 = {between = ["low1", "mid1"], at = "B1", axis = [0, 1, 0]}
+m1 = {between = ["mid1", "up1"], at = "M1", axis = [0, 1, 0]}
+c1 = {between = ["up1", "hand"], at = "C1", axis = [1, 0, 0]}
+"""
+MULTI_LINK = """
+hand = "W"
+[bodies]
+ground = {L = [0, 0.25, 0], U = [-0.02, 0.3, 0.2], V = [0.12, 0.3, 0.2], R = [0.12, 0.28, 0.04]}
+lower = {B = [0, 0.6, 0]}
+r1 = {length = 0.25}
+r2 = {length = 0.27}
+r3 = {length = 0.31}
+upright = {W = [0, 0, 0], B = [0, 0, -0.1], C = [0, 0, 0.1], D = [0.05, 0, 0.1], T = [0.13, 0, 0]}
+[joints]
+q = {between = ["ground", "lower"], at = "L", axis = [1, 0, 0], driven = true}
+b = {between = ["lower", "upright"], at = "B", kind = "spherical"}
+u = {between = ["ground", "r1"], at = "U", kind = "spherical"}
+c = {between = ["r1", "upright"], at = "C", kind = "spherical"}
+v = {between = ["ground", "r2"], at = "V", kind = "spherical"}
+d = {between = ["r2", "upright"], at = "D", kind = "spherical"}
+r = {between = ["ground", "r3"], at = "R", kind = "spherical"}
+t = {between = ["r3", "upright"], at = "T", kind = "spherical"}
+"""
+I4 = """
+hand = "P"
+[bodies]
+ground = {A1 = [0.3, 0.1, 0], A2 = [0.3, -0.1, 0], A3 = [-0.3, -0.1, 0], A4 = [-0.3, 0.1, 0]}
+half1 = {P = [0, 0, 0], C1 = [0, 0.08, 0], C2 = [0, -0.08, 0]}
+half2 = {M = [0, 0, 0], C3 = [0, -0.08, 0], C4 = [0, 0.08, 0]}
+s1 = {B1 = [0.3, 0.1, 0]}
+s2 = {B2 = [0.3, -0.1, 0]}
+s3 = {B3 = [-0.3, -0.1, 0]}
+s4 = {B4 = [-0.3, 0.1, 0]}
+rod1 = {length = 0.5, parallelogram = [0, 0.07, 0]}
+rod2 = {length = 0.5, parallelogram = [0.07, 0, 0]}
+rod3 = {length = 0.5, parallelogram = [0, 0.07, 0]}
+rod4 = {length = 0.5, parallelogram = [0.07, 0, 0]}
+[joints]
+q1 = {between = ["ground", "s1"], at = "A1", kind = "prismatic", axis = [0, 0, 1], driven = true}
+q2 = {between = ["ground", "s2"], at = "A2", kind = "prismatic", axis = [0, 0, 1], driven = true}
+q3 = {between = ["ground", "s3"], at = "A3", kind = "prismatic", axis = [0, 0, 1], driven = true}
+q4 = {between = ["ground", "s4"], at = "A4", kind = "prismatic", axis = [0, 0, 1], driven = true}
+b1 = {between = ["s1", "rod1"], at = "B1"}
+b2 = {between = ["s2", "rod2"], at = "B2"}
+b3 = {between = ["s3", "rod3"], at = "B3"}
+b4 = {between = ["s4", "rod4"], at = "B4"}
+c1 = {between = ["rod1", "half1"], at = "C1"}
+c2 = {between = ["rod2", "half1"], at = "C2"}
+c3 = {between = ["rod3", "half2"], at = "C3"}
+c4 = {between = ["rod4", "half2"], at = "C4"}
+s = {between = ["half1", "half2"], at = "M", kind = "prismatic", axis = [0, 1, 0]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("file", "told"),
+    [
+        (QUADRUPED, "q0 turns hip, which carries the rest, as on the leg of a quadruped"),
+        (OMNI_WRIST, "low1, mid1 and up1 are one after the other, .* as of an Omni-Wrist III"),
+        (MULTI_LINK, "b is known if the driven joint is, and 3 rods turn upright about it"),
+        (I4, "s lets half2 slide on half1, as the halves of an I4"),
+    ],
+)
+def test_what_such_a_mechanism_is_called_is_said(file: str, told: str, tmp_path: Path) -> None:
+    """These were told of a joint alone, not what they are."""
+    with pytest.raises(TableError, match=told):
+        script_of("refused", file, tmp_path)
+
+
+def test_one_degree_of_freedom_is_one(tmp_path: Path) -> None:
+    """It was called 1 degrees."""
+    text = KNEE.replace('at = "A"}', 'at = "A", driven = true}')
+    with pytest.raises(TableError, match="it has 1 degree of freedom"):
+        script_of("knee", text, tmp_path)

@@ -18,13 +18,17 @@ from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop, across_a
 from closedform.scaffold.loops.halves import halves
 from closedform.scaffold.loops.refused import (
     arcs,
+    ball_on_driven,
     ball_on_hand,
     ball_on_line,
     beyond,
     carried,
     driven_mast,
     hinged_on,
+    hinges_of_leg,
     on_cylinder,
+    on_turning_body,
+    sliding_halves,
     two_motors,
 )
 from closedform.scaffold.loops.rods import check_short_side, several_told
@@ -166,7 +170,12 @@ class Legs:
             raise self.loop.error(
                 f"{joint.name} is driven, so it must be between the ground and a body, or slide "
                 f"the two halves of a leg; it is between {listed(joint.between)}"
-                + (carried(self.loop, joint) or two_motors(self.loop, joint) or ON_ARM * in_plane)
+                + (
+                    carried(self.loop, joint)
+                    or two_motors(self.loop, joint)
+                    or on_turning_body(self.loop, joint)
+                    or ON_ARM * in_plane
+                )
             )
 
     def on_half(self, joint: Joint) -> LoopLeg:
@@ -257,7 +266,8 @@ class Legs:
                 + two_motors(loop, joint)
                 + hinged_on(loop, joint)
                 + driven_mast(loop, joint)
-                + arcs(loop)
+                + ball_on_driven(loop, onward)
+                + (arcs(loop) or hinges_of_leg(loop, joint))
                 + several_told(loop, body)
             )
         if joint.kind == "prismatic":
@@ -501,7 +511,7 @@ class Legs:
             raise loop.error(
                 f"{far.name} leads to {other}, not to a body with the point {loop.hand}, which is "
                 f"{self.end}; a leg has one rod, and the hand is one body"
-                f"{self.lever(far)}{on_cylinder(loop, far, rod)}"
+                f"{self.lever(far)}{on_cylinder(loop, far, rod)}{sliding_halves(loop, far)}"
             )
         if far.at not in loop.bodies[body]:
             raise loop.error(f"{body} has no point {far.at}, where {far.name} is")

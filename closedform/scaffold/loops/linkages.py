@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from closedform.mechanics.assur import Dyad, Order, freedoms, order
+from closedform.mechanics.assur import Dyad, Order, degrees, freedoms, order
 from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import GROUND, Joint, Loop, with_pivots
 from closedform.scaffold.loops.cylinders import joined
@@ -141,7 +141,7 @@ def _ordered(
     if free != len(turning):
         raise loop.error(
             f"{listed(drives)} drive{'s' * (len(drives) == 1)} this linkage, but by the count of "
-            f"its bodies and pins it has {free + len(cylinders)} degrees of freedom"
+            f"its bodies and pins it has {degrees(free + len(cylinders))}"
         )
     found = order(points, [GROUND, *turning])
     for step in found.held:

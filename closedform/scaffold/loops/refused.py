@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
+from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 
+BALLS = ("spherical", "universal")
 PAIR = 2
 """The motors of a leg of which one may be held."""
 
@@ -131,6 +134,74 @@ def driven_mast(loop: Loop, slide: Joint) -> str:
     )
 
 
+def hinges_of_leg(loop: Loop, joint: Joint) -> str:
+    """What is said of a leg of hinges alone that has several bodies, as of an Omni-Wrist III."""
+    way = _way(loop, joint)
+    bodies = [a for first, then in pairwise(way) for a in {*first.between} & {*then.between}]
+    last = {*way[-1].between} - {*bodies, GROUND}
+    hinges = all(j.kind == "revolute" for j in way)
+    on_hand = any(loop.hand in loop.bodies[body] for body in last)
+    if loop.dimensions != len(AXES) or not hinges or not on_hand or len(bodies) < PAIR + 1:
+        return ""
+    return (
+        f".  {listed(bodies)} are one after the other, joined by hinges alone.  A leg has a driven "
+        f"body and one rod, whose ends are balls or universal joints; two hinges whose axes meet "
+        f"are a universal joint.  Legs of four hinges or more, as of an Omni-Wrist III, are not "
+        f"derived; if the hand is the mirror image of the ground, both have the same distance from "
+        f"the plane of the middle joints, which is an equation to write in Python"
+    )
+
+
+def on_turning_body(loop: Loop, joint: Joint) -> str:
+    """What is said of a planar linkage on a body that a motor turns, as a leg of a quadruped."""
+    turned = [
+        (j, body)
+        for body in joint.between
+        for j in loop.of(body)
+        if j is not joint and GROUND in j.between and j.driven and j.kind == "revolute"
+    ]
+    if loop.dimensions != len(AXES) or joint.kind != "revolute" or not turned:
+        return ""
+    (first, body), *_ = turned
+    return (
+        f".  {first.name} turns {body}, which carries the rest, as on the leg of a quadruped or an "
+        f"excavator that swings.  If the rest moves in a plane, write it as a file of its own, "
+        f"with two coordinates, in which {body} is the ground.  Then {first.name} is that of an "
+        f"arm whose other joints are two slides, x and y of that file: a table of three joints"
+    )
+
+
+def sliding_halves(loop: Loop, far: Joint) -> str:
+    """What is said of a hand whose two halves slide on each other, as of an I4."""
+    for half in far.between:
+        for slide in loop.of(half):
+            other = slide.other(half)
+            if slide.kind == "prismatic" and not slide.driven and loop.hand in loop.bodies[other]:
+                return (
+                    f".  {slide.name} lets {half} slide on {other}, as the halves of an I4.  Two "
+                    f"halves are supported if pins join them to one bar, or to two, as of an H4 or "
+                    f"a Par 4.  Here each leg is solved alone: it is that of a hand that does not "
+                    f"turn, whose position is that of its half"
+                )
+    return ""
+
+
+def ball_on_driven(loop: Loop, onward: Sequence[Joint]) -> str:
+    """What is said of a driven body that ends in a ball on a hand which rods hold."""
+    if loop.dimensions != len(AXES) or [j.kind for j in onward] != ["spherical"]:
+        return ""
+    (ball,) = onward
+    hands = [body for body in ball.between if loop.hand in loop.bodies[body]]
+    rods = [j for body in hands for j in loop.of(body) if j is not ball]
+    if not hands or len(rods) != len(AXES) or any(j.kind not in BALLS for j in rods):
+        return ""
+    return (
+        f".  {ball.name} is known if the driven joint is, and {len(rods)} rods turn {hands[0]} "
+        f"about it: an equation of degree 8.  A hand on two arms is supported, one of them with a "
+        f"hinge on the ground, and one rod"
+    )
+
+
 def hinged_on(loop: Loop, joint: Joint) -> str:
     """What is said of a hand that is hinged to the only driven body, as on an RRSS linkage."""
     body = joint.other(GROUND)
@@ -167,12 +238,16 @@ def on_cylinder(loop: Loop, far: Joint, rod: str) -> str:
 
 __all__ = [
     "arcs",
+    "ball_on_driven",
     "ball_on_hand",
     "ball_on_line",
     "beyond",
     "carried",
     "driven_mast",
     "hinged_on",
+    "hinges_of_leg",
     "on_cylinder",
+    "on_turning_body",
+    "sliding_halves",
     "two_motors",
 ]

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import sympy as sp
 
+from closedform.mechanics.assur import degrees
 from closedform.mechanics.assur_slides import (
     Meet,
     OnCircle,
@@ -291,7 +292,7 @@ def _ordered(found: Found) -> SlidingOrder:
     if free != len(driven):
         raise loop.error(
             f"{listed([j.name for j in driven])} drive{'s' * (len(driven) == 1)} this linkage, but "
-            f"by the count of its bodies, pins and slides it has {free} degrees of freedom"
+            f"by the count of its bodies, pins and slides it has {degrees(free)}"
         )
     _check_directions(found)
     order = sliding_order(found.points, found.pairs, [GROUND, *found.driven])

@@ -254,7 +254,9 @@ class Crank:
         R = chain.let("R", sp.sqrt(a**2 + b**2), nonnegative=True)
         triangle = Triangle.from_reach(p, (l, s), R, sigma, scale=scale, suffix=chain.tag)
         met = chain.vanishes("met", R, "the rod ends on the axis of the crank", q)
-        none = chain.vanishes("no_crank", l, "the crank has no length", q)
+        none: sp.Basic = sp.false
+        if not p.explicit(l).is_number:
+            none = chain.vanishes("no_crank", l, "the crank has no length", q)
         S, A, B, C = triangle.factors
         ahead = chain.let("ahead", S * B - A * C)
         beyond = chain.let("beyond", 2 * triangle.root, nonnegative=True)
@@ -284,12 +286,11 @@ class Crank:
             plainly=plainly,
         )
         root = sp.sqrt(r - aside) * sp.sqrt(r + aside)
-        cases = (
-            Degenerate((met,), {a: 0, b: 0, l: root}, q, "a rod ends on the axis of its crank"),
-            Degenerate(
-                (none,), {l: 0, r: sp.sqrt(a**2 + b**2 + aside**2)}, q, "a crank has no length"
-            ),
-        )
+        case = Degenerate((met,), {a: 0, b: 0, l: root}, q, "a rod ends on the axis of its crank")
+        cases: tuple[Degenerate, ...] = (case,)
+        if none != sp.false:
+            locus = {l: 0, r: sp.sqrt(a**2 + b**2 + aside**2)}
+            cases += (Degenerate((none,), locus, q, "a crank has no length"),)
         link = Link((q,), lemma.equations, {}, lemma, tuple(p.body[start:]), degenerate=cases)
         missed -= sp.Min(0, l + s - R, R + l - s, R - l + s) / lost
         rod = w - away

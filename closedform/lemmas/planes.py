@@ -156,6 +156,15 @@ Flat = Rail | Plane
 """Legs in which the hand slides along a line or moves in a plane."""
 
 
+def _numbers(place: sp.Matrix) -> set[sp.Expr]:
+    """The numbers in the coordinates of a point, such as roots."""
+    found: set[sp.Expr] = set()
+    for e in place:
+        for term in sp.Add.make_args(sp.expand(e)):
+            found.add(term.as_independent(*term.free_symbols)[0])
+    return found
+
+
 def three_planes(
     program: Program,
     ends: Sequence[sp.Matrix],
@@ -178,6 +187,11 @@ def three_planes(
     ]
     start = len(p.body)
     heights = [p.let(f"h_{k}", a.dot(e)) for k, (a, e) in enumerate(zip(n, ends, strict=True), 1)]
+    stated = tuple(a.dot(hand - e) for a, e in zip(n, ends, strict=True))
+    if any(not number.is_Rational for e in ends for number in _numbers(e)):
+        # a lemma is counted in rational numbers, so it has the names of the heights
+        start = len(p.body)
+        stated = tuple(a.dot(hand) - h for a, h in zip(n, heights, strict=True))
     across = [n[1].cross(n[2]), n[2].cross(n[0]), n[0].cross(n[1])]
     total = sum((h * c for h, c in zip(heights, across, strict=True)), sp.zeros(3, 1))
     width = n[0].dot(across[0])
@@ -185,7 +199,7 @@ def three_planes(
     lemma = Lemma(
         "point of three planes",
         r"\mathbf p = \frac{1}{D}\sum_k h_k\,\mathbf n_{k+1}\times\mathbf n_{k+2}",
-        tuple(a.dot(hand - e) for a, e in zip(n, ends, strict=True)),
+        stated,
         dict(zip(hand, found, strict=True)),
         1,
         roles=(("D", volume),),

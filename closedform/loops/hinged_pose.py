@@ -24,8 +24,8 @@ IN_PLANE = (
     "The axes of the revolute joints on the hand are at right angles to the first axis of the "
     "universal joints, so the hand stays in a plane through this axis.  The plane turns about it "
     "by turn_1, and v is its normal.  The hand turns in the plane, about v, by turn_2.  R is the "
-    "rotation of the hand, and w is the direction in the plane at right angles to the axis: the "
-    "distance of the hand is measured along it.  "
+    "rotation of the hand.  The distance of the hand is measured in the plane, at right angles to "
+    "the axis.  "
 )
 ON_AXIS = (
     "The universal joints on the hand turn it about an axis of its own, v, and about an axis of "

@@ -55,7 +55,7 @@ def state_velocity(m: OnLines, at: Posture, loop: Step) -> None:
     )
     pose, area = at.pose, named_in(v, "triangle", m.area)
     named = v.matrix("A", _rows(m, pose))
-    B = [named_in(v, f"B_{k}", e) for k, e in enumerate(lifts, 1)]
+    B = [named_in(v, f"B_{k}{k}", e) for k, e in enumerate(lifts, 1)]
     # how the height and the first two entries of the last row of R follow from the heights
     unit = sp.eye(3)
     level = [[e / area for e in m.level(list(unit.row(k)))] for k in range(3)]
@@ -64,7 +64,7 @@ def state_velocity(m: OnLines, at: Posture, loop: Step) -> None:
     first = (up + pose.tilts.y.s * pose.tilts.x.s * second) / at.upright
     rise = sp.Matrix([[int(k == 0) - m.rise(pair, 0) for k, pair in enumerate(level)]])
     J = v.matrix("K", sp.Matrix.vstack(rise, first, second)) * sp.diag(*B)
-    edge = v.let("edge", pose.tilts.y.c * at.upright)
+    edge = v.let("nu", pose.tilts.y.c * at.upright)
     pole = "Not finite where the hand is on edge."
     export(
         d,
@@ -89,7 +89,7 @@ def state_velocity(m: OnLines, at: Posture, loop: Step) -> None:
                 "singularities",
                 "The diagonal of B (serial), cos(tilt_y)*n_z (the hand is on edge), and the "
                 "derivative of the equation of the twist.",
-                {"factors": [*B, edge, v.let("spin", at.root)]},
+                {"factors": [*B, edge, v.let("tau", at.root)]},
                 (),
             ),
         ],

@@ -14,6 +14,7 @@ import sympy as sp
 from closedform.lemmas.legs import cross_in_plane
 from closedform.lemmas.lines import FAR, coordinate
 from closedform.lemmas.links import degenerate, polar_lemma
+from closedform.lemmas.rails import named_number
 from closedform.lemmas.sine_cosine import linear_pair
 from closedform.lemmas.through_ball import ThroughBall
 from closedform.loops.balls import (
@@ -137,7 +138,12 @@ def _polar(
     count: int,
 ) -> Link:
     """An angle and a length with the sign of the mode, of a vector that does not vanish."""
-    (angle, length), (x, y), start = unknowns, target, len(f.body)
+    angle, length = unknowns
+    x, y = (
+        named_number(f, f"{n}_{angle}", e) if e.is_number else e
+        for n, e in zip("xy", target, strict=True)
+    )
+    start = len(f.body)
     size = f.let(f"size_{angle}", sp.sqrt(x**2 + y**2), nonnegative=True)
     r = f.let(f"{length}_0", SIDE * size)
     pair = Pair(y / r, x / r).known_as(f, f"_{angle}")

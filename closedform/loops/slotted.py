@@ -206,7 +206,9 @@ def turned_to_line(
     scale = names.size * names.share
     found = Amplitude.of(p, x, (a, b, c), sigma, scale=lambda _: scale, suffix=names.tag)
     root = names.let("root", found.root, nonnegative=True)
-    none = names.vanishes("none", found.h, met, x)
+    none: sp.Basic = sp.false
+    if not all(p.explicit(e).is_number for e in (a, b)):
+        none = names.vanishes("none", found.h, met, x)
     ahead = names.let("ahead", (found.above - found.below) / 2)
     sine = names.let("sine", choose(none, 0, a * ahead + sigma * b * root))
     cosine = names.let("cosine", choose(none, 1, b * ahead - sigma * a * root))
@@ -218,8 +220,8 @@ def turned_to_line(
         r"\sigma\operatorname{atan2}(\sqrt{(h-c)(h+c)}, c),\ h = \sqrt{a^2+b^2}",
     )
     locus = {a: sp.S.Zero, b: sp.S.Zero} | ({c: sp.S.Zero} if c.is_Symbol else {})
-    case = Degenerate((none,), locus, x, met)
-    link = Link((x,), lemma.equations, {}, lemma, tuple(p.body[start:]), degenerate=(case,))
+    cases = () if none == sp.false else (Degenerate((none,), locus, x, met),)
+    link = Link((x,), lemma.equations, {}, lemma, tuple(p.body[start:]), degenerate=cases)
     missed = names.let("missed", sp.Max(0, sp.Abs(c) - found.h))
     known = {sp.sin(x): sine / width, sp.cos(x): cosine / width}
     return Known(Solution(link, lemma[x], sp.zeros(2, 1), missed), known)

@@ -9,14 +9,15 @@ import sympy as sp
 
 from closedform.lemmas.amplitude import Amplitude
 from closedform.lemmas.links import degenerate
+from closedform.lemmas.rails import named_number
 from closedform.model.functions import Program, choose
 from closedform.model.inverse import Link
 from closedform.model.pair import Pair
 
 
-def never_free(a: sp.Expr, b: sp.Expr) -> bool:
-    """Whether a and b cannot both vanish, because one of them is a number."""
-    return any(bool(e.is_number and e != 0) for e in (a, b))
+def never_free(*coefficients: sp.Expr) -> bool:
+    """Whether coefficients cannot all vanish, because one of them is a number."""
+    return any(bool(e.is_number and e != 0) for e in coefficients)
 
 
 def yaw_by_amplitude(
@@ -48,11 +49,15 @@ def yaw_by_amplitude(
     said
         what is the case where the yaw is free, because a and b vanish
     """
-    a, b, c = coefficients
+    fixed = never_free(*coefficients)
+    a, b, c = (
+        named_number(f, f"{n}_turn", e) if e.is_number else e
+        for n, e in zip("abc", coefficients, strict=True)
+    )
     start = len(f.body)
     at = Amplitude.of(f, yaw, (a, b, c), sigma, scale=missed, suffix="_turn")
     free: sp.Basic = sp.false
-    if not never_free(a, b):
+    if not fixed:
         free = f.vanishes("free", at.h, size, "the hand turns freely", (yaw,))
     root = f.let("root", at.root, nonnegative=True)
     # not by the differences h - c and h + c, in which a small c is lost

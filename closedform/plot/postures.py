@@ -351,7 +351,7 @@ def draw(
             (_rail if name in r.rails else _slide)(diagram, ends, shade, width, named)
             named = {}
     pivots = _pivots(r, diagram)
-    if free := [place[point] for point in _passive(skeleton, pivots)]:
+    if free := [place[point] for point in _passive(skeleton, pivots, r.module.JOINTS)]:
         diagram.passive(free, shade, 1.4 * width)
     for name in pivots:
         _, way = (along or {}).get(name, (None, None))
@@ -370,11 +370,16 @@ def _pivots(r: Robot, diagram: Diagram) -> list[str]:
     ]
 
 
-def _passive(skeleton: Any, pivots: Collection[str]) -> list[str]:
-    """The points where links meet that have no other symbol: what turns freely there."""
-    joints = [j for name, j in skeleton.joints.items() if name in pivots or j.kind == "prismatic"]
-    known = {p for joint in joints for p in joint.points} | {skeleton.hand}
-    links = [set(link) for link in skeleton.links.values()]
+def _passive(skeleton: Any, pivots: Collection[str], driven: Collection[str]) -> list[str]:
+    """The points where links meet that have no other symbol: what turns freely there.
+
+    A passive slide counts as a link to the body at its far end, such as to one on a ball.
+    """
+    slides = {n: j.points for n, j in skeleton.joints.items() if j.kind == "prismatic"}
+    passive = [set(points) for name, points in slides.items() if name not in driven]
+    known = {p for name in pivots for p in skeleton.joints[name].points} | {skeleton.hand}
+    known |= {p for n, points in slides.items() for p in (points if n in driven else points[:1])}
+    links = [*(set(link) for link in skeleton.links.values()), *passive]
     met = [p for p in skeleton.points if sum(p in link for link in links) > 1]
     return [p for p in met if p not in known]
 

@@ -10,7 +10,7 @@ from loop_files import derived, newton, read_script, script_of
 from places import TESTS
 from sympy import Rational, sqrt
 
-from closedform import BallOnLine, Crank, Derivation, Paper, Slide, on_lines, prove
+from closedform import BallOnLine, Crank, Derivation, Paper, Slide, on_lines, plot, prove
 from closedform.algebra.shapes import ShapeError
 from closedform.emit.pages import pages
 from closedform.scaffold.inputs.tables import TableError
@@ -120,9 +120,17 @@ def test_the_article_has_no_names_of_the_program(tmp_path: Path) -> None:
     d = read_script(script_of("capaman", TEXT, tmp_path))
     (article,) = pages(d, prove(d), ["latex"]).files.values()
     assert r"\mathrm{twist} = \operatorname{atan2}" in article
-    assert not re.search(r"mathrm\{(root|reach|length)\}|(?<![a-z])[abch]_\{[0-3]\}", article)
+    code = r"mathrm\{(root|reach|length|spin|edge)\}|(?<![a-z])[abch]_\{[0-3]\}"
+    assert not re.search(code, article)
+    assert r"\rho &= \rho" not in article and "B_{11} = B" not in article
     step = article.partition(r"\subsection{The loop}")[2].partition(r"\subsection")[0]
     assert "$r$" in step and "point $b$" not in step
+
+
+def test_the_balls_are_drawn(capaman: ModuleType) -> None:
+    ax = plot.mechanism(capaman, [0.5, 0.6, 0.4], labels=False, axes=False)
+    circles = [len(line.get_xdata()) for line in ax.lines if line.get_marker() == "o"]
+    assert sorted(circles) == [1, 1, 1, 3]  # three cranks, and the balls at the ends of the slides
 
 
 def toy() -> Derivation:

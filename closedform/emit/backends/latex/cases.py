@@ -46,7 +46,7 @@ class Cases:
         found: dict[tuple[str, str, str], list[str]] = {}
         twins = self.algorithm.twins
         for flag in self.algorithm.flags.values():
-            if twins and flag.symbol in twins.second:
+            if (twins and flag.symbol in twins.second) or self.algorithm.is_never(flag):
                 continue
             with self.algorithm.as_one(twins is not None and flag.symbol in twins.alike):
                 told = self._told(flag)

@@ -334,20 +334,21 @@ class Stages:
         if later:
             told += f", of which {listed(found)}"
         matrices = [j for j in before if j.strip("$") in letters.values()]
-        if not where and matrices == before and len(before) == 1:  # the target is in the matrix
-            place = f"From {before[0]} {self.where_found(before[0].strip('$'))}"
-            return f"{told.replace(source, place, 1)} alone:"
+        alone = len(before) == 1 and matrices == before and not where
+        place = self.where_found(before[0].strip("$")) if alone else ""
+        if place:  # the target is in the matrix
+            return f"{told.replace(source, f'From {before[0]} {place}', 1)} alone:"
         if before:
             verb = "is" if len(before) == 1 else "are"
             return f"{told}, where {listed(before)} {verb} known:"
         return f"{told}:" if later or len(step) > 1 else f"{told} alone:"
 
     def where_found(self, matrix: str) -> str:
-        """Where the matrix of a lemma stands: its equation, or the step that finds it."""
+        """Where the matrix of a lemma stands: its equation, or the step that finds it, if any."""
         if label := self.page.numbers.of(matrix):
             return f"in {reference([label])}"
-        steps = enumerate(self.steps, 1)
-        return f"of step {next(k for k, step in steps if step[0].lemma.matrix == matrix)}"
+        found = [k for k, step in enumerate(self.steps, 1) if step[0].lemma.matrix == matrix]
+        return f"of step {found[0]}" if found else ""
 
     def found_later(self, joints: Sequence[sp.Symbol], solving: Solving) -> dict[sp.Symbol, int]:
         """The joints that a later step finds, and its number: the lemma takes a sum with them."""
@@ -463,7 +464,8 @@ class Stages:
             rows += page.equations(result, value)
             values.append(value)
         values += [self.vanishing(flag) for flag in self.freeing(solving)]
-        return self.made_before(values) + rows
+        # an unknown may have the letter of the name that the program has for it
+        return self.made_before(values) + [row for row in rows if row[0] != row[1]]
 
     def matrix_of(self, solving: Solving) -> list[Equation]:
         """The matrix that the lemma finds, and the quantities in it."""
@@ -572,7 +574,7 @@ class Stages:
         return [
             s
             for s in (solving.link.body if solving.link else self.function.body)
-            if isinstance(s, Vanishes) and s.free
+            if isinstance(s, Vanishes) and s.free and not self.algorithm.is_never(s)
             if solving.link or set(s.free) & set(solving.unknowns)
         ]
 

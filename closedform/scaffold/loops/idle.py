@@ -27,8 +27,9 @@ def without_idle(loop: Loop) -> Loop:
 
 def _without_shafts(loop: Loop) -> Loop:
     """The loop without the chains from the ground to the hand that leave it all freedoms."""
-    hand = next((b for b, at in loop.bodies.items() if loop.hand in at and b != GROUND), None)
-    idle = [j for b in ([hand] if hand else []) for j in _shaft_joints(loop, b)]
+    hands = [b for b, at in loop.bodies.items() if loop.hand in at and b != GROUND]
+    shafts = [[*_shaft_joints(loop, b)] for b in hands]
+    idle = next(filter(None, shafts), None)
     if not idle:
         return loop
     names = {j.name for j in idle}

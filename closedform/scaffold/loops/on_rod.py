@@ -44,7 +44,8 @@ def on_rod(found: Legs) -> tuple[list[LoopLeg], str] | None:
     legs = [found.leg(joint)]
     found.end = "the first rod"
     legs.append(found.leg(second))
-    if legs[1].passive or held[0].other(arm) == second.other(GROUND):
+    on_slider = GROUND in second.between and held[0].other(arm) == second.other(GROUND)
+    if legs[1].passive or on_slider:
         raise loop.error(f"{second.name} must move a rod that leads to {arm}")
     end, ahead = legs[1].place + span, found.direction(span, length)
     at = [sp.simplify(e) for e in (end.dot(ahead), ahead[0] * end[1] - ahead[1] * end[0])]

@@ -18,6 +18,7 @@ from closedform.loops.leg_by_leg import (
     MISSED,
     SIGN,
     Choice,
+    record,
     record_lemma,
     size_of,
     where_free,
@@ -165,8 +166,7 @@ def _forward(loop: _Loop, choice: Choice) -> _Rod:
         ),
     )
     x = follower.joint
-    d.inverses.append(Inverse("fk", (x,), (sp.S.Zero,), (loop.equation,), links=(found.link,)))
-    record_lemma(d, "fk", found.link)
+    record(d, Inverse("fk", (x,), (sp.S.Zero,), (loop.equation,), links=(found.link,)))
     v = Program(list(f.body), f.taken)
     along = sp.Matrix([v.let(f"w{i}", -e) for i, e in zip("xyz", found.rod, strict=False)])
     return _Rod(v, modes, along)

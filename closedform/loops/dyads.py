@@ -15,7 +15,7 @@ from closedform.lemmas.missed import MOVED, SHARE
 from closedform.loops.conditioning import JACOBIAN, conditioning
 from closedform.loops.dyads_inverse import inverse, known_points
 from closedform.loops.hand import in_space
-from closedform.loops.leg_by_leg import SIGN, Choice, named, record_lemma
+from closedform.loops.leg_by_leg import SIGN, Choice, named, record
 from closedform.loops.linkage import GROUND, Body, Linkage, Solved
 from closedform.loops.modes import NO_MODE, Exported, export
 from closedform.loops.parallel import NEAR
@@ -154,7 +154,8 @@ def _forward(m: Linkage, choice: Choice, loop: Step) -> Posture:
         ),
     )
     inner = tuple(e for step in m.circles if step is not m.solved[-1] for e in step.unknowns)
-    d.inverses.append(
+    record(
+        d,
         Inverse(
             "fk",
             tuple(m.hand),
@@ -162,10 +163,8 @@ def _forward(m: Linkage, choice: Choice, loop: Step) -> Posture:
             tuple(m.loop),
             links=tuple(links),
             passive=inner,
-        )
+        ),
     )
-    for link in links:
-        record_lemma(d, "fk", link)
     return _again(m, found)
 
 

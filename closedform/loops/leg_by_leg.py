@@ -170,6 +170,13 @@ def signs_of_modes(legs: Sequence[Leg]) -> tuple[str, ...]:
     return ()
 
 
+def record(d: Derivation, inverse: Inverse) -> None:
+    """Add an inverse, and record the lemmas of its links for the article."""
+    d.inverses.append(inverse)
+    for link in inverse.links:
+        record_lemma(d, inverse.function, link)
+
+
 def record_lemma(d: Derivation, function: str, link: Link) -> None:
     """Record the lemma of a link for the article."""
     assert link.lemma is not None
@@ -262,6 +269,7 @@ __all__ = [
     "named",
     "named_in",
     "named_rod",
+    "record",
     "record_lemma",
     "signs_of_modes",
     "size_of",

@@ -18,7 +18,7 @@ from closedform.lemmas.amplitude import Amplitude
 from closedform.lemmas.legs import Crank, Solution, sign_of_leg, vector
 from closedform.lemmas.links import degenerate
 from closedform.lemmas.mirror import Image, mirror_image
-from closedform.loops.leg_by_leg import SIGN, LegByLeg, named, record_lemma, size_of
+from closedform.loops.leg_by_leg import SIGN, LegByLeg, named, record, size_of
 from closedform.loops.modes import NO_MODE, export
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
@@ -253,8 +253,7 @@ def _forward(m: Mirrored, loop: Step) -> _Posture:
             LEFT_OUT,
         ),
     )
-    d.inverses.append(Inverse("fk", tuple(HAND), (sp.S.Zero,) * LEGS, m.loop, links=(link,)))
-    record_lemma(d, "fk", link)
+    record(d, Inverse("fk", tuple(HAND), (sp.S.Zero,) * LEGS, m.loop, links=(link,)))
     return _Posture(Program(list(f.body), f.taken), hand, balls, image)
 
 

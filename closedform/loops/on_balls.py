@@ -31,7 +31,7 @@ from closedform.loops.balls import (
     exact_turns,
 )
 from closedform.loops.balls_rates import draw, state_velocity
-from closedform.loops.leg_by_leg import SIGN, named, named_in, record_lemma, size_of
+from closedform.loops.leg_by_leg import SIGN, named, named_in, record, record_lemma, size_of
 from closedform.loops.points import NEAR
 from closedform.mechanics.frames import rotation
 from closedform.model.derivation import Derivation
@@ -222,7 +222,8 @@ def _forward(m: OnBalls, loop: Step) -> Posture:
             NEAR,
         ),
     )
-    d.inverses.append(
+    record(
+        d,
         Inverse(
             "fk",
             TARGET,
@@ -230,10 +231,8 @@ def _forward(m: OnBalls, loop: Step) -> Posture:
             equations,
             links=tuple(links),
             passive=(RHO, LENGTH, TWIST, *ASIDE),
-        )
+        ),
     )
-    for link in links:
-        record_lemma(d, "fk", link)
     return Posture(Program(list(f.body), f.taken), modes, turns, hand, balls, sides)
 
 

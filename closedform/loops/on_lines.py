@@ -17,7 +17,7 @@ from closedform.lemmas.links import degenerate, polar_lemma
 from closedform.lemmas.sine_cosine import linear_pair
 from closedform.lemmas.unit_vector import last_entry
 from closedform.loops.balls import ASIDE, TARGET, TILT_X, TILT_Y, TWIST, Turns, Z
-from closedform.loops.leg_by_leg import SIGN, LegByLeg, named, named_in, record_lemma, size_of
+from closedform.loops.leg_by_leg import SIGN, LegByLeg, named, named_in, record, size_of
 from closedform.loops.letters import letters
 from closedform.loops.lines_hand import (
     BallOnLine,
@@ -197,7 +197,8 @@ def _forward(m: OnLines, loop: Step) -> Posture:
         ),
     )
     equations = _solved_forward(m)
-    d.inverses.append(
+    record(
+        d,
         Inverse(
             "fk",
             TARGET,
@@ -205,10 +206,8 @@ def _forward(m: OnLines, loop: Step) -> Posture:
             equations,
             links=tuple(links),
             passive=(LAST, RHO, TWIST, *ASIDE),
-        )
+        ),
     )
-    for link in links:
-        record_lemma(d, "fk", link)
     pose = Twisted(tilts, pair)
     at = Program(list(f.body), f.taken)
     _export_pose(m, at, modes, pose, hand)

@@ -27,7 +27,7 @@ from closedform.lemmas.legs import (
 from closedform.lemmas.lines import FAR, coordinate, slide_to_line
 from closedform.lemmas.rails import named_number
 from closedform.loops.hand import check_order, in_space, square
-from closedform.loops.leg_by_leg import SIGN, Choice, LegByLeg, named_in, record_lemma, size_of
+from closedform.loops.leg_by_leg import SIGN, Choice, LegByLeg, named_in, record, size_of
 from closedform.loops.modes import NO_MODE, export
 from closedform.loops.slotted import turned_to_line
 from closedform.loops.yaw import yaw_by_amplitude
@@ -293,7 +293,8 @@ def _forward(m: _OnPins, choice: Choice, loop: Step) -> _Posture:
     combined[first, 1] = combined[second, 2] = -1
     combined[last, :3] = sp.Matrix([[1, w[first], w[second]]]) / w[last]
     combined[3, 3] = combined[4, 4] = 1
-    d.inverses.append(
+    record(
+        d,
         Inverse(
             "fk",
             m.target,
@@ -302,10 +303,8 @@ def _forward(m: _OnPins, choice: Choice, loop: Step) -> _Posture:
             links=tuple(links),
             passive=tuple(m.seen),
             glue=Combination(combined, {u: u for u in (*m.target, *m.seen)}),
-        )
+        ),
     )
-    for link in links:
-        record_lemma(d, "fk", link)
     return _Posture(Program(list(f.body), f.taken), modes, hand, pair, sigma * root)
 
 

@@ -45,6 +45,11 @@ def test_other_axes_through_one_point(tmp_path: Path) -> None:
     assert count > 20
 
 
+def test_a_point_without_a_joint_does_not_count(tmp_path: Path) -> None:
+    text = CARDAN.replace("ground = {", "ground = {E = [1, 2, 3], ")
+    assert text != CARDAN and "coupled(" in script_of("t", text, tmp_path)
+
+
 def test_axes_that_do_not_meet_are_refused(tmp_path: Path) -> None:
     with pytest.raises(TableError, match="should meet in one point, all joints are at this point"):
         script_of(

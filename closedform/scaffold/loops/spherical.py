@@ -72,7 +72,7 @@ def check_arcs(loop: Loop) -> None:
 
 
 def _meet(loop: Loop) -> bool:
-    """Whether four axes pass one point of the ground, and bodies have no other points.
+    """Whether four axes pass one point of the ground, where all joints are.
 
     The bodies need not have this point themselves.
     """
@@ -81,11 +81,13 @@ def _meet(loop: Loop) -> bool:
 
 
 def _through_one_point(loop: Loop) -> bool:
-    """Whether all joints are revolute, with axes through the only point of the bodies."""
+    """Whether all joints are revolute, and at the same point of the bodies; others do not count."""
     joints = [*loop.joints.values()]
     if loop.rods or loop.parallelograms:
         return False
-    places = {tuple(at) for points in loop.bodies.values() for at in points.values()}
+    used = {j.at for j in joints}
+    points = [at for own in loop.bodies.values() for name, at in own.items() if name in used]
+    places = {tuple(at) for at in points}
     turning = all(j.kind == "revolute" and j.axis is not None for j in joints)
     placed = all(any(j.at in loop.bodies[b] for b in (*j.between, GROUND)) for j in joints)
     return turning and placed and len(places) == 1

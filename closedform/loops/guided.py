@@ -179,18 +179,23 @@ def _close(m: Guided, placed: Step | None) -> Step:
         (str(k), leg.end().T, place.T, sp.sympify(leg.rod, strict=True))
         for (k, leg), place in zip(m.numbered, m.places, strict=True)
     )
-    said = (
-        "The joint of leg i determines the near end b of its rod.  The far end is e in the frame "
-        "of the hand, seen from its point p.  The rod keeps the distance of its ends: |p + R*e - "
-        "b| is its length."
+    said, near, far = (
+        "The joint of leg i determines the near end b_i of its rod.  The far end is c_i in the "
+        "frame of the hand, seen from its point p.  The rod keeps the distance of its ends: "
+        "|p + R*c_i - b_i| is its length.",
+        "b_i",
+        "c_i",
     )
     if isinstance(m.guide, ParallelAxes):
-        said = m.guide.legs_close
+        said, near, far = m.guide.legs_close, "b", "e"
+    else:
+        m.d.explain({r"\mathbf b_i": "near end of rod i"})
+        m.d.explain({r"\mathbf c_i": "far end of rod i, in the frame of the hand"})
     m.d.loop = loop = m.d.step(
         "The loop",
         f"{m.guide.holds}{said}",
         m.guide.shown(m.d) if isinstance(m.guide, ParallelAxes) else {},
-        rows=[("i", "b", "e", "length of the rod"), *rows],
+        rows=[("i", near, far, "length of the rod"), *rows],
         uses=[placed] if placed else [],
     )
     m.d.step(

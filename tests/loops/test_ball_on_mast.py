@@ -5,11 +5,12 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from loop_files import derived, newton, script_of, unbroken
+from loop_files import derived, newton, read_script, script_of, unbroken
 from places import TESTS
 from test_degrees import counted, free, in_plane_of_ground
 
-from closedform import BallOnMast
+from closedform import BallOnMast, prove
+from closedform.emit.pages import pages
 from closedform.scaffold.inputs.tables import TableError
 
 TEXT = (TESTS / "held_out_loops" / "ball_on_mast.toml").read_text("utf-8")
@@ -70,6 +71,14 @@ def test_legs_that_do_not_hold_the_hand_and_turns_about_one_axis(mast: ModuleTyp
     v = mast.Parameters()._replace(c=0.0, e=0.0)  # all legs end in the ball
     assert (mast.ik([0.5, 0.1, 0.2, 0.3], v).status == SINGULAR).all()
     assert (mast.ik([0.5, 0.1, np.pi / 2, 0.3]).status == SINGULAR).all()
+
+
+def test_the_ends_of_rods_have_letters_of_their_own(tmp_path: Path) -> None:
+    """The parameter e was the far end of a rod too."""
+    d = read_script(script_of("ball_on_mast", TEXT, tmp_path))
+    (article,) = pages(d, prove(d), ["latex"]).files.values()
+    assert "far end is $c_{i}$" in article and "far end is $e$" not in article
+    assert "far end of rod $i$, in the frame of the hand" in article
 
 
 def test_the_degree_is_counted() -> None:

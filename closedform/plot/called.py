@@ -6,11 +6,11 @@ import re
 from collections.abc import Collection, Mapping
 
 ALPHABET = [
-    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lamda",
+    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda",
     "mu", "nu", "xi", "omicron", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi",
     "omega",
 ]  # fmt: skip
-GREEK = {*ALPHABET, *(g.capitalize() for g in ALPHABET), "lambda", "varphi"}
+GREEK = {*ALPHABET, *(g.capitalize() for g in ALPHABET), "varphi"}
 LETTERS = "|".join(sorted(GREEK))
 WORDS = re.compile(rf"(?=.*[\d_])(?!(?:{LETTERS})(?![a-z]))[A-Za-z_]*[A-Za-z]{{3}}\w*")
 """The name of a joint that is a word and a number, or more than a word, and no Greek letter."""

@@ -173,10 +173,9 @@ class _Errors:
             # and of a value below the normal numbers only those of its factors, which lose theirs
             vanishes = abs(to_float(exact)) < np.finfo(self.backend.dtype).tiny
             lost = self._overflows(row) or ((vanishes or not finite) and self._underflows(row))
-            here = self.rows[row : row + 1]
             if lost or self.backend.eps * grown >= known:
                 return None
-            if self.values.exact.open_around(here, self.backend.eps)[0, k]:
+            if self._open[row, k]:
                 return None  # its divisor may vanish
             if self.values.beside_pose or self._near_pole(row):
                 error = _ulps(self.computed[row, k], exact, scale + grown, self.backend)
@@ -216,8 +215,18 @@ class _Errors:
 
     def _of_lengths(self, row: int, k: int) -> float:
         """The natural scale with the lengths that cancel, at most the largest length."""
-        named = self.values.named(self.rows[row : row + 1], self.backend.dtype)[0, k]
+        named = self._named[row, k]
         return float(min(named, max(self.lengths, default=named)))
+
+    # what follows is for all rows at once, which takes little more time than for one
+
+    @cached_property
+    def _named(self) -> NDArray[Any]:
+        return self.values.named(self.rows, self.backend.dtype)
+
+    @cached_property
+    def _open(self) -> NDArray[Any]:
+        return self.values.exact.open_around(self.rows, self.backend.eps)
 
     @cached_property
     def _amplified(self) -> NDArray[np.float64]:

@@ -15,7 +15,7 @@ from closedform.lemmas.pairs import any_pair, direction
 from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.lemmas.rotate import Because, terms
 from closedform.lemmas.tangent import ANYWHERE, Goal, Tangency
-from closedform.model.functions import real
+from closedform.model.functions import choose, real
 from closedform.model.inverse import Relation
 from closedform.model.lemma import Lemma, label
 from closedform.model.tolerances import ROUNDING
@@ -179,7 +179,7 @@ def tilt_between(
         the name of the sign and what other names end in, by default the number of the joint
     """
     p, tag = chain.program, name or label(x)
-    sigma = chain.sign(tag, choice)
+    sigma, start = chain.sign(tag, choice), len(p.body)
     (g1, g2, g3), (w1, w2, w3) = axes
     v1, v2, v3 = v[:3]
     a, b = g2 * w1 - g1 * w2, g1 * w1 + g2 * w2
@@ -218,6 +218,9 @@ def tilt_between(
     )
     chain.tangent.append(found.tangent)
     pair, means = named(chain, x, found.pair)
+    c = v3 - g3 * w3
+    away = sp.atan2(sp.sqrt((h - c) * (h + c)), c, evaluate=False)
+    told = sp.atan2(a, b, evaluate=False) + sigma * away
     lemma = Lemma(
         "tilt of any wrist",
         r"g \cdot R_z(\theta)\,w = v_3 \;\Rightarrow\; \theta = \operatorname{atan2}(g_2 w_1 - g_1 "
@@ -226,10 +229,12 @@ def tilt_between(
         {x: pair.angle},
         2,
         signs=(sigma,),
+        body=tuple(p.body[start:]),
         roles=(
             (r"\theta", x), ("g", sp.Matrix([g1, g2, g3])), ("w", sp.Matrix([w1, w2, w3])),
             ("v", sp.Matrix([v1, v2, v3])),
         ),
+        plainly={below: h - c, above: h + c, x: choose(flag, 0, told)},
     )  # fmt: skip
     meaning = f"two axes of the wrist are one; {x} is free, 0 is returned."
     loci = [vanishing(g1, g2), vanishing(w1, w2)]

@@ -337,11 +337,6 @@ class Algorithm:
                 found |= {cosine: sp.cos(total), -cosine: -sp.cos(total)}
         return found
 
-    def is_never(self, flag: Vanishes) -> bool:
-        """Whether the value of a flag is a number that is not zero, so that it never holds."""
-        value = self.full(flag.value)
-        return bool(value.is_number and value != 0)
-
     def full(self, value: Any) -> Any:
         """The same, with names that are not printed replaced by their values."""
         for _ in range(len(self.values)):

@@ -30,6 +30,12 @@ class Case:
     status: str = ""
 
 
+def is_never(algorithm: Algorithm, flag: Vanishes) -> bool:
+    """Whether the value of a flag is a number that is not zero, so that it never holds."""
+    value = algorithm.full(flag.value)
+    return bool(value.is_number and value != 0)
+
+
 def are_free(names: Sequence[str]) -> str:
     """That joints are free, by what formulas call them."""
     return f"{listed(names)} {'are' if len(names) > 1 else 'is'} free"
@@ -46,7 +52,7 @@ class Cases:
         found: dict[tuple[str, str, str], list[str]] = {}
         twins = self.algorithm.twins
         for flag in self.algorithm.flags.values():
-            if (twins and flag.symbol in twins.second) or self.algorithm.is_never(flag):
+            if (twins and flag.symbol in twins.second) or is_never(self.algorithm, flag):
                 continue
             with self.algorithm.as_one(twins is not None and flag.symbol in twins.alike):
                 told = self._told(flag)
@@ -180,4 +186,4 @@ class Cases:
         return Case(where, meaning, answer, "singular")
 
 
-__all__ = ["Case", "Cases", "are_free"]
+__all__ = ["Case", "Cases", "are_free", "is_never"]

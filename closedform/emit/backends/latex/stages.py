@@ -14,7 +14,7 @@ import sympy as sp
 
 from closedform.emit.backends.latex.algorithm import Algorithm
 from closedform.emit.backends.latex.angles import same_angle
-from closedform.emit.backends.latex.cases import Cases, are_free
+from closedform.emit.backends.latex.cases import Cases, are_free, is_never
 from closedform.emit.backends.latex.equations import (
     Numbered,
     defined_in,
@@ -574,7 +574,7 @@ class Stages:
         return [
             s
             for s in (solving.link.body if solving.link else self.function.body)
-            if isinstance(s, Vanishes) and s.free and not self.algorithm.is_never(s)
+            if isinstance(s, Vanishes) and s.free and not is_never(self.algorithm, s)
             if solving.link or set(s.free) & set(solving.unknowns)
         ]
 

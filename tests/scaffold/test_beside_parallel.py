@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy as sp
-from arms import OK, SINGULAR, link, misses, newton, wrapped
+from arms import OK, SINGULAR, UNREACHABLE, link, misses, newton, wrapped
 from chains import arm, printed, solved
 from sympy import pi
 
@@ -68,8 +68,12 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Printed:
 
 
 def pose(structure: str, q: np.ndarray) -> np.ndarray:
+    return product(ARMS[structure], q)
+
+
+def product(rows: list, q: np.ndarray) -> np.ndarray:
     T = np.eye(4)
-    for k, (a, alpha, d) in enumerate(ARMS[structure]):
+    for k, (a, alpha, d) in enumerate(rows):
         T = T @ link(float(a), float(alpha), float(d), q[..., k])
     return T
 
@@ -111,15 +115,32 @@ def test_out_of_reach_is_said(made: Printed, structure: str) -> None:
     assert not np.isin(status, (OK, SINGULAR)).any() and np.isnan(answers).all()
 
 
+MIDDLE = [(A, pi / 2, D), (0, pi / 3, B), (0, pi / 4, 0), (B, 0, D), (C, pi / 2, 0), (0, 0, D)]
+"""Axes 2, 3 and 4 meet at oblique angles, and axis 5 is parallel to axis 4."""
+
+
 def test_an_axis_beside_three_that_meet_may_be_parallel_to_one() -> None:
     """One equation had coordinates of the target that no other has, and the proof took no rest."""
-    rows = [(A, pi / 2, D), (0, pi / 3, B), (0, pi / 4, 0), (B, 0, D), (C, pi / 2, 0), (0, 0, D)]
-    d, serial = arm(rows)
+    d, serial = arm(MIDDLE)
     found = propose(serial)
     assert found.structure == "axes 2, 3 and 4 meet in a point, 5 and 6 are skew"
     solved(d, serial, found.source)
     (inverse,) = prove(d).inverses
     assert inverse.branches == found.branches == 8
+
+
+def test_a_small_least_tilt_is_kept_to_the_promise(tmp_path: Path) -> None:
+    """A cosine that is missed by 1e-12 is missed by 4e-12 as an angle of 15 degrees."""
+    d, serial = arm(MIDDLE)
+    solved(d, serial, propose(serial).source)
+    rng = np.random.default_rng(8)
+    q = np.array([0, -pi / 2, pi, pi, pi / 2, 0], float) + rng.choice(
+        [0, 1e-12, 1e-9, 1e-6, 1e-4, 1e-3], (20_000, 6)
+    ) * rng.choice([-1, 1], (20_000, 6))
+    T = product(MIDDLE, q)
+    answers, status = printed(d, tmp_path).ik(T)
+    away, turned = misses(product(MIDDLE, answers), T, np.where(status == OK, OK, UNREACHABLE))
+    assert away < 1e-12 * sum(float(a + d) for a, _, d in MIDDLE) and turned < 1e-12
 
 
 def test_axes_that_nearly_meet_are_named() -> None:

@@ -186,7 +186,8 @@ class WristMaker(Maker):
             g = sp.Matrix(row) if onward else first.end.T * Z
             a, b = (sp.expand(e) for e in turning(w, g))
             c = sp.Symbol("M[2, 2]") - sp.expand(g[2] * w[2])
-            pair = self._turn(middle, (a, b, c), past, scale="1", choice=FLIP)
+            scale = "1" if onward else source(_least_tilt(first.end.T * Z, w))
+            pair = self._turn(middle, (a, b, c), past, scale=scale, choice=FLIP)
         if self.carried and self.carried.moves:
             self.vector("to_end", self.carried.offset.format(pair))
         of = "" if sense > 0 else "-"
@@ -294,6 +295,17 @@ class WristMaker(Maker):
 def _has_parameters(first: Single, middle: Single) -> bool:
     """Whether the angles of a wrist are parameters, which may be equal."""
     return bool((first.end.T * Z).free_symbols | (middle.end * Z).free_symbols)
+
+
+def _least_tilt(g: sp.Matrix, w: sp.Matrix) -> sp.Expr:
+    """Half the sine of the least tilt of a wrist, or of the most: a cosine says that much of it.
+
+    What is clamped stays well within the round trip that is promised.  The unit vectors ``g`` and
+    ``w`` are the first and the last axis, seen from the middle joint.
+    """
+    aside = [sp.sqrt(v[0] ** 2 + v[1] ** 2) for v in (g, w)]
+    sines = [sp.Abs(sp.expand(aside[0] * w[2] + k * g[2] * aside[1])) for k in (-1, 1)]
+    return sp.Min(*sines) / 2
 
 
 def is_normal(wrist: Sequence[Single]) -> bool:

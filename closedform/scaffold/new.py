@@ -43,7 +43,7 @@ from closedform.scaffold.inputs.urdf import read_urdf
 from closedform.scaffold.limit import LimitError, bounded
 from closedform.scaffold.loops.file import read_loop
 from closedform.scaffold.loops.script import loop_script
-from closedform.scaffold.source import LINE, file_name, fitted, literal, source
+from closedform.scaffold.source import LINE, file_name, fitted, literal, source, wrapped_literal
 
 TIMEOUT = 60.0
 """Seconds after which a script is written without what was not found by then."""
@@ -206,7 +206,7 @@ def _head(name: str, table: Table, origin: str, negative: Sequence[str]) -> list
         f'    "{name}",',
         f'    "{title}",',
         f'    Paper("{name}", "{title}", ("the file {origin}",)),',
-        '    "Say here how the mechanism is built, where its zero is and which way it turns.",',
+        *wrapped_literal(_told(table)),
         ")",
     ]
     lines += [_comment(f"{note}.") for note in table.notes]
@@ -235,6 +235,23 @@ def _head(name: str, table: Table, origin: str, negative: Sequence[str]) -> list
         "forward = arm.export(d)",
         *_motor_lines(table, origin),
     ]
+
+
+def _told(table: Table) -> str:
+    """What the article says of the arm, for the author to extend."""
+    slides = sum(kind == "prismatic" for kind in table.joints.values())
+    kinds = f", of which {slides} {'slides' if slides == 1 else 'slide'}" if slides else ""
+    arm = f"An arm of {len(table.joints)} {'joint' if len(table.joints) == 1 else 'joints'}{kinds}"
+    if table.rows:
+        kind = "modified (Craig's)" if table.modified else "standard"
+        return (
+            f"{arm}.  Its table of Denavit and Hartenberg is in the {kind} convention, and gives "
+            "zero and the positive sense of each joint."
+        )
+    return (
+        f"{arm}.  All are zero in the posture of the file, and move about or along the axes that "
+        "it gives."
+    )
 
 
 def _script(head: Sequence[str], inverse: _Inverse) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import textwrap
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
@@ -161,6 +162,12 @@ class _Source(StrPrinter):  # type: ignore[misc]
     def _print_MatrixBase(self, expr: Any) -> str:
         rows = [[self._print(e) for e in expr.row(i)] for i in range(expr.rows)]
         return "Matrix([" + ", ".join(f"[{', '.join(row)}]" for row in rows) + "])"
+
+
+def wrapped_literal(text: str) -> list[str]:
+    """A text as an argument in several lines, each a literal."""
+    rows = textwrap.wrap(text, 88, drop_whitespace=False)
+    return [f"    {literal(row)}{',' * (row is rows[-1])}" for row in rows]
 
 
 def literal(text: str) -> str:

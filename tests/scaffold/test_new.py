@@ -1,6 +1,7 @@
 """From a table of joints to an import: the unedited skeleton is proved and runs."""
 
 import importlib
+import re
 import sys
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 from closedform.cli.commands import main
 from closedform.pipeline import trial
 from closedform.scaffold.chains.known import KnownMaker
+from closedform.scaffold.new import new
 
 pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
@@ -169,6 +171,32 @@ def test_a_forearm_without_extent_and_a_negative_link(
             assert found.any()
             reached = arm.pose(solutions[found], params)
             np.testing.assert_allclose(reached, np.broadcast_to(T, reached.shape), atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "told"),
+    [
+        (
+            "dh",
+            ELBOW,
+            "An arm of 3 joints.  Its table of Denavit and Hartenberg is in the standard",
+        ),
+        ("dh", SLIDES, "An arm of 3 joints, of which 2 slide.  Its table"),
+        (
+            "screws",
+            SCREWS,
+            "An arm of 2 joints.  All are zero in the posture of the file, and move",
+        ),
+    ],
+)
+def test_the_script_says_what_the_file_says_of_the_arm(
+    tmp_path: Path, kind: str, text: str, told: str
+) -> None:
+    """An article began with a request to say how the mechanism is built."""
+    table = tmp_path / "table.txt"
+    table.write_text(text, "utf-8")
+    script = new("arm", kind, table).text
+    assert told in "".join(re.findall(r'^    "(.*)",?$', script, re.MULTILINE))
 
 
 def test_new_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

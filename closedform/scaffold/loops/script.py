@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import textwrap
 from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import dataclass
@@ -37,7 +36,7 @@ from closedform.scaffold.loops.spherical import with_arcs
 from closedform.scaffold.loops.spindle import NEEDED, spindle
 from closedform.scaffold.loops.two_arms import two_arms
 from closedform.scaffold.loops.uprights import HINGED, uprights
-from closedform.scaffold.source import file_name, fitted, literal, variable
+from closedform.scaffold.source import file_name, fitted, literal, variable, wrapped_literal
 
 UNSAID = "say what it measures"
 BY_HAND = (
@@ -501,12 +500,6 @@ def _head(name: str, loop: Loop, way: _Way, origin: str) -> list[str]:
             f'meaning={literal(given.get("meaning") or UNSAID)}, source="{origin}"{sign})'
         )
     return lines
-
-
-def wrapped_literal(text: str) -> list[str]:
-    """A text as an argument in several lines, each a literal."""
-    rows = textwrap.wrap(text, 88, drop_whitespace=False)
-    return [f"    {literal(row)}{',' * (row is rows[-1])}" for row in rows]
 
 
 def _body(table: Table, way: _Way) -> list[str]:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from closedform.cli.plot import catalogue, drawings, module, write
-from closedform.emit.backends.latex import figures as article
 from closedform.pipeline import scripts
 
 CAPTIONS, PLACES = "captions.json", "places.json"
@@ -61,10 +61,18 @@ def draw_all(
         for target, texts in ((CAPTIONS, captions), (PLACES, places)):
             text = json.dumps(texts, indent=2, ensure_ascii=False)
             (folder / target).write_text(text + "\n", "utf-8")
-        article.write(folder, captions, places)
+        _tell_articles(folder, captions, places)
         if docs is not None:
             write(partial(thumbnail, name, robot), docs / "figures" / f"{name}.svg")
         yield f"{name}: {', '.join(f.name for f in drawn)}\n"
+
+
+def _tell_articles(folder: Path, captions: dict[str, str], places: dict[str, str]) -> None:
+    """Write what TeX includes; without SymPy there are no articles either."""
+    with suppress(ModuleNotFoundError):
+        from closedform.emit.backends.latex.figures import write as tell
+
+        tell(folder, captions, places)
 
 
 def read(target: Path) -> dict[str, str]:

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from closedform.plot.called import by_number
 from closedform.robots.mechanism import given_of
+from closedform.spelling import by_number
 
 Array = NDArray[np.float64]
 OK = 0

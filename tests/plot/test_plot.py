@@ -365,6 +365,21 @@ def test_without_matplotlib_a_message_says_what_to_install() -> None:
     assert done.stderr.rstrip().endswith("run: pip install 'closedform[plot]'")
 
 
+def test_articles_are_printed_without_matplotlib() -> None:
+    """``make`` derives everything before it installs what draws figures."""
+    code = "import sys; sys.modules['matplotlib'] = None; import closedform.emit.backends.latex"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_figures_are_drawn_without_sympy(tmp_path: Path) -> None:
+    code = (
+        "import sys; sys.modules['sympy'] = None; from closedform.cli.commands import main; "
+        f"sys.exit(main(['figures', 'four_bar', '-o', {str(tmp_path)!r}]))"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+    assert (tmp_path / "four_bar-mechanism.pdf").is_file()
+
+
 def test_a_low_section_has_a_low_figure() -> None:
     low = plot.singularities(module("scara"), ("x", "z"), resolution=SMALL)
     square = plot.singularities(module("scara"), ("x", "y"), resolution=SMALL)

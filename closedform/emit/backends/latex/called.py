@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable
 
 from closedform.model.derivation import Derivation
-from closedform.plot.called import GREEK, by_number
+from closedform.spelling import GREEK, by_number
 
 
 def as_it_is(name: str) -> str:

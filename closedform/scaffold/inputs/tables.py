@@ -344,14 +344,15 @@ def add_joint(table: Table, joint: str, kind: str, where: str) -> None:
 
 
 def _header(cells: Sequence[str], where: str) -> list[str]:
-    header = [h.strip().lower() for h in cells]
+    given = [h.strip() for h in cells]
+    header = [h.lower() for h in given]
     names = ", ".join(COLUMNS)
     if missing := [c for c in COLUMNS if c not in header]:
         raise TableError(
             f"{where}: the column {missing[0]} is missing; the first line must name the columns "
             f"{names}, separated by commas"
         )
-    if unknown := [c for c in header if c not in (*COLUMNS, "joint", "motors")]:
+    if unknown := [h for h in given if h.lower() not in (*COLUMNS, "joint", "motors")]:
         raise TableError(
             f"{where}: the column {shown_name(unknown[0])} is unknown; the columns are {names} "
             f"and optionally joint and motors"

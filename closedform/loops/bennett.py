@@ -299,6 +299,7 @@ def _rates(m: _Bennett) -> None:
         "Derivative of the follower with respect to the driver.",
         {"q": d.actuated},
         {"J": [[J]]},
+        branches=SINGLE,
         equation="J",
     )
 
@@ -331,6 +332,7 @@ def _draw(m: _Bennett) -> None:
             ("A", "D"): lengths[1],
         },
         program=p,
+        branches=SINGLE,
     )
 
 

@@ -44,7 +44,9 @@ def motion(robot: ModuleType, *, params: Any = None, unit: str = "") -> Any:
     (joint,), (task,) = robot.JOINTS, robot.TASK
     reach = (0.0, r.size) if r.slides else (-np.pi, np.pi)
     q = np.linspace(*reach, STEPS)
-    images, slopes, factors = (_by_mode(r, name, q) for name in ("fk", "jacobian", "singularities"))
+    images, slopes = (_by_mode(r, name, q) for name in ("fk", "jacobian"))
+    # some linkages are never singular
+    factors = _by_mode(r, "singularities", q) if robot.SINGULARITIES else np.empty((len(q), 1, 0))
     if task not in POSITION:
         images[1:][np.abs(np.diff(images, axis=0)) > np.pi] = np.nan  # it passes half a turn
     above, below = new_panels(2, 1, size=(5.2, 4.4))

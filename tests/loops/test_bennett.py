@@ -5,12 +5,14 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from closedform.derivations.figures import figures as figures_of
 from loop_files import derived, newton, script_of, unbroken
 from places import TESTS
 from sympy import Rational, sqrt
 
 from closedform import Derivation, Hinge, Paper, bennett, real
 from closedform.algebra.shapes import ShapeError
+from closedform.plot.catalogue import fits
 from closedform.scaffold.inputs.tables import TableError
 
 TEXT = (TESTS / "held_out_loops" / "bennett.toml").read_text("utf-8")
@@ -63,7 +65,17 @@ def test_the_inverse_and_the_rate(linkage: ModuleType) -> None:
         psi = linkage.fk([theta]).p[0]
         assert np.allclose(linkage.ik(psi).q, theta)
         moved = linkage.fk([theta + 1e-6]).p[0] - psi
-        assert np.allclose(moved / 1e-6, linkage.jacobian([theta]), rtol=1e-4)
+        assert np.allclose(moved / 1e-6, linkage.jacobian([theta])[0], rtol=1e-4)
+
+
+def test_what_depends_on_the_posture_has_an_axis_for_its_mode(linkage: ModuleType) -> None:
+    """No figure could be drawn."""
+    assert linkage.jacobian([0.3]).shape == (1, 1, 1)
+    assert linkage.skeleton([0.3]).shape == (1, len(linkage.SKELETON.points), 3)
+    names = [f.name for f in figures_of("bennett") if fits(linkage, f.name)]
+    assert names == ["mechanism", "motion"]
+    for name in names:
+        next(f for f in figures_of("bennett") if f.name == name).draw(linkage)
 
 
 def test_equal_bodies_turn_about_one_axis(linkage: ModuleType) -> None:

@@ -279,8 +279,8 @@ def regular_target(r: Robot, general: ArrayLike | None = None, mode: int = 0) ->
     q = np.vstack([first, r.draw(60, seed=1)])
     x = r.task(q)
     if r.modes:
-        there = np.asarray(np.isfinite(x.reshape(*x.shape[:2], -1)).all(-1).any(0))
-        x = x[:, mode if there[mode] else int(np.argmax(there))]
+        regular = (np.asarray(r.call("fk", q).status) == OK).any(axis=0).tolist()
+        x = x[:, mode if regular[mode] or True not in regular else regular.index(True)]
     finite = np.isfinite(x.reshape(len(x), -1)).all(1)
     found, status = r.branches(np.where(np.isfinite(x), x, 0.0))
     reached = np.where(finite, (status == OK).sum(-1), -1)
@@ -295,7 +295,7 @@ def _apart(r: Robot, postures: Array, x: Array) -> float:
     """How far the two most similar of some postures are apart, as a share of the drawing."""
     seen = [r.points(q)[r.mode_that_reaches(q, x)] for q in postures]
     gaps = [np.linalg.norm(a - b, axis=-1).max() for a, b in combinations(seen, 2)]
-    return float(min(gaps, default=0.0) / extent(seen))
+    return float(min(gaps) / extent(seen)) if gaps else 0.0
 
 
 def draw(

@@ -1,11 +1,14 @@
-"""Figures of an arm of one's own: five joints, called by words, as files of robots call them."""
+"""Figures of mechanisms of one's own: five joints called by words, and a linkage."""
 
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 from chains import arm, printed, solved
 from closedform.generated.numpy import scara
+from loop_files import derived, script_of
+from places import TESTS
 from sympy import Rational, pi
 
 from closedform import plot
@@ -64,3 +67,10 @@ def test_a_map_needs_no_factors(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(scara, "__all__", [n for n in scara.__all__ if n != "singularities"])
     axes = plot.workspace(scara, ("x", "y"), resolution=60)
     assert [text.get_text() for text in axes.get_legend().get_texts()][-1] == "branches end"
+
+
+def test_branches_are_those_of_a_mode_that_is_not_singular(tmp_path: Path) -> None:
+    """In the first modes of a Peaucellier linkage the rhombus is folded, and no branch is OK."""
+    text = (TESTS / "held_out_loops" / "peaucellier.toml").read_text("utf-8")
+    linkage = derived("peaucellier", script_of("peaucellier", text, tmp_path), tmp_path)
+    assert plot.branches(linkage).figure.axes

@@ -87,8 +87,10 @@ def _broken(text: str, hidden: str, start: int, end: int) -> list[str]:
     if _at_top(hidden, start, end, (COMPREHENSION,)):
         return []
     if TEXT.fullmatch(text, start, end):
-        *parts, last = _words(text[start + 1 : end - 1], LINE // 2 + 20)
-        return [f"{text[start]}{e}{text[start]}" for e in (*(f"{part} " for part in parts), last)]
+        *parts, last = _words(words := text[start + 1 : end - 1].rstrip(" "), LINE // 2 + 20)
+        last += text[start + 1 + len(words) : end - 1]
+        rows = (*(f"{part} " for part in parts), last) if parts else ()  # one word stays whole
+        return [f"{text[start]}{row}{text[start]}" for row in rows]
     if values := _at_top(hidden, start, end, (",",)):
         breaks = [start - 1, *(k for k, _ in values), end]
         return [f"{text[a + 1 : b].strip()}," for a, b in pairwise(breaks) if text[a + 1 : b]]

@@ -53,3 +53,13 @@ def test_no_line_of_a_script_is_long(tmp_path: Path) -> None:
     ):
         assert max(map(len, text.splitlines())) <= LINE
         ast.parse(text)
+
+
+@pytest.mark.parametrize(
+    "text", ["q" * 150, "q" * 150 + " ", "abc " * 60, "a " + "q" * 150 + "  b"]
+)
+def test_a_text_is_the_same_in_several_lines(text: str) -> None:
+    """A long word had no end, in a meaning or a unit without blanks."""
+    line = f'x = d.parameter("x", meaning="{text}", unit="m")'
+    broken = "\n".join(fitted(line))
+    assert ast.dump(ast.parse(broken)) == ast.dump(ast.parse(line))

@@ -14,7 +14,7 @@ from closedform.lemmas.links import degenerate, differs_from_zero, named, vanish
 from closedform.lemmas.pairs import any_pair, direction
 from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.lemmas.rotate import Because, terms
-from closedform.lemmas.tangent import ANYWHERE, Goal, Tangency
+from closedform.lemmas.tangent import ANYWHERE, Goal, Reached, Tangency
 from closedform.model.functions import choose, real
 from closedform.model.inverse import Relation
 from closedform.model.lemma import Lemma, label
@@ -87,18 +87,7 @@ def tilt(
         flag = p.vanishes(f"level{tag}", width, 1, "the axes of the wrist are parallel", free=(x,))
     cosine = p.let(f"level_at{tag}", (above - below) / 2)
     at = Amplitude(x=x, a=sp.S.Zero, b=k, c=cosine, sigma=sigma, h=k, below=below, above=above)
-    root = p.let(f"root{tag}", at.root, nonnegative=True)
-    found = toward.reached(
-        Tangency(
-            chain=chain,
-            at=at,
-            root=root,
-            width=width,
-            allowance=2 * ROUNDING,
-            suffix=tag,
-            free=flag,
-        )
-    )
+    found = _reached(chain, at, width, tag, free=flag, toward=toward)
     pair, means = named(chain, x, found.pair)
     lemma = Lemma(
         "tilt of a wrist",
@@ -136,8 +125,8 @@ Its solutions are then $\theta = \operatorname{atan2}(g_2 w_1 - g_1 w_2,\ g_1 w_
 stated $\operatorname{atan2}$, because the parts of $g$ and $w$ across the axis have the lengths
 $\sin k$ and $\sin j$.  So this is $a\sin\theta + b\cos\theta = c$ with $c = v_3 - g_3 w_3$ and
 $g_3 w_3 = \cos k\cos j$.  There $h - c = \cos(k - j) - v_3 = m$ and $h + c = v_3 - \cos(k + j) =
-n$.  Each cosine is computed as $1 - \sin^2/(1 + |\cos|) - (|\cos| - \cos)$, which keeps the digits
-of a small angle.""",
+n$.  Where a cosine is positive, $1 - \cos$ is computed as $\sin^2/(1 + \cos)$, which keeps the
+digits of a small angle.""",
     exception=r"""If $h = 0$, two axes of the wrist are one; then every $\theta$ is a solution, or
 none, and the joint is free.""",
     rests_on=("a sin x + b cos x = c",),
@@ -204,18 +193,7 @@ def tilt_between(
     flag = p.vanishes(f"level{tag}", h, 1, "two axes of the wrist are one", free=(x,))
     cosine = p.let(f"level_at{tag}", (above - below) / 2)
     at = Amplitude(x=x, a=a, b=b, c=cosine, sigma=sigma, h=h, below=below, above=above)
-    root = p.let(f"root{tag}", at.root, nonnegative=True)
-    found = toward.reached(
-        Tangency(
-            chain=chain,
-            at=at,
-            root=root,
-            width=width,
-            allowance=2 * ROUNDING,
-            suffix=tag,
-            free=flag,
-        )
-    )
+    found = _reached(chain, at, width, tag, free=flag, toward=toward)
     chain.tangent.append(found.tangent)
     pair, means = named(chain, x, found.pair)
     c = v3 - g3 * w3
@@ -241,6 +219,24 @@ def tilt_between(
     on_axis = [None if at is None else at | {v3: (g3 * w3).xreplace(at)} for at in loci]
     cases = degenerate(flag, on_axis, x, meaning)
     return Applied(lemma, pair, means, dict(zip((v1, v2, v3), _unit(), strict=True)), cases)
+
+
+def _reached(
+    chain: Chain, at: Amplitude, width: sp.Symbol, tag: str, *, free: Any, toward: Goal
+) -> Reached:
+    """The turn of a wrist for a direction, which is known to some units in the last place."""
+    root = chain.program.let(f"root{tag}", at.root, nonnegative=True)
+    return toward.reached(
+        Tangency(
+            chain=chain,
+            at=at,
+            root=root,
+            width=width,
+            allowance=2 * ROUNDING,
+            suffix=tag,
+            free=free,
+        )
+    )
 
 
 def _versine(square: sp.Expr, cosine: sp.Expr) -> sp.Expr:

@@ -161,9 +161,12 @@ class _Batch:
         gaps = self.truth.gap(solutions[:, :, None], exact[:, None])
         own = np.diagonal(gaps, axis1=1, axis2=2)[:, :, None]
         judged = ((status == OK) & known)[:, :, None] & known[:, None] & (own > apart)
+        unequal = _spread(self.sample.parameters) >= UNEQUAL
         for row, branch, other in np.argwhere(judged & (gaps < own / 1e3)):
             where = self._where(row)
-            self.finding.fail(f"branch {branch} has the answer of branch {other}; {where}")
+            self.finding.fail(
+                f"branch {branch} has the answer of branch {other}; {where}", limited=unequal
+            )
 
     def _where(self, row: Any) -> str:
         sample = self.sample

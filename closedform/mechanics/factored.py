@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
+from closedform.algebra.circles import factored_on_circles, shortest_on_circles
 from closedform.algebra.factoring import factored
 from closedform.algebra.normal_form import determinant
 from closedform.algebra.operations import operations
@@ -13,8 +14,16 @@ from closedform.mechanics.frames import merge_angles
 def factored_determinant(J: sp.Matrix) -> sp.Expr:
     """A determinant as a polynomial in sines and cosines, reduced on their circles and factored."""
     reduced = determinant(J)
-    found = min(map(factored, (reduced, merge_angles(reduced))), key=operations)
-    return _in_decimals(found)
+    split = factored_on_circles(factored(reduced))
+    merged = sp.Mul(*map(_shortest, sp.Mul.make_args(split)))
+    forms = (factored(reduced), factored(merge_angles(reduced)), split, merged)
+    return _in_decimals(min(forms, key=operations))
+
+
+def _shortest(factor: sp.Expr) -> sp.Expr:
+    base, power = factor.as_base_exp()
+    merged: sp.Expr = factored(merge_angles(shortest_on_circles(base))) ** power
+    return merged
 
 
 def _in_decimals(product: sp.Expr) -> sp.Expr:

@@ -7,10 +7,12 @@ from pathlib import Path
 
 import pytest
 import sympy as sp
+from chains import arm, solved
 from places import ROOT
 
 from closedform.emit.backends.latex.algorithm import Algorithm
 from closedform.emit.backends.latex.article import Page
+from closedform.emit.backends.latex.cases import Cases
 from closedform.emit.backends.latex.formulas import FITS, Printer, integer, is_nested, measure
 from closedform.emit.backends.latex.inequalities import inequalities
 from closedform.emit.backends.latex.inverse import Told
@@ -19,6 +21,7 @@ from closedform.emit.backends.latex.wide import Lines
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Vanishes, real
 from closedform.proof.prove import Proof
+from closedform.scaffold.chains.propose import propose
 
 GENERATED = ROOT / "generated" / "latex"
 ARTICLES = sorted(p for p in GENERATED.glob("*.tex") if p.stem != "closedform")
@@ -338,3 +341,16 @@ def test_a_turned_hand_is_called_as_the_inverse_calls_it() -> None:
     sheet = page("agile_wrist")
     [hand] = sheet.derivation["fk"].outputs
     assert [left for left, _ in sheet.array(hand, [*range(1, 10)])] == ["R"]
+
+
+def test_values_that_would_be_long_keep_their_names() -> None:
+    """With all lengths and twists as parameters the special cases took minutes, and recursed."""
+    names = ["a1", "a2", "a3", "d1", "d2", "d3", "d4", "k1", "k2", "k3", "k4", "k5"]
+    a1, a2, a3, d1, d2, d3, d4, k1, k2, k3, k4, k5 = map(real, names)
+    rows = [(a1, k1, d1), (a2, k2, d2), (a3, k3, d3), (0, k4, d4), (0, k5, 0), (0, 0, 0)]
+    d, serial = arm(rows, **dict.fromkeys(names, "1"))
+    solved(d, serial, propose(serial).source)
+    page = Page(d, Proof(d.name, d.paper.key, (), 0, ()))
+    cases = Cases(page.algorithm(d["ik"])).told()
+    assert len(cases) == len(set(cases)) > 4
+    assert all(len(c.where) < 300 and "Constant" not in c.where for c in cases)

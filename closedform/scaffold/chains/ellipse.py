@@ -16,6 +16,10 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.algebra.circles import shortest_on_circles
+from closedform.algebra.factoring import factored
+from closedform.algebra.normal_form import normal
+from closedform.algebra.operations import operations
 from closedform.scaffold.chains.chainlinks import Single
 from closedform.scaffold.chains.maker import Z
 
@@ -63,8 +67,10 @@ class Ellipse:
 
 
 def _simple(e: sp.Expr) -> sp.Expr:
-    """Simplified, in the functions that a script knows."""
-    return sp.simplify(e).replace(sp.tan, lambda angle: sp.sin(angle) / sp.cos(angle))
+    """The shorter of the same and a quotient of products, without squares that circles spare."""
+    parts = (sp.expand(normal(part)) for part in sp.fraction(sp.together(e)))
+    top, bottom = (factored(shortest_on_circles(part)) for part in parts)
+    return min(top / bottom, e, key=operations)
 
 
 def folds(two: Single, three: Single) -> bool:

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from closedform.algebra.normal_form import equal
 from closedform.mechanics.frames import plane_angle, rotation
 from closedform.scaffold.chains.chainlinks import Single, Singles, parallel
 from closedform.scaffold.chains.ellipse import Ellipse, folds
@@ -486,7 +487,7 @@ class SubproblemMaker(WristMaker):
         square, p = sp.Symbol("square"), point("p")
         g, s, t, u = one.end * Z, one.shift, two.shift, three.shift
         self.require(
-            sp.simplify(Z.dot(g.cross(s))) != 0,
+            not equal(Z.dot(g.cross(s)), sp.S.Zero),
             f"the joint that is given can make axes {one.number} and {two.number} parallel, and "
             f"they meet elsewhere",
             "The point where they meet must stay where it is; give another joint.",

@@ -12,16 +12,22 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import combinations, groupby
+from itertools import groupby
 from typing import Any
 
 import sympy as sp
 
+from closedform.algebra.operations import operations
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.inequalities import equality, inequalities
 from closedform.emit.backends.latex.listing import Line, merged, parts_first, unless, whole
 from closedform.emit.backends.latex.names import is_word, program_name
-from closedform.emit.backends.latex.plain import angle_of, divides_by_root, without_common_factors
+from closedform.emit.backends.latex.plain import (
+    angle_of,
+    divides_by_root,
+    sums_of_angles,
+    without_common_factors,
+)
 from closedform.emit.backends.latex.rotations import is_turned
 from closedform.emit.backends.latex.sheet import Sheet
 from closedform.emit.backends.latex.subject import Subject
@@ -43,6 +49,8 @@ OFTEN = 5
 """A root that occurs more often has a name."""
 INDENTED = 10.0
 """How much narrower the lines of an algorithm are than a page."""
+LONGEST = 150
+"""A value with more operations is written with names that the algorithm does not print."""
 STATED = 3
 """A condition with more equations than that is given in words."""
 FACTORS = "factors"
@@ -283,7 +291,7 @@ class Algorithm:
         """The same with the names of quantities that occur in it; signs have the square 1."""
         powers = {p: p.base ** (p.exp % 2) for p in value.atoms(sp.Pow) if p.base in self.signs}
         value = value.xreplace({p: e for p, e in powers.items() if p.exp.is_Integer})
-        value = self._without_detours(value.xreplace(self._sums_of_angles(value)))
+        value = self._without_detours(value.xreplace(sums_of_angles(value)))
         value = self.page.lines.tidy(value)
         value = value.xreplace({e: s for e, s in self.quantities.items() if e != value})
         return self._without_norms(value)
@@ -324,29 +332,19 @@ class Algorithm:
                 value = other
         return value
 
-    def _sums_of_angles(self, value: sp.Expr) -> dict[sp.Basic, sp.Expr]:
-        """Sums that are the sine or the cosine of a sum of two angles."""
-        angles = sorted({f.args[0] for f in value.atoms(sp.sin)}, key=str)
-        found: dict[sp.Basic, sp.Expr] = {}
-        for a, b in combinations(angles, 2):
-            for sign in (1, -1):
-                sine = sp.sin(a) * sp.cos(b) + sign * sp.cos(a) * sp.sin(b)
-                cosine = sp.cos(a) * sp.cos(b) - sign * sp.sin(a) * sp.sin(b)
-                total = a + sign * b
-                found |= {sine: sp.sin(total), -sine: -sp.sin(total)}
-                found |= {cosine: sp.cos(total), -cosine: -sp.cos(total)}
-        return found
-
     def full(self, value: Any) -> Any:
-        """The same, with names that are not printed replaced by their values."""
+        """The same, with names that are not printed replaced by their values if they are short."""
+        whole = value
         for _ in range(len(self.values)):
-            value = substitute(self._generic(value), self.known)
-            hidden = value.free_symbols & self.values.keys() - self.needed - self.printed
+            whole = substitute(self._generic(whole), self.known)
+            hidden = whole.free_symbols & self.values.keys() - self.needed - self.printed
             hidden -= self.unknowns
             if not hidden:
                 break
-            value = substitute(value, {s: self.values[s] for s in hidden})
-        return self.short(value) if isinstance(value, sp.Expr) else value
+            whole = substitute(whole, {s: self.values[s] for s in hidden})
+            if operations(whole) > LONGEST:
+                return self.shown(value)
+        return self.short(whole) if isinstance(whole, sp.Expr) else whole
 
     # Lines
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from closedform.algebra.operations import operations
 from closedform.emit.backends.latex.algorithm import ONCE, Algorithm
 from closedform.emit.backends.latex.inequalities import equality
 from closedform.emit.backends.latex.plain import is_rounding
@@ -15,9 +14,6 @@ from closedform.emit.backends.latex.sources import explained
 from closedform.model.expressions import substitute
 from closedform.model.functions import Bound, Determined, Let, Vanishes
 from closedform.model.names import listed
-
-LONGEST = 150
-"""A condition with more operations is written with names that the algorithm does not print."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +62,7 @@ class Cases:
         for statement in self.algorithm.function.body:
             if isinstance(statement, Determined):
                 cases.append(self._determined(statement))
-        return cases
+        return list(dict.fromkeys(cases))
 
     def _told(self, flag: Vanishes) -> list[str] | None:
         """What the algorithms before this one say of a flag that they have."""
@@ -169,11 +165,10 @@ class Cases:
         rest: list[str] = []
         first, scale = statement.name, self.algorithm.full(statement.scale)
         value = None if first else self.algorithm.full(statement.value)  # which can be long
-        if scale in (0, value) or (value and value.has(sp.Piecewise)):  # all is in the flags
+        in_cases = any(e is not None and e.has(sp.Piecewise) for e in (value, scale))
+        if scale in (0, value) or in_cases:  # all is in the flags, or too long
             return Case(f"within rounding of the case that {meaning}", "", answer, "singular")
         if value:
-            if operations(value) > LONGEST:
-                value = self.algorithm.shown(statement.value)
             rows = self.page.equations("", value)
             first, rest = rows[0][1], [f"${a} = {b}$" for a, b in rows[1:]]
         # TeX breaks no line between two factors by itself

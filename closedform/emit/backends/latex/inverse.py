@@ -190,15 +190,19 @@ class Told:
 
     def proved(self, result: InverseResult) -> dict[str, Any]:
         page = self.page
-        symbols = {s.name: s for f in page.derivation.functions for s in f.symbols}
+        symbols = {str(s): s for s in self.algorithm.values}
+        symbols |= {s.name: s for f in page.derivation.functions for s in f.symbols}
         symbols |= {p.name: p.symbol for p in page.derivation.parameters}
         named = self.named_bounds(result.assumptions)
-        assumed = self.algorithm.inequalities(
-            [
-                self.algorithm.bound(named[a]) if a in named else self.assumption(a, symbols)
-                for a in result.assumptions
-            ]
-        )
+        held = {
+            a: self.algorithm.bound(named[a]) if a in named else self.assumption(a, symbols)
+            for a in result.assumptions
+        }
+        # a lemma of unit vectors is proved for all of them, in symbols that stand nowhere else
+        told = [e for e in held.values() if {str(s) for s in e.free_symbols} <= symbols.keys()]
+        assumed = self.algorithm.inequalities(told)
+        if len(told) < len(held):
+            assumed.append("the roots of the lemmas are real")
         how = {
             "generic": "by a Groebner basis over the field of parameters and targets",
             "specialised": "by Groebner bases, with the same result at several rational points",
@@ -214,8 +218,7 @@ class Told:
         }
 
     def assumption(self, text: str, symbols: Mapping[str, sp.Symbol]) -> sp.Expr:
-        names = {str(s): s for s in self.algorithm.values}
-        value: sp.Expr = formula(text, lambda n: symbols.get(n, names.get(n, real(n))), PRINTED)
+        value: sp.Expr = formula(text, lambda n: symbols.get(n, real(n)), PRINTED)
         return self.algorithm.full(value)
 
     def named_bounds(self, assumed: Sequence[str]) -> dict[str, sp.Symbol]:

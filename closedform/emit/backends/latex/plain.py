@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, fields, replace
+from itertools import combinations
 from types import MappingProxyType
 from typing import Any
 
@@ -456,6 +457,20 @@ def divides_by_root(factor: sp.Expr, roots: Mapping[sp.Symbol, sp.Expr]) -> bool
     return (power == -1 and base in roots) or (power == -sp.S.Half and base.is_Add)
 
 
+def sums_of_angles(value: sp.Expr) -> dict[sp.Basic, sp.Expr]:
+    """Sums that are the sine or the cosine of a sum of two angles."""
+    angles = sorted({f.args[0] for f in value.atoms(sp.sin)}, key=str)
+    found: dict[sp.Basic, sp.Expr] = {}
+    for a, b in combinations(angles, 2):
+        for sign in (1, -1):
+            sine = sp.sin(a) * sp.cos(b) + sign * sp.cos(a) * sp.sin(b)
+            cosine = sp.cos(a) * sp.cos(b) - sign * sp.sin(a) * sp.sin(b)
+            total = a + sign * b
+            found |= {sine: sp.sin(total), -sine: -sp.sin(total)}
+            found |= {cosine: sp.cos(total), -cosine: -sp.cos(total)}
+    return found
+
+
 __all__ = [
     "Plain",
     "angle_of",
@@ -463,5 +478,6 @@ __all__ = [
     "divides_by_root",
     "is_rounding",
     "plain",
+    "sums_of_angles",
     "without_common_factors",
 ]

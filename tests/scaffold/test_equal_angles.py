@@ -36,6 +36,27 @@ def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     return rows, printed(d, tmp_path_factory.mktemp("arm"))
 
 
+@pytest.mark.parametrize("name", ARMS)
+@pytest.mark.parametrize("known", [k, j])
+def test_one_of_the_angles_is_a_number_with_roots(name: str, known: sp.Symbol, tmp_path) -> None:
+    """Solutions are counted in rational numbers, and the sine of 60 degrees is none."""
+    rows = [tuple(sp.sympify(e).subs(known, -pi / 3) for e in row) for row in ARMS[name]]
+    other = j if known == k else k
+    d, serial = arm(rows, **{other.name: "1"})
+    solved(d, serial, propose(serial).source)
+    assert prove(d).inverses[0].branches == 8
+    module, rng = printed(d, tmp_path), np.random.default_rng(3)
+    q = rng.uniform(-3, 3, (500, 6))
+    q[:100, 1 if name == "spherical shoulder" else 4] = 0
+    for angle in (1.0, np.pi / 3, np.pi / 3 + 1e-9, -2 * np.pi / 3):
+        T = pose(rows, (angle, angle), q)
+        answers, status = module.ik(T, params=(angle,))
+        assert np.isin(status, (OK, SINGULAR)).any(axis=-1).all()
+        reached = pose(rows, (angle, angle), answers)
+        away, turned = misses(reached, T, np.where(status == OK, OK, UNREACHABLE))
+        assert away < 8e-12 and turned < 1e-12
+
+
 def pose(rows: list, angles: tuple[float, float], q: np.ndarray) -> np.ndarray:
     at = dict(zip((k, j), angles, strict=True))
     T = np.eye(4)

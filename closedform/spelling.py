@@ -12,8 +12,10 @@ ALPHABET = [
 ]  # fmt: skip
 GREEK = {*ALPHABET, *(g.capitalize() for g in ALPHABET), "varphi"}
 LETTERS = "|".join(sorted(GREEK))
-WORDS = re.compile(rf"(?=.*[\d_])(?!(?:{LETTERS})(?![a-z]))[A-Za-z_]*[A-Za-z]{{3}}\w*")
-"""The name of a joint that is a word and a number, or more than a word, and no Greek letter."""
+WORD = re.compile(rf"(?!(?:{LETTERS})(?![a-z]))[A-Za-z_]*[A-Za-z]{{3}}\w*")
+"""The name of a joint that contains a word, and is no Greek letter."""
+MORE = re.compile(r"[\d_]|[a-z][A-Z]")
+"""What is in a name that is a word and a number, or more than a word."""
 
 
 def by_number(joints: Mapping[str, str], taken: Collection[str]) -> dict[str, str]:
@@ -22,7 +24,7 @@ def by_number(joints: Mapping[str, str], taken: Collection[str]) -> dict[str, st
     A joint that turns is theta with its number in the chain, another one q with its number.  If
     such a name is taken, all joints keep theirs.
     """
-    if not joints or not all(map(WORDS.fullmatch, joints)):
+    if not joints or not all(WORD.fullmatch(n) and MORE.search(n) for n in joints):
         return {}
     letters = {"revolute": "theta"}
     found = {n: f"{letters.get(kind, 'q')}{k}" for k, (n, kind) in enumerate(joints.items(), 1)}

@@ -75,6 +75,7 @@ def test_many_branches_have_their_signs_in_columns_over_pages(signs: int, many: 
     [
         (("left_joint1", "left_joint2"), [r"\theta_{1}", r"\theta_{2}"]),
         (("shoulder_pan_joint", "elbow_joint"), [r"\theta_{1}", r"\theta_{2}"]),
+        (("LShoulderPitch", "LElbowYaw"), [r"\theta_{1}", r"\theta_{2}"]),
         (("rho1", "theta2"), [r"\rho_{1}", r"\theta_{2}"]),
         (("q1", "q2"), ["q_{1}", "q_{2}"]),
         (("joint1", "elbow"), [r"\mathrm{joint}_{1}", r"\mathrm{elbow}"]),
@@ -99,6 +100,10 @@ def test_what_a_lemma_finds_of_a_joint_has_its_number() -> None:
     assert page.math(real("c_arm_joint1")) == r"c_{\theta_{1}}"
     assert page.math(sp.cos(first + last)) == r"\mathrm{c}_{12}"
     assert page.prose("arm_joint1 is free") == r"$\theta_{1}$ is free"
+    d = Derivation("arm", "Arm", scara.d.paper, "An arm.")
+    d.joint("LShoulderPitch")
+    text = "the axis of LShoulderPitch"
+    assert Page(d, Proof("arm", "", (), 0, ())).prose(text) == r"the axis of $\theta_{1}$"
 
 
 def test_a_length_of_that_name_keeps_it() -> None:

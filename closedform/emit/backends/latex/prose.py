@@ -11,6 +11,7 @@ from closedform.emit.text import BOLD_LETTERS
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Let
 from closedform.model.step import Step
+from closedform.spelling import MORE
 
 SYMBOL_NAMES = {"det": r"\det", "lamda": r"\lambda", "loff": r"l_{\mathrm{off}}"}
 """Symbols that the rule of :func:`symbol_name` would misread."""
@@ -293,7 +294,7 @@ class Prose:
         self.known = GREEK | set(SYMBOL_NAMES)
         # in a sentence, "elbow" and "wrist" are words, also where a symbol has this name
         self.known |= {n for n in derivation.written if not ENGLISH.fullmatch(n)}
-        self.known |= {n for n in names - {"a", "A", "I"} if len(n) < 3 or re.search(r"\d|_", n)}
+        self.known |= {n for n in names - {"a", "A", "I"} if len(n) < 3 or MORE.search(n)}
 
         self.angles: dict[str, str] = {}
         """Angles of an inverse whose names are words, in LaTeX."""

@@ -353,11 +353,15 @@ class Slide(Slider):
         m = chain.let("m", w.dot(s))
         off = w.cross(s) if len(w) == 3 else sp.Matrix([cross_in_plane(w, s)])
         parts = [e for e in off if e != 0]
-        size = sp.sqrt(sum(e**2 for e in parts)) if len(parts) > 1 else parts[0]
+        size = sp.sqrt(sum(e**2 for e in parts)) if len(parts) > 1 else sum(parts, sp.S.Zero)
         signed = {} if len(parts) == 1 else {"nonnegative": True}  # False would say negative
-        aside = chain.let("aside", size, **signed)
+        aside = chain.let("aside", size, **signed) if parts else size
         start = len(p.body)
-        root = chain.half_chord("root", r, aside, "the rod reaches the line of the slider")
+        reaches = "the rod reaches the line of the slider"
+        if parts:
+            root = chain.half_chord("root", r, aside, reaches)
+        else:  # along the line the rod is the half chord itself, whose square would overflow
+            root = chain.bound("root", r, reaches)
         value = chain.let("slide", m - sigma * root)
         lemma = Lemma(
             "line and sphere",

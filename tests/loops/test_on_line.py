@@ -69,6 +69,52 @@ def test_a_leg_of_other_sizes_is_named(tmp_path: Path) -> None:
     assert "the leg of a2 is not examined" in loop.notes[0]
 
 
+CYLINDER = [
+    (", driven = true", ""),
+    ("ground = {", "tube = {}\npiston = {}\nground = {O = [0, 0, 0], "),
+    (
+        "[joints]\n",
+        """[joints]
+f = {between = ["ground", "tube"], at = "O", kind = "universal"}
+q = {between = ["tube", "piston"], at = "O", kind = "prismatic", driven = true}
+g = {between = ["piston", "table"], at = "P", kind = "spherical"}
+""",
+    ),
+]
+
+
+def test_a_cylinder_may_be_in_line_with_the_table_that_it_lifts(tmp_path: Path) -> None:
+    """Its foot is on the line: the rod of the slide has no distance from it."""
+    script = script_of("lifted", text_with(*CYLINDER), tmp_path)
+    loop = derived("lifted", script, tmp_path, crosscheck=True)
+    q = np.array([[0.05], [0.3], [0.5]])
+    travel, status = loop.fk(q)
+    assert not status.any() and np.allclose(travel[..., 0], q * [-1, 1], atol=1e-15)
+    assert np.allclose(loop.ik(travel).q[..., 0, 0], q)
+    assert np.allclose(loop.jacobian(q)[..., 0, 0], [-1, 1])
+    assert np.allclose(loop.jacobian([1e300])[..., 0, 0], [-1, 1])  # nothing is squared
+
+
+def test_two_sliders_may_be_on_one_line(tmp_path: Path) -> None:
+    text = """
+hand = "x"
+[bodies]
+ground = {O = [0, 0]}
+ram = {B = [0.1, 0]}
+car = {A = [0, 0]}
+rod = {length = 0.3}
+[joints]
+q = {between = ["ground", "car"], at = "O", kind = "prismatic", axis = [1, 0], driven = true}
+a = {between = ["car", "rod"], at = "A"}
+b = {between = ["rod", "ram"], at = "B"}
+x = {between = ["ground", "ram"], at = "O", kind = "prismatic", axis = [1, 0]}
+"""
+    loop = derived("on_one_line", script_of("on_one_line", text, tmp_path), tmp_path)
+    x, status = loop.fk([0.7])
+    assert not status.any() and np.allclose(sorted(x.ravel()), [0.3, 0.9])
+    assert np.allclose(np.sort(loop.ik([0.3]).q.ravel()), [0.1, 0.7])
+
+
 # a third leg whose hinges are along the line
 THIRD_LEG = [
     ("[bodies]\n", '[bodies]\nlower3 = {length = "l"}\nupper3 = {length = "r"}\n'),

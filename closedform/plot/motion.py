@@ -42,7 +42,7 @@ def motion(robot: ModuleType, *, params: Any = None, unit: str = "") -> Any:
     if len(robot.JOINTS) != 1 or len(robot.TASK) != 1:
         raise ValueError(f"{r.name} must have one joint and one coordinate of the task")
     (joint,), (task,) = robot.JOINTS, robot.TASK
-    reach = (0.0, r.size) if r.slides else (-np.pi, np.pi)
+    reach = r.reach(0)
     q = np.linspace(*reach, STEPS)
     images, slopes = (_by_mode(r, name, q) for name in ("fk", "jacobian"))
     # some linkages are never singular

@@ -16,6 +16,17 @@ from closedform.spelling import by_number
 Array = NDArray[np.float64]
 OK = 0
 TRIALS = 400
+MANY = 20_000
+SELDOM = 0.05
+"""If fewer of random joints let a loop close, its slides are drawn over a wider range."""
+SHORTER = (-8.0, 1.0)
+"""Their shortest and longest length, in powers of two of the size."""
+FARTHER = 4
+"""Poses are sought up to 2^4 times nearer and farther."""
+WIDEST = 16
+"""Mechanisms whose lengths are numbers are sought from 2^-16 to 2^16 of their unit."""
+MORE_THAN_SLIDES = 1.5
+"""A drawing that is hardly larger than its shortest slides has no lengths."""
 ELEVATION, AZIMUTH = 22.0, -58.0
 """The direction from which a drawing in space is seen, in degrees."""
 _e, _a = np.radians(ELEVATION), np.radians(AZIMUTH)
@@ -114,11 +125,33 @@ class Robot:
             return 0
         return int(np.argmax(np.asarray(self.call("fk", q).status) == OK))
 
-    @property
+    @cached_property
     def size(self) -> float:
-        """The sum of the lengths, which is the scale of every figure; 1 on a sphere."""
+        """The sum of the lengths, which is the scale of every figure; 1 on a sphere.
+
+        If the lengths are numbers, it is how large the mechanism is where it can be assembled.
+        """
         pairs = zip(self.module.Parameters._fields, self.params, strict=True)
-        return sum(abs(float(v)) for name, v in pairs if not self.is_angle(name)) or 1.0
+        return sum(abs(float(v)) for name, v in pairs if not self.is_angle(name)) or self._extent()
+
+    def _extent(self) -> float:
+        """The size of the drawing where slides, or positions, are as small as they can be."""
+        if not self.slides and self.has_forward_map:
+            return 1.0
+        for scale in 2.0 ** np.arange(-WIDEST, WIDEST):
+            if self.has_forward_map:
+                drawn = self.points(self._drawn(TRIALS, 0, scale))
+            else:
+                x = self._posed(TRIALS, 0, scale)
+                q, status = self.branches(x)
+                met = status == OK
+                at = np.broadcast_to(x[:, None], (*met.shape, *x.shape[1:]))[met]
+                drawn = np.asarray(self.call("skeleton", at, q[met]))
+            drawn = drawn[np.isfinite(drawn).all((-1, -2))]
+            if len(drawn):
+                found = float(np.median(np.ptp(drawn, axis=-2).max(-1)))
+                return found if found > 2.0**-WIDEST * MORE_THAN_SLIDES else 1.0
+        return 1.0
 
     def is_angle(self, parameter: str) -> bool:
         """Whether a parameter is an angle, not a length."""
@@ -143,43 +176,103 @@ class Robot:
         """Random joints; slides have lengths like those of the mechanism, twin arms agree.
 
         If assembly modes give a pose, the joints are those of random poses; without an inverse,
-        slides, such as a rack, are near zero.
+        slides, such as a rack, are near zero.  Slides that hardly ever let a loop close, such as a
+        short cylinder, have values at which it does.
         """
-        q = np.random.default_rng(seed).uniform(-np.pi, np.pi, (n, len(self.module.JOINTS)))
-        for k in self.slides:
-            q[:, k] = self.size / 2 * (1 + q[:, k] / (3 * np.pi))
-        names = list(self.module.JOINTS)
-        for k, name in enumerate(names):
-            twin = name[:-1] + "R"
-            if name.endswith("L") and twin in names:
-                q[:, k] = q[:, names.index(twin)] + 0.02 * q[:, k]
+        q = self._drawn(n, seed, self.size)
         posed = self.modes and "T14" in self.module.TASK
         if posed and not self.has("ik"):
             q[:, self.slides] -= self.size / 2
         elif posed:  # random legs of a platform hardly ever close
             answers = self.call("ik", self.poses(n, seed)).q[:, 0]
             q = np.where(np.isfinite(answers).all(-1, keepdims=True), answers, q)
+        elif len(self._closing):
+            chosen = np.random.default_rng(seed + 1).integers(len(self._closing), size=n)
+            q = np.where(self._closes(q)[:, None], q, self._closing[chosen])
         return q
 
+    def _drawn(self, n: int, seed: int, size: float) -> Array:
+        """Random angles, and slides around the half of a size."""
+        q = np.random.default_rng(seed).uniform(-np.pi, np.pi, (n, len(self.module.JOINTS)))
+        for k in self.slides:
+            q[:, k] = size / 2 * (1 + q[:, k] / (3 * np.pi))
+        names = list(self.module.JOINTS)
+        for k, name in enumerate(names):
+            twin = name[:-1] + "R"
+            if name.endswith("L") and twin in names:
+                q[:, k] = q[:, names.index(twin)] + 0.02 * q[:, k]
+        return q
+
+    def _closes(self, q: Array) -> NDArray[np.bool_]:
+        """Whether the mechanism can be assembled with some joints."""
+        return np.asarray(np.isfinite(self.points(q)).all((-1, -2)).any(-1))
+
+    @cached_property
+    def _closing(self) -> Array:
+        """Joints at which a loop closes, if slides around half of the size hardly ever let it."""
+        usual = self._drawn(TRIALS, 0, self.size)
+        if not (self.slides and self.modes) or self._closes(usual).mean() > SELDOM:
+            return usual[:0]
+        rng = np.random.default_rng(0)
+        q = rng.uniform(-np.pi, np.pi, (MANY, usual.shape[-1]))
+        q[:, self.slides] = self.size * 2.0 ** rng.uniform(*SHORTER, (MANY, len(self.slides)))
+        return np.asarray(q[self._closes(q)])
+
+    def reach(self, joint: int) -> tuple[float, float]:
+        """Between which values a joint is shown."""
+        if joint not in self.slides:
+            return -np.pi, np.pi
+        if not len(self._closing):
+            return 0.0, self.size
+        low, high = np.quantile(self._closing[:, joint], (0, 1))
+        margin = 0.08 * (high - low)
+        return float(low - margin), float(high + margin)
+
     def poses(self, n: int, seed: int = 0) -> Array:
-        """Random poses near the base, for a hand without a forward map."""
+        """Random poses near the base, for a hand without a forward map.
+
+        If hardly any of them can be reached, they are among those that can, nearer or farther.
+        """
+        x = self._posed(n, seed, self.size)
+        if not len(self._reached):
+            return x
+        chosen = np.random.default_rng(seed + 1).integers(len(self._reached), size=n)
+        kept = self._reaches(x).reshape(-1, *[1] * (x.ndim - 1))
+        return np.asarray(np.where(kept, x, self._reached[chosen]))
+
+    def _reaches(self, x: Array) -> NDArray[np.bool_]:
+        """Whether some branch reaches a target, and is not singular there."""
+        return np.asarray((self.branches(x)[1] == OK).any(-1))
+
+    @cached_property
+    def _reached(self) -> Array:
+        """Poses that are reached, if hardly any are at the usual distance."""
+        usual = self._posed(TRIALS, 0, self.size)
+        if not self.has("ik") or self._reaches(usual).mean() > SELDOM:
+            return usual[:0]
+        far = self.size * 2.0 ** np.arange(-FARTHER, FARTHER + 0.5, 0.5)
+        x = np.concatenate([self._posed(TRIALS, k, size) for k, size in enumerate(far)])
+        return np.asarray(x[self._reaches(x)])
+
+    def _posed(self, n: int, seed: int, scale: float) -> Array:
+        """Random poses whose distance is in proportion to a size."""
         rng = np.random.default_rng(seed)
         task = self.module.TASK
         matrix = next((name[0] for name in task if name[1:] == "11"), "")
-        size = 3 if matrix else len(task)
-        place, turn = rng.uniform(-1, 1, (2, n, max(size, 3)))[..., :size]
+        entries = 3 if matrix else len(task)
+        place, turn = rng.uniform(-1, 1, (2, n, max(entries, 3)))[..., :entries]
         if not matrix:
             lengths = np.array([name in POSITION for name in task])
             raised = np.array([name == "z" for name in task])
-            return np.asarray(np.where(lengths, (place / 4 + 0.35 * raised) * self.size, turn))
+            return np.asarray(np.where(lengths, (place / 4 + 0.35 * raised) * scale, turn))
         found = np.tile(np.eye(4), (n, 1, 1))
         x, y, z = 0.2 * turn.T
         o = 0 * x
         skew = np.array([[o, -z, y], [z, o, -x], [-y, x, o]]).transpose(2, 0, 1)
         half = np.eye(3) + skew
         found[:, :3, :3] = np.linalg.solve(half.transpose(0, 2, 1), half)  # Cayley
-        found[:, :3, 3] = place * np.array([0.1, 0.1, 0.25]) * self.size
-        found[:, 2, 3] += 0.35 * self.size
+        found[:, :3, 3] = place * np.array([0.1, 0.1, 0.25]) * scale
+        found[:, 2, 3] += 0.35 * scale
         return found[:, :3, :3] if matrix == "R" else found
 
     def posture(self) -> Array:

@@ -58,9 +58,13 @@ class Grid:
 
 
 def grid_over(r: Robot, plane: Sequence[str] | None, window: Window) -> Grid:
-    """A plane of the task, or of two joints: where both are named, or the task has no position."""
+    """A plane of the task, or of two joints.
+
+    It is one of joints where both are named, the task has no position, or there is no inverse.
+    """
     names = list(r.module.JOINTS)
-    if plane is None and r.has_forward_map and _without_position(r):
+    over_joints = r.has_forward_map and (not r.has("ik") or bool(_without_position(r)))
+    if plane is None and over_joints:
         if len(names) < AREA:
             raise ValueError(f"{r.name} has one joint, and a map needs two")
         plane = names[:AREA]
@@ -69,7 +73,7 @@ def grid_over(r: Robot, plane: Sequence[str] | None, window: Window) -> Grid:
     _check_plane(r, plane, names)
     base = r.posture() if window.at is None else np.asarray(window.at, dtype=float)
     places = [names.index(p) for p in plane]
-    ends = window.limits or [(0, r.size) if k in r.slides else (-np.pi, np.pi) for k in places]
+    ends = window.limits or [r.reach(k) for k in places]
     sides = tuple(np.linspace(low, high, window.resolution) for low, high in ends)
     targets = np.broadcast_to(base, (window.resolution, window.resolution, len(names))).copy()
     targets[..., places[0]], targets[..., places[1]] = sides[0], sides[1][:, None]

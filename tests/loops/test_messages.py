@@ -442,3 +442,123 @@ def test_one_degree_of_freedom_is_one(tmp_path: Path) -> None:
     text = KNEE.replace('at = "A"}', 'at = "A", driven = true}')
     with pytest.raises(TableError, match="it has 1 degree of freedom"):
         script_of("knee", text, tmp_path)
+
+
+FOUR_BAR = """
+hand = "psi"
+[bodies]
+ground = {O = [0, 0], C = [0.4, 0]}
+crank = {O = [0, 0], A = [0.1, 0]}
+rod = {A = [0, 0], B = [0.35, 0], P = [0.2, 0.1]}
+rocker = {C = [0.4, 0], B = [0.4, 0.3], T = [0.4, 0.5]}
+[joints]
+theta = {between = ["ground", "crank"], at = "O", driven = true}
+a = {between = ["crank", "rod"], at = "A"}
+b = {between = ["rod", "rocker"], at = "B"}
+psi = {between = ["ground", "rocker"], at = "C"}
+"""
+ON_COUPLER = FOUR_BAR.replace(", driven = true", "").replace(
+    '"rod"], at = "A"', '"rod"], at = "A", driven = true'
+)
+KNEE_MOTOR = """
+hand = "P"
+[bodies]
+ground = {O = [0, 0]}
+thigh = {O = [0, 0], K = [0.4, 0]}
+shank = {K = [0, 0], P = [0.4, 0], L = [-0.1, 0]}
+crank = {O = [0, 0], M = [0.1, 0]}
+rod = {length = 0.4}
+[joints]
+hip = {between = ["ground", "thigh"], at = "O", driven = true}
+knee = {between = ["thigh", "shank"], at = "K"}
+motor = {between = ["thigh", "crank"], at = "O", driven = true}
+m = {between = ["crank", "rod"], at = "M"}
+l = {between = ["rod", "shank"], at = "L"}
+"""
+CARDAN = """
+hand = "psi"
+[bodies]
+ground = {O = [0, 0, 0], Q = [1, 0.2, 0]}
+shaft1 = {O = [0, 0, 0]}
+middle = {O = [0, 0, 0], Q = [1, 0, 0]}
+shaft2 = {Q = [1, 0.2, 0]}
+[joints]
+q = {between = ["ground", "shaft1"], at = "O", axis = [1, 0, 0], driven = true}
+u1 = {between = ["shaft1", "middle"], at = "O", kind = "universal"}
+u2 = {between = ["middle", "shaft2"], at = "Q", kind = "universal"}
+psi = {between = ["ground", "shaft2"], at = "Q", axis = [1, 0, 0]}
+"""
+ONE_CARDAN = CARDAN.replace('"middle", "shaft2"], at = "Q"', '"shaft1", "shaft2"], at = "O"')
+ONE_CARDAN = ONE_CARDAN.replace('"Q", axis = [1', '"O", axis = [1, 1').replace(
+    "1, 1, 0, 0", "1, 1, 0"
+)
+ONE_CARDAN = "\n".join(
+    line for line in ONE_CARDAN.splitlines() if "middle" not in line and "u1" not in line
+)
+BRICARD = """
+hand = "f"
+[bodies]
+ground = {A = [0, 0, 0], F = [1, 0, 0]}
+l1 = {A = [0, 0, 0], B = [0, 1, 0]}
+l2 = {length = 1}
+l3 = {length = 1}
+l4 = {length = 1}
+l5 = {F = [1, 0, 0], E = [1, 1, 0]}
+[joints]
+a = {between = ["ground", "l1"], at = "A", axis = [0, 0, 1], driven = true}
+b = {between = ["l1", "l2"], at = "B", axis = [1, 0, 0]}
+c = {between = ["l2", "l3"], at = "C", axis = [0, 1, 0]}
+d = {between = ["l3", "l4"], at = "D", axis = [0, 0, 1]}
+e = {between = ["l4", "l5"], at = "E", axis = [1, 0, 0]}
+f = {between = ["ground", "l5"], at = "F", axis = [0, 1, 0]}
+"""
+SPHERE = """
+hand = "P"
+[bodies]
+ground = {O = [0, 0, 0]}
+k1 = {}
+c = {P = [0, 0, 1]}
+k2 = {}
+[joints]
+q = {between = ["ground", "k1"], at = "O", axis = [1, 0, 0], driven = true}
+b = {between = ["k1", "c"], at = "O", axis = [1, 1, 0]}
+e = {between = ["c", "k2"], at = "O", axis = [0, 1, 1]}
+f = {between = ["k2", "ground"], at = "O", axis = [0, 1, 0]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("file", "told"),
+    [
+        (ON_COUPLER, "a is driven, so it must be between .* with crank or rod as the ground"),
+        (KNEE_MOTOR, "motor is driven, on thigh, .* each loop is a file of its own"),
+        (FOUR_BAR.replace('hand = "psi"', 'hand = "a"'), "Of this loop psi may be the hand"),
+        (
+            FOUR_BAR.replace("{O = [0, 0], A = [0.1, 0]}", "{length = 0.1}"),
+            "give crank its points instead of a length",
+        ),
+        (FOUR_BAR.replace('"A"}', '"A", kind = "gear", ratio = 2}'), "put their ratio between"),
+        (FOUR_BAR.replace('"A"}', '"A", kind = "cam"}'), "let the joint of its follower be driven"),
+        (
+            FOUR_BAR.replace('"A"}', '"A", driven = "2*theta"}'),
+            "must be true or false; for a joint",
+        ),
+        (CARDAN, "If u1 is a joint of Cardan between two shafts, .* are two files"),
+        (
+            ONE_CARDAN,
+            "If u2 is a joint of Cardan between two shafts, write it as a body, its cross",
+        ),
+        (BRICARD, "a single loop of 6 hinges in space, which moves by its special dimensions"),
+        (SPHERE, 'this is a spherical four-bar linkage.  It is derived with hand = "f"'),
+    ],
+)
+def test_single_loops_are_told_what_to_do(file: str, told: str, tmp_path: Path) -> None:
+    """A motor on the coupler was taken for the length of the coupler."""
+    with pytest.raises(TableError, match=told):
+        script_of("t", file, tmp_path)
+
+
+def test_points_of_a_rod_without_a_joint_are_of_no_account(tmp_path: Path) -> None:
+    script = script_of("t", FOUR_BAR, tmp_path)
+    plain = FOUR_BAR.replace(", P = [0.2, 0.1]", "").replace(", T = [0.4, 0.5]", "")
+    assert "coupled(" in script and script == script_of("t", plain, tmp_path)

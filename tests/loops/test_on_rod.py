@@ -111,7 +111,7 @@ def test_it_can_be_followed(loop: ModuleType) -> None:
         ('C = ["l2", 0]', "C = [0, 0]", "c and b1 are at the same point of shank"),
         ('c = {between = ["shank", "rod2"]', 'c = {between = ["crank1", "rod2"]',
          "shank carries the hand and is joined to crank1; it must be joined to one"),
-        ('{length = "l2"}', '{B2 = [0, 0], C = ["l2", 0], Q = [0, 1]}', "which must be joined"),
+        ('{length = "l2"}', '{B2 = [0, 0], D = ["l2", 0], Q = [0, 1]}', "which must be joined"),
         ('"rod2"], at = "C"', '"rod2"], at = "D"', "shank has no point D, where c is"),
     ],
 )  # fmt: skip
@@ -121,6 +121,12 @@ def test_a_file_that_does_not_fit_says_why(
     assert old in text("minitaur")
     with pytest.raises(TableError, match=message):
         script_of("leg", text("minitaur").replace(old, other), tmp_path)
+
+
+def test_a_point_of_the_second_rod_without_a_joint_is_of_no_account(tmp_path: Path) -> None:
+    whole = text("minitaur")
+    more = whole.replace('{length = "l2"}', '{B2 = [0, 0], C = ["l2", 0], Q = [0, 1]}')
+    assert more != whole and script_of("leg", more, tmp_path) == script_of("leg", whole, tmp_path)
 
 
 def test_legs_that_do_not_fit_say_why() -> None:

@@ -118,6 +118,19 @@ OTHER_NAMES = {
     **dict.fromkeys(("slide", "slider", "linear", "sliding"), "a slide is prismatic"),
 }
 """What is meant by other names of joints."""
+GEARS = ("gear", "gears", "belt", "chain", "pulley", "rack", "pinion")
+OTHER_NAMES |= {
+    **dict.fromkeys(
+        GEARS,
+        "gears, belts and chains are no joints here: let both joints that they couple be driven, "
+        "and put their ratio between the two where you call the functions",
+    ),
+    **dict.fromkeys(
+        ("cam", "cams"),
+        "a cam is no joint here: let the joint of its follower be driven, whose value the profile "
+        "gives",
+    ),
+}
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
 """Bodies and points."""
 TASK = (*AXES, "yaw")
@@ -234,8 +247,10 @@ def _read_joints(loop: Loop, joints: Any) -> None:
     check_keys(joints, None, f"{loop.file}, [joints]")
     for name, given in joints.items():
         where = f"{loop.file}, [joints.{name}]"
-        check_keys(given, ("between", "kind", "at", "axis", "second", "driven"), where)
+        check_keys(given, None, where)
         kind, between = given.get("kind", "revolute"), given.get("between")
+        if kind in KINDS:
+            check_keys(given, ("between", "kind", "at", "axis", "second", "driven"), where)
         if kind == "cylindrical" and given.get("driven") is True and GROUND in (between or ()):
             given = _on_slider(loop, name, given, where)
             kind, between = given["kind"], given["between"]
@@ -257,7 +272,11 @@ def _read_joints(loop: Loop, joints: Any) -> None:
             raise TableError(f"{where}: only a universal joint has a second axis")
         driven = given.get("driven", False)
         if not isinstance(driven, bool):
-            raise TableError(f"{where}: driven must be true or false")
+            coupled = (
+                "; for a joint that gears or a belt couple to another one write true, and put "
+                "their ratio between the two where you call the functions"
+            ) * isinstance(driven, str)
+            raise TableError(f"{where}: driven must be true or false{coupled}")
         at = _named(given["at"], f"{where}: at") if "at" in given else _shared(loop, between, where)
         joint = Joint(name, kind, (between[0], between[1]), at, axis, driven, second)
         check_variable(name, where, taken=name in USED and _is_written(loop, joint))

@@ -26,8 +26,10 @@ from closedform.scaffold.loops.refused import (
     driven_mast,
     hinged_on,
     hinges_of_leg,
+    moving_driver,
     on_cylinder,
     on_turning_body,
+    shafts,
     sliding_halves,
     two_motors,
 )
@@ -174,6 +176,7 @@ class Legs:
                     carried(self.loop, joint)
                     or two_motors(self.loop, joint)
                     or on_turning_body(self.loop, joint)
+                    or moving_driver(self.loop, joint)
                     or ON_ARM * in_plane
                 )
             )
@@ -247,7 +250,8 @@ class Legs:
         if second := next((j for j in onward if j.driven), None):
             raise loop.error(
                 f"{second.name} is driven, on {body}, which {joint.name} moves; a leg has one "
-                f"driven joint, and the others are passive" + two_motors(loop, joint)
+                f"driven joint, and the others are passive"
+                + (two_motors(loop, joint) or ON_ARM * (loop.dimensions == 2))
             )
         if joint.kind == "revolute" and slides and not rods:
             raise loop.error(
@@ -264,10 +268,10 @@ class Legs:
                 + ball_on_hand(loop, onward)
                 + "".join(ball_on_line(loop, j) for j in beyond(loop, onward))
                 + two_motors(loop, joint)
-                + hinged_on(loop, joint)
+                + ("" if arcs(loop) else hinged_on(loop, joint))
                 + driven_mast(loop, joint)
                 + ball_on_driven(loop, onward)
-                + (arcs(loop) or hinges_of_leg(loop, joint))
+                + (arcs(loop) or hinges_of_leg(loop, joint) or shafts(loop, joint))
                 + several_told(loop, body)
             )
         if joint.kind == "prismatic":
@@ -372,7 +376,7 @@ class Legs:
         if length == 0:
             raise self.loop.error(
                 f"the end of {joint.other(GROUND)} is on the axis of {joint.name}, so it does not "
-                f"move"
+                f"move{shafts(self.loop, joint)}"
             )
         along = self.direction(arm, length)
         if joint.axis is None or self.loop.dimensions == 2:
@@ -432,9 +436,13 @@ class Legs:
     def point(self, body: str, joint: Joint) -> sp.Matrix:
         """Where a joint is on a body."""
         points = self.loop.bodies[body]
-        if joint.at not in points:
-            raise self.loop.error(f"{body} has no point {joint.at}, where {joint.name} is")
-        return points[joint.at]
+        if joint.at in points:
+            return points[joint.at]
+        instead = (
+            f"; give {body} its points instead of a length: where they are when the joint that "
+            f"turns it is zero" * (body in self.loop.rods)
+        )
+        raise self.loop.error(f"{body} has no point {joint.at}, where {joint.name} is{instead}")
 
     def pivot(self, joint: Joint) -> sp.Matrix:
         """Where a body turns about the ground, which is the same point of both at the angle 0."""
@@ -448,6 +456,7 @@ class Legs:
 
     def stretch(self, joint: Joint) -> LoopLeg:
         """A leg of two bodies that slide along each other."""
+        self.check_place(joint)
         loop = self.loop
         if on_ground := middle_leg(loop, joint):
             self.used |= {joint.name, on_ground.name}

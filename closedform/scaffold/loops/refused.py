@@ -11,6 +11,8 @@ from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
 BALLS = ("spherical", "universal")
 PAIR = 2
 """The motors of a leg of which one may be held."""
+FOUR_BAR = 4
+"""The bodies of a four-bar linkage, and its joints."""
 
 
 def two_motors(loop: Loop, joint: Joint) -> str:
@@ -67,6 +69,13 @@ def arcs(loop: Loop) -> str:
     if len(places) != 1 or not turning or loop.dimensions == 2:
         return ""
     (at,) = places
+    last = [j.name for j in loop.of(GROUND) if not j.driven]
+    if len(joints) == FOUR_BAR == len(loop.bodies) and len(last) == 1:
+        return (
+            f".  All axes meet in {at}, so this is a spherical four-bar linkage.  It is derived "
+            f'with hand = "{last[0]}", the joint on the ground that is not driven; then '
+            f"{loop.hand} follows from {last[0]} and the axes"
+        )
     return (
         f".  All axes meet in {at}, so this is a spherical mechanism.  Write each arc as a rod "
         f"with ball joints at the ends, whose length is their distance, and hold the hand by a "
@@ -171,6 +180,51 @@ def on_turning_body(loop: Loop, joint: Joint) -> str:
     )
 
 
+def shafts(loop: Loop, joint: Joint) -> str:
+    """What is said of a driven shaft that ends in a universal joint on its own axis."""
+    near = next((j for j in loop.of(joint.other(GROUND)) if j.kind == "universal"), None)
+    if near is None or joint.kind != "revolute" or near.at != joint.at:
+        return ""
+    return (
+        f".  If {near.name} is a joint of Cardan between two shafts, write it as a body, its "
+        f"cross, with a revolute joint on each shaft; all axes meet in one point, and each is "
+        f"given where all joints are zero.  Two such joints one after the other are two files: "
+        f"the task of the first one drives the second one"
+    )
+
+
+def moving_driver(loop: Loop, joint: Joint) -> str:
+    """What is said of a motor between two moving bodies of a single loop."""
+    follower = loop.joints.get(loop.hand)
+    if follower is None or joint.kind != "revolute":
+        return ""
+    first, second = joint.between
+    return (
+        f".  A linkage has the same joints when it is seen from another of its bodies: describe it "
+        f"with {first} or {second} as the ground.  Then {joint.name} is on the ground, and the "
+        f"hand is the other joint there"
+    )
+
+
+def hinge_loop(loop: Loop) -> str:
+    """What is said of a loop of more than four hinges in space; empty if it is another one."""
+    count = len(loop.joints)
+    hinges = all(j.kind == "revolute" and j.axis is not None for j in loop.joints.values())
+    each = all(len(loop.of(body)) == PAIR for body in loop.bodies)
+    if loop.dimensions != len(AXES) or not hinges or not each or count <= FOUR_BAR:
+        return ""
+    moves = (
+        "moves by its special dimensions alone, as linkages of Goldberg, Myard and Bricard do"
+        if count <= len(AXES) * PAIR
+        else "leads to an equation of degree 16"
+    )
+    return (
+        f"this is a single loop of {count} hinges in space, which {moves}; it is not derived.  Of "
+        f"four hinges, those that are parallel, that meet in one point, or that are those of a "
+        f"Bennett linkage are supported"
+    )
+
+
 def sliding_halves(loop: Loop, far: Joint) -> str:
     """What is said of a hand whose two halves slide on each other, as of an I4."""
     for half in far.between:
@@ -244,10 +298,13 @@ __all__ = [
     "beyond",
     "carried",
     "driven_mast",
+    "hinge_loop",
     "hinged_on",
     "hinges_of_leg",
+    "moving_driver",
     "on_cylinder",
     "on_turning_body",
+    "shafts",
     "sliding_halves",
     "two_motors",
 ]

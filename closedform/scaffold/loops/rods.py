@@ -25,7 +25,7 @@ def read_rods(loop: Loop) -> None:
         beside = dict.fromkeys(j.other(body) for body in ends for j in loop.of(body))
         for body in beside:
             if _is_rod(loop, body) and not (second and loop.hand in loop.bodies[body]):
-                first, last = loop.bodies[body].values()
+                first, last = _ends_of(loop, body)
                 loop.rods[body], loop.bodies[body] = loop.length(last - first), {}
         ends = [body for body in beside if body in loop.rods]
 
@@ -35,16 +35,28 @@ def _driven_bodies(loop: Loop) -> list[str]:
 
 
 def _is_rod(loop: Loop, body: str) -> bool:
-    """Whether a body has two points, which differ, and is pinned in both and nowhere else."""
+    """Whether a body is pinned in two points, which differ, and is not where the hand is.
+
+    Other points that it has are of no account, unless one of them is the hand.
+    """
     joints, points = loop.of(body), loop.bodies[body]
+    pins = {j.at for j in joints}
     return (
         body not in loop.rods
-        and len(points) == 2
-        and {j.at for j in joints} == {*points}
+        and len(pins) == 2
+        and pins <= {*points}
+        and loop.hand not in {*points} - pins
         and all(j.kind in PINS and not j.driven and j.name != loop.hand for j in joints)
         and all(GROUND not in j.between for j in joints)
-        and _differ(*points.values())
+        and _differ(*_ends_of(loop, body))
     )
+
+
+def _ends_of(loop: Loop, body: str) -> tuple[sp.Matrix, sp.Matrix]:
+    """The two points in which a body is pinned."""
+    pins = {j.at for j in loop.of(body)}
+    first, last = (at for point, at in loop.bodies[body].items() if point in pins)
+    return first, last
 
 
 def read_pairs(loop: Loop) -> None:

@@ -28,6 +28,7 @@ from closedform.scaffold.loops.on_line import on_line
 from closedform.scaffold.loops.on_lines import on_lines
 from closedform.scaffold.loops.on_pins import on_pins
 from closedform.scaffold.loops.on_rod import on_rod
+from closedform.scaffold.loops.refused import hinge_loop
 from closedform.scaffold.loops.rods import read_pairs, read_rods
 from closedform.scaffold.loops.screws import with_screws
 from closedform.scaffold.loops.sliding import sliding
@@ -316,8 +317,18 @@ def _coupled(found: Legs, follower: Joint) -> list[LoopLeg]:
     loop, hand = found.loop, found.loop.hand
     drivers = found.driven()
     if len(drivers) != 1 or GROUND not in follower.between:
-        raise loop.error("a loop with one driven joint needs a follower that is on the ground")
+        instead = (
+            f".  Of this loop {listed(on_ground)} may be the hand"
+            if len(drivers) == 1 and (on_ground := _passive_on_ground(loop))
+            else ""
+        )
+        raise loop.error(
+            f"a loop with one driven joint needs a follower that is on the ground{instead}"
+        )
+    if refused := hinge_loop(loop):
+        raise loop.error(refused)
     (driver,), found.end = drivers, "the other leg"
+    found.check_place(driver)
     far = _beyond(loop, follower)
     loop.hand = far.at
     first = found.leg(driver)
@@ -335,6 +346,10 @@ def _coupled(found: Legs, follower: Joint) -> list[LoopLeg]:
     if any(leg.passive for leg in legs):
         raise loop.error("a single loop with a rail is not supported; a rod has to close it")
     return legs
+
+
+def _passive_on_ground(loop: Loop) -> list[str]:
+    return [j.name for j in loop.of(GROUND) if not j.driven]
 
 
 def _check_axes(loop: Loop, driver: Joint, follower: Joint) -> None:

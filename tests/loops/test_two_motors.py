@@ -149,3 +149,16 @@ def test_other_axes_are_told_of(tmp_path: Path) -> None:
     text = TEXT.replace("axis = [0, 1, 0]}", "axis = [0, 0, 1]}")
     with pytest.raises(TableError, match="a slider, about whose direction the leg turns"):
         script_of("prps", text, tmp_path)
+
+
+@pytest.mark.parametrize(("name", "rod"), [("eclipse", "rod1"), ("three_pprs", "strut1")])
+def test_the_rod_of_a_leg_with_two_motors_may_have_points(
+    name: str, rod: str, tmp_path: Path
+) -> None:
+    text = (TESTS / "held_out_loops" / f"{name}.toml").read_text("utf-8")
+    plain = re.search(rf'{rod} = {{length = "?(\w+)"?}}', text)
+    first, last = re.findall(rf'"{rod}".*at = "(\w+)"', text)
+    assert plain
+    points = f'{rod} = {{{first} = [0, 0, 0], {last} = [0, 0, "{plain[1]}"]}}'
+    other = text.replace(plain[0], points)
+    assert script_of(name, other, tmp_path) == script_of(name, text, tmp_path)

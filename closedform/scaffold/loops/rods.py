@@ -21,6 +21,12 @@ def read_rods(loop: Loop) -> None:
     point of the hand, because then it is the hand.
     """
     ends = _driven_bodies(loop)
+    ends += [  # the second motor of a leg is on the first body
+        j.other(body)
+        for body in ends
+        for j in loop.of(body)
+        if j.driven and GROUND not in j.between
+    ]
     for second in (False, True):
         beside = dict.fromkeys(j.other(body) for body in ends for j in loop.of(body))
         for body in beside:

@@ -181,9 +181,11 @@ def two_circles(
         the joints that are free if the point is
     """
     p, (r1, r2), (origin, other) = program, radii, centres
+    # where both circles are the same the span is zero, and what else has its symbols is not
+    kept = {*radii, *origin.free_symbols}
     span = sp.Matrix(
         [
-            e if e.is_Symbol or e == 0 else p.let(f"u_{i}", e)
+            e if e == 0 or (e.is_Symbol and e not in kept) else p.let(f"u_{i}", e)
             for i, e in zip("xy", other - origin, strict=True)
         ]
     )

@@ -372,3 +372,64 @@ def test_roundings_explain_what_single_precision_takes(tmp_path: Path) -> None:
     assert (values.existence(row, 2e-6) < 0).any()
     assert values.explained(row, 2e-6, np.finfo(np.float32).eps).all()
     assert not values.explained(row, 2e-12, np.finfo(float).eps).all()
+
+
+BOOM = """
+hand = "B"
+[parameters]
+b = {value = "1", meaning = "boom"}
+[bodies]
+ground = {A = [0, 0], F = [0.3, -0.3]}
+boom = {A = [0, 0], C = [0.3, 0], B = ["b", 0]}
+tube = {}
+piston = {}
+[joints]
+a = {between = ["ground", "boom"], at = "A"}
+f = {between = ["ground", "tube"], at = "F"}
+q = {between = ["tube", "piston"], at = "F", kind = "prismatic", driven = true}
+c = {between = ["piston", "boom"], at = "C"}
+"""
+
+
+def test_a_radius_may_be_a_coordinate_between_the_centres(tmp_path: Path) -> None:
+    """The circles of B have centres that are b apart in x; their radii are b and another one.
+
+    Where both circles are the same, b was taken for zero, and the proof failed.
+    """
+    boom = derived("boom", script_of("boom", BOOM, tmp_path), tmp_path)
+    turns = np.linspace(-1, 1, 9)
+    tip = np.stack([np.cos(turns), np.sin(turns)], axis=-1)
+    q = np.linalg.norm(0.3 * tip - [0.3, -0.3], axis=-1)
+    p, status = boom.fk(q[:, None])
+    assert not status.any() and (np.abs(p - tip[:, None]).max(axis=-1).min(axis=-1) < 1e-12).all()
+    assert np.allclose(np.nanmin(np.abs(boom.ik(tip).q[..., 0] - q[:, None]), axis=-1), 0)
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "message"),
+    [
+        ("klann", {"hand": "M"}, "M is a point of crank, which theta moves alone, without the"),
+        (
+            "watt_two",
+            {"drive": ("theta", "jc")},
+            "C, where jc is, has different coordinates on the",
+        ),
+        ("roberts", {"drive": ("q", "b")}, "b turns right; give right its points instead of a"),
+    ],
+)
+def test_what_derive_would_refuse_is_refused_by_new(
+    name: str, changes: dict, message: str, tmp_path: Path
+) -> None:
+    """These were written as scripts, which ended with an error."""
+    lines = text(name).splitlines()
+    for k, line in enumerate(lines):
+        joint = line.split(" = ")[0]
+        if "hand" in changes and joint == "hand":
+            lines[k] = f'hand = "{changes["hand"]}"'
+        first, second = changes.get("drive", ("", ""))
+        if joint == first:
+            lines[k] = line.replace(", driven = true", "")
+        if joint == second:
+            lines[k] = line.replace("}", ", driven = true}")
+    with pytest.raises(TableError, match=message):
+        script_of("bad", "\n".join(lines), tmp_path)

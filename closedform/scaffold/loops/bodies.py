@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import sympy as sp
@@ -97,6 +98,37 @@ def with_pivots(loop: Loop) -> Loop:
     return replace(loop, bodies=bodies)
 
 
+def check_pivot(loop: Loop, joint: Joint) -> None:
+    """Refuse a body whose joint has a value, unless it is known where its points are at zero."""
+    name, body, at = joint.name, joint.other(GROUND), joint.at
+    if body in loop.rods:
+        raise loop.error(f"{name} turns {body}; {points_of(body)}")
+    own, base = loop.bodies[body].get(at), loop.bodies[GROUND].get(at)
+    if own is not None and base is not None and any(sp.simplify(e) != 0 for e in own - base):
+        raise loop.error(
+            f"{at}, where {name} is, has different coordinates on the ground and on {body}; the "
+            f"points of {body} are where they are when {name} is zero"
+        )
+
+
+def points_of(body: str) -> str:
+    """What to write for a rod that a joint with a value turns."""
+    return (
+        f"give {body} its points instead of a length: where they are when the joint that turns it "
+        f"is zero"
+    )
+
+
+def check_moved(loop: Loop, driven: Mapping[str, Joint]) -> None:
+    """Refuse a hand that is a point of a body that a driven joint moves without any loop."""
+    alone = [body for body in driven if loop.hand in loop.bodies[body]]
+    if alone and loop.hand not in loop.bodies[GROUND]:
+        raise loop.error(
+            f"the hand {loop.hand} is a point of {alone[0]}, which {driven[alone[0]].name} moves "
+            f"alone, without the loop; the hand is a point of another body, or a joint"
+        )
+
+
 def across_axis(axis: sp.Matrix, arm: sp.Matrix, start: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
     """An arm that turns about an axis, less what is along it, and where the rest starts."""
     along = axis * sp.simplify(arm.dot(axis))
@@ -111,4 +143,15 @@ def around(line: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix]:
     return first, line.cross(first).applyfunc(sp.simplify)
 
 
-__all__ = ["AXES", "GROUND", "Joint", "Loop", "across_axis", "around", "with_pivots"]
+__all__ = [
+    "AXES",
+    "GROUND",
+    "Joint",
+    "Loop",
+    "across_axis",
+    "around",
+    "check_moved",
+    "check_pivot",
+    "points_of",
+    "with_pivots",
+]

@@ -14,7 +14,15 @@ import sympy as sp
 
 from closedform.model.names import listed
 from closedform.scaffold.loops.axial import TwoMotors, call_of, in_pairs, leg_on_axis, told
-from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop, across_axis
+from closedform.scaffold.loops.bodies import (
+    AXES,
+    GROUND,
+    Joint,
+    Loop,
+    across_axis,
+    check_pivot,
+    points_of,
+)
 from closedform.scaffold.loops.halves import halves
 from closedform.scaffold.loops.refused import (
     arcs,
@@ -438,20 +446,13 @@ class Legs:
         points = self.loop.bodies[body]
         if joint.at in points:
             return points[joint.at]
-        instead = (
-            f"; give {body} its points instead of a length: where they are when the joint that "
-            f"turns it is zero" * (body in self.loop.rods)
-        )
+        instead = f"; {points_of(body)}" if body in self.loop.rods else ""
         raise self.loop.error(f"{body} has no point {joint.at}, where {joint.name} is{instead}")
 
     def pivot(self, joint: Joint) -> sp.Matrix:
         """Where a body turns about the ground, which is the same point of both at the angle 0."""
-        name, body, at = joint.name, joint.other(GROUND), self.point(GROUND, joint)
-        if any(sp.simplify(e) != 0 for e in self.loop.bodies[body].get(joint.at, at) - at):
-            raise self.loop.error(
-                f"{joint.at}, where {name} is, has different coordinates on the ground and on "
-                f"{body}; the points of {body} are where they are when {name} is zero"
-            )
+        at = self.point(GROUND, joint)
+        check_pivot(self.loop, joint)
         return at
 
     def stretch(self, joint: Joint) -> LoopLeg:

@@ -9,7 +9,14 @@ import sympy as sp
 
 from closedform.mechanics.assur import Dyad, Order, degrees, freedoms, order
 from closedform.model.names import listed
-from closedform.scaffold.loops.bodies import GROUND, Joint, Loop, with_pivots
+from closedform.scaffold.loops.bodies import (
+    GROUND,
+    Joint,
+    Loop,
+    check_moved,
+    check_pivot,
+    with_pivots,
+)
 from closedform.scaffold.loops.cylinders import joined
 from closedform.scaffold.source import literal, source
 
@@ -60,6 +67,9 @@ def linkage(loop: Loop) -> LinkageLines | None:
         turning[follower.other(GROUND)] = follower
     elif not any(loop.hand in at for at in points.values()):
         raise loop.error(f"the hand {loop.hand} is neither a point of a body nor a joint")
+    check_moved(loop, turned)
+    for joint in turning.values():
+        check_pivot(loop, joint)
     bodies = tuple(line_of(name, at, turning) for name, at in points.items())
     return LinkageLines(
         bodies, "" if follower else safe(loop.hand), _words(turned, cylinders, found)

@@ -16,7 +16,14 @@ from closedform.mechanics.assur_slides import (
     sliding_order,
 )
 from closedform.model.names import listed
-from closedform.scaffold.loops.bodies import GROUND, Joint, Loop, with_pivots
+from closedform.scaffold.loops.bodies import (
+    GROUND,
+    Joint,
+    Loop,
+    check_moved,
+    check_pivot,
+    with_pivots,
+)
 from closedform.scaffold.loops.cylinders import joined
 from closedform.scaffold.loops.linkages import (
     FEW,
@@ -92,6 +99,8 @@ def sliding(loop: Loop, *, few: bool = False) -> LinkageLines | None:
     follower = loop.joints.get(loop.hand)
     hand = "" if follower else _hand(found)
     turning = {b: j for b, j in found.with_joint.items() if j.kind == "revolute"}
+    for joint in turning.values():
+        check_pivot(joined_loop, joint)
     bodies = tuple(line_of(name, at, turning) for name, at in found.points.items())
     slides = tuple(_line(found, s) for s in found.slides)
     passive = tuple(s.joint.name for s in found.slides if not _own(found, s))
@@ -280,6 +289,7 @@ def _hand(found: Found) -> str:
     moved = [p for body, p in names if p not in known and loop.hand in loop.bodies[body]]
     moved += [p for body, p in names if p not in known]
     if not moved:
+        check_moved(loop, found.driven)
         raise loop.error(f"the hand {loop.hand} is neither a point that moves nor a joint")
     return moved[0]
 

@@ -95,10 +95,18 @@ class _Reverse:
         self._write()
 
     def _lose(self, block: Block, k: int) -> None:
+        """Note what a group that is nearly tangent loses, so that later ones tolerate it."""
         det = block.matrix.applyfunc(lambda e: e.xreplace(self.solver.values)).det()
-        if not det.is_number and self.order.held:
-            size = self.program.let(f"det_{k}", sp.Abs(det), nonnegative=True)
-            self.lost.append(lost(self._scale(block), size))
+        last = k == len(self.order.groups)
+        if det.is_number or (last and not self.order.held):
+            return
+        p, solver = self.program, self.solver
+        size = p.let(f"det_{k}", sp.Abs(det), nonnegative=True)
+        more = lost(self._scale(block), size)
+        self.lost.append(more)
+        if not self.order.held:
+            grown = sp.Max(solver.size, self.size * more)
+            solver.size = p.let(f"wide_{k}", grown, nonnegative=True)
 
     def _scale(self, block: Block) -> sp.Expr:
         return self.size if block.scale is None else block.scale

@@ -305,3 +305,38 @@ def test_the_disc_of_an_oldham_coupling_is_not_left_out(tmp_path: Path) -> None:
     *_, disc = mechanism.skeleton([0.3])[0]
     e, (c, s) = mechanism.Parameters().e, (np.cos(0.3), np.sin(0.3))
     assert np.allclose(disc, [e * c * c, e * c * s, 0])  # on the circle over both shafts
+
+
+PUSHED = """
+hand = "D"
+[bodies]
+ground = {O = [0, 0]}
+sx = {A = [0, 0]}
+sy = {B = [0, 0]}
+upper = {A = [0, 0], C = [0.2, 0], D = [0.4, 0]}
+front = {length = 0.1}
+[joints]
+qx = {between = ["ground", "sx"], at = "O", kind = "prismatic", axis = [1, 0], driven = true}
+qy = {between = ["ground", "sy"], at = "O", kind = "prismatic", axis = [0, 1], driven = true}
+a = {between = ["sx", "upper"], at = "A"}
+b = {between = ["sy", "front"], at = "B"}
+c = {between = ["upper", "front"], at = "C"}
+"""
+
+
+def test_both_bars_may_be_at_right_angles_to_their_sliders(tmp_path: Path) -> None:
+    """There rounding of the hand moves the first slider far, and the second bar just reaches."""
+    pushed = derived("pushed", script_of("pushed", PUSHED, tmp_path), tmp_path, crosscheck=True)
+    rng = np.random.default_rng(3)
+    near = rng.choice([0, *10.0 ** np.arange(-12, -2)], (20_000, 2)) * rng.choice(
+        [-1, 1], (20_000, 2)
+    )
+    p, status = pushed.fk(rng.choice([-0.2, -0.1, 0.1, 0.2], (20_000, 2)) + near)
+    x = p[status == OK]
+    q, status = pushed.ik(x)
+    assert len(x) > 10_000 and ((status == OK) | (status == SINGULAR)).any(axis=-1).all()
+    again, ok = pushed.fk(q), status == OK
+    size = 0.5 + np.abs(x).sum(axis=-1)  # bars, and how far the sliders are
+    gaps = np.linalg.norm(again.p - x[:, None, None], axis=-1) / size[:, None, None]
+    assert np.nanmin(gaps[ok], axis=-1).max() < 1e-12
+    assert (status == OK).any(axis=-1).mean() > 0.9

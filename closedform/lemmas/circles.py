@@ -63,7 +63,7 @@ def circle_intersection(
     sigma: sp.Symbol,
     *,
     scale: sp.Expr,
-    share: sp.Rational = SHARE,
+    share: sp.Expr = SHARE,
     free: tuple[sp.Symbol, ...] = (),
 ) -> tuple[Lemma, Chord]:
     """The points at two distances, the ``radii``, from two points.
@@ -156,7 +156,7 @@ def two_circles(
     sigma: sp.Symbol,
     *,
     scale: sp.Expr,
-    share: sp.Rational = SHARE,
+    share: sp.Expr = SHARE,
     free: Sequence[sp.Symbol] = (),
 ) -> Meeting:
     """The points at two distances from two points, as :func:`circle_intersection` gives them.

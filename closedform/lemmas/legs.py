@@ -145,7 +145,7 @@ class Naming:
     program: Program
     size: sp.Expr
     tag: str
-    share: sp.Rational = sp.S.Half
+    share: sp.Expr = sp.S.Half
 
     def let(self, name: str, value: sp.Expr, **assumptions: bool) -> sp.Symbol:
         return self.program.let(f"{name}{self.tag}", value, **assumptions)

@@ -32,4 +32,10 @@ def lost(size: sp.Expr, length: sp.Expr) -> sp.Expr:
     return size / (length + size * LEAST)
 
 
-__all__ = ["MOST_LOST", "MOVED", "SHARE", "lost"]
+def missed_circles(apart: sp.Expr, radii: tuple[sp.Expr, sp.Expr]) -> sp.Expr:
+    """The length by which two circles do not meet, whose centres are ``apart``."""
+    first, second = radii
+    return sp.Max(0, apart - first - second, sp.Abs(first - second) - apart)
+
+
+__all__ = ["MOST_LOST", "MOVED", "SHARE", "lost", "missed_circles"]

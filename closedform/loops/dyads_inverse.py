@@ -14,7 +14,7 @@ import sympy as sp
 
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.legs import Naming, Solution, Stretch
-from closedform.lemmas.missed import MOST_LOST, lost
+from closedform.lemmas.missed import MOST_LOST, lost, missed_circles
 from closedform.loops.from_hand import export_inverse, turned
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import MISSED, named, where_free
@@ -81,6 +81,8 @@ class _Reverse:
     def __post_init__(self) -> None:
         m, self.program = self.m, self.m.d.program()
         self.size = self.program.let("size", m.size)
+        self.share: sp.Expr = sp.S.Half
+        """The part of the size by which a bar may miss; more where accuracy is lost."""
         self.at = known_points(m, self.program, [m.follower] * bool(m.follower))
         self.meant = {p: m.ground(p) for p in m.points[GROUND]}
         if m.follower:
@@ -90,6 +92,7 @@ class _Reverse:
 
     def export(self) -> None:
         for k, step in enumerate(self.order.steps, 1):
+            self._widen(k)
             if isinstance(step, Held) and step.body in self.m.cylinders:
                 self._stretch(step, k)
             elif isinstance(step, Held):
@@ -106,6 +109,16 @@ class _Reverse:
                     self._angle(body, self.m.pivot(body), step.pin)
         self._determined()
         self._write()
+
+    def _widen(self, k: int) -> None:
+        """Let a dyad tolerate what those before have lost, unless the hand is on a curve."""
+        if self.lost and isinstance(self.order.steps[k - 1], Dyad) and not self.on_curve:
+            grown = sp.Max(1, *self.lost) / 2
+            self.share = self.program.let(f"may_miss_{k}", grown, nonnegative=True)
+
+    @property
+    def on_curve(self) -> bool:
+        return any(step.body not in self.m.cylinders for step in self.order.held)
 
     def _carry(self, body: str, near: str, far: str) -> None:
         """Add the other points of a body, under names and in symbols."""
@@ -131,7 +144,7 @@ class _Reverse:
         i = step.bodies.index(body)
         other, near = step.bodies[1 - i], step.near[1 - i]
         rod = m.length(other, near, step.pin)
-        names = Naming(p, self.size, f"_{k}")
+        names = Naming(p, self.size, f"_{k}", self.share)
         drawn = m.crank(body, step.pin, rod)
         crank = drawn.named(names)
         self.signs.append(sigma := real(f"sigma_{body}"))
@@ -173,7 +186,7 @@ class _Reverse:
             tuple(unknowns),
             sigma,
             scale=self.size,
-            share=sp.S.Half,
+            share=self.share,
             free=m.d.actuated,
         )
         start = len(p.body)
@@ -181,6 +194,9 @@ class _Reverse:
         means = dict(zip(place, unknowns, strict=True))
         self.links.append(replace(met.link, body=(*met.link.body, *p.body[start:]), means=means))
         self.free += [flag for case in met.link.degenerate for flag in case.flags]
+        if not self.on_curve:
+            apart = sp.sqrt(square(centres[1] - centres[0]))
+            self.missed.append(missed_circles(apart, (radii[0], radii[1])))
         self.passive += unknowns
         for near, length in zip(step.near, lengths, strict=True):
             self.equations.append(square(unknowns - self.meant[near]) - length**2)
@@ -274,7 +290,7 @@ class _Reverse:
 
     def _write(self) -> None:
         m, d, g = self.m, self.m.d, self.program
-        on_curve = any(step.body not in m.cylinders for step in self.order.held)
+        on_curve = self.on_curve
         d.step(
             "Inverse: dyad by dyad, from the hand",
             "The hand is known instead of the joints.  The bodies are found in this order, again "

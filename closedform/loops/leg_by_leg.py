@@ -40,9 +40,11 @@ class LegByLeg:
     size: sp.Expr
     found: list[Solution] = field(default_factory=list)
     choices: list[tuple[sp.Symbol, Choice]] = field(default_factory=list)
+    share: sp.Expr = sp.S.Half
+    """The part of the size by which a rod may miss; more where accuracy is lost."""
 
     def naming(self, k: int) -> Naming:
-        return Naming(self.program, self.size, f"_{k}")
+        return Naming(self.program, self.size, f"_{k}", self.share)
 
     def solve(self, k: int, leg: Leg, w: sp.Matrix) -> None:
         """Solve leg ``k``, if ``w`` leads from its base to the far end of its rod."""

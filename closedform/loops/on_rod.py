@@ -19,7 +19,7 @@ import sympy as sp
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, vector
-from closedform.lemmas.missed import MOVED, SHARE
+from closedform.lemmas.missed import MOVED, SHARE, lost
 from closedform.loops.conditioning import conditioning
 from closedform.loops.hand import check_order, check_plain, in_space, square
 from closedform.loops.leg_by_leg import (
@@ -426,10 +426,10 @@ def _inverse(m: OnRod, loop: Step) -> None:
     d, g = m.d, m.d.program()
     moved = tuple(m.hand) if m.moved else ()
     solved = LegByLeg(d, g, g.let("size", size_of(d, m.legs, moved)))
-    first, second = m.legs
-    if isinstance(m.first, Crank):
-        first = cast("Leg", m.first.named(solved.naming(1)))
-    solved.solve(1, first, m.hand - first.base)
+    _, second = m.legs
+    first = m.first.named(solved.naming(1)) if isinstance(m.first, Crank) else m.first
+    leg = cast("Leg", first)
+    solved.solve(1, leg, m.hand - first.base)
     span = solved.found[0].rod
     start = len(g.body)
     named = sp.Matrix([g.let(f"A_1{i}", e) for i, e in enumerate(span, 1)])
@@ -437,12 +437,18 @@ def _inverse(m: OnRod, loop: Step) -> None:
     meant = dict(zip(named, m.hand - first.end(), strict=True))
     own = replace(link, body=(*link.body, *g.body[start:]), means=meant)
     solved.found[0] = replace(solved.found[0], link=own, rod=named)
-    solved.solve(2, second, m.end(m.hand - named, m.hand) - second.base)
+    near, size = m.hand - named, solved.size
+    # where the first leg is nearly tangent, rounding moves the end of the second one far
+    rate = first.rate_at(near)
+    arm = solved.lengths((leg,)) * (first.length if isinstance(first, Crank) else 1)
+    tangent = g.let("tangent", sp.Abs(named.dot(rate)), nonnegative=True)
+    solved.share = g.let("may_miss", sp.Max(1, lost(arm, tangent)) / 2, nonnegative=True)
+    solved.solve(2, second, m.end(near, m.hand) - second.base)
     other = m.to_hand * solved.found[1].rod
     volume = g.let("Delta", named[0] * other[1] - named[1] * other[0])
     # a hand that is farther from b1 than c moves more than c when it is moved by rounding
     scale = solved.lengths(m.legs) * m.stretch * sp.Max(1, m.stretch)
-    missed, size = solved.missed * m.stretch, solved.size
+    missed = solved.missed * m.stretch
     g.determined(sp.Abs(volume), scale, MEET, name=r"|\det A|", missed=missed, size=size)
     d.step(
         "Inverse: one leg after the other",

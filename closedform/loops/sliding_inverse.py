@@ -105,8 +105,8 @@ class _Reverse:
         more = lost(self._scale(block), size)
         self.lost.append(more)
         if not self.order.held:
-            grown = sp.Max(solver.size, self.size * more)
-            solver.size = p.let(f"wide_{k}", grown, nonnegative=True)
+            grown = sp.Max(solver.share, more / 2)
+            solver.share = p.let(f"may_miss_{k}", grown, nonnegative=True)
 
     def _scale(self, block: Block) -> sp.Expr:
         return self.size if block.scale is None else block.scale

@@ -17,6 +17,7 @@ from closedform.lemmas.lines import (
     line_and_circle,
     two_lines,
 )
+from closedform.lemmas.missed import missed_circles
 from closedform.loops.from_hand import turned
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import named, named_in
@@ -72,7 +73,7 @@ class Solver:
     m: SlidingLinkage
     program: Program
     size: sp.Expr
-    share: sp.Rational
+    share: sp.Expr
     free: tuple[sp.Symbol, ...] = ()
     here: World = field(default_factory=World)
     meant: World = field(default_factory=World)
@@ -181,6 +182,8 @@ class Solver:
                 free=self.free,
             )
             link = met.link
+            apart = sp.sqrt(square(centres[1] - centres[0]))
+            self.missed.append(missed_circles(apart, (radii[0], radii[1])))
         elif circles:
             sigma = self._sign(f"{k}")
             link, missed = line_and_circle(tag, rays[0], (centres[0], radii[0]), unknowns, sigma)

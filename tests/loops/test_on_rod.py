@@ -142,3 +142,36 @@ def test_legs_that_do_not_fit_say_why() -> None:
         on_rod(d, hand, Stretch(a, (0, 0)), legs[1], (1, 0))
     with pytest.raises(ShapeError, match="driven by b, a"):
         on_rod(d, hand, *legs[::-1], (1, 0))
+
+
+TANGENT = """
+hand = "D"
+[bodies]
+ground = {O = [0, 0], Q = [-0.3, 0.3]}
+k1 = {O = [0, 0], A = [0.1, 0]}
+k2 = {Q = [-0.3, 0.3], B = [-0.1, 0.3]}
+upper = {A = [0, 0], C = [0.2, 0], D = [0.4, 0]}
+front = {length = 0.1}
+[joints]
+q1 = {between = ["ground", "k1"], at = "O", driven = true}
+q2 = {between = ["ground", "k2"], at = "Q", driven = true}
+a = {between = ["k1", "upper"], at = "A"}
+b = {between = ["k2", "front"], at = "B"}
+c = {between = ["upper", "front"], at = "C"}
+"""
+
+
+def test_both_legs_may_be_stretched(tmp_path: Path) -> None:
+    """There rounding of the hand moves the first crank far, and the second rod just reaches.
+
+    Of 22,000 such postures 927 were lost.
+    """
+    both = derived("both", script_of("both", TANGENT, tmp_path), tmp_path, crosscheck=True)
+    rng, shape = np.random.default_rng(3), (20_000, 2)
+    near = rng.choice([0, *10.0 ** np.arange(-12, -2)], shape) * rng.choice([-1, 1], shape)
+    p, status = both.fk(rng.integers(-1, 3, shape) * np.pi / 2 + near)
+    x = p[status == OK]
+    q, status = both.ik(x)
+    assert len(x) > 5000 and ((status == OK) | (status == SINGULAR)).any(axis=-1).all()
+    gaps = np.linalg.norm(both.fk(q).p - x[:, None, None], axis=-1)
+    assert np.nanmin(gaps[status == OK], axis=-1).max() < 1e-12

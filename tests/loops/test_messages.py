@@ -558,6 +558,57 @@ def test_single_loops_are_told_what_to_do(file: str, told: str, tmp_path: Path) 
         script_of("t", file, tmp_path)
 
 
+SCISSORS = """
+hand = "h"
+[bodies]
+ground = {A = [0, 0]}
+nut = {R = [0, 0]}
+bar1 = {A = [0, 0], M = [0.5, 0], B = [1, 0]}
+bar2 = {R = [0, 0], M = [0.5, 0], C = [1, 0]}
+table = {C = [0, 0]}
+[joints]
+a = {between = ["ground", "bar1"], at = "A"}
+q = {between = ["ground", "nut"], at = "A", kind = "prismatic", axis = [1, 0], driven = true}
+r = {between = ["nut", "bar2"], at = "R"}
+m = {between = ["bar1", "bar2"], at = "M"}
+c = {between = ["bar2", "table"], at = "C"}
+h = {between = ["ground", "table"], at = "A", kind = "prismatic", axis = [0, 1]}
+"""
+"""Its table is guided, though C stays above A."""
+THIRD_BAR = """
+hand = "P"
+[bodies]
+ground = {A = [0, 0], B = [0.2, 0], C = [0.4, 0]}
+crank = {A = [0, 0], D = [0, 0.3]}
+bar1 = {length = 0.3}
+bar2 = {length = 0.3}
+table = {D = [0, 0], E = [0.2, 0], F = [0.4, 0], P = [0.2, 0.1]}
+[joints]
+q = {between = ["ground", "crank"], at = "A", driven = true}
+b = {between = ["ground", "bar1"], at = "B"}
+c = {between = ["ground", "bar2"], at = "C"}
+d = {between = ["crank", "table"], at = "D"}
+e = {between = ["bar1", "table"], at = "E"}
+f = {between = ["bar2", "table"], at = "F"}
+"""
+
+
+@pytest.mark.parametrize(
+    ("file", "told"),
+    [
+        (SCISSORS, "it has 0 degrees of freedom.  If its dimensions let it move .* leave out what"),
+        (THIRD_BAR, "it has 0 degrees of freedom.  If its dimensions let it move all the same"),
+        (
+            THIRD_BAR.replace("\ne = {", "\n# {").replace("\nf = {", "\n# {"),
+            "see whether a joint is",
+        ),
+    ],
+)
+def test_a_count_of_freedoms_says_what_may_be_meant(file: str, told: str, tmp_path: Path) -> None:
+    with pytest.raises(TableError, match=told):
+        script_of("t", file, tmp_path)
+
+
 def test_points_of_a_rod_without_a_joint_are_of_no_account(tmp_path: Path) -> None:
     script = script_of("t", FOUR_BAR, tmp_path)
     plain = FOUR_BAR.replace(", P = [0.2, 0.1]", "").replace(", T = [0.4, 0.5]", "")

@@ -152,6 +152,7 @@ def _ordered(
         raise loop.error(
             f"{listed(drives)} drive{'s' * (len(drives) == 1)} this linkage, but by the count of "
             f"its bodies and pins it has {degrees(free + len(cylinders))}"
+            + instead_of_count(free, len(turning))
         )
     found = order(points, [GROUND, *turning])
     for step in found.held:
@@ -178,6 +179,19 @@ def _ordered(
         f"this is a planar linkage, but no two of the bodies {listed(found.left)} are a dyad (two "
         f"bodies with a common pin, each with one more point that is known); they are a group of "
         f"a higher class{degree}{instead}"
+    )
+
+
+def instead_of_count(free: int, driven: int) -> str:
+    """What may be meant if the count of a linkage is not the number of driven joints."""
+    if free > driven:
+        return (
+            ".  Drive more joints, or see whether a joint is missing: a rod is held at both ends, "
+            "and a body on a slide in a slot needs a pin or a guide too"
+        )
+    return (
+        ".  If its dimensions let it move all the same, as those of a guide where other bars lead "
+        "already, or of a third bar of a parallelogram, leave out what is not needed"
     )
 
 
@@ -236,6 +250,7 @@ __all__ = [
     "FEW",
     "LinkageLines",
     "check_apart",
+    "instead_of_count",
     "line_of",
     "linkage",
     "no_point",

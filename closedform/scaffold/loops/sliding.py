@@ -29,6 +29,7 @@ from closedform.scaffold.loops.linkages import (
     FEW,
     LinkageLines,
     check_apart,
+    instead_of_count,
     line_of,
     no_point,
     other_drive,
@@ -303,6 +304,7 @@ def _ordered(found: Found) -> SlidingOrder:
         raise loop.error(
             f"{listed([j.name for j in driven])} drive{'s' * (len(driven) == 1)} this linkage, but "
             f"by the count of its bodies, pins and slides it has {degrees(free)}"
+            + instead_of_count(free, len(driven))
         )
     _check_directions(found)
     order = sliding_order(found.points, found.pairs, [GROUND, *found.driven])

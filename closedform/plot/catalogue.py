@@ -182,9 +182,11 @@ def _both(robot: ModuleType, view: View) -> Any:
 
 
 def _at_zero(r: Robot) -> Array | None:
-    """The joints at zero, if the mechanism can be assembled there."""
+    """The joints at zero, if the mechanism can be assembled there, and is more than a point."""
     q = np.zeros(len(r.module.JOINTS))
-    return q if r.has_forward_map and r.modes_at(q) else None
+    if not r.has_forward_map or not (modes := r.modes_at(q)):
+        return None
+    return q if np.ptp(r.points(q)[modes[0]], axis=0).any() else None
 
 
 def pictured(robot: ModuleType, view: View, posture: ArrayLike | None, **style: Any) -> Any:

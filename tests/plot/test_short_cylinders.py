@@ -10,7 +10,7 @@ from loop_files import derived, script_of
 from places import TESTS
 
 from closedform import plot
-from closedform.plot.catalogue import fits
+from closedform.plot.catalogue import View, fits, standard
 from closedform.plot.robot import Robot
 
 FOLDER = TESTS / "held_out_loops"
@@ -79,3 +79,26 @@ def test_a_map_is_over_the_joints_if_there_is_no_inverse(tmp_path: Path) -> None
     assert not hasattr(leg, "ik") and fits(leg, "conditioning")
     axes = plot.field(leg, "condition", resolution=40)
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("$q$", "$h$")
+
+
+STAGE = """
+hand = "P"
+[bodies]
+ground = {O = [0, 0]}
+bx = {A = [0, 0]}
+by = {B = [0, 0]}
+table = {P = [0, 0]}
+[joints]
+x1 = {between = ["ground", "bx"], at = "O", kind = "prismatic", axis = [1, 0], driven = true}
+y1 = {between = ["ground", "by"], at = "O", kind = "prismatic", axis = [0, 1], driven = true}
+sx = {between = ["bx", "table"], at = "P", kind = "prismatic", axis = [0, 1]}
+sy = {between = ["by", "table"], at = "P", kind = "prismatic", axis = [1, 0]}
+"""
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_stage_that_is_a_point_at_zero_is_drawn_elsewhere(tmp_path: Path) -> None:
+    stage = derived("stage", script_of("stage", STAGE, tmp_path), tmp_path)
+    [figure] = [f for f in standard(View()) if f.name == "mechanism"]
+    low, high = figure.draw(stage).get_xlim()
+    assert high - low > 0.3

@@ -614,3 +614,66 @@ def test_points_of_a_rod_without_a_joint_are_of_no_account(tmp_path: Path) -> No
     script = script_of("t", FOUR_BAR, tmp_path)
     plain = FOUR_BAR.replace(", P = [0.2, 0.1]", "").replace(", T = [0.4, 0.5]", "")
     assert "coupled(" in script and script == script_of("t", plain, tmp_path)
+
+
+RODS = "".join(f"l{k} = {{length = 0.3}}\n" for k in range(1, 6))
+ENDS = "".join(
+    f'a{k} = {{between = ["ground", "l{k}"], at = "A{k}", kind = "spherical"}}\n'
+    f'c{k} = {{between = ["l{k}", "upright"], at = "C{k}", kind = "spherical"}}\n'
+    for k in range(1, 6)
+)
+FIVE_LINKS = f"""
+hand = "W"
+[bodies.ground]
+D = [0, 0.5, 0.6]
+A1 = [0, 0.4, 0]
+A2 = [0.2, 0.4, 0.05]
+A3 = [-0.2, 0.4, 0.1]
+A4 = [0.1, 0.45, 0.3]
+A5 = [-0.1, 0.45, 0.32]
+[bodies.upright]
+W = [0, 0, 0]
+E = [0, -0.05, 0.15]
+C1 = [0, -0.05, -0.1]
+C2 = [0.1, -0.05, -0.08]
+C3 = [-0.1, -0.05, -0.05]
+C4 = [0.05, -0.05, 0.1]
+C5 = [-0.05, -0.06, 0.1]
+[bodies]
+tube = {{}}
+rod = {{}}
+{RODS}
+[joints]
+d = {{between = ["ground", "tube"], at = "D", kind = "spherical"}}
+q = {{between = ["tube", "rod"], at = "D", kind = "prismatic", driven = true}}
+e = {{between = ["rod", "upright"], at = "E", kind = "spherical"}}
+{ENDS}
+"""
+MACPHERSON = """
+hand = "W"
+[bodies]
+ground = {L = [0, 0.3, 0], T = [0.1, 0.5, 0.6], R = [-0.15, 0.3, 0.05]}
+arm = {L = [0, 0.3, 0], B = [0, 0.7, 0]}
+tie = {length = 0.38}
+strut = {}
+upright = {W = [0, 0, 0], B = [0, -0.05, -0.1], N = [-0.13, -0.05, -0.05], S = [0, -0.1, 0.1]}
+[joints]
+q = {between = ["ground", "arm"], at = "L", axis = [1, 0, 0], driven = true}
+t = {between = ["ground", "strut"], at = "T", kind = "spherical"}
+s = {between = ["strut", "upright"], at = "S", kind = "prismatic", axis = [0, 0, 1]}
+b = {between = ["arm", "upright"], at = "B", kind = "spherical"}
+r = {between = ["ground", "tie"], at = "R", kind = "spherical"}
+n = {between = ["tie", "upright"], at = "N", kind = "spherical"}
+"""
+
+
+@pytest.mark.parametrize(
+    ("file", "told"),
+    [
+        (FIVE_LINKS, "l4, l5 and the leg of q give six distances of the hand, .* degree 40"),
+        (MACPHERSON, "upright slides on strut, which t holds on the ground, as in a MacPherson"),
+    ],
+)
+def test_suspensions_in_space_are_told_what_they_are(file: str, told: str, tmp_path: Path) -> None:
+    with pytest.raises(TableError, match=told):
+        script_of("t", file, tmp_path)

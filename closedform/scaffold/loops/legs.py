@@ -36,8 +36,10 @@ from closedform.scaffold.loops.refused import (
     hinges_of_leg,
     moving_driver,
     on_cylinder,
+    on_strut,
     on_turning_body,
     shafts,
+    six_lengths,
     sliding_halves,
     two_motors,
 )
@@ -227,7 +229,7 @@ class Legs:
             if loop.dimensions == 2 or found:
                 raise loop.error(
                     f"the rod {rod} leads from the ground to the hand; only one may, and only in "
-                    "space, with two driven joints"
+                    "space, with two driven joints" + six_lengths(loop, self.passive_rods())
                 )
             self.used.add(joint.name)
             length, place = self.bar(rod, loop.rods[rod]), self.place_on_hand(rod, joint)
@@ -241,6 +243,11 @@ class Legs:
                 )
             )
         return found
+
+    def passive_rods(self) -> list[str]:
+        """The rods from the ground, which no joint drives."""
+        ways = [(j, j.other(GROUND)) for j in self.loop.of(GROUND)]
+        return [body for j, body in ways if body in self.loop.rods and not j.driven]
 
     def leg(self, joint: Joint) -> LoopLeg:
         loop = self.loop
@@ -278,7 +285,7 @@ class Legs:
                 + two_motors(loop, joint)
                 + ("" if arcs(loop) else hinged_on(loop, joint))
                 + driven_mast(loop, joint)
-                + ball_on_driven(loop, onward)
+                + (ball_on_driven(loop, onward) or on_strut(loop, onward))
                 + (arcs(loop) or hinges_of_leg(loop, joint) or shafts(loop, joint))
                 + several_told(loop, body)
             )

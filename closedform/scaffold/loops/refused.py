@@ -256,6 +256,38 @@ def ball_on_driven(loop: Loop, onward: Sequence[Joint]) -> str:
     )
 
 
+def on_strut(loop: Loop, onward: Sequence[Joint]) -> str:
+    """What is said of an arm that ends in a ball on a hand which slides in a strut (MacPherson)."""
+    if loop.dimensions != len(AXES) or [j.kind for j in onward] != ["spherical"]:
+        return ""
+    hands = [body for body in onward[0].between if loop.hand in loop.bodies[body]]
+    for slide in (j for body in hands for j in loop.of(body) if j.kind == "prismatic"):
+        strut = slide.other(hands[0])
+        balls = [j for j in loop.of(strut) if GROUND in j.between and j.kind in BALLS]
+        if balls and not slide.driven:
+            return (
+                f".  {hands[0]} slides on {strut}, which {balls[0].name} holds on the ground, as "
+                f"in a MacPherson suspension; this is not derived in space.  The distance of both "
+                f"balls gives {slide.name} in one of two ways, and the rod the turn of {hands[0]} "
+                f"about their line in one of two: equations to write in Python.  Seen from the "
+                f"front it is a linkage in a plane, which is supported"
+            )
+    return ""
+
+
+def six_lengths(loop: Loop, rods: Sequence[str]) -> str:
+    """What is said of a hand on rods and driven legs that are six together."""
+    driven = [j.name for j in loop.joints.values() if j.driven]
+    if loop.dimensions != len(AXES) or len(rods) + len(driven) != len(AXES) * PAIR:
+        return ""
+    legs = f"the leg{'s' * (len(driven) > 1)} of {listed(driven)}"
+    return (
+        f".  {listed([*rods, legs])} give six distances of the hand, as the links of a "
+        f"suspension do: an equation of degree 40 in general.  With each rod as a leg that stretches it is a "
+        f"platform on six legs, whose ik gives all lengths for a pose of the hand"
+    )
+
+
 def hinged_on(loop: Loop, joint: Joint) -> str:
     """What is said of a hand that is hinged to the only driven body, as on an RRSS linkage."""
     body = joint.other(GROUND)
@@ -303,8 +335,10 @@ __all__ = [
     "hinges_of_leg",
     "moving_driver",
     "on_cylinder",
+    "on_strut",
     "on_turning_body",
     "shafts",
+    "six_lengths",
     "sliding_halves",
     "two_motors",
 ]

@@ -283,8 +283,9 @@ def six_lengths(loop: Loop, rods: Sequence[str]) -> str:
     legs = f"the leg{'s' * (len(driven) > 1)} of {listed(driven)}"
     return (
         f".  {listed([*rods, legs])} give six distances of the hand, as the links of a "
-        f"suspension do: an equation of degree 40 in general.  With each rod as a leg that stretches it is a "
-        f"platform on six legs, whose ik gives all lengths for a pose of the hand"
+        f"suspension do: an equation of degree 40 in general.  With each rod as a "
+        f"leg that stretches it is a platform on six legs, whose ik gives all lengths for a pose "
+        f"of the hand"
     )
 
 

@@ -677,3 +677,23 @@ n = {between = ["tie", "upright"], at = "N", kind = "spherical"}
 def test_suspensions_in_space_are_told_what_they_are(file: str, told: str, tmp_path: Path) -> None:
     with pytest.raises(TableError, match=told):
         script_of("t", file, tmp_path)
+
+
+def test_guides_that_motors_turn_are_told_what_they_are(tmp_path: Path) -> None:
+    text = """
+hand = "P"
+copies = 3
+[bodies]
+ground = {A1 = [0.5, 0]}
+plate = {P = [0, 0], C1 = [0.1, 0]}
+guide1 = {A1 = [0.5, 0]}
+rod1 = {C1 = [0, 0]}
+[joints]
+t1 = {between = ["ground", "guide1"], at = "A1", driven = true}
+s1 = {between = ["guide1", "rod1"], at = "A1", kind = "prismatic", axis = [1, 0]}
+c1 = {between = ["rod1", "plate"], at = "C1"}
+"""
+    with pytest.raises(TableError, match=r"with two solutions; .* or drive s1 instead"):
+        script_of("t", text, tmp_path)
+    driven = text.replace(", driven = true", "").replace("axis = [1, 0]", "driven = true")
+    assert "platform(" in script_of("t", driven, tmp_path)

@@ -41,6 +41,7 @@ from closedform.scaffold.loops.refused import (
     shafts,
     six_lengths,
     sliding_halves,
+    turning_guide,
     two_motors,
 )
 from closedform.scaffold.loops.rods import check_short_side, several_told
@@ -272,7 +273,7 @@ class Legs:
             raise loop.error(
                 f"{joint.name} turns {body}, on which {slides[0].name} slides; a passive slide is "
                 f"supported on a driven slider, not on a driven crank"
-                + ball_on_line(loop, slides[0])
+                + (ball_on_line(loop, slides[0]) or turning_guide(loop, joint, slides[0]))
             )
         if len(rods) != 1 or len(onward) != 1:
             carried = listed([j.other(body) for j in onward]) or "nothing else"

@@ -256,6 +256,19 @@ def ball_on_driven(loop: Loop, onward: Sequence[Joint]) -> str:
     )
 
 
+def turning_guide(loop: Loop, joint: Joint, slide: Joint) -> str:
+    """What is said of a leg in a plane whose guide a motor turns, as of a 3-RPR mechanism."""
+    if loop.dimensions == len(AXES):
+        return ""
+    return (
+        f".  As {joint.name} turns the line on which {slide.name} slides, each leg of this kind "
+        f"holds a point of the hand on a known line.  Three of them are equations that are linear "
+        f"in the position and in the cosine and sine of the turn, with two solutions; the joint is "
+        f"the direction from its pivot to that point.  Write these equations in Python, or drive "
+        f"{slide.name} instead"
+    )
+
+
 def on_strut(loop: Loop, onward: Sequence[Joint]) -> str:
     """What is said of an arm that ends in a ball on a hand which slides in a strut (MacPherson)."""
     if loop.dimensions != len(AXES) or [j.kind for j in onward] != ["spherical"]:
@@ -341,5 +354,6 @@ __all__ = [
     "shafts",
     "six_lengths",
     "sliding_halves",
+    "turning_guide",
     "two_motors",
 ]

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations, product
 from typing import Any, Literal, TypeAlias
 
@@ -19,6 +19,7 @@ import sympy as sp
 from flint import fmpq, fmpq_mat
 from sympy import QQ, Rational, Symbol
 from sympy.polys.groebnertools import groebner
+from sympy.polys.numberfields import primitive_element
 from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing
 
@@ -51,6 +52,8 @@ class SolutionCount:
     points: tuple[dict[Symbol, Expr], ...] = ()
     certificate: int | None = None
     """The number of its certificate, if one was recorded."""
+    conjugate: int = 0
+    """Solutions that the certificate counts too, for other signs of the roots of numbers."""
 
     def __int__(self) -> int:
         return self.count
@@ -69,7 +72,8 @@ def count_solutions(
     """Count the solutions of `equations = 0`.
 
     An unknown that occurs in a sine or cosine is an angle, counted modulo a full turn. Every other
-    symbol is a parameter. Raises `InfinitelyManyError` if there are infinitely many solutions.
+    symbol is a parameter. A root of a number, such as `sqrt(2)`, counts as what it is. Raises
+    `InfinitelyManyError` if there are infinitely many solutions.
     While certificates are recorded, the basis of the certificate is counted, if SymPy agrees for
     random parameters. Otherwise SymPy computes a basis for symbolic ones.
 
@@ -92,6 +96,18 @@ def count_solutions(
         that of the numbers
     """
     equations, saturate, given = list(equations), list(saturate), target_substitution or {}
+    if field := _field_of_roots([*equations, *saturate, *given.values()]):
+        counted = count_solutions(
+            [field.written(e) for e in equations] + [field.polynomial],
+            [*unknowns, field.unknown],
+            target_substitution={s: field.written(e) for s, e in given.items()},
+            saturate=[field.written(e) for e in saturate],
+            method=method,
+            specialisations=specialisations,
+            seed=seed,
+        )
+        count = counted.count // field.degree
+        return replace(counted, count=count, conjugate=counted.count - count)
     system = _System(equations, unknowns, given, saturate)
     draw = random.Random(seed)
     record, certified = open_record(), None
@@ -147,6 +163,42 @@ def rotation_parametrisation(
     square = v.dot(v)
     numerator = (1 - square) * sp.eye(3) + 2 * cross + 2 * v * v.T
     return sp.ImmutableMatrix(numerator / (1 + square))
+
+
+@dataclass(frozen=True)
+class _FieldOfRoots:
+    """The field of the roots of numbers: each is a polynomial in one of its elements.
+
+    As an unknown, this element may be any zero of its irreducible ``polynomial``. Automorphisms of
+    the algebraic closure exchange the zeros, so to each of them belong equally many solutions.
+    """
+
+    unknown: Symbol
+    polynomial: Expr
+    roots: Mapping[Expr, Expr]
+
+    @property
+    def degree(self) -> int:
+        return int(sp.degree(self.polynomial, self.unknown))
+
+    def written(self, e: Expr) -> Expr:
+        """An expression with polynomials in the unknown for its roots."""
+        return sp.sympify(e, strict=True).xreplace(self.roots)
+
+
+def _field_of_roots(expressions: Iterable[Expr]) -> _FieldOfRoots | None:
+    """The field of all roots of numbers in the expressions; None if there are none."""
+    powers = {p for e in expressions for p in sp.sympify(e, strict=True).atoms(sp.Pow)}
+    roots = sorted((p for p in powers if p.is_algebraic and not p.exp.is_Integer), key=str)
+    if not roots:
+        return None
+    unknown = Symbol("root_of_numbers", real=True)
+    polynomial, _, powers_of = primitive_element(roots, unknown, ex=True)
+    return _FieldOfRoots(
+        unknown,
+        polynomial,
+        {p: sp.Poly(row, unknown).as_expr() for p, row in zip(roots, powers_of, strict=True)},
+    )
 
 
 class _System:

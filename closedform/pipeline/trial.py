@@ -15,8 +15,7 @@ from closedform.proof.inverse import prove_inverse
 def fault(name: str, script: str) -> str:
     """A clause on why the inverse in a script is not proved; empty if it is.
 
-    Where the proof cannot be carried out, because a length is a root such as sqrt(401), nothing is
-    known.
+    Where the proof cannot be carried out, because a parameter is below a root, nothing is known.
     """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{name}.py"

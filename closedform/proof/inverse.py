@@ -67,7 +67,7 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
     certificates.add_inverse(
         function.name,
         branches,
-        [(counted.certificate, excluded) for counted, excluded in counts],
+        [(counted.certificate, counted.conjugate + excluded) for counted, excluded in counts],
         each,
     )
     cases = [case for link in inverse.links for case in link.degenerate if case.free]

@@ -141,6 +141,25 @@ def test_a_certified_count_is_the_same(equations, unknowns, count: int, distinct
     assert (found.count, found.distinct) == (alone.count, alone.distinct) == (count, distinct)
 
 
+ROOTS = [
+    ([sp.sqrt(2) * sin(t1) + sp.sqrt(3) * cos(t1) - x], [t1], 2, True),
+    ([x**2 - 2 * sp.sqrt(2) * x + 2], [x], 2, False),
+    ([x**2 - sp.sqrt(2 + sp.sqrt(2)) * x + u * sp.sqrt(2 - sp.sqrt(2)) + sp.sqrt(2)], [x], 2, True),
+    ([x**3 - sp.sqrt(6) * x / sp.sqrt(2) - sp.cbrt(5) * u], [x], 3, True),
+]
+
+
+@pytest.mark.parametrize(("equations", "unknowns", "count", "distinct"), ROOTS)
+def test_a_root_of_a_number_is_no_unknown(equations, unknowns, count: int, distinct: bool) -> None:
+    """What its certificate counts for other signs of the roots is told apart."""
+    with recording() as record:
+        found = count_solutions(equations, unknowns)
+    assert (found.count, found.distinct) == (count, distinct)
+    assert found.conjugate % count == 0
+    assert record.certificates[found.certificate]["count"] == count + found.conjugate
+    assert count_solutions(equations, unknowns, method="specialised").count == count
+
+
 def test_a_certificate_that_differs_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     counted = Record.count
     monkeypatch.setattr(

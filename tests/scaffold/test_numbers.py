@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from arms import link, misses
 from chains import printed
 
 import closedform.check.inverses
@@ -82,6 +83,36 @@ def test_the_point_of_an_axis_may_be_any_on_it(tmp_path: Path) -> None:
     found = arm.ik(arm.pose(q))
     gaps = np.abs(np.angle(np.exp(1j * (found.q - q[:, None])))).max(-1)
     assert np.nanmin(gaps, axis=-1).max() < 1e-9
+
+
+SURGICAL = (
+    "0, 5*pi/12, 0, theta1\n0, -13*pi/45, 0, theta2\n0, 0, d3, 0\n"
+    "0, pi/2, 0.3, theta4\n0.013, pi/2, 0, theta5\n0, 0, 0, theta6\n"
+)
+
+
+def test_angles_of_a_wrist_may_be_a_parameter_and_a_root(tmp_path: Path) -> None:
+    """A surgical arm: one angle has a cosine with square roots, the other one has none.
+
+    Its roots beside a parameter could not be counted, so the script that was proposed was refused.
+    """
+    d = derivation(tmp_path, HEADER + SURGICAL)
+    assert [p.name for p in d.parameters] == ["angle1"]
+    (inverse,) = prove(d).inverses
+    assert inverse.branches == inverse.solutions == 8
+    robot, angle = printed(d, tmp_path), -13 * np.pi / 45
+    q = np.random.default_rng(6).uniform(-3, 3, (500, 6))
+    links = [(0, 5 * np.pi / 12, 0), (0, angle, 0), (0, 0, q[:, 2]), (0, np.pi / 2, 0.3),
+             (0.013, np.pi / 2, 0), (0, 0, 0)]  # fmt: skip
+    T = np.eye(4)
+    for k, (a, alpha, length) in enumerate(links):
+        step = link(a, alpha, 0, q[:, k] * (k != 2))
+        step[:, 2, 3] = length
+        T = T @ step
+    np.testing.assert_allclose(robot.pose(q), T, atol=1e-14)
+    answers, status = robot.ik(T)
+    assert max(misses(robot.pose(answers), T, status)) < 1e-12
+    assert (np.nanmin(np.abs(answers - q[:, None]).max(-1), axis=-1) < 1e-7).all()
 
 
 def findings(

@@ -428,7 +428,7 @@ def _inverse_lines(arm: Serial, search: InverseSearch, refused: Sequence[Tried])
         lines=lines,
         outcome=outcome,
         explained=explained,
-        advice=_only_turned(arm),
+        advice=found.doubt or _only_turned(arm),
         structure=found.structure,
         lemmas=found.lemmas,
         name=found.name,

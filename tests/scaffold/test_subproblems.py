@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sympy as sp
-from arms import OK, misses
+from arms import OK, SINGULAR, link, misses
 from chains import arm, printed, solved
 from sympy import cos, pi, sin
 
@@ -273,3 +273,31 @@ def test_two_axes_beside_three_parallel_ones_may_pass_each_other() -> None:
     with pytest.raises(NoChainError) as e:
         propose(arm(rows, "t1 d2 t3 t4 t5")[1])
     assert "axes 4 and 5 do not meet" in [t.error.found for t in e.value.tried]
+
+
+ELBOW_BEFORE = [
+    (0, -pi / 2, 0), (0, pi / 2, ROOM), (0, -pi / 2, 0), (0, pi / 2, ROOM), (0, -pi / 2, 0),
+    (ROOM / 10, pi / 2, 0), (ROOM / 5, 0, 0),
+]  # fmt: skip
+"""With joint 3 at 0 or at half a turn, joint 2 turns about the centre of the wrist."""
+
+
+def test_the_joint_that_is_given_leaves_no_singular_arm(tmp_path: Path) -> None:
+    """With t3 given, answers missed their targets by 1e-6 near such values of it, and were OK."""
+    d, serial = arm(ELBOW_BEFORE)
+    found = propose(serial)
+    assert (
+        found.structure == "spherical wrist, axes 2 and 3 meet, with t7 given" and not found.doubt
+    )
+    assert "At some values of t3 the other joints" in propose(serial, "t3").doubt
+    solved(d, serial, found.source)
+    serial.export(d)
+    robot, rng = printed(d, tmp_path), np.random.default_rng(4)
+    q = rng.uniform(-3, 3, (3000, 7))
+    q[:, 2] = rng.choice((0, np.pi), 3000) + rng.choice((0, 1e-10, 1e-7, 1e-5), 3000)
+    T = np.eye(4)
+    for k, (a, alpha, length) in enumerate(ELBOW_BEFORE):
+        T = T @ link(float(a), float(alpha), float(length), q[:, k])
+    answers, status = robot.ik(T, q[:, 6])
+    assert np.isin(status, (OK, SINGULAR)).any(axis=-1).all()
+    assert max(misses(robot.pose(answers), T, status)) < 1e-12

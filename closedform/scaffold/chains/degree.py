@@ -29,6 +29,8 @@ CLOSE, MET = 1e-5, 1e-4
 """The correction that ends Newton's method, whose error is its square; and what is one solution."""
 SINGULAR = 1e9
 """The condition of the Jacobian of an arm that does not move its tool in six ways."""
+VALUES, POSTURES, NEARLY = 720, 8, 0.01
+"""How many values of a joint are tried, at how many postures, and the determinant counted as 0."""
 SHORTEST = 1e-7
 """The smallest step along a loop of length 1."""
 IMAGINARY = np.array([0.5, 0.5, 0.5, 1, 1, 1])
@@ -340,6 +342,22 @@ def free_joints(arm: Singles) -> list[Single]:
     return [j for j, e in zip(arm.joints, np.abs(least), strict=True) if e > 1e-6]
 
 
+def stays_regular(arm: Singles, single: Single) -> bool:
+    """Whether the other six of seven joints are regular at every value of one that turns.
+
+    Parameters and postures are at random; a value that is nearly singular at all of these counts
+    as one that is singular.
+    """
+    rng = np.random.default_rng(SEEDS[0])
+    k = arm.joints.index(single)
+    values = np.linspace(-np.pi, np.pi, VALUES, endpoint=False)
+    q = np.tile(rng.normal(size=(POSTURES, 1, len(arm.joints))) + 0j, (1, VALUES, 1))
+    q[:, :, k] = values
+    _, twists = Numeric.of(arm, rng).pose(q.reshape(-1, len(arm.joints)))
+    sizes = np.abs(np.linalg.det(np.delete(twists, k, axis=2))).reshape(POSTURES, VALUES)
+    return bool((sizes / sizes.mean(axis=1, keepdims=True)).max(axis=0).min() > NEARLY)
+
+
 def counted_once(arm: Singles, seed: int) -> Solutions | None:
     """The solutions that loops find; None if they could not be followed."""
     fibre = _explored(arm, seed)
@@ -392,4 +410,11 @@ def solvable(group: PermutationGroup) -> bool:
     return not (last > 4 and onto.is_alt_sym()) and bool(group.is_solvable)
 
 
-__all__ = ["Solutions", "is_regular", "solutions", "solutions_of_few", "steps"]
+__all__ = [
+    "Solutions",
+    "is_regular",
+    "solutions",
+    "solutions_of_few",
+    "stays_regular",
+    "steps",
+]

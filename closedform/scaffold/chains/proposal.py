@@ -45,6 +45,8 @@ class Proposal:
     lemmas: tuple[str, ...]
     branches: int
     tried: tuple[Tried, ...] = ()
+    doubt: str = ""
+    """A sentence on the joint that is given, if it leaves a singular arm at some of its values."""
 
     @property
     def source(self) -> str:

@@ -23,6 +23,7 @@ from closedform.scaffold.chains.degree import (
     is_regular,
     solutions,
     solutions_of_few,
+    stays_regular,
 )
 from closedform.scaffold.chains.known import KnownMaker
 from closedform.scaffold.chains.maker import Maker
@@ -77,6 +78,7 @@ def propose(
                 lemmas=lemmas,
                 branches=maker.branches,
                 tried=tuple(tried),
+                doubt=_doubt_of_given(arm, found),
             )
     raise refused[0].error.after(tried) if refused else _refusal(arm, given, tried, progress)
 
@@ -171,6 +173,7 @@ def _held(single: Single) -> str:
 
 
 ONE_WAY = " that turn about one direction"
+GIVEN_JOINT = ", with {} given"
 NUMERIC = "Use ssik for a numeric inverse."
 NEITHER = (
     "none of its seven joints, if it is given, leaves a spherical wrist or shoulder, and two "
@@ -300,10 +303,32 @@ def _seven(arm: Serial, whole: Singles, given: str) -> Iterator[_Candidate]:
         yield from _six(arm, whole, single)
 
 
-def _to_give(whole: Singles, given: str = "") -> list[Single]:
-    """The joints of seven that may be ``given``: slides, then those that most arms repeat."""
+def _to_give(whole: Singles, given: str = "") -> Iterator[Single]:
+    """The joints of seven that may be ``given``: slides, then those that most arms repeat.
+
+    Those that leave a singular arm at some of their values, as a straight elbow may, are last.
+    """
     joints = sorted((whole.joints[k] for k in (2, 6, 4, 0, 3, 1, 5)), key=lambda j: not j.slides)
-    return [j for j in joints if given in ("", j.joint.name)]
+    last = []
+    for single in (j for j in joints if given in ("", j.joint.name)):
+        if given or single.slides or stays_regular(whole, single):
+            yield single
+        else:
+            last.append(single)
+    yield from last
+
+
+def _doubt_of_given(arm: Serial, structure: str) -> str:
+    """What to know of the joint that is given, if it leaves a singular arm at some values."""
+    whole = singles(arm)
+    given = next((j for j in whole.joints if structure.endswith(GIVEN_JOINT.format(j.joint))), None)
+    if given is None or given.slides or stays_regular(whole, given):
+        return ""
+    return (
+        f"At some values of {given.joint} the other joints move the tool in less than six ways at "
+        f"every posture; near these values solutions are lost or inexact.  Choose another joint "
+        f"with --given, if there is one."
+    )
 
 
 def _moved(order: Singles, whole: Singles) -> str:
@@ -383,7 +408,7 @@ def _fewer(maker: SubproblemMaker, whole: Singles, wrist: int) -> str:
 def _six(arm: Serial, whole: Singles, given: Single | None = None) -> Iterator[_Candidate]:
     """An arm of six joints that are not given, from its base and from its tool."""
     left = whole if given is None else whole.with_given(given.number, GIVEN)
-    more = "" if given is None else f", with {given.joint} given"
+    more = "" if given is None else GIVEN_JOINT.format(given.joint)
     regular = cache(partial(is_regular, left))
 
     def candidate(name: str, maker: SubproblemMaker, solve: _Solve, view: Singles) -> _Candidate:

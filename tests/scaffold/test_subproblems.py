@@ -282,22 +282,40 @@ ELBOW_BEFORE = [
 """With joint 3 at 0 or at half a turn, joint 2 turns about the centre of the wrist."""
 
 
+def near_singular_values(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Postures with joint 3 near such a value, and their poses."""
+    rng = np.random.default_rng(4)
+    q = rng.uniform(-3, 3, (count, 7))
+    q[:, 2] = rng.choice((0, np.pi), count) + rng.choice((0, 1e-10, 1e-7, 1e-5), count)
+    T = np.eye(4)
+    for k, (a, alpha, length) in enumerate(ELBOW_BEFORE):
+        T = T @ link(float(a), float(alpha), float(length), q[:, k])
+    return q, T
+
+
 def test_the_joint_that_is_given_leaves_no_singular_arm(tmp_path: Path) -> None:
-    """With t3 given, answers missed their targets by 1e-6 near such values of it, and were OK."""
+    """With t3 given, a tenth of the postures were lost near such values of it."""
     d, serial = arm(ELBOW_BEFORE)
     found = propose(serial)
     assert (
         found.structure == "spherical wrist, axes 2 and 3 meet, with t7 given" and not found.doubt
     )
-    assert "At some values of t3 the other joints" in propose(serial, "t3").doubt
     solved(d, serial, found.source)
     serial.export(d)
-    robot, rng = printed(d, tmp_path), np.random.default_rng(4)
-    q = rng.uniform(-3, 3, (3000, 7))
-    q[:, 2] = rng.choice((0, np.pi), 3000) + rng.choice((0, 1e-10, 1e-7, 1e-5), 3000)
-    T = np.eye(4)
-    for k, (a, alpha, length) in enumerate(ELBOW_BEFORE):
-        T = T @ link(float(a), float(alpha), float(length), q[:, k])
+    robot, (q, T) = printed(d, tmp_path), near_singular_values(3000)
     answers, status = robot.ik(T, q[:, 6])
     assert np.isin(status, (OK, SINGULAR)).any(axis=-1).all()
     assert max(misses(robot.pose(answers), T, status)) < 1e-12
+
+
+def test_where_the_others_are_singular_no_answer_misses_its_target(tmp_path: Path) -> None:
+    """Answers that were OK missed by up to 1e-6."""
+    d, serial = arm(ELBOW_BEFORE)
+    found = propose(serial, "t3")
+    assert "At some values of t3 the other joints" in found.doubt
+    solved(d, serial, found.source)
+    serial.export(d)
+    robot, (q, T) = printed(d, tmp_path), near_singular_values(3000)
+    answers, status = robot.ik(T, q[:, 2])
+    assert (status == OK).any()
+    assert max(misses(robot.pose(answers), T, status)) < 2e-12

@@ -326,7 +326,7 @@ def _doubt_of_given(arm: Serial, structure: str) -> str:
         return ""
     return (
         f"At some values of {given.joint} the other joints move the tool in less than six ways at "
-        f"every posture; near these values solutions are lost or inexact.  Choose another joint "
+        f"every posture; near these values solutions may be lost.  Choose another joint "
         f"with --given, if there is one."
     )
 

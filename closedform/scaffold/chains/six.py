@@ -31,7 +31,7 @@ from closedform.scaffold.chains.maker import (
 )
 from closedform.scaffold.chains.proposal import NoChainError
 from closedform.scaffold.chains.wrists import Carried, is_normal
-from closedform.scaffold.source import source
+from closedform.scaffold.source import GIVEN, source
 
 
 @dataclass(frozen=True)
@@ -223,6 +223,10 @@ class SixMaker(AroundParallelMaker):
             f"{self.unknowns[six.number]}: -to_target[2] - ({source(w[2])})}}"
         )
         fifth = self._rotate(five, "to_target", source(w[:2, 0]), because)
+        if w.has(GIVEN):  # which may bring the point to this axis, where errors of turns remain
+            missed = f"sqrt(to_target[0]**2 + to_target[1]**2) - {source(norm(w[:2, 0]))}"
+            meaning = f"the point is as far from axis {five.number} as the target"
+            self.add(f"ik.program.match({missed}, ik.size, '{meaning}')")
         middle = times(one.end.T, f"(turned({first}).T * M)") + f" * turned({sixth}).T"
         middle = f"{followed(middle, five.end.T)} * turned({fifth}).T"
         return followed(middle, four.end.T)

@@ -13,7 +13,7 @@ import pytest
 import sympy as sp
 from places import ROOT
 
-from closedform.emit.backends.latex.article import Page, decimal, document
+from closedform.emit.backends.latex.article import Page, decimal, default, document
 from closedform.emit.backends.latex.claims import derives
 from closedform.emit.backends.latex.formulas import Printer, measure
 from closedform.emit.backends.latex.prose import (
@@ -357,10 +357,25 @@ def test_prose(text: str, latex: str) -> None:
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [("123/200", "0.615"), ("12", "12"), ("1/3", "1/3"), ("-5/2", "-2.5"), ("1/8192", "1/8192")],
-)
+    [("123/200", "0.615"), ("12", "12"), ("1/3", "1/3"), ("-5/2", "-2.5"), ("1/8192", "1/8192"),
+     ("0.12345678901234567", "0.12345678901234567")],
+)  # fmt: skip
 def test_defaults_are_decimals_where_these_are_exact(value: str, text: str) -> None:
     assert decimal(sp.Rational(value)) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        ("0.90757121103705138000", r"$13 \pi/45$"),
+        ("0.61086523819801535192", r"$7 \pi/36$"),
+        ("-0.78539816339744830962", r"$- \pi/4$"),
+        ("0.907571", "0.907571"),
+    ],
+)
+def test_a_default_that_is_a_part_of_a_turn_is_written_as_one(value: str, text: str) -> None:
+    """The angle of 52 degrees of a table was a fraction of 17 digits, wider than the page."""
+    assert default(sp.Rational(value)).replace(r"\,", " ") == text
 
 
 def test_a_proof_names_the_bounds_it_assumes() -> None:

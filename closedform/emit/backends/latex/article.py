@@ -48,6 +48,7 @@ from closedform.emit.backends.latex.sheet import UNPRINTED, Sheet, blocks
 from closedform.emit.backends.latex.subject import Subject
 from closedform.emit.backends.latex.vectors import in_vectors
 from closedform.emit.backends.latex.wide import Equation, moduli_cancelled, with_sums_of_angles
+from closedform.emit.terminal import decimal as exact_decimal
 from closedform.model.alike import INDEX
 from closedform.model.derivation import Derivation, Joint
 from closedform.model.functions import Function, real
@@ -88,8 +89,8 @@ ARTICLE = re.compile(r"^(?:[Tt]he|[Aa]n) ")
 """What no entry of the index starts with."""
 LENGTH = re.compile(r"[a-z]_\d")
 """A letter of a lemma for a length, such as ``l_1``."""
-PARTS = 12
-"""The smallest part of half a turn that a default is recognised as."""
+PARTS = 360
+"""The smallest part of half a turn that a default is recognised as: half a degree."""
 
 
 class Page(Sheet):
@@ -490,10 +491,8 @@ def default(value: sp.Rational) -> str:
 
 def decimal(value: sp.Rational) -> str:
     """A rational as a decimal if that is exact and short, or shorter than the fraction."""
-    digits = next((k for k in range(17) if (value * 10**k).is_Integer), None)
-    if digits is None:
-        return str(value)
-    text = f"{float(value):.{digits}f}"
+    text = exact_decimal(value)
+    digits = len(text.partition(".")[2])
     return text if digits < 7 or len(text) < len(str(value)) else str(value)
 
 

@@ -9,7 +9,13 @@ from sympy.combinatorics import Permutation, PermutationGroup
 from closedform.scaffold.chains import degree
 from closedform.scaffold.chains import propose as proposals
 from closedform.scaffold.chains.chainlinks import singles
-from closedform.scaffold.chains.degree import Solutions, solutions, solutions_of_few, steps
+from closedform.scaffold.chains.degree import (
+    Solutions,
+    solutions,
+    solutions_of_few,
+    stays_regular,
+    steps,
+)
 from closedform.scaffold.chains.propose import NoChainError, propose
 
 H = sp.Rational(1, 2)
@@ -127,3 +133,27 @@ def test_solutions_are_followed_in_few_corrections() -> None:
     this took 47,000, and an arm of seven joints was refused after up to 20 s."""
     fibre = degree._explored(singles(arm(COUNTED["six joints at random"][0])[1]), degree.SEEDS[0])
     assert fibre is not None and degree.WORK - fibre.work < 40_000
+
+
+GIVEN = {
+    "joint 2 turns about the wrist": (
+        [(0, -pi / 2, 0), (0, pi / 2, H), (0, -pi / 2, 0), (0, pi / 2, H), (0, -pi / 2, 0),
+         (H / 10, pi / 2, 0), (H / 5, 0, 0)],
+        "1 2 4 6 7",
+    ),
+    "axes 1 and 2 are parallel": (
+        [(0, 0, H), (H, pi / 2, H), (0, pi / 2, 0), (0, -pi / 2, H), (0, pi / 2, 0),
+         (0, -pi / 2, H), (0, pi / 2, H / 5)],
+        "1 2",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", GIVEN)
+@pytest.mark.filterwarnings("error")
+def test_some_joints_leave_a_singular_arm_at_some_values(name: str) -> None:
+    rows, numbers = GIVEN[name]
+    whole = singles(arm(rows)[1])
+    assert [j.number for j in whole.joints if stays_regular(whole, j)] == [
+        *map(int, numbers.split())
+    ]

@@ -353,9 +353,12 @@ def stays_regular(arm: Singles, single: Single) -> bool:
     values = np.linspace(-np.pi, np.pi, VALUES, endpoint=False)
     q = np.tile(rng.normal(size=(POSTURES, 1, len(arm.joints))) + 0j, (1, VALUES, 1))
     q[:, :, k] = values
-    _, twists = Numeric.of(arm, rng).pose(q.reshape(-1, len(arm.joints)))
+    numeric = Numeric.of(arm, rng)
+    _, twists = numeric.pose(q.reshape(-1, len(arm.joints)))
+    twists[:, :3] /= numeric.reach or 1
     sizes = np.abs(np.linalg.det(np.delete(twists, k, axis=2))).reshape(POSTURES, VALUES)
-    return bool((sizes / sizes.mean(axis=1, keepdims=True)).max(axis=0).min() > NEARLY)
+    largest, usual = sizes.max(axis=0), sizes.mean()
+    return bool(usual > 1 / SINGULAR and largest.min() > NEARLY * usual)
 
 
 def counted_once(arm: Singles, seed: int) -> Solutions | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import sympy as sp
@@ -168,11 +168,10 @@ def tilt_between(
         the name of the sign and what other names end in, by default the number of the joint
     """
     p, tag = chain.program, name or label(x)
+    sigma, start = chain.sign(tag, choice), len(p.body)
     (g1, g2, g3), (w1, w2, w3) = axes
     v1, v2, v3 = v[:3]
     a, b = g2 * w1 - g1 * w2, g1 * w1 + g2 * w2
-    called = _roots(chain, axes, tag)
-    sigma, start = chain.sign(tag, choice), len(p.body)
     first, last = sp.sqrt(sp.simplify(g1**2 + g2**2)), sp.sqrt(sp.simplify(w1**2 + w2**2))
     h = p.let(f"h{tag}", first * last, nonnegative=True)
 
@@ -204,7 +203,7 @@ def tilt_between(
         "tilt of any wrist",
         r"g \cdot R_z(\theta)\,w = v_3 \;\Rightarrow\; \theta = \operatorname{atan2}(g_2 w_1 - g_1 "
         r"w_2,\ g_1 w_1 + g_2 w_2) + 2\sigma\operatorname{atan2}(\sqrt m, \sqrt n)",
-        ((a * sp.sin(x) + b * sp.cos(x) + g3 * w3).xreplace(called) - v3,),
+        (a * sp.sin(x) + b * sp.cos(x) + g3 * w3 - v3,),
         {x: pair.angle},
         2,
         signs=(sigma,),
@@ -217,20 +216,9 @@ def tilt_between(
     )  # fmt: skip
     meaning = f"two axes of the wrist are one; {x} is free, 0 is returned."
     loci = [vanishing(g1, g2), vanishing(w1, w2)]
-    roots = {name: root for root, name in called.items()}
-    on_axis = [None if at is None else at | roots | {v3: (g3 * w3).xreplace(at)} for at in loci]
+    on_axis = [None if at is None else at | {v3: (g3 * w3).xreplace(at)} for at in loci]
     cases = degenerate(flag, on_axis, x, meaning)
-    given = roots | dict(zip((v1, v2, v3), _unit(), strict=True))
-    return Applied(lemma, pair, means, given, cases)
-
-
-def _roots(
-    chain: Chain, vectors: Iterable[Sequence[sp.Expr]], tag: str
-) -> dict[sp.Expr, sp.Symbol]:
-    """Names of the roots of numbers in vectors, for solutions are counted in rational numbers."""
-    powers = {f for v in vectors for e in v for f in sp.sympify(e, strict=True).atoms(sp.Pow)}
-    roots = sorted((f for f in powers if f.is_number), key=str)
-    return {f: chain.program.let(f"root{tag}_{k}", f) for k, f in enumerate(roots, 1)}
+    return Applied(lemma, pair, means, dict(zip((v1, v2, v3), _unit(), strict=True)), cases)
 
 
 def _reached(

@@ -160,12 +160,8 @@ def forget_counts() -> None:
 
 
 def _count(link: Link) -> SolutionCount:
-    """The solutions of a lemma; equal lemmas of an inverse are counted once.
-
-    They are counted in rational numbers, so the name of a root counts as a parameter.
-    """
+    """The solutions of a lemma; equal lemmas of an inverse are counted once."""
     given = {s: e for s, e in link.given.items() if any(q.has(s) for q in link.equations)}
-    given = {s: e for s, e in given.items() if e.is_rational or not e.is_number}
     equations = tuple(e for e in link.equations if e.xreplace(given) != 0)
     key = (equations, link.unknowns, tuple(given.items()))
     if key not in _counted:

@@ -7,9 +7,7 @@ and cosines shows that.  In the tangents of half the angles the factors are thos
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import reduce
 from math import prod
-from operator import mul
 from typing import Any
 
 import sympy as sp
@@ -66,19 +64,42 @@ def _angles(value: sp.Expr) -> list[sp.Symbol] | None:
 
 
 def _factors(value: sp.Expr) -> sp.Expr:
+    found = _in_tangents(value)
+    if found is None:
+        return value
+    whole, degrees, angles, others = found
+    number, powers = whole.factor()
+    parts = _of_even_degree(powers, len(angles), whole.context().constant(1))
+    rest = [2 * d - sum(f.degrees()[i] * k for f, k in parts) for i, d in enumerate(degrees)]
+    if len(parts) + sum(r > 1 for r in rest) == 1:
+        return value
+    product = sp.Rational(int(number.p), int(number.q))
+    for f, k in parts:
+        halves = [(d + 1) // 2 for d in f.degrees()[: len(angles)]]
+        rest = [r - (2 * h - d) * k for r, h, d in zip(rest, halves, f.degrees(), strict=False)]
+        product *= factored(shortest_on_circles(_trigonometric(f, halves, angles, others))) ** k
+    for r, a in zip(rest, angles, strict=True):  # what vanishes at half a turn lowers the degree
+        product *= ((1 + sp.cos(a)) / 2) ** (r // 2)
+    return product
+
+
+def _in_tangents(
+    value: sp.Expr,
+) -> tuple[fmpq_mpoly, list[int], list[sp.Symbol], list[sp.Symbol]] | None:
+    """A polynomial in tangents t of half the angles, multiplied by powers of all 1 + t^2.
+
+    With it are these powers, the angles, and its other symbols.
+    """
     angles = _angles(value)
     if not angles:
-        return value
-    pairs = [f(a) for a in angles for f in (sp.sin, sp.cos)]
-    others = sorted(value.free_symbols - {*angles}, key=str)
-    read = sp.Poly(value, *pairs, *others)
-    if not all(c.is_Rational for c in read.coeffs()):
-        return value
+        return None
+    n, others = len(angles), sorted(value.free_symbols - {*angles}, key=str)
+    read = sp.Poly(value, *(f(a) for a in angles for f in (sp.sin, sp.cos)), *others)
     monomials = read.monoms()
-    n = len(angles)
     degrees = [max(m[2 * i] + m[2 * i + 1] for m in monomials) for i in range(n)]
-    if prod(2 * d + 1 for d in degrees) * len({m[2 * n :] for m in monomials}) > LARGEST:
-        return value
+    size = prod(2 * d + 1 for d in degrees) * len({m[2 * n :] for m in monomials})
+    if size > LARGEST or not all(c.is_Rational for c in read.coeffs()):
+        return None
     names = [f"t{i}" for i in range(n)] + [f"p{i}" for i in range(len(others))]
     ring = fmpq_mpoly_ctx.get(names, Ordering.lex)
     t, p = ring.gens()[:n], ring.gens()[n:]
@@ -88,20 +109,8 @@ def _factors(value: sp.Expr) -> sp.Expr:
         for i in range(n):
             a, b = monomial[2 * i : 2 * i + 2]
             term *= (2 * t[i]) ** a * (1 - t[i] ** 2) ** b * (1 + t[i] ** 2) ** (degrees[i] - a - b)
-        whole += reduce(mul, (g**e for g, e in zip(p, monomial[2 * n :], strict=True)), term)
-    number, powers = whole.factor()
-    parts = _of_even_degree(powers, n, ring.constant(1))
-    rest = [2 * d - sum(f.degrees()[i] * k for f, k in parts) for i, d in enumerate(degrees)]
-    if len(parts) + sum(r > 1 for r in rest) == 1:
-        return value
-    product = sp.Rational(int(number.p), int(number.q))
-    for f, k in parts:
-        halves = [(d + 1) // 2 for d in f.degrees()[:n]]
-        rest = [r - (2 * h - d) * k for r, h, d in zip(rest, halves, f.degrees(), strict=False)]
-        product *= factored(shortest_on_circles(_trigonometric(f, halves, angles, others))) ** k
-    for r, a in zip(rest, angles, strict=True):
-        product *= ((1 + sp.cos(a)) / 2) ** (r // 2)
-    return product
+        whole += prod((g**e for g, e in zip(p, monomial[2 * n :], strict=True)), start=term)
+    return whole, degrees, angles, others
 
 
 def _of_even_degree(

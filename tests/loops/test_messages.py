@@ -162,7 +162,7 @@ link1 = {}
 link2 = {O = [0, 0, 0], P = [0, 0, 1]}
 [joints]
 t1 = {between = ["ground", "arm1"], at = "O", axis = [1, 0, 0], driven = true}
-t2 = {between = ["ground", "arm2"], at = "O", axis = [0, 1, 0], driven = true}
+t2 = {between = ["ground", "arm2"], at = "O", axis = [0, 1, 0]}
 a = {between = ["arm1", "link1"], at = "O", axis = [0, 1, 0]}
 b = {between = ["arm2", "link2"], at = "O", axis = [1, 0, 0]}
 c = {between = ["link1", "link2"], at = "O", axis = [0, 0, 1]}

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
+from closedform.scaffold.loops.spherical import through_one_point
 
 PAIR = 2
 UP = sp.Matrix([0, 0, 1])
@@ -27,7 +28,7 @@ def halves(loop: Loop) -> tuple[dict[str, Pin], int]:
     There are none if the hand is one body.
     """
     bars = [body for body, points in loop.bodies.items() if loop.hand in points]
-    if loop.dimensions != 3 or len(bars) != 1:
+    if loop.dimensions != 3 or len(bars) != 1 or through_one_point(loop):
         return {}, 0
     (bar,) = bars
     pins = [j for j in loop.of(bar) if j.kind == "revolute" and _may_be_half(loop, j.other(bar))]

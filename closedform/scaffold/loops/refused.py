@@ -7,6 +7,7 @@ from itertools import pairwise
 
 from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
+from closedform.scaffold.loops.spherical import through_one_point
 
 BALLS = ("spherical", "universal")
 PAIR = 2
@@ -63,12 +64,9 @@ def carried(loop: Loop, joint: Joint) -> str:
 
 def arcs(loop: Loop) -> str:
     """What is said of a mechanism all of whose axes meet."""
-    joints = [*loop.joints.values()]
-    places = {j.at for j in joints}
-    turning = all(j.kind == "revolute" and j.axis is not None for j in joints)
-    if len(places) != 1 or not turning or loop.dimensions == 2:
+    if loop.dimensions != len(AXES) or not through_one_point(loop):
         return ""
-    (at,) = places
+    joints, (at, *_) = [*loop.joints.values()], [j.at for j in loop.of(GROUND)]
     last = [j.name for j in loop.of(GROUND) if not j.driven]
     if len(joints) == FOUR_BAR == len(loop.bodies) and len(last) == 1:
         return (
@@ -77,7 +75,10 @@ def arcs(loop: Loop) -> str:
             f"{loop.hand} follows from {last[0]} and the axes"
         )
     return (
-        f".  All axes meet in {at}, so this is a spherical mechanism.  Write each arc as a rod "
+        f".  All axes meet in {at}, so this is a spherical mechanism.  Read by its axes is a "
+        f"five-bar linkage with two driven joints on the ground, where the hand is a point of a "
+        f"rod, on the axis between both rods, and a hand on three legs of three axes each, which "
+        f"is {at} itself.  Of another one, write each arc as a rod "
         f"with ball joints at the ends, whose length is their distance, and hold the hand by a "
         f"rod from {at}, or by a spherical joint there if it turns"
     )

@@ -1,19 +1,24 @@
 """Reads spherical mechanisms, all of whose axes pass one point: an arc is a rod between its ends.
 
-A single loop of four axes is such as a joint of Cardan, and three legs of three axes each hold a
-hand that turns about the point.
+A single loop of four axes is such as a joint of Cardan.  One of five axes, two of them driven, is a
+five-bar linkage, whose hand is a point of the axis between both rods.  Three legs of three axes
+each hold a hand that turns about the point.
 """
 
 from __future__ import annotations
 
+from collections.abc import Container
 from dataclasses import replace
+from itertools import chain, count
 
 import sympy as sp
 
+from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import GROUND, Joint, Loop
 
 SPACE = 3
 JOINTS = 4
+FIVE = 5
 LEGS = 3
 """How many legs of a spherical hand, and how many axes of each."""
 
@@ -25,6 +30,8 @@ def with_arcs(loop: Loop) -> Loop:
     """
     if legs := _legs(loop):
         return _on_ball(loop, legs)
+    if arms := _arms(loop):
+        return _on_strut(loop, *arms)
     follower = loop.joints.get(loop.hand)
     drivers = [j for j in loop.joints.values() if j.driven]
     if loop.dimensions != SPACE or follower is None or len(drivers) != 1 or not _meet(loop):
@@ -72,25 +79,28 @@ def check_arcs(loop: Loop) -> None:
 
 
 def _meet(loop: Loop) -> bool:
-    """Whether four axes pass one point of the ground, where all joints are.
-
-    The bodies need not have this point themselves.
-    """
+    """Whether four axes pass one point of the ground.  The bodies need not have it themselves."""
     single = len(loop.joints) == len(loop.bodies) == JOINTS
-    return single and _through_one_point(loop)
+    return single and through_one_point(loop)
 
 
-def _through_one_point(loop: Loop) -> bool:
-    """Whether all joints are revolute, and at the same point of the bodies; others do not count."""
-    joints = [*loop.joints.values()]
-    if loop.rods or loop.parallelograms:
+def through_one_point(loop: Loop) -> bool:
+    """Whether all joints are revolute, and all axes pass one point of the ground.
+
+    A joint is at this point, or at another one of its axis.  Other points do not count.
+    """
+    joints, ground = [*loop.joints.values()], loop.bodies[GROUND]
+    centres = {j.at for j in joints if GROUND in j.between}
+    if loop.rods or loop.parallelograms or len(centres) != 1 or not centres <= ground.keys():
         return False
-    used = {j.at for j in joints}
-    points = [at for own in loop.bodies.values() for name, at in own.items() if name in used]
-    places = {tuple(at) for at in points}
-    turning = all(j.kind == "revolute" and j.axis is not None for j in joints)
-    placed = all(any(j.at in loop.bodies[b] for b in (*j.between, GROUND)) for j in joints)
-    return turning and placed and len(places) == 1
+    centre = ground[centres.pop()]
+    for j in joints:
+        places = [loop.bodies[b][j.at] for b in (*j.between, GROUND) if j.at in loop.bodies[b]]
+        if j.kind != "revolute" or j.axis is None or not places:
+            return False
+        if any(any(map(sp.simplify, (at - centre).cross(j.axis))) for at in places):
+            return False
+    return True
 
 
 def _legs(loop: Loop) -> list[tuple[Joint, Joint, Joint]]:
@@ -102,7 +112,7 @@ def _legs(loop: Loop) -> list[tuple[Joint, Joint, Joint]]:
     named = any(loop.hand in points for points in loop.bodies.values())
     if loop.dimensions != SPACE or len(drivers) != LEGS or not named:
         return []
-    if not _through_one_point(loop):
+    if not through_one_point(loop):
         return []
     found, hands = [], set()
     for first in drivers:
@@ -115,6 +125,77 @@ def _legs(loop: Loop) -> list[tuple[Joint, Joint, Joint]]:
     legs = [leg for leg in found if leg]
     around = len(hands) == 1 and GROUND not in hands and len(legs) == LEGS
     return legs if around and len(loop.joints) == LEGS**2 else []
+
+
+def _arms(loop: Loop) -> tuple[list[tuple[Joint, Joint]], Joint] | None:
+    """The motors and the elbows of a five-bar linkage, and the joint between both rods."""
+    drivers = [j for j in loop.of(GROUND) if j.driven]
+    single = len(loop.joints) == len(loop.bodies) == FIVE
+    if loop.dimensions != SPACE or len(drivers) != 2 or not single or loop.hand in loop.joints:
+        return None
+    arms, rods = [], []
+    for first in drivers:
+        onward = [j for j in loop.of(first.other(GROUND)) if j is not first]
+        if len(onward) != 1 or onward[0].driven:
+            return None
+        arms.append((first, onward[0]))
+        rods.append(onward[0].other(first.other(GROUND)))
+    last = [j for j in loop.joints.values() if {*j.between} == {*rods}]
+    held = any(loop.hand in loop.bodies[rod] for rod in rods)
+    if len(last) != 1 or not held or not through_one_point(loop):
+        return None
+    return arms, last[0]
+
+
+def _on_strut(loop: Loop, arms: list[tuple[Joint, Joint]], last: Joint) -> Loop:
+    """The same with the hand on a sphere, and rods for the arcs that lead to it."""
+    check_arcs(loop)
+    assert last.axis is not None
+    at = arms[0][0].at
+    centre = loop.bodies[GROUND][at]
+    held = [loop.bodies[body][loop.hand] for body in last.between if loop.hand in loop.bodies[body]]
+    both = listed([*last.between])
+    if any(any(map(sp.simplify, place - held[0])) for place in held):
+        raise loop.error(
+            f"the hand {loop.hand} has different coordinates on {both}; they are where it is when "
+            f"all joints are zero"
+        )
+    out = held[0] - centre
+    if not any(map(sp.simplify, out)) or any(map(sp.simplify, out.cross(last.axis))):
+        raise loop.error(
+            f"all axes meet in {at}, so this is a spherical five-bar linkage; its hand is a point "
+            f"of a rod, on the axis of {last.name} between {both} and not {at} itself, where all "
+            f"joints are zero"
+        )
+    radius = loop.length(out)
+    mast = _unused("mast", loop.bodies)
+    bodies, rods = {GROUND: {at: centre}, mast: {}}, {mast: radius}
+    foot = _unused("foot", loop.joints)
+    joints = {foot: _ball(foot, (GROUND, mast), at)}
+    for first, elbow in arms:
+        crank, end, tip = first.other(GROUND), f"{elbow.name}_end", f"{elbow.name}_tip"
+        rod = elbow.other(crank)
+        assert elbow.axis is not None
+        arm = radius * elbow.axis
+        bodies |= {crank: {end: centre + arm}, rod: {}}
+        rods[rod] = loop.length(out - arm)
+        joints[first.name] = replace(first, at=at)
+        joints[elbow.name] = replace(elbow, at=end, kind="spherical", axis=None)
+        joints[tip] = _ball(tip, (mast, rod), loop.hand)
+    loop.seen.append(
+        f"All axes meet in {at}, from which {loop.hand} has the same distance in all postures; the "
+        f"rods join points of the axes at this distance."
+    )
+    return replace(loop, bodies=bodies, joints=joints, rods=rods)
+
+
+def _ball(name: str, between: tuple[str, str], at: str) -> Joint:
+    return Joint(name=name, kind="spherical", between=between, at=at, axis=None, driven=False)
+
+
+def _unused(name: str, taken: Container[str]) -> str:
+    """A name that a body or a joint may get."""
+    return next(n for n in chain([name], map(f"{name}{{}}".format, count())) if n not in taken)
 
 
 def _on_ball(loop: Loop, legs: list[tuple[Joint, Joint, Joint]]) -> Loop:
@@ -137,10 +218,8 @@ def _on_ball(loop: Loop, legs: list[tuple[Joint, Joint, Joint]]) -> Loop:
         joints[first.name] = replace(first, at=loop.hand)
         joints[middle.name] = replace(middle, kind="spherical", at=near, axis=None)
         joints[last.name] = replace(last, kind="spherical", at=far, axis=None)
-    ball = next(n for n in ("ball", *(f"ball{k}" for k in range(len(joints)))) if n not in joints)
-    joints[ball] = Joint(
-        name=ball, kind="spherical", between=(GROUND, hand), at=loop.hand, axis=None, driven=False
-    )
+    ball = _unused("ball", joints)
+    joints[ball] = _ball(ball, (GROUND, hand), loop.hand)
     loop.seen.append(
         f"All axes meet in {loop.hand}, about which the hand turns as on a ball joint; the rods "
         f"join points of the axes at the distance 1 from it."
@@ -148,4 +227,4 @@ def _on_ball(loop: Loop, legs: list[tuple[Joint, Joint, Joint]]) -> Loop:
     return replace(loop, bodies=bodies, joints=joints, rods=rods)
 
 
-__all__ = ["check_arcs", "with_arcs"]
+__all__ = ["check_arcs", "through_one_point", "with_arcs"]

@@ -29,6 +29,7 @@ from itertools import product
 from typing import Any
 
 import sympy as sp
+from flint import arb_mat, ctx
 
 from closedform.algebra import certificates
 from closedform.algebra.balls import Evaluator
@@ -271,12 +272,16 @@ class _Combined:
         }
         what = "matrices that combine the equations of lemmas"
         certificates.point(matrix.tolist(), point, what)
-        det = sp.expand(matrix.det())
-        (ball,) = Evaluator(list(point), [det])(list(point.values()))
+        balls = Evaluator(list(point), list(matrix))(list(point.values()))
         fault = f"{self.where}: the matrix that combines the lemmas' equations"
+        with ctx.workprec(300):
+            ball = arb_mat(matrix.rows, matrix.cols, balls).det()
         if ball.contains(0):
             raise ProofError(f"{fault} is singular")
         home = dict.fromkeys(self.inverse.unknowns, sp.S.Zero)
+        if not matrix.has(*home):
+            return
+        det = sp.expand(matrix.det())
         if det.has(*home) and not is_zero(det - det.xreplace(home)):
             raise ProofError(
                 f"{fault} depends on what is solved for, and so does its determinant, {det}, which "

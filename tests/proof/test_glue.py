@@ -57,6 +57,14 @@ def test_a_factor_that_may_vanish_does_not_combine_lemmas() -> None:
         prove_inverse(d, more)
 
 
+def test_a_matrix_that_forgets_equations_does_not_combine_lemmas() -> None:
+    d, inverse = crank()
+    (t,), targets = inverse.unknowns, inverse.targets
+    none = dataclasses.replace(inverse, forward=targets, glue=Combination(sp.zeros(1), {t: t}))
+    with pytest.raises(ProofError, match="is singular"):
+        prove_inverse(d, none)
+
+
 def test_a_sign_of_a_lemma_is_one_or_minus_one() -> None:
     with pytest.raises(ProofError, match=r"side, a sign of the lemma .*, is not 1 or -1"):
         prove_inverse(*crank(side=2))

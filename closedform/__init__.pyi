@@ -101,6 +101,7 @@ from closedform.loops.mast import Mast as Mast
 from closedform.loops.mirrored import mirrored as mirrored
 from closedform.loops.on_balls import on_balls as on_balls
 from closedform.loops.on_cylinders import OnCylinders as OnCylinders
+from closedform.loops.on_levers import on_levers as on_levers
 from closedform.loops.on_lines import on_lines as on_lines
 from closedform.loops.on_pins import Sleeve as Sleeve
 from closedform.loops.on_pins import on_pins as on_pins

@@ -693,7 +693,23 @@ t1 = {between = ["ground", "guide1"], at = "A1", driven = true}
 s1 = {between = ["guide1", "rod1"], at = "A1", kind = "prismatic", axis = [1, 0]}
 c1 = {between = ["rod1", "plate"], at = "C1"}
 """
-    with pytest.raises(TableError, match=r"with two solutions; .* or drive s1 instead"):
-        script_of("t", text, tmp_path)
+    assert "on_levers(" in script_of("t", text, tmp_path)
+    crank = text.replace("rod1 = {C1 = [0, 0]}", "rod1 = {length = 0.4}").replace(
+        's1 = {between = ["guide1", "rod1"], at = "A1", kind = "prismatic", axis = [1, 0]}',
+        's1 = {between = ["guide1", "rod1"], at = "B1"}',
+    )
+    crank = crank.replace("copies = 3", "").replace("guide1 = {A1", "guide1 = {B1 = [0.2, 0], A1")
+    other = text[text.index("guide1") : text.index("[joints]")] + text[text.index("t1 =") :]
+    for old, new in (("[0.5, 0]", "[-0.5, 0]"), ("1", "2")):
+        other = other.replace(old, new)
+    bodies, joints = other.split("t2 = ")
+    ground = "ground = {A2 = [-0.5, 0], A3 = [0, 0.5], "
+    mixed = crank.replace("ground = {", ground).replace(
+        "[0.1, 0]", "[0.1, 0], C2 = [0, 0], C3 = [0, 0.1]"
+    )
+    mixed = mixed.replace("[joints]", f"{bodies}{bodies.replace('2', '3')}[joints]")
+    mixed += f"t2 = {joints}t3 = {joints.replace('2', '3')}"
+    with pytest.raises(TableError, match=r"if all three legs are of this kind.* drive s2 instead"):
+        script_of("t", mixed, tmp_path)
     driven = text.replace(", driven = true", "").replace("axis = [1, 0]", "driven = true")
     assert "platform(" in script_of("t", driven, tmp_path)

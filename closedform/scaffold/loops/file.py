@@ -66,6 +66,7 @@ USED = {
 USED |= {"slotted", "guided", "sliding_linkage", "on_pins", "on_balls", "on_lines", "mirrored"}
 USED |= {
     "bennett",
+    "on_levers",
     "Derivation",
     "Paper",
     "Across",

@@ -263,10 +263,9 @@ def turning_guide(loop: Loop, joint: Joint, slide: Joint) -> str:
         return ""
     return (
         f".  As {joint.name} turns the line on which {slide.name} slides, each leg of this kind "
-        f"holds a point of the hand on a known line.  Three of them are equations that are linear "
-        f"in the position and in the cosine and sine of the turn, with two solutions; the joint is "
-        f"the direction from its pivot to that point.  Write these equations in Python, or drive "
-        f"{slide.name} instead"
+        f"holds a point of the hand on a known line.  This is supported if all three legs are of "
+        f"this kind, or are sliders with a line, and pins join what slides to the hand.  Otherwise "
+        f"drive {slide.name} instead"
     )
 
 

@@ -24,6 +24,7 @@ from closedform.scaffold.loops.linkages import LinkageLines, linkage
 from closedform.scaffold.loops.mirrored import mirrored
 from closedform.scaffold.loops.on_balls import on_balls
 from closedform.scaffold.loops.on_cylinders import on_cylinders
+from closedform.scaffold.loops.on_levers import on_levers
 from closedform.scaffold.loops.on_line import on_line
 from closedform.scaffold.loops.on_lines import on_lines
 from closedform.scaffold.loops.on_pins import on_pins
@@ -62,6 +63,7 @@ KINDS = {
     "tripod": "a hand that lifts and tilts",
     "on_rod": "a hand on a rod",
     "on_pins": "a hand on three pins",
+    "on_levers": "a hand on lines that motors turn",
     "on_balls": "a hand on three balls",
     "on_lines": "a hand on three lines",
     "mirrored": "a mirrored hand",
@@ -133,6 +135,9 @@ def _first_way(loop: Loop) -> _Way:
     if pinned := on_pins(found) or on_balls(found) or on_lines(found):
         found.check_all_used()
         return _Way(pinned, [])
+    if turned := on_levers(found):
+        found.check_all_used()
+        return _Way(turned, [], function="on_levers")
     if image := mirrored(found):
         found.check_all_used()
         return _Way(image.legs, [], image.pivot, function="mirrored", more=image.mirror)

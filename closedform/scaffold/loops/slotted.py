@@ -32,8 +32,9 @@ def slotted(found: Legs, follower: Joint) -> list[LoopLeg] | None:
     if slide.axis is None:
         raise loop.error(f"{slide.name} slides; say in which direction with axis")
     found.used |= {j.name for j in (crank, carrier, pin, slide)}
-    line = _lever if carrier.kind == "revolute" else _yoke
-    first, second = _crank(found, crank, pin), line(found, carrier, slide, (block, pin))
+    line = lever if carrier.kind == "revolute" else yoke
+    first = _crank(found, crank, pin)
+    second = line(found, carrier, slide, (block, pin), sp.zeros(2, 1))
     return [first, second] if crank.driven else [second, first]
 
 
@@ -62,7 +63,10 @@ def _beside(found: Legs, slide: Joint, held: tuple[str, Joint]) -> sp.Matrix:
     return points[pin.at] - points[slide.at] if both else sp.zeros(2, 1)
 
 
-def _lever(found: Legs, joint: Joint, slide: Joint, held: tuple[str, Joint]) -> LoopLeg:
+def lever(
+    found: Legs, joint: Joint, slide: Joint, held: tuple[str, Joint], place: sp.Matrix
+) -> LoopLeg:
+    """A body that turns, with the line of a block and its pin, which is at a place of the hand."""
     body, pivot = joint.other(GROUND), found.pivot(joint)
     assert slide.axis is not None
     across = sp.Matrix([-slide.axis[1], slide.axis[0]])
@@ -72,14 +76,17 @@ def _lever(found: Legs, joint: Joint, slide: Joint, held: tuple[str, Joint]) -> 
     return LoopLeg(
         joint,
         f"Lever({joint.name}, {slide.name}, {found.at(pivot)}, {found.at(slide.axis)}, "
-        f"{found.at(across)}{more})",
+        f"{found.at(across)}{more}{found.tail(place)})",
         f"{joint.name} turns a lever with the line",
-        sp.zeros(2, 1),
+        place,
         slide.name,
     )
 
 
-def _yoke(found: Legs, joint: Joint, slide: Joint, held: tuple[str, Joint]) -> LoopLeg:
+def yoke(
+    found: Legs, joint: Joint, slide: Joint, held: tuple[str, Joint], place: sp.Matrix
+) -> LoopLeg:
+    """The same of a slider."""
     if joint.axis is None:
         raise found.loop.error(f"{joint.name} slides; say in which direction with axis")
     assert slide.axis is not None
@@ -87,11 +94,11 @@ def _yoke(found: Legs, joint: Joint, slide: Joint, held: tuple[str, Joint]) -> L
     return LoopLeg(
         joint,
         f"Rail({joint.name}, {slide.name}, {found.at(start)}, {found.at(joint.axis)}, "
-        f"{found.at(slide.axis)})",
+        f"{found.at(slide.axis)}{found.tail(place)})",
         f"{joint.name} moves a slider with the line",
-        sp.zeros(2, 1),
+        place,
         slide.name,
     )
 
 
-__all__ = ["slotted"]
+__all__ = ["lever", "slotted", "yoke"]

@@ -250,7 +250,14 @@ def _forward(m: _OnLevers, choice: Choice, loop: Step) -> _Posture:
     )
     record_lemma(d, "fk", turn)
     record_lemma(d, "fk", meet)
-    return _Posture(Program(list(f.body), f.taken), modes, hand, pair, arms, sigma * root)
+    return _Posture(
+        program=Program(list(f.body), f.taken),
+        modes=modes,
+        hand=hand,
+        pair=pair,
+        arms=arms,
+        volume=sigma * root,
+    )
 
 
 def _combined(normals: Sequence[sp.Matrix], weights: Sequence[sp.Expr]) -> sp.Matrix:

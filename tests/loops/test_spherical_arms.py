@@ -135,3 +135,14 @@ def test_a_file_that_does_not_fit_says_why(old: str, new: str, told: str, tmp_pa
     assert old in OBLIQUE
     with pytest.raises(TableError, match=told):
         script_of("t", text, tmp_path)
+
+
+def test_the_centre_need_not_be_a_point_of_the_file(tmp_path: Path) -> None:
+    """The motors are at points of their axes, which meet elsewhere."""
+    away = OBLIQUE.replace(
+        "ground = {C = [0.1, 0.2, 0.3]}", "ground = {A = [1.1, 0.2, 0.3], B = [0.7, 1, 0.3]}"
+    )
+    away = away.replace('"arm1"], at = "C"', '"arm1"], at = "A"')
+    away = away.replace('"arm2"], at = "C"', '"arm2"], at = "B"')
+    script = script_of("t", away, tmp_path)
+    assert script.replace("meet in O", "meet in C") == script_of("t", OBLIQUE, tmp_path)

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from closedform.model.names import listed
 from closedform.scaffold.loops.bodies import AXES, GROUND, Joint, Loop
-from closedform.scaffold.loops.spherical import through_one_point
+from closedform.scaffold.loops.spherical import centre_name
 
 BALLS = ("spherical", "universal")
 PAIR = 2
@@ -64,9 +64,10 @@ def carried(loop: Loop, joint: Joint) -> str:
 
 def arcs(loop: Loop) -> str:
     """What is said of a mechanism all of whose axes meet."""
-    if loop.dimensions != len(AXES) or not through_one_point(loop):
+    at = centre_name(loop)
+    if not at:
         return ""
-    joints, (at, *_) = [*loop.joints.values()], [j.at for j in loop.of(GROUND)]
+    joints = [*loop.joints.values()]
     last = [j.name for j in loop.of(GROUND) if not j.driven]
     if len(joints) == FOUR_BAR == len(loop.bodies) and len(last) == 1:
         return (

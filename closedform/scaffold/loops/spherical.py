@@ -43,17 +43,20 @@ def with_arcs(loop: Loop) -> Loop:
     (coupler, *others) = {*loop.bodies} - {GROUND, *moved}
     if len(moved) != len(ends) or others or any(coupler not in j.between for j in ends):
         return loop
+    centre = _centre(loop)
+    assert centre is not None
+    middle = _named_centre(loop, centre)
     bodies, joints, axes = dict(loop.bodies), dict(loop.joints), []
+    bodies[GROUND] = {**bodies[GROUND], middle: centre}
     for joint in ends:
         body, at = joint.other(coupler), f"{joint.name}_end"
-        centre = loop.bodies[GROUND][driver.at]
         assert joint.axis is not None
-        bodies[body] = {driver.at: centre, at: centre + joint.axis}
+        bodies[body] = {middle: centre, at: centre + joint.axis}
         joints[joint.name] = replace(joint, kind="spherical", at=at, axis=None)
         axes.append(joint.axis)
     bodies[coupler] = {}
     arc = loop.length(axes[1] - axes[0])
-    joints |= {j.name: replace(j, at=driver.at) for j in (driver, follower)}
+    joints |= {j.name: replace(j, at=middle) for j in (driver, follower)}
     loop.seen.append(
         "The axes turn as their parallels through one point do, on which they are drawn; the rod "
         "joins points of these at the distance 1 from it."
@@ -85,22 +88,47 @@ def _meet(loop: Loop) -> bool:
 
 
 def through_one_point(loop: Loop) -> bool:
-    """Whether all joints are revolute, and all axes pass one point of the ground.
+    """Whether all joints are revolute, and all axes pass one point of the ground."""
+    return _centre(loop) is not None
 
-    A joint is at this point, or at another one of its axis.  Other points do not count.
+
+def _centre(loop: Loop) -> sp.Matrix | None:
+    """The point that all axes pass; None if there is none, or a joint of another kind.
+
+    A joint is at any point of its axis, where all joints are zero.  Other points do not count.
     """
-    joints, ground = [*loop.joints.values()], loop.bodies[GROUND]
-    centres = {j.at for j in joints if GROUND in j.between}
-    if loop.rods or loop.parallelograms or len(centres) != 1 or not centres <= ground.keys():
-        return False
-    centre = ground[centres.pop()]
-    for j in joints:
+    lines: list[tuple[sp.Matrix, sp.Matrix]] = []
+    for j in loop.joints.values():
         places = [loop.bodies[b][j.at] for b in (*j.between, GROUND) if j.at in loop.bodies[b]]
         if j.kind != "revolute" or j.axis is None or not places:
-            return False
-        if any(any(map(sp.simplify, (at - centre).cross(j.axis))) for at in places):
-            return False
-    return True
+            return None
+        lines += [(place, j.axis) for place in places]
+    if loop.rods or loop.parallelograms or loop.dimensions != SPACE:
+        return None
+    (start, along), *others = lines
+    crossed = [(place, axis, along.cross(axis)) for place, axis in others]
+    meeting = next((line for line in crossed if any(map(sp.simplify, line[2]))), None)
+    if meeting is None:
+        return None
+    place, axis, normal = meeting
+    far = sp.simplify((place - start).cross(axis).dot(normal) / normal.dot(normal))
+    centre = (start + far * along).applyfunc(sp.simplify)
+    off = (entry for place, axis in lines for entry in (place - centre).cross(axis))
+    return None if any(map(sp.simplify, off)) else centre
+
+
+def centre_name(loop: Loop) -> str:
+    """The name of the point that all axes pass; empty if there is none."""
+    centre = _centre(loop)
+    return "" if centre is None else _named_centre(loop, centre)
+
+
+def _named_centre(loop: Loop, centre: sp.Matrix) -> str:
+    """The point of the ground that all axes pass, or a name for it."""
+    ground = loop.bodies[GROUND]
+    named = (j.at for j in loop.of(GROUND) if j.at in ground)
+    here = (at for at in named if not any(map(sp.simplify, ground[at] - centre)))
+    return next(here, None) or _unused("O", {*ground, loop.hand})
 
 
 def _legs(loop: Loop) -> list[tuple[Joint, Joint, Joint]]:
@@ -151,8 +179,9 @@ def _on_strut(loop: Loop, arms: list[tuple[Joint, Joint]], last: Joint) -> Loop:
     """The same with the hand on a sphere, and rods for the arcs that lead to it."""
     check_arcs(loop)
     assert last.axis is not None
-    at = arms[0][0].at
-    centre = loop.bodies[GROUND][at]
+    centre = _centre(loop)
+    assert centre is not None
+    at = _named_centre(loop, centre)
     held = [loop.bodies[body][loop.hand] for body in last.between if loop.hand in loop.bodies[body]]
     both = listed([*last.between])
     if any(any(map(sp.simplify, place - held[0])) for place in held):
@@ -202,8 +231,8 @@ def _on_ball(loop: Loop, legs: list[tuple[Joint, Joint, Joint]]) -> Loop:
     """The same with the hand on a ball joint, and rods for the arcs that lead to it."""
     check_arcs(loop)
     bodies, joints, rods = dict(loop.bodies), dict(loop.joints), dict(loop.rods)
-    at = legs[0][0].at
-    centre = next(points[at] for points in loop.bodies.values() if at in points)
+    centre = _centre(loop)
+    assert centre is not None
     hand = next(b for b in legs[0][2].between if b not in legs[0][1].between)
     bodies[GROUND] = {loop.hand: centre}
     bodies[hand] = {loop.hand: sp.zeros(SPACE, 1)}
@@ -227,4 +256,4 @@ def _on_ball(loop: Loop, legs: list[tuple[Joint, Joint, Joint]]) -> Loop:
     return replace(loop, bodies=bodies, joints=joints, rods=rods)
 
 
-__all__ = ["check_arcs", "through_one_point", "with_arcs"]
+__all__ = ["centre_name", "check_arcs", "through_one_point", "with_arcs"]

@@ -14,7 +14,7 @@ from closedform.mechanics.arm import Serial, from_dh
 from closedform.model.derivation import Derivation, Paper
 from closedform.pipeline.run import write
 from closedform.proof.prove import Proof
-from closedform.scaffold.inputs.tables import CHAIN, IMPORTED, LINKED
+from closedform.scaffold.inputs.names import CHAIN, IMPORTED, LINKED
 
 
 def arm(rows: list, joints: str = "t1 t2 t3 t4 t5 t6 t7", **angles: str) -> tuple:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import pairwise
@@ -20,18 +21,16 @@ from closedform.mechanics.arm import RowError, Serial, from_dh, from_screws
 from closedform.mechanics.mobility import SingularEverywhereError
 from closedform.model.derivation import Derivation
 from closedform.model.functions import real
-from closedform.model.names import check_robot, check_text
+from closedform.model.names import check_robot, check_text, listed
 from closedform.model.paper import Paper
 from closedform.scaffold.chains.proposal import Tried
 from closedform.scaffold.chains.propose import NoChainError, propose
 from closedform.scaffold.chains.recognise import recognised
 from closedform.scaffold.inputs.mjcf import read_mjcf
 from closedform.scaffold.inputs.motors import motors_of
+from closedform.scaffold.inputs.names import AUTHOR, CHAIN, IMPORTED
 from closedform.scaffold.inputs.spelling import mistaken_units
 from closedform.scaffold.inputs.tables import (
-    AUTHOR,
-    CHAIN,
-    IMPORTED,
     Table,
     TableError,
     check_names,
@@ -54,6 +53,8 @@ LONGER = (
 FAILED = "Write the chain yourself, and report the table: a proposed chain should be proved."
 IMPORTS = frozenset({"numpy", "sympy", "flint", "jinja2"})
 """Modules that a script of the same name would shadow."""
+MOST_JOINTS = 7
+"""Of an arm with an inverse; of seven joints one is given."""
 
 
 @dataclass(frozen=True)
@@ -87,6 +88,8 @@ class InverseSearch:
     given: str = ""
     timeout: float = TIMEOUT
     explain: bool = False
+    count: bool = True
+    """Whether to count the solutions of an arm for which no chain is known."""
     say: Callable[[str], None] = lambda _: None
     fault: Callable[[str, str], str] = lambda *_: ""
     doing: str = "reading the table"
@@ -139,21 +142,64 @@ def new(
         loop = read_loop(path)
         text, kind = loop_script(name, loop, path.name)
         return Script(text, f"{kind}, of {len(loop.joints)} joints", tuple(loop.notes))
-    if kind == "dh":
-        table = read_dh(path, modified=modified)
-    elif kind in ("urdf", "mjcf"):
-        table = (read_urdf if kind == "urdf" else read_mjcf)(path, choice)
+    read_tree = {"urdf": read_urdf, "mjcf": read_mjcf}.get(kind)
+    if read_tree:
+        table = read_tree(path, choice)
     else:
-        table = read_screws(path)
+        table = read_dh(path, modified=modified) if kind == "dh" else read_screws(path)
     check_names(table, path.name)
     if mistaken := mistaken_units(table.parameters):
         raise TableError(f"{path.name}: {mistaken}")
     for symbol, given in table.parameters.items():
         check_text(f"{path.name}: {symbol}", given.get("meaning", ""), given.get("unit", ""))
     try:
-        return skeleton(name, table, path.name, search)
+        script = skeleton(name, table, path.name, search)
     except (RowError, SingularEverywhereError) as error:
         raise TableError(f"{path.name}: {str(error).removeprefix(f'{name}: ')}") from error
+    if script.structure or not read_tree:
+        return script
+
+    def without(length: str, told: InverseSearch) -> Script:
+        return skeleton(
+            name, read_tree(path, replace(choice, ignore=float(length))), path.name, told
+        )
+
+    tried = without_short(table, search, without)
+    return replace(script, advice=f"{script.advice}  {tried}".strip())
+
+
+def without_short(
+    table: Table, search: InverseSearch, without: Callable[[str, InverseSearch], Script]
+) -> str:
+    """A sentence on what becomes of an arm ``without`` its short lengths, each of which is tried.
+
+    Nothing is tried if there are too many joints.
+    """
+    if not table.short or len(table.joints) > MOST_JOINTS:
+        return ""
+
+    def first(say: Callable[[str], None]) -> str:
+        for short in table.short:
+            say(f"trying --ignore {short.ignore}")
+            told = replace(search, timeout=0, explain=False, count=False, say=lambda _: None)
+            with suppress(ValueError):
+                found = without(short.ignore, told)
+                if found.structure:
+                    return (
+                        f"{short.told}; if that is not meant, leave it out with "
+                        f"--ignore {short.ignore}: then {found.inverse}."
+                    )
+        return f"Without short lengths there is no inverse either; {lengths} {were} tried."
+
+    lengths = listed([f"--ignore {short.ignore}" for short in table.short])
+    were = "were" if len(table.short) > 1 else "was"
+    try:
+        return bounded(search.timeout, first, search.progress)
+    except LimitError:
+        return (
+            f"The limit of {search.timeout:g} s was reached while it was tried whether there is an "
+            f"inverse without short lengths; {search.doing.removeprefix('trying ')} was the last."
+        )
 
 
 def _comment(text: str) -> str:
@@ -409,7 +455,7 @@ def _inverse_lines(arm: Serial, search: InverseSearch, refused: Sequence[Tried])
     chain = f"ik = Chain(d, forward{angles})"
     explained = recognised(arm) if search.explain else []
     try:
-        found = propose(arm, search.given, search.progress, refused)
+        found = propose(arm, search.given, search.progress, refused, count=search.count)
     except NoChainError as error:
         explained += [f"tried: {t.name}: no, because {t.error.found}" for t in error.tried]
         return _without_inverse(error.found, error.needed, chain, explained)

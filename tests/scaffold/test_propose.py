@@ -17,7 +17,7 @@ from closedform.model.functions import real
 from closedform.proof.prove import prove
 from closedform.proof.require import ProofError
 from closedform.scaffold.chains.propose import NoChainError, propose
-from closedform.scaffold.inputs.tables import NUMBERED, TAKEN
+from closedform.scaffold.inputs.names import NUMBERED, TAKEN
 
 LENGTHS = a, b, c, e, f, g = tuple(real(n, positive=True) for n in "abcefg")
 T = t1, t2, t3, t4, t5, t6 = tuple(real(f"t{i}") for i in range(1, 7))

@@ -1,5 +1,6 @@
 """Files whose lengths were rounded one by one, so that they do not quite cancel."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -9,8 +10,9 @@ from closedform.cli.commands import main
 from closedform.scaffold.inputs.tables import Table
 from closedform.scaffold.inputs.tree import Choice
 from closedform.scaffold.inputs.urdf import read_urdf
-from closedform.scaffold.new import new
+from closedform.scaffold.new import InverseSearch, Script, new, without_short
 
+UNCOUNTED = InverseSearch(count=False)
 ALICIA = [
     ("0 -0.0039812 0.09125", "0 0 1.5708", "0 0 1"),
     ("0.0039812 0 0.0425", "1.5708 0 -1.5708", "0 0 1"),
@@ -22,15 +24,31 @@ ALICIA = [
 """Synria's Alicia M 1.1: the last two offsets are both 0.00365625."""
 
 
-def alicia(folder: Path, last: str) -> Path:
+LEG = [
+    ("0 0.064452 -0.1027", "0 0 0", "0 1 0"),
+    ("0 0.052 -0.030465", "0 -0.1749 0", "1 0 0"),
+    ("0.025001 0 -0.12412", "0 0 0", "0 0 1"),
+    ("-0.078273 0.0021489 -0.17734", "0 0.1749 0", "0 1 0"),
+    ("0 -9.4445E-05 -0.30001", "0 0 0", "0 1 0"),
+    ("0 0 -0.017558", "0 0 0", "1 0 0"),
+]
+"""Unitree's G1: the axes of its hip do not meet, by centimetres."""
+
+
+def written(name: str, rows: Sequence[tuple[str, str, str]], folder: Path) -> Path:
     joints = "".join(
         f'<joint name="q{k}" type="revolute"><parent link="l{k}"/><child link="l{k + 1}"/>'
-        f'<origin xyz="{xyz.format(last=last)}" rpy="{rpy}"/><axis xyz="{axis}"/></joint>'
-        for k, (xyz, rpy, axis) in enumerate(ALICIA, 1)
+        f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{axis}"/></joint>'
+        for k, (xyz, rpy, axis) in enumerate(rows, 1)
     )
-    path = folder / "alicia.urdf"
-    path.write_text(f'<robot name="alicia">{joints}</robot>', "utf-8")
+    path = folder / f"{name}.urdf"
+    path.write_text(f'<robot name="{name}">{joints}</robot>', "utf-8")
     return path
+
+
+def alicia(folder: Path, last: str) -> Path:
+    rows = [(xyz.format(last=last), rpy, axis) for xyz, rpy, axis in ALICIA]
+    return written("alicia", rows, folder)
 
 
 def across(table: Table) -> set:
@@ -59,12 +77,38 @@ def test_lengths_that_nearly_cancel_can_be_ignored(tmp_path: Path) -> None:
     path = alicia(tmp_path, "0.0037562")
     refused = new("alicia", "urdf", path)
     assert "no inverse" in refused.inverse
-    assert "y of the joints q4 and q6 differs by 0.0001, " in refused.advice
-    assert "with --ignore 0.0001 or " in refused.advice
+    assert "y of the joints q4 and q6 differs by 0.0001; " in refused.advice
     script = new("alicia", "urdf", path, choice=Choice(ignore=0.0001))
     assert "with a spherical wrist" in script.inverse
     (note,) = (n for n in script.notes if "with all joints at zero" in n)
     assert note.endswith("0.0001 from it, because of --ignore")
+    assert f"with --ignore 0.0001: then {script.inverse}." in refused.advice
+    unsure = new("alicia", "urdf", path, search=InverseSearch(fault=lambda *_: "it is wrong"))
+    assert "no inverse either; --ignore 0.0001, --ignore " in unsure.advice
+
+
+def test_leaving_out_what_does_not_help_is_not_suggested(tmp_path: Path) -> None:
+    """The leg of a Unitree G1: --ignore 0.0022 was suggested, and there is no inverse with it."""
+    path = written("leg", LEG, tmp_path)
+    advice = new("leg", "urdf", path).advice
+    tried = "--ignore 9.5e-05, --ignore 0.0021 and --ignore 0.0022"
+    assert advice.endswith(f"Without short lengths there is no inverse either; {tried} were tried.")
+    for length in (9.5e-5, 0.0021, 0.0022):
+        found = new("leg", "urdf", path, choice=Choice(ignore=length), search=UNCOUNTED)
+        assert "no inverse" in found.inverse
+
+
+def test_what_is_left_out_is_tried_within_the_limit(tmp_path: Path) -> None:
+    """A trial that takes long is given up."""
+
+    def without(*_: object) -> Script:
+        while True:
+            pass
+
+    table = read_urdf(written("leg", LEG, tmp_path))
+    said = without_short(table, InverseSearch(timeout=0.1), without)
+    assert said.startswith("The limit of 0.1 s was reached while it was tried")
+    assert said.endswith("; --ignore 9.5e-05 was the last.")
 
 
 def test_lengths_forth_and_back_do_not_cancel_in_printed_code(tmp_path: Path) -> None:

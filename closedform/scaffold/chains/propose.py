@@ -40,11 +40,13 @@ def propose(
     given: str = "",
     progress: Callable[[str], None] = lambda _: None,
     refused: Sequence[Tried] = (),
+    *,
+    count: bool = True,
 ) -> Proposal:
     """The first chain for an arm that is not ``refused``; :class:`NoChainError` if none is known.
 
     Of an arm of seven joints one is ``given``, by default one that makes the chain short, or
-    ``arm_angle``.
+    ``arm_angle``.  With ``count`` the error says how many solutions a pose has.
     """
     _require_few(arm)
     tried: list[Tried] = [*refused]
@@ -80,7 +82,9 @@ def propose(
                 tried=tuple(tried),
                 doubt=_doubt_of_given(arm, found),
             )
-    raise refused[0].error.after(tried) if refused else _refusal(arm, given, tried, progress)
+    if refused or not count:
+        raise tried[0].error.after(tried)
+    raise _refusal(arm, given, tried, progress)
 
 
 def _require_few(arm: Serial) -> None:

@@ -15,7 +15,8 @@ from closedform.algebra.formulas import FormulaError, number
 from closedform.mechanics.frames import exponential, homogeneous
 from closedform.model.functions import real
 from closedform.scaffold.inputs.exact import orthonormal
-from closedform.scaffold.inputs.joints import MOVING, Joint, symbol_of
+from closedform.scaffold.inputs.joints import MOVING, Joint
+from closedform.scaffold.inputs.names import symbol_of
 from closedform.scaffold.inputs.tables import Table, TableError, shown_name
 
 

@@ -8,7 +8,6 @@ motors do.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -16,11 +15,11 @@ import sympy as sp
 
 from closedform.model.functions import real
 from closedform.model.names import listed
+from closedform.scaffold.inputs.names import symbol_of
 from closedform.scaffold.inputs.tables import (
     Table,
     TableError,
     add_joint,
-    check_table_name,
     shown_name,
 )
 
@@ -48,17 +47,6 @@ class Joint:
     """Why the joint cannot be on the chain, in words, if something else moves or holds it."""
     notes: tuple[str, ...] = ()
     """What was not taken as it is written."""
-
-
-def symbol_of(name: str) -> str:
-    """The name of a joint as an identifier that the written script does not use itself."""
-    plain = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_")
-    known = plain if plain[:1].isalpha() else f"q_{plain}"
-    try:
-        check_table_name(known, "")
-    except TableError:
-        return f"{known}_0"
-    return known
 
 
 def declare(joint: Joint, table: Table, where: str) -> sp.Symbol:
@@ -287,4 +275,4 @@ def couple(mimics: Sequence[Mimic], table: Table) -> None:
             table.limits[name] = (str(least), str(most))
 
 
-__all__ = ["MOVING", "Joint", "Mimic", "couple", "declare", "led", "symbol_of"]
+__all__ = ["MOVING", "Joint", "Mimic", "couple", "declare", "led"]

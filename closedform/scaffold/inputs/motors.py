@@ -5,7 +5,8 @@ from __future__ import annotations
 import sympy as sp
 
 from closedform.model.functions import real
-from closedform.scaffold.inputs.tables import TAKEN, Table, TableError
+from closedform.scaffold.inputs.names import TAKEN
+from closedform.scaffold.inputs.tables import Table, TableError
 
 
 def motors_of(table: Table, where: str) -> tuple[list[str], sp.Matrix]:

@@ -27,10 +27,10 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.formulas import TABLE, FormulaError, formula, number, shown
-from closedform.lemmas.registry import chain_lemmas
 from closedform.model.functions import real
 from closedform.model.names import check_symbol
 from closedform.scaffold.inputs import exact
+from closedform.scaffold.inputs.names import is_taken
 from closedform.scaffold.inputs.spelling import PI, instead
 from closedform.scaffold.source import source
 
@@ -42,53 +42,23 @@ LONGEST = 2000
 JOINTS = 16
 ROWS = 32
 DIGITS = re.compile(r"[-+0-9./eE]+")
-IMPORTED = (
-    "Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Max", "Piecewise", "Rational", "atan", "atan2",
-)  # fmt: skip
-CHAIN = (
-    "Carrying", "Reaching", "ReachingAcross", "arm_angle", "rotation", "sign_of", "turned",
-    "within_links", "within_tilt",
-    *chain_lemmas(),
-)  # fmt: skip
-LINKED = (
-    "CoordinateWithin", "LinkAcross", "LinkAtHeight", "Links", "LinksAndObliqueWrist",
-    "LinksAndWrist", "LinksAround", "LinksAtHeight", "LinksPastParallel", "LinksPastTurn",
-    "OnCircle", "Pair", "TwoTurns",
-)  # fmt: skip
-AUTHOR = (
-    "Chain",
-    "Derivation",
-    "Paper",
-    *LINKED,
-    "from_dh",
-    "from_screws",
-    "parallelogram_drive",
-    "real",
-)
-SCRIPT = {"arm", "coupling", "d", "forward", "links", "motors", "pair"}
-LINES = {
-    "M", "ahead", "ik", "p", "q", "reaching", "turn1", "turn2", "wx", "wy", "x", "y", "yaw", "z",
-    "rho", "given", "left", "axis", "p_norm", "to_end", "to_target", "to_elbow", "to_wrist",
-    "both_links", "on_ellipse", "R_inverse", "R_rest", "R_last", "R_between", "R_before",
-    "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
-    "play", "carried", "radius_to_target", "radius_to_end", "lever", "past", "seen_across",
-    "across", "missed_by", "pair_at", "aimed", "off_axis", "below_one", "squares", "at_end",
-    "less", "more", "less_behind", "more_behind", "behind", "far", "tilt", "offset", "seen",
-    "R_shoulder",
-}  # fmt: skip
-TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
-"""Names that the written script uses itself."""
 EXAMPLE = (
     "write one in a line '# {} = 0.1 m: what it is'",
     "write one in [parameters], as {} = 0.1",
 )
 """How to give a value to a parameter, in CSV and in TOML."""
-NUMBERED = re.compile(r"(alpha|link|pair|left|tilted)\d+_?")
-"""Names with a number that the written script uses itself."""
 
 
 class TableError(ValueError):
     """A table of joints that cannot be read; the message says where."""
+
+
+@dataclass(frozen=True)
+class Short:
+    """A length that may not be meant: what it is, as a clause, and the ``--ignore`` without it."""
+
+    told: str
+    ignore: str
 
 
 @dataclass
@@ -113,7 +83,9 @@ class Table:
     end: str = ""
     """The link at the end of a chain."""
     doubt: str = ""
-    """A sentence on entries that may not be meant, for an arm without an inverse."""
+    """A sentence on the end of the chain, which may not be meant, for an arm without an inverse."""
+    short: list[Short] = field(default_factory=list)
+    """Lengths that may not be meant, for an arm without an inverse."""
 
 
 def check_names(table: Table, where: str) -> None:
@@ -125,7 +97,7 @@ def check_names(table: Table, where: str) -> None:
 
 
 def check_table_name(name: str, where: str) -> None:
-    check_variable(name, where, taken=name in TAKEN or NUMBERED.fullmatch(name) is not None)
+    check_variable(name, where, taken=is_taken(name))
 
 
 def check_variable(name: str, where: str, *, taken: bool) -> None:

@@ -32,6 +32,7 @@ from closedform.scaffold.inputs.own_turns import (
 )
 from closedform.scaffold.inputs.tables import (
     JOINTS,
+    Short,
     Table,
     TableError,
     shown_name,
@@ -93,13 +94,11 @@ def table_of(joints: Sequence[Joint], file: str, choice: Choice) -> Table:
     chain = _without_short(chain, choice.ignore, file, table.notes)
     table.end = chain[-1].child
     short = _short(chain)
-    table.doubt = _doubt(*short) if short else ""
-    if not choice.tool:
-        table.doubt = f"{table.doubt}  {_gripper(chain)}".strip()
+    table.doubt = "" if choice.tool else _gripper(chain)
     chain = held(chain, choice.hold, table, file)
     found = list(_read(chain, table, Displacement.of(as_written, choice.ignore), file))
     table, moved, mimics, offsets = min(found, key=_Placed.effort)
-    table.doubt = f"{table.doubt}  {_parted(table.axes, short)}".strip()
+    table.short = _shortest(table.axes, short)
     if not table.axes:
         raise TableError(f"{file}: no joint between {chain[0].parent} and {chain[-1].child} moves")
     couple(mimics, table)
@@ -342,14 +341,6 @@ def _short(chain: Sequence[Joint]) -> tuple[float, str] | None:
     return max((found for found in sizes if found[0] < SHORT * longest), default=None)
 
 
-def _doubt(length: float, name: str) -> str:
-    """What to try if no inverse is found: a sentence on lengths that may not be meant."""
-    return (
-        f"The file has lengths such as {length:.6g}, of the joint {shown_name(name)}; if they are "
-        f"not meant, leave them out with --ignore {_rounded_up(length)}."
-    )
-
-
 def _gripper(chain: Sequence[Joint]) -> str:
     """What to try if the last joint does not carry the tool: a sentence."""
     last = [joint for joint in chain if joint.kind in MOVING][-1:]
@@ -533,14 +524,17 @@ def _gap(one: sp.Expr, other: sp.Expr) -> float:
     return math.inf if apart.free_symbols else abs(float(apart))
 
 
-def _parted(
+def _shortest(
     axes: Sequence[tuple[sp.Symbol, list[sp.Expr], list[sp.Expr]]], short: tuple[float, str] | None
-) -> str:
-    """What to try if no inverse is found: a sentence on coordinates that nearly agree, or none.
-
-    Those that agree without ``short`` lengths, which are named already, are left out.
+) -> list[Short]:
+    """What may not be meant, if no inverse is found: ``short`` lengths, and coordinates that nearly
+    agree, also without these; the shortest first.
     """
-    least = short[0] if short else NOISE
+    least, found = NOISE, []
+    if short:
+        least, name = short
+        told = f"The file has lengths such as {least:.6g}, of the joint {shown_name(name)}"
+        found.append(Short(told, _rounded_up(least)))
     gaps = [
         (_gap(here[i], there[i]), str(one), str(other), "xyz"[i])
         for (one, _, there), (other, _, here) in combinations(axes, 2)
@@ -548,17 +542,13 @@ def _parted(
     ]
     longest = max((gap for gap, *_ in gaps if gap < math.inf), default=0.0)
     parted = {
-        _rounded_up(gap): f"{coordinate} of the joints {one} and {other} differs by {gap:.6g}"
+        _rounded_up(gap): f"With all joints at zero, {coordinate} of the joints {one} and {other} "
+        f"differs by {gap:.6g}"
         for gap, one, other, coordinate in sorted(gaps, reverse=True)
         if least < gap < SHORT * longest
     }
-    if not parted:
-        return ""
     some = sorted(parted.items(), key=lambda item: float(item[0]))[:3]
-    return (
-        f"With all joints at zero, {', '.join(text for _, text in some)}; if that is not meant, "
-        f"leave it out with --ignore {' or '.join(gap for gap, _ in some)}."
-    )
+    return [*found, *(Short(told, gap) for gap, told in some)]
 
 
 def _meant_turns(place: sp.Matrix, where: str, notes: list[str]) -> sp.Matrix:

@@ -2,11 +2,13 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from closedform.check.runners.python import module
 from closedform.cli.commands import main
 from closedform.pipeline.scripts import find, load
-from closedform.scaffold.inputs.tables import read_dh
+from closedform.scaffold.inputs.tables import read_dh, read_screws
 
 HEADER = "a, alpha, d, theta\n"
 AXIS = '[[axes]]\njoint = "t1"\ndirection = [0, 0, 1]\n'
@@ -127,8 +129,8 @@ def axis(**given: str) -> str:
         (axis(joint=""), "axis 1: joint is missing"),
         (axis(joint="3"), 'axis 1: joint must be a name, such as "theta1", not 3'),
         ("[parameters]\nL = 1\n" + axis(joint='"L"'), "L is a joint and a parameter"),
-        (axis(joint='"my joint"'), "'my joint' is not a name"),
-        (axis(joint='"while"'), "while is a word of Python and C and JavaScript"),
+        (axis(joint='" "'), 'axis 1: joint must be a name, such as "theta1"'),
+        (axis(joint='"cf_1"'), "names like cf_1_0 belong to closedform.h"),
         (AXIS + axis(), "axis 2: two joints have the name t1"),
         (axis(kind='"helical"'), "kind must be revolute or prismatic, not helical"),
         (axis(pitch="3"), "axis 1: the key pitch is unknown"),
@@ -236,3 +238,73 @@ def test_column_names_may_have_capitals(tmp_path: Path) -> None:
     path = tmp_path / "table.csv"
     path.write_text("Joint, A, Alpha, D, Theta\nt, 0.5, 0, 0, t\n", "utf-8")
     assert list(read_dh(path).joints) == ["t"]
+
+
+def test_joints_of_screws_get_names_of_variables(tmp_path: Path) -> None:
+    path = tmp_path / "table.toml"
+    second = '[[axes]]\njoint = "while"\ndirection = [1, 0, 0]\n'
+    path.write_text(second + axis(joint='"my joint"'), "utf-8")
+    table = read_screws(path)
+    assert list(table.joints) == ["while_0", "my_joint"]
+    assert "table.toml, axis 2, joint 'my joint': it is called my_joint" in table.notes
+
+
+RENAMED = HEADER + "0, pi/2, 0.3, yaw\n0.4, 0, 0, M\n0, pi/2, 0, double\n0, 0, 0.2 + p, 0\n"
+SCREWS = "\n".join(
+    f'[[axes]]\njoint = "{name}"\nkind = "{kind}"\ndirection = {w}\npoint = {p}'
+    for name, kind, w, p in (
+        ("yaw", "revolute", [0, 0, 1], [0, 0, 0]),
+        ("M", "revolute", [0, -1, 0], [0, 0, "3/10"]),
+        ("double", "revolute", [0, -1, 0], ["2/5", 0, "3/10"]),
+        ("p", "prismatic", [0, 0, -1], [0, 0, 0]),
+    )
+)
+AT_HOME = (
+    '\n[home]\nposition = ["2/5", 0, "1/10"]\nrotation = [[1, 0, 0], [0, -1, 0], [0, 0, -1]]\n'
+)
+JOINTS = ["yaw_0", "M_0", "double_0", "p_0"]
+
+
+def pose(q: np.ndarray) -> np.ndarray:
+    """The pose of both tables, as a product of exponentials."""
+    T, up, across = np.eye(4), (0, 0, 1), (0, -1, 0)
+    points = ((0, 0, 0), (0, 0, 0.3), (0.4, 0, 0.3))
+    for angle, w, p in zip(q[:3], (up, across, across), points, strict=True):
+        K = np.cross(np.eye(3), w)
+        step = np.eye(4)
+        step[:3, :3] += np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
+        step[:3, 3] = p - step[:3, :3] @ p
+        T = T @ step
+    home = np.diag([1.0, -1, -1, 1])
+    home[:3, 3] = 0.4, 0, 0.1 - q[3]
+    found: np.ndarray = T @ home
+    return found
+
+
+@pytest.mark.parametrize(("kind", "text"), [("dh", RENAMED), ("screws", SCREWS + AT_HOME)])
+def test_a_joint_with_a_name_of_the_script_gets_another(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], kind: str, text: str
+) -> None:
+    """As a joint of a URDF file does; tables were refused."""
+    table = tmp_path / "table"
+    table.write_text(text, "utf-8")
+    assert main(["new", "arm", "--from", kind, str(table), "-o", str(tmp_path)]) == 0
+    said = capsys.readouterr().err
+    assert all(f"{name[:-2]}: it is called {name}\n" in said for name in JOINTS)
+    out = ["-o", str(tmp_path / "out"), "--backend", "numpy", "--no-crosscheck"]
+    assert main(["derive", str(tmp_path / "arm.py"), *out]) == 0
+    arm = module(tmp_path / "out" / "numpy", "arm")
+    q = np.random.default_rng(0).uniform(0.1, 1, (100, 4))
+    x = arm.fk(q)
+    assert np.abs(x - [pose(joints) for joints in q]).max() < 1e-14
+    found, status = arm.ik(x)
+    apart = np.abs(np.exp(1j * (found - q[:, None])) - 1).max(axis=-1)
+    assert (np.where(status == 0, apart, 1).min(axis=-1) < 1e-12).all()
+
+
+def test_a_held_joint_has_the_name_that_the_script_gives_it(tmp_path: Path) -> None:
+    """The advice to hold a joint names it as the script does."""
+    table = tmp_path / "table.csv"
+    table.write_text("# M_0 = 0.1 rad: held\n" + RENAMED, "utf-8")
+    read = read_dh(table)
+    assert list(read.joints) == ["yaw_0", "double_0", "p_0"] and "M_0" in read.parameters

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import combinations, product
 from math import hypot
+from typing import Any
 
 import sympy as sp
 from sympy.simplify.fu import TR8
@@ -246,9 +247,21 @@ def decimal(value: sp.Expr) -> str:
     return f"{'-' if value < 0 else ''}{digits[:-places]}.{digits[-places:]}"
 
 
+def coordinates(vector: Any) -> str:
+    """A vector in a message."""
+    return f"({', '.join(map(str, vector))})"
+
+
+def decimals(vector: Any) -> str:
+    """A vector in a message, in decimals."""
+    return f"({', '.join(f'{float(e):.12g}' for e in vector)})"
+
+
 __all__ = [
     "Angles",
+    "coordinates",
     "decimal",
+    "decimals",
     "orthonormal",
     "rotation",
     "straightened",

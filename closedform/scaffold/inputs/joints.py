@@ -20,6 +20,7 @@ from closedform.scaffold.inputs.tables import (
     Table,
     TableError,
     add_joint,
+    own_name,
     shown_name,
 )
 
@@ -51,10 +52,8 @@ class Joint:
 
 def declare(joint: Joint, table: Table, where: str) -> sp.Symbol:
     """The symbol of a joint that moves, which becomes one of the table, with its limits."""
-    name = symbol_of(joint.name)
+    name = own_name(joint.name, table, where)
     add_joint(table, name, MOVING[joint.kind], where)
-    if name != joint.name:
-        table.notes.append(f"{where}: it is called {name}")
     if joint.limits:
         table.limits[name] = joint.limits
     return real(name)

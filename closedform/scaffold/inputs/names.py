@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
+from keyword import iskeyword
 
 from closedform.lemmas.registry import chain_lemmas
-from closedform.model.names import check_symbol
+from closedform.model.names import NOT_FINITE, check_symbol
 
 IMPORTED = (
     "Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Max", "Piecewise", "Rational", "atan", "atan2",
@@ -47,9 +49,18 @@ NUMBERED = re.compile(r"(alpha|link|pair|left|tilted)\d+_?")
 """Names with a number that the written script uses itself."""
 
 
+NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+
+
 def is_taken(name: str) -> bool:
     """Whether the written script uses a name itself."""
     return name in TAKEN or NUMBERED.fullmatch(name) is not None
+
+
+def names_in(formulas: Iterable[str]) -> set[str]:
+    """The names in formulas, without those that a joint of another name could not have either."""
+    names = {name for text in formulas for name in NAME.findall(text)}
+    return {name for name in names if not iskeyword(name) and name.lower() not in NOT_FINITE}
 
 
 def symbol_of(name: str) -> str:
@@ -63,4 +74,14 @@ def symbol_of(name: str) -> str:
     return f"{known}_0" if is_taken(known) else known
 
 
-__all__ = ["AUTHOR", "CHAIN", "IMPORTED", "LINKED", "NUMBERED", "TAKEN", "is_taken", "symbol_of"]
+__all__ = [
+    "AUTHOR",
+    "CHAIN",
+    "IMPORTED",
+    "LINKED",
+    "NUMBERED",
+    "TAKEN",
+    "is_taken",
+    "names_in",
+    "symbol_of",
+]

@@ -30,7 +30,7 @@ from closedform.algebra.formulas import TABLE, FormulaError, formula, number, sh
 from closedform.model.functions import real
 from closedform.model.names import check_symbol
 from closedform.scaffold.inputs import exact
-from closedform.scaffold.inputs.names import is_taken
+from closedform.scaffold.inputs.names import is_taken, names_in, symbol_of
 from closedform.scaffold.inputs.spelling import PI, instead
 from closedform.scaffold.source import source
 
@@ -249,17 +249,38 @@ def _read_row(table: Table, header: Sequence[str], cells: Sequence[str], where: 
             f"for each of {', '.join(header)}"
         )
     cell = dict(zip(header, (c.strip() for c in cells), strict=True))
-    entries = {c: expression(cell[c], f"{where}, column {c}") for c in COLUMNS}
+    places = {c: f"{where}, column {c}" for c in COLUMNS}
+    names = names_in(cell[c] for c in COLUMNS)
+    entries = {c: expression(cell[c], places[c], names) for c in COLUMNS}
     for column in ("alpha", "theta"):
-        _check_angle(entries[column], cell[column], f"{where}, column {column}")
-    found = _joint(cell.get("joint", ""), entries, where, table)
+        _check_angle(entries[column], cell[column], places[column])
+    held = {n for n in names - {*table.parameters} if symbol_of(n) in table.parameters}
+    entries = _renamed(entries, held, table, where)
+    given = cell.get("joint", "")
+    found = _joint(symbol_of(given) if given in held else given, entries, where, table)
     if found:
+        entries = _renamed(entries, {found[0]}, table, where)
+        found = symbol_of(found[0]), found[1]
         add_joint(table, *found, where)
+    for column, entry in entries.items():
+        for symbol in sorted(map(str, entry.free_symbols)):
+            check_table_name(symbol, places[column])
     if given := cell.get("motors", ""):
         _couple(table, found[0] if found else "", given, f"{where}, column motors")
     if not found:
         table.notes.append(f"{where}: the row has no joint, so it is a fixed transform")
     table.rows.append(tuple(entries[c] for c in COLUMNS))
+
+
+def _renamed(
+    entries: Mapping[str, Any], joints: Collection[str], table: Table, where: str
+) -> dict[str, Any]:
+    """The entries of a row with what the script calls some joints."""
+    own = {
+        real(name): real(own_name(name, table, f"{where}, joint {shown_name(name)}"))
+        for name in sorted(joints)
+    }
+    return {column: entry.xreplace(own) for column, entry in entries.items()}
 
 
 def _angles(table: Table) -> exact.Angles:
@@ -305,6 +326,14 @@ def _couple(table: Table, joint: str, text: str, where: str) -> None:
             f"m3 + 0.02/(2*pi)*m4 for a screw"
         )
     table.couplings[joint] = total
+
+
+def own_name(name: str, table: Table, where: str) -> str:
+    """What the script calls a joint of the file; a note says so if that is another name."""
+    own = symbol_of(name)
+    if own != name:
+        table.notes.append(f"{where}: it is called {own}")
+    return own
 
 
 def add_joint(table: Table, joint: str, kind: str, where: str) -> None:
@@ -402,28 +431,31 @@ def read_screws(path: Path) -> Table:
     if not isinstance(axes, list) or not axes:
         raise TableError(f"{path.name}: there are no [[axes]]; each joint needs one")
     for i, axis in enumerate(axes, 1):
-        where = f"{path.name}, axis {i}"
-        check_keys(axis, ("joint", "kind", "direction", "point"), where)
-        for key in ("joint", "direction"):
-            if key not in axis:
-                raise TableError(f"{where}: {key} is missing")
-        joint, kind = axis["joint"], axis.get("kind", "revolute")
-        if not isinstance(joint, str):
-            raise TableError(
-                f'{where}: joint must be a name, such as "theta{i}", not {shown(joint)}'
-            )
-        if kind not in ("revolute", "prismatic"):
-            raise TableError(f"{where}: kind must be revolute or prismatic, not {_plain(kind)}")
-        add_joint(table, joint, kind, where)
-        direction, point = (
-            _vector(axis.get(key, [0, 0, 0]), f"{where}, {key}") for key in ("direction", "point")
-        )
-        table.axes.append((real(joint), direction, point))
+        _read_axis(table, axis, f"{path.name}, axis {i}", f"theta{i}")
     table.home = _home(data.get("home", {}), f"{path.name}, [home]")
     used = [e for _, *vectors in table.axes for v in vectors for e in v]
     _other_symbols(table, [*used, *table.home], path.name)
     use_exact(table, path.name)
     return table
+
+
+def _read_axis(table: Table, axis: Any, where: str, usual: str) -> None:
+    """Add a joint to a table, which has a ``usual`` name in messages."""
+    check_keys(axis, ("joint", "kind", "direction", "point"), where)
+    for key in ("joint", "direction"):
+        if key not in axis:
+            raise TableError(f"{where}: {key} is missing")
+    joint, kind = axis["joint"], axis.get("kind", "revolute")
+    if not isinstance(joint, str) or not joint.strip():
+        raise TableError(f'{where}: joint must be a name, such as "{usual}", not {shown(joint)}')
+    if kind not in ("revolute", "prismatic"):
+        raise TableError(f"{where}: kind must be revolute or prismatic, not {_plain(kind)}")
+    joint = own_name(joint, table, f"{where}, joint {shown_name(joint)}")
+    add_joint(table, joint, kind, where)
+    direction, point = (
+        _vector(axis.get(key, [0, 0, 0]), f"{where}, {key}") for key in ("direction", "point")
+    )
+    table.axes.append((real(joint), direction, point))
 
 
 def use_exact(table: Table, file: str) -> None:
@@ -436,8 +468,8 @@ def use_exact(table: Table, file: str) -> None:
             unit = exact.unit_vector(given, directions)
             if unit is not None and unit != given:
                 table.notes.append(
-                    f"{file}, axis {i}: the direction {_decimals(given)} is rounded; the unit "
-                    f"vector {_listed(unit)} is used instead"
+                    f"{file}, axis {i}: the direction {exact.decimals(given)} is rounded; the unit "
+                    f"vector {exact.coordinates(unit)} is used instead"
                 )
                 given = unit
         directions.append(given)
@@ -447,7 +479,7 @@ def use_exact(table: Table, file: str) -> None:
         turned = exact.rotation(R, directions)
         if turned is not None and turned != R:
             table.home[:3, :3] = turned
-            rows = ", ".join(_listed(turned.row(i)) for i in range(3))
+            rows = ", ".join(exact.coordinates(turned.row(i)) for i in range(3))
             table.notes.append(
                 f"{file}, [home]: the rotation is rounded; the rows {rows} are used instead"
             )
@@ -463,14 +495,6 @@ def use_exact(table: Table, file: str) -> None:
     if table.base is not None:
         table.base = table.base.applyfunc(lambda e: angles.read(e, f"{file}, the mount"))
     _declare(table, angles)
-
-
-def _listed(vector: Any) -> str:
-    return f"({', '.join(map(str, vector))})"
-
-
-def _decimals(vector: Any) -> str:
-    return f"({', '.join(f'{float(e):.12g}' for e in vector)})"
 
 
 def check_keys(given: Any, known: Sequence[str] | None, where: str) -> None:

@@ -20,7 +20,7 @@ import sympy as sp
 from closedform.mechanics.frames import exponential, homogeneous, rotation
 from closedform.model.tolerances import UNIT_LENGTH
 from closedform.scaffold.inputs.decimals import add_axes, has_many_angles, rational_if_slow
-from closedform.scaffold.inputs.exact import orthonormal, unit_vector, without_squares
+from closedform.scaffold.inputs.exact import decimals, orthonormal, unit_vector, without_squares
 from closedform.scaffold.inputs.held import held
 from closedform.scaffold.inputs.joints import MOVING, Joint, Mimic, couple, declare, led
 from closedform.scaffold.inputs.own_turns import (
@@ -278,7 +278,7 @@ def _unit(axis: sp.Matrix, frame: sp.Matrix, table: Table, where: str) -> sp.Mat
     if unit is None:
         return axis
     table.notes.append(
-        f"{where}: the axis {_listed(axis)} is rounded; the unit vector "
+        f"{where}: the axis {decimals(axis)} is rounded; the unit vector "
         f"({', '.join(map(str, unit))}) is used instead"
     )
     return unit
@@ -365,10 +365,10 @@ def meant_number(value: sp.Rational, what: str, notes: list[str]) -> sp.Rational
 def meant_length(value: sp.Rational, what: str, notes: list[str]) -> sp.Rational:
     """A length without what the arithmetic of an exporter added to it."""
     length = Fraction(int(value.p), int(value.q))  # rounds a hundred times faster than SymPy
-    for decimals, near in MEANT:
-        steps = round(length * 10**decimals)
-        if abs(length - Fraction(steps, 10**decimals)) < near and (decimals or steps == 0):
-            return _taken(value, sp.Rational(steps, 10**decimals), what, notes)
+    for places, near in MEANT:
+        steps = round(length * 10**places)
+        if abs(length - Fraction(steps, 10**places)) < near and (places or steps == 0):
+            return _taken(value, sp.Rational(steps, 10**places), what, notes)
     return value
 
 
@@ -385,15 +385,11 @@ def meant_axis(given: sp.Matrix, where: str, notes: list[str]) -> sp.Matrix:
     if 0 < others < NEAR * size:
         found = given.applyfunc(lambda e: sp.sign(e) if abs(e) == size else sp.S.Zero)
         if others >= NOISE * size:
-            notes.append(f"{where}: the axis {_listed(given)} is taken for {_listed(found)}")
+            notes.append(f"{where}: the axis {decimals(given)} is taken for {decimals(found)}")
         return found
     length = sp.sqrt(given.dot(given))
     exact = length.is_Rational or abs(float(length) - 1) > UNIT_LENGTH  # else it was rounded
     return given / length if exact and length != 1 else given
-
-
-def _listed(vector: sp.Matrix) -> str:
-    return "(" + ", ".join(f"{float(e):.12g}" for e in vector) + ")"
 
 
 def meant_angle(value: sp.Rational, where: str, notes: list[str]) -> sp.Expr:

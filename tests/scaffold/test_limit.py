@@ -33,7 +33,7 @@ def written(folder: Path, text: str, **options: object) -> scaffold.Script:
     return new("two", "dh", folder / "table.csv", **options)
 
 
-def endless(*_: object) -> None:
+def endless(*_: object, **__: object) -> None:
     while True:
         pass
 

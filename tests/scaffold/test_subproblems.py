@@ -115,6 +115,27 @@ def test_seven_joints_without_a_chain_have_a_degree_too() -> None:
         propose(serial, "t5")
 
 
+def test_a_chain_that_nearly_fits_is_named() -> None:
+    """A torso turns about the axis of the shoulder, and the elbow comes to this axis.
+
+    The message named no reason, and advised to give joints that cannot be given.
+    """
+    rows = [
+        (0, 0, ROOM), (sp.Rational(1, 5), pi / 2, ROOM), (0, pi / 2, 0), (0, -pi / 2, ROOM),
+        (0, pi / 2, 0), (0, -pi / 2, ROOM), (0, pi / 2, 1),
+    ]  # fmt: skip
+    serial = arm(rows)[1]
+    with pytest.raises(NoChainError, match="with t1 given, the point where three axes meet") as e:
+        propose(serial)
+    assert "Only t1 or t2 can be given" in e.value.needed and e.value.needed.count("ssik") == 1
+    q = dict(zip(serial.joints, np.random.default_rng(0).normal(size=7), strict=True))
+    twists = np.array(serial.geometric.subs(q).evalf().tolist(), float)
+    moving = np.linalg.svd(twists)[2][-1]
+    assert np.flatnonzero(np.abs(moving) > 1e-9).tolist() == [0, 1]
+    rows[1] = (sp.Rational(4, 5), *rows[1][1:])
+    assert propose(arm(rows)[1]).structure.endswith("3 and 2 are skew, with t1 given")
+
+
 def test_a_joint_is_given_that_leaves_a_regular_arm() -> None:
     """The last four axes meet in a point, so one of them has to be given."""
     rows = [

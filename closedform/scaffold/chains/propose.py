@@ -141,8 +141,7 @@ def _refusal(
     if n == 7 and given != ARM_ANGLE:
         single, *others = _to_give(whole, given)
         if others:
-            other = f"Choose another joint with --given to count its solutions.  {NUMERIC}"
-            error = NoChainError(NEITHER, other)
+            single, error = _nearest(whole, (single, *others), tried)
         progress(f"counting the solutions with {single.joint} given")
         with_it = f"with {single.joint} given "
         error = _counted(error, solutions(whole.with_given(single.number, GIVEN)), with_it)
@@ -155,6 +154,24 @@ def _refusal(
         progress("counting the solutions")
         error = _counted_few(error, solutions_of_few(whole))
     return error.after(tried)
+
+
+def _nearest(
+    whole: Singles, joints: Sequence[Single], tried: Sequence[Tried]
+) -> tuple[Single, NoChainError]:
+    """Which of seven joints to give to come nearest to a chain, and why it does not fit."""
+    can = [j for j in joints if is_regular(whole.with_given(j.number, GIVEN))]
+    other = "Choose another joint with --given to count its solutions."
+    if 0 < len(can) < 3:
+        names = " or ".join(str(j.joint) for j in can)
+        other = f"Only {names} can be given: otherwise the rest does not move the tool in six ways."
+    for single in can:
+        given = GIVEN_JOINT.format(single.joint)
+        error = next((t.error for t in tried if t.error.degree and t.name.endswith(given)), None)
+        if error:
+            found = f"with {single.joint} given, {error.found}"
+            return single, NoChainError(found, _numeric(f"{error.needed}  {other}"), error.degree)
+    return [*can, *joints][0], NoChainError(NEITHER, _numeric(other))
 
 
 def _redundant(free: Sequence[Single]) -> NoChainError:

@@ -76,7 +76,7 @@ def within_tilt(
     p, tool = chain.vector("wrist_at", p), chain.vector("tool_axis", tool)
     seen = _Posture(chain=chain, joints=tuple(joints), p=p, tool=tool, limits=limits, name="tilt0")
     loose = chain.program.vanishes(
-        "loose",
+        "loose_wrist",
         sp.Max(seen.margin, sp.Min(*map(sp.Abs, levers)) - SHORT),
         sp.S.One,
         "the joints before the wrist are nearly free, and it does not tilt as far",

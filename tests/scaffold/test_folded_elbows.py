@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from arms import OK, SINGULAR, misses
 from chains import arm, printed, solved
-from sympy import pi
+from sympy import Rational, pi
 
 from closedform.proof.prove import prove
 from closedform.scaffold.chains.propose import propose
@@ -64,3 +64,29 @@ def test_all_postures_are_among_the_solutions(folding: tuple) -> None:
     assert away < 2e-11 and turned < 2e-11
     same = np.abs(np.exp(1j * found) - np.exp(1j * q[:, None])).max(axis=-1)
     assert np.nanmin(same, axis=-1).max() < 1e-6
+
+
+FIVE = [(0, pi / 2, 1), (1, 0, 0), (0, pi / 2, 0), (0, -pi / 2, 1), (Rational(1, 4), 0, 0)]
+"""A roll along the second link, and a bend after it: five joints reach few directions."""
+
+
+@pytest.mark.parametrize("turret", [0, Rational(1, 4)])
+def test_an_arm_of_five_joints_reaches_the_direction_where_it_folds(
+    tmp_path: Path, turret: Rational
+) -> None:
+    """The joint before the fold was taken from a direction that rounding decides: all were lost."""
+    d, serial = arm([(turret, *FIVE[0][1:]), *FIVE[1:]])
+    solved(d, serial, propose(serial).source)
+    serial.export(d)
+    (inverse,) = prove(d).inverses
+    assert inverse.branches == inverse.solutions == 4
+    module, rng = printed(d, tmp_path), np.random.default_rng(7)
+    for near, most in ((1e-12, 10), (1e-11, 1), (1e-10, 0), (1e-9, 0), (1e-7, 0)):
+        q = rng.uniform(-np.pi, np.pi, (2000, 5))
+        q[:, 2] = 3 * np.pi / 2 + near * rng.uniform(-1, 1, 2000)
+        T = module.pose(q)
+        found = module.ik(T)
+        lost = ~np.isin(found.status, (OK, SINGULAR)).any(axis=-1)
+        assert lost.sum() <= most, near
+        away, turned = misses(module.pose(found.q), T, found.status)
+        assert away < 2e-12 and turned < 2e-12

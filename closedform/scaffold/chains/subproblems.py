@@ -67,7 +67,8 @@ class SubproblemMaker(WristMaker):
             self.third = times(arm.lead[:3, :3].T, f"-{axis}" if opposite else axis)
         solved = self.position(before)
         M = times(arm.lead[:3, :3].T, R)
-        if wrist == 3 and not is_normal(ends):
+        rolls = wrist == 2 and n == 5 and not parallel(before[-1])
+        if rolls or (wrist == 3 and not is_normal(ends)):
             tool = followed(M, arm.tool[:3, :3].T)
             self._within_tilt(before, ends, tool)
         for k, (pair, end) in enumerate(solved.turned, 1):
@@ -94,7 +95,7 @@ class SubproblemMaker(WristMaker):
             motion = f"{source(T * joint.shift)}, {source(T * joint.end)}"
             shown.append(f"Carrying({unknown}, {pair}, {motion})")
             pairs.append(pair)
-        g, w = ends[0].end.T * Z, ends[1].end * Z
+        g, w = ends[0].end.T * Z, Z if len(ends) == 2 else ends[1].end * Z
         level, across = g[2] * w[2], norm(g[:2, 0]) * norm(w[:2, 0])
         limits = f"({source(level - across)}, {source(level + across)})"
         arguments = f"tool=({M})[:, 2], limits={limits}, levers=[{', '.join(self.levers)}]"

@@ -8,7 +8,7 @@ import pytest
 from closedform.check.runners.python import module
 from closedform.cli.commands import main
 from closedform.pipeline.scripts import find, load
-from closedform.scaffold.inputs.tables import read_dh, read_screws
+from closedform.scaffold.inputs.tables import read_dh
 
 HEADER = "a, alpha, d, theta\n"
 AXIS = '[[axes]]\njoint = "t1"\ndirection = [0, 0, 1]\n'
@@ -129,8 +129,8 @@ def axis(**given: str) -> str:
         (axis(joint=""), "axis 1: joint is missing"),
         (axis(joint="3"), 'axis 1: joint must be a name, such as "theta1", not 3'),
         ("[parameters]\nL = 1\n" + axis(joint='"L"'), "L is a joint and a parameter"),
-        (axis(joint='" "'), 'axis 1: joint must be a name, such as "theta1"'),
-        (axis(joint='"cf_1"'), "names like cf_1_0 belong to closedform.h"),
+        (axis(joint='"my joint"'), "'my joint' is not a name"),
+        (axis(joint='"while"'), "while is a word of Python and C and JavaScript"),
         (AXIS + axis(), "axis 2: two joints have the name t1"),
         (axis(kind='"helical"'), "kind must be revolute or prismatic, not helical"),
         (axis(pitch="3"), "axis 1: the key pitch is unknown"),
@@ -238,15 +238,6 @@ def test_column_names_may_have_capitals(tmp_path: Path) -> None:
     path = tmp_path / "table.csv"
     path.write_text("Joint, A, Alpha, D, Theta\nt, 0.5, 0, 0, t\n", "utf-8")
     assert list(read_dh(path).joints) == ["t"]
-
-
-def test_joints_of_screws_get_names_of_variables(tmp_path: Path) -> None:
-    path = tmp_path / "table.toml"
-    second = '[[axes]]\njoint = "while"\ndirection = [1, 0, 0]\n'
-    path.write_text(second + axis(joint='"my joint"'), "utf-8")
-    table = read_screws(path)
-    assert list(table.joints) == ["while_0", "my_joint"]
-    assert "table.toml, axis 2, joint 'my joint': it is called my_joint" in table.notes
 
 
 RENAMED = HEADER + "0, pi/2, 0.3, yaw\n0.4, 0, 0, M\n0, pi/2, 0, double\n0, 0, 0.2 + p, 0\n"

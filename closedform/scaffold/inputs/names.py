@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable
 from keyword import iskeyword
 
+from closedform.algebra.formulas import FUNCTIONS
 from closedform.lemmas.registry import chain_lemmas
 from closedform.model.names import NOT_FINITE, check_symbol
 
@@ -59,7 +60,7 @@ def is_taken(name: str) -> bool:
 
 def names_in(formulas: Iterable[str]) -> set[str]:
     """The names in formulas, without those that a joint of another name could not have either."""
-    names = {name for text in formulas for name in NAME.findall(text)}
+    names = {name for text in formulas for name in NAME.findall(text)} - FUNCTIONS.keys()
     return {name for name in names if not iskeyword(name) and name.lower() not in NOT_FINITE}
 
 

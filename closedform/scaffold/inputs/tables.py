@@ -446,11 +446,12 @@ def _read_axis(table: Table, axis: Any, where: str, usual: str) -> None:
         if key not in axis:
             raise TableError(f"{where}: {key} is missing")
     joint, kind = axis["joint"], axis.get("kind", "revolute")
-    if not isinstance(joint, str) or not joint.strip():
+    if not isinstance(joint, str):
         raise TableError(f'{where}: joint must be a name, such as "{usual}", not {shown(joint)}')
     if kind not in ("revolute", "prismatic"):
         raise TableError(f"{where}: kind must be revolute or prismatic, not {_plain(kind)}")
-    joint = own_name(joint, table, f"{where}, joint {shown_name(joint)}")
+    if names_in([joint]) == {joint}:
+        joint = own_name(joint, table, f"{where}, joint {shown_name(joint)}")
     add_joint(table, joint, kind, where)
     direction, point = (
         _vector(axis.get(key, [0, 0, 0]), f"{where}, {key}") for key in ("direction", "point")

@@ -85,8 +85,8 @@ g = {between = ["piston", "table"], at = "P", kind = "spherical"}
 
 def test_a_cylinder_may_be_in_line_with_the_table_that_it_lifts(tmp_path: Path) -> None:
     """Its foot is on the line: the rod of the slide has no distance from it."""
-    script = script_of("lifted", text_with(*CYLINDER), tmp_path)
-    loop = derived("lifted", script, tmp_path, crosscheck=True)
+    script = script_of("jack", text_with(*CYLINDER), tmp_path)
+    loop = derived("jack", script, tmp_path, crosscheck=True)
     q = np.array([[0.05], [0.3], [0.5]])
     travel, status = loop.fk(q)
     assert not status.any() and np.allclose(travel[..., 0], q * [-1, 1], atol=1e-15)

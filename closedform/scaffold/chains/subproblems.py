@@ -67,7 +67,8 @@ class SubproblemMaker(WristMaker):
             self.third = times(arm.lead[:3, :3].T, f"-{axis}" if opposite else axis)
         solved = self.position(before)
         M = times(arm.lead[:3, :3].T, R)
-        rolls = wrist == 2 and n == 5 and not parallel(before[-1])
+        slides = any(j.slides for j in before)
+        rolls = wrist == 2 and n == 5 and not slides and not parallel(before[-1])
         if rolls or (wrist == 3 and not is_normal(ends)):
             tool = followed(M, arm.tool[:3, :3].T)
             self._within_tilt(before, ends, tool)

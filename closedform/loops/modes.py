@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import sympy as sp
+
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Branches, Program
 
@@ -47,4 +49,43 @@ def export(
         )
 
 
-__all__ = ["EQUATIONS", "NO_MODE", "Exported", "export"]
+def export_in_plane(
+    d: Derivation,
+    program: Program,
+    modes: Branches,
+    rates: tuple[sp.Matrix, Sequence[sp.Expr]],
+    volume: sp.Expr,
+) -> None:
+    """Export the Jacobians of a hand in a plane with A*dx = B*dq, where B is diagonal.
+
+    ``rates`` are A and the diagonal of B in assembly modes, and ``volume`` is the determinant of A.
+    """
+    A = program.matrix("A", rates[0])
+    B = program.matrix("B", sp.Matrix(rates[1]))
+    delta = program.let("Delta", volume)
+    pole = "Not finite at a parallel singularity."
+    export(
+        d,
+        program,
+        modes,
+        [
+            ("jacobian_parallel", "A of A*dx = B*dq.", {"A": A.tolist()}, ()),
+            ("jacobian_serial", "The diagonal of B of A*dx = B*dq.", {"B": list(B)}, ()),
+            (
+                "jacobian",
+                "Derivative of x, y and yaw with respect to q: A^-1*B.",
+                {"J": (A.adjugate() * sp.diag(*B) / delta).tolist()},
+                (pole,),
+            ),
+            ("determinant", "Determinant of the Jacobian.", {"det": sp.Mul(*B) / delta}, (pole,)),
+            (
+                "singularities",
+                "The diagonal of B (serial) and the determinant of A (parallel).",
+                {"factors": [*B, delta]},
+                (),
+            ),
+        ],
+    )
+
+
+__all__ = ["EQUATIONS", "NO_MODE", "Exported", "export", "export_in_plane"]

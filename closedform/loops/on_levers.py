@@ -27,7 +27,7 @@ from closedform.loops.leg_by_leg import (
     record_lemma,
     size_of,
 )
-from closedform.loops.modes import NO_MODE, export
+from closedform.loops.modes import NO_MODE, export_in_plane
 from closedform.loops.slotted import Lever, turned_to_line
 from closedform.loops.yaw import yaw_by_amplitude
 from closedform.mechanics.loops import velocity_matrices
@@ -357,36 +357,7 @@ def _velocity(m: _OnLevers, at: _Posture, loop: Step) -> None:
         uses=[loop],
     )
     rows, rates = _matrices(m, at.hand, at.arms)
-    A_at, B_at = v.matrix("A", rows), v.matrix("B", sp.Matrix(rates))
-    volume = v.let("Delta", at.volume)
-    pole = "Not finite at a parallel singularity."
-    export(
-        d,
-        v,
-        at.modes,
-        [
-            ("jacobian_parallel", "A of A*dx = B*dq.", {"A": A_at.tolist()}, ()),
-            ("jacobian_serial", "The diagonal of B of A*dx = B*dq.", {"B": list(B_at)}, ()),
-            (
-                "jacobian",
-                "Derivative of x, y and yaw with respect to q: A^-1*B.",
-                {"J": (A_at.adjugate() * sp.diag(*B_at) / volume).tolist()},
-                (pole,),
-            ),
-            (
-                "determinant",
-                "Determinant of the Jacobian.",
-                {"det": sp.Mul(*B_at) / volume},
-                (pole,),
-            ),
-            (
-                "singularities",
-                "The diagonal of B (serial) and the determinant of A (parallel).",
-                {"factors": [*B_at, volume]},
-                (),
-            ),
-        ],
-    )
+    export_in_plane(d, v, at.modes, (rows, rates), at.volume)
 
 
 def _inverse(m: _OnLevers, loop: Step) -> None:

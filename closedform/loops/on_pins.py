@@ -28,7 +28,7 @@ from closedform.lemmas.lines import FAR, coordinate, slide_to_line
 from closedform.lemmas.rails import named_number
 from closedform.loops.hand import check_order, in_space, square
 from closedform.loops.leg_by_leg import SIGN, Choice, LegByLeg, named_in, record, size_of
-from closedform.loops.modes import NO_MODE, export
+from closedform.loops.modes import NO_MODE, export_in_plane
 from closedform.loops.slotted import turned_to_line
 from closedform.loops.yaw import yaw_by_amplitude
 from closedform.mechanics.loops import velocity_matrices
@@ -382,36 +382,7 @@ def _velocity(m: _OnPins, at: _Posture, loop: Step) -> None:
         uses=[loop],
     )
     rows, rates = _rows(m, at.hand, at.pair)
-    named, diagonal = v.matrix("A", sp.Matrix(rows)), v.matrix("B", sp.Matrix(rates))
-    volume = v.let("Delta", at.volume)
-    pole = "Not finite at a parallel singularity."
-    export(
-        d,
-        v,
-        at.modes,
-        [
-            ("jacobian_parallel", "A of A*dx = B*dq.", {"A": named.tolist()}, ()),
-            ("jacobian_serial", "The diagonal of B of A*dx = B*dq.", {"B": list(diagonal)}, ()),
-            (
-                "jacobian",
-                "Derivative of x, y and yaw with respect to q: A^-1*B.",
-                {"J": (named.adjugate() * sp.diag(*diagonal) / volume).tolist()},
-                (pole,),
-            ),
-            (
-                "determinant",
-                "Determinant of the Jacobian.",
-                {"det": sp.Mul(*diagonal) / volume},
-                (pole,),
-            ),
-            (
-                "singularities",
-                "The diagonal of B (serial) and the determinant of A (parallel).",
-                {"factors": [*diagonal, volume]},
-                (),
-            ),
-        ],
-    )
+    export_in_plane(d, v, at.modes, (sp.Matrix(rows), rates), at.volume)
 
 
 def _inverse(m: _OnPins, loop: Step) -> None:

@@ -14,9 +14,10 @@ from closedform.mechanics.frames import merge_angles
 def factored_determinant(J: sp.Matrix) -> sp.Expr:
     """A determinant as a polynomial in sines and cosines, reduced on their circles and factored."""
     reduced = determinant(J)
-    split = factored_on_circles(factored(reduced))
+    whole = factored(reduced)
+    split = factored_on_circles(whole)
     merged = sp.Mul(*map(_shortest, sp.Mul.make_args(split)))
-    forms = (factored(reduced), factored(merge_angles(reduced)), split, merged)
+    forms = (whole, factored(merge_angles(reduced)), split, merged)
     return _in_decimals(min(forms, key=operations))
 
 

@@ -405,11 +405,7 @@ def _inverse(m: _OnLevers, loop: Step) -> None:
         "UNREACHABLE: a line cannot reach its point of the hand, which is too near its pivot.",
         [f"SINGULAR: {MEET}."],
     )
-    links = tuple(s.link for s in solved.found)
-    zeros = (sp.S.Zero,) * LEGS
-    d.inverses.append(
-        Inverse("ik", d.actuated, zeros, m.loop, images="fk", angles=(m.yaw,), links=links)
-    )
+    solved.certify(m.loop, "fk", angles=(m.yaw,))
 
 
 __all__ = ["on_levers"]

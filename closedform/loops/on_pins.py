@@ -435,11 +435,7 @@ def _inverse(m: _OnPins, loop: Step) -> None:
         "UNREACHABLE: a pin does not reach its line of the hand.",
         [f"SINGULAR: {MEET}."],
     )
-    links = tuple(s.link for s in solved.found)
-    zeros = (sp.S.Zero,) * LEGS
-    d.inverses.append(
-        Inverse("ik", d.actuated, zeros, m.loop, images="fk", angles=(m.yaw,), links=links)
-    )
+    solved.certify(m.loop, "fk", angles=(m.yaw,))
 
 
 __all__ = ["Sleeve", "on_pins"]

@@ -471,9 +471,7 @@ def _inverse(m: OnRails, loop: Step) -> None:
     )
     beyond = "UNREACHABLE: the bars of a leg do not reach." * bool(m.planes)
     solved.export({"x": m.target}, {"x": m.target}, beyond, [f"SINGULAR: {m.meet}."])
-    zeros, links = (sp.S.Zero,) * len(m.loop), tuple(s.link for s in solved.found)
-    answers = Inverse("ik", d.actuated, zeros, m.loop, images="fk", angles=(m.yaw,), links=links)
-    d.inverses.append(answers)
+    solved.certify(m.loop, "fk", angles=(m.yaw,))
 
 
 __all__ = ["on_rails"]

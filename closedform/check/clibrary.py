@@ -38,7 +38,7 @@ class CompileError(FailedError):
 
 
 class CLibrary:
-    """The C of one robot as a shared library, called through its ``_batch`` functions.
+    """The C of one robot as a shared library, called row by row and through its ``_batch``.
 
     It is compiled into ``scratch``, unless ``built`` contains one from before.
     """
@@ -58,31 +58,43 @@ class CLibrary:
         self._functions = {f.name: f for f in derivation.functions}
         self._fields = len(derivation.parameters)
         library = built or _compiled(derivation.name, sources, scratch, single)
-        self._library = ctypes.CDLL(str(library))
+        self.compiled = ctypes.CDLL(str(library))
 
     def function(self, name: str) -> Callable[..., Any]:
-        """``name(*inputs, params)`` over arrays with at most one leading axis."""
+        """``name(*inputs, params)`` over arrays with at most one leading axis.
+
+        Every other row is one call, the rest is a batch: these are different programs.
+        """
         function = self._functions[name]
-        batch = getattr(self._library, f"{self._name}_{name}_batch")
+        one = getattr(self.compiled, f"{self._name}_{name}")
+        batch = getattr(self.compiled, f"{self._name}_{name}_batch")
 
         def call(*arguments: Any) -> Any:
             *inputs, params = arguments
-            return self._run(batch, function, inputs, params)
+            return self._run(one, batch, function, inputs, params)
 
         return call
 
-    def _run(self, batch: Any, function: Function, inputs: Sequence[Any], params: Any) -> Any:
+    def _run(
+        self, one: Any, batch: Any, function: Function, inputs: Sequence[Any], params: Any
+    ) -> Any:
         planes = [self._planes(x, a.size) for x, a in zip(inputs, function.inputs, strict=True)]
         n = planes[0].shape[1] if planes else 1
         fields = (self._real * self._fields)(*map(float, params))
-        arguments: list[Any] = [ctypes.c_size_t(n), ctypes.byref(fields)]
         results, outputs = results_of(function), []
         for result in results:
             dtype = self.dtype if result.kind == "real" else np.uint8
             outputs.append(np.empty((prod(result.shape), n), dtype))
+        arguments: list[Any] = [ctypes.c_size_t(n), ctypes.byref(fields)]
         for array in (*planes, *outputs):
             arguments += [array.ctypes.data_as(ctypes.c_void_p), ctypes.c_size_t(n)]
         batch(*arguments)
+        alone = [np.ascontiguousarray(array.T[1::2]) for array in (*planes, *outputs)]
+        for k in range(n // 2):
+            places = (a.ctypes.data + k * a.strides[0] for a in alone)
+            one(ctypes.byref(fields), *map(ctypes.c_void_p, places))
+        for output, rows in zip(outputs, alone[len(planes) :], strict=True):
+            output[:, 1::2] = rows.T
         lead = (n,) if inputs else ()
         shaped = [o.T.reshape((*lead, *r.shape)) for o, r in zip(outputs, results, strict=True)]
         return shaped[0] if len(shaped) == 1 else tuple(shaped)

@@ -197,9 +197,14 @@ class _Batch:
             # where a joint is free, another turn of it may reach what the generic one does not
             given, parameters = self.sample.values[row], self.sample.parameters
             missed = self.truth.residual(solution, given, parameters)
-            allowed = self.backend.tolerances.round_trip + self.truth.violation(given, parameters)
+            allowed = self._violated() + self.truth.violation(given, parameters)
             return "" if missed <= allowed else problem, missed <= MISSED * allowed
         return problem, False
+
+    def _violated(self) -> float:
+        """By how much an answer may violate its equations, with the parameters of the sample."""
+        condition = float(self.truth.amplified(*self.sample.parameters))
+        return self.backend.tolerances.violated(condition)
 
     def _contradiction(self, solution: NDArray[Any], code: int, feasible: float) -> str:
         """What is wrong with a status and its answer; empty if nothing is."""
@@ -226,7 +231,7 @@ class _Batch:
         self.finding.compared += int(counted.sum())
         answers, given = solutions[row, branch].astype(float), self.sample.values[row]
         bounds = self.truth.residual_bounds(answers, given, parameters)
-        allowed = self.backend.tolerances.violated(float(self.truth.amplified(*parameters)))
+        allowed = self._violated()
         for k in np.argsort(-bounds):
             worse = counted[k] and bounds[k] > self.finding.worst * eps
             if not (worse or bounds[k] > allowed):

@@ -66,6 +66,20 @@ def test_against_the_symbolic_source(
         assert all(f.compared for f in found)
 
 
+def test_a_call_that_is_wrong_where_a_batch_is_right_is_found(tmp_path) -> None:
+    d = derivation("planar_2r")
+    try:
+        library = CLibrary(d, GENERATED / "c", tmp_path)
+    except UnavailableError as error:
+        pytest.skip(str(error))
+    backend = Backend("c", library.function, np.float64, DOUBLE)
+    assert not any(found.failures for found in crosscheck(d, backend))
+    call = library.compiled.planar_2r_fk
+    library.compiled.planar_2r_fk = lambda params, q, p: call(params, p, p)
+    wrong = [found.function for found in crosscheck(d, backend) if found.failures]
+    assert wrong == ["fk"]
+
+
 def broken(robot: str, function: str, change) -> list[str]:
     """The failures that are reported when one function of the NumPy module is changed."""
     module = importlib.import_module(f"closedform.generated.numpy.{robot}")

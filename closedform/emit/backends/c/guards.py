@@ -12,6 +12,9 @@ from closedform.lower import Lowered
 from closedform.lower.graph import Node, constant_of, reachable, strip_sign
 from closedform.model.tolerances import POWERS_OF_TWO
 
+LOGICAL = frozenset({"and", "or", "not"})
+"""Operators that combine conditions."""
+
 
 def unused_where(schedule: Sequence[Node], roots: Sequence[Node]) -> dict[int, tuple[Node, ...]]:
     """The quotients that are unused if one of some conditions holds that are known before."""
@@ -43,7 +46,7 @@ def given_up_where(lowered: Lowered) -> Iterator[tuple[int, tuple[Node, ...]]]:
     if lowered.results[-1].name != "rare":
         return
     place = {node.id: k for k, node in enumerate(lowered.schedule())}
-    conditions = [n for n in reachable(lowered.results[-1].nodes) if n.op == "le"]
+    conditions = list(_raised(lowered))
     needs = {c.id: {n.id for n in reachable([c]) if n.op in ("div", "atan2")} for c in conditions}
     for node in lowered.schedule():
         if node.op != "div" or node.args[1].op == "const":
@@ -62,6 +65,34 @@ def given_up_where(lowered: Lowered) -> Iterator[tuple[int, tuple[Node, ...]]]:
                 nearest |= {c.id: c for c in known if c is found or c.args[0].id in limit}
         if nearest:
             yield node.id, tuple(nearest.values())
+
+
+def _raised(lowered: Lowered) -> Iterator[Node]:
+    """The comparisons of which each alone sends a posture within reach to the whole program."""
+    guards = [n for n in lowered.schedule() if n.op in ("status", "poison")]
+    failures = [a for n in guards for a in n.args[: 2 if n.op == "status" else 1]]
+    reach = _compared(failures)
+
+    def alone(node: Node) -> Iterator[Node]:
+        match node.op:
+            case "le":
+                yield node
+            case "or":
+                for part in node.args:
+                    yield from alone(part)
+            case "and":
+                flags = [part for part in node.args if not _compared([part]) <= reach]
+                if len(flags) == 1:
+                    yield from alone(flags[0])
+
+    for node in lowered.results[-1].nodes:
+        yield from alone(node)
+
+
+def _compared(conditions: Sequence[Node]) -> set[int]:
+    """What conditions are made of."""
+    parts = reachable(conditions, operands=lambda n: n.args if n.op in LOGICAL else ())
+    return {n.id for n in parts if n.op not in LOGICAL}
 
 
 def _factors(node: Node) -> Iterator[Node]:

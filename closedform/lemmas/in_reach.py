@@ -37,6 +37,9 @@ LARGEST = sp.Rational(1, 2**6)
 SHORT = ROUNDING
 """By how much links have to be too short before it matters, in units of the size of the arm."""
 
+FASTEST = 8
+"""How fast an offset turns with the joint, at most, times the sine between axis and links."""
+
 Turning = Callable[[Pair, Pair], tuple[sp.Matrix, sp.Matrix, sp.Matrix, sp.Matrix]]
 """What the pairs of both joints carry: a point q, an axis, where it is aimed, and an offset.
 
@@ -76,36 +79,53 @@ def within_links(
     away = start.let("away", start.distance - goal)
     loose = chain.program.vanishes(
         f"loose_{label(x)}",
-        sp.Max(0, chain.size * SHORT - sp.Abs(away)),
-        chain.size,
-        "the links seem to be too short or too long",
+        sp.Min(_too_short(start, away), _not_aimed(start)),
+        sp.S.One,
+        "the links seem to be too short or too long, or an axis is not where it is aimed",
     )
     chain.notes.append(
         "SINGULAR: where solutions nearly meet, and two links are stretched or folded, a joint is "
         "turned by no more than rounding so that they reach the target."
     )
-    # far from where solutions meet the turn is too small to matter
-    found = start.secant(goal, away)
     aligned = start.aligned().aligned()
-    there = sp.And(
-        aligned.beside <= NEARLY,
-        aligned.wrong <= 1,
-        sp.Abs(start.to_aligned) <= LARGEST,
-    )
+    level = aligned.level()
+    inside = level.inside(low, high, aligned.level_rate)
+    found = start.secant(goal, away)
     far = start.far(goal)
-    free = sp.And(start.moved <= LARGEST, far.wrong <= 1)
+    near = sp.And(aligned.beside <= NEARLY, sp.Abs(start.to_aligned) <= LARGEST)
+    places = (
+        (far, sp.And(start.moved <= LARGEST, far.wrong <= 1)),
+        (aligned, sp.And(near, aligned.wrong <= 1)),
+        *((p, sp.And(near, p.wrong <= 1, p.is_within(low, high))) for p in (level, inside)),
+        # far from where solutions meet the turn is too small to matter
+        (found, found.wrong <= 1),
+        (start, True),
+    )
     s, c = (
-        start.let(n, sp.Piecewise((f, free), (a, there), (b, found.wrong <= 1), (e, True)))
-        for n, f, a, b, e in (
-            ("s", far.pair.s, aligned.pair.s, found.pair.s, pair.s),
-            ("c", far.pair.c, aligned.pair.c, found.pair.c, pair.c),
-        )
+        start.let(name, sp.Piecewise(*((getattr(p.pair, name), taken) for p, taken in places)))
+        for name in ("s", "c")
     )
     kept = Pair(choose(loose, s, pair.s), choose(loose, c, pair.c))
     kept = kept.known_as(chain.program, f"_reached{label(x)}")
     chain.meaning |= {kept.s: sp.sin(x), kept.c: sp.cos(x)}
     chain.values[x] = kept.angle
     return kept
+
+
+def _too_short(start: _Place, away: sp.Expr) -> sp.Expr:
+    """Not positive if links are too short or too long, and a turn by rounding may change that.
+
+    The offset turns faster than the joint, the more so the nearer its axis is to being parallel.
+    """
+    short = start.let("short", sp.Abs(away) / start.chain.size)
+    movable = short * start.aside - 2 * FASTEST * start.undistinguished
+    freely = sp.Min(start.moved, start.aside / 2) - LARGEST
+    return sp.Max(SHORT - short, sp.Min(movable, freely))
+
+
+def _not_aimed(start: _Place) -> sp.Expr:
+    """Not positive if the axis is nearly parallel, but not as much as its aim."""
+    return sp.Max(ALIGNED - sp.Abs(start.too_far), start.aside - NEARLY)
 
 
 @dataclass(frozen=True)
@@ -134,25 +154,27 @@ class _Place:
         unit = self.chain.let(f"unit_{name}", sp.sqrt(1 + t**2))
         return self.turned(Pair(t / unit, 1 / unit), suffix)
 
-    def _with_rates(self, name: str, value: Callable[[Pair], sp.Matrix]) -> list[list[sp.Expr]]:
+    def _with_rates(
+        self, name: str, value: Callable[[Pair], sp.Matrix], pair: Pair
+    ) -> list[list[sp.Expr]]:
         """The first two entries of a vector that is linear in the pair, and both derivatives."""
         s, c = sp.Dummy("s"), sp.Dummy("c")
-        here = {s: self.pair.s, c: self.pair.c}
+        here = {s: pair.s, c: pair.c}
         rows = []
         for k, e in enumerate(value(Pair(s, c))[:2]):
             e = sp.sympify(e, strict=True)
             by_s, by_c = e.diff(s), e.diff(c)
             values = (
                 e.xreplace(here),
-                by_s * self.pair.c - by_c * self.pair.s,
-                -by_s * self.pair.s - by_c * self.pair.c,
+                by_s * pair.c - by_c * pair.s,
+                -by_s * pair.s - by_c * pair.c,
             )
             rows.append([self.let(f"{name}{k}{i}", v) for i, v in enumerate(values)])
         return rows
 
     @cached_property
     def point(self) -> list[list[sp.Expr]]:
-        return self._with_rates("point", self.on_circle.point)
+        return self._with_rates("point", self.on_circle.point, self.pair)
 
     @cached_property
     def missed(self) -> sp.Expr:
@@ -173,13 +195,16 @@ class _Place:
         return direction(y, x, r, sp.Eq(r, 0)).known_as(self.chain.program, f"_other_{self.name}")
 
     @cached_property
+    def _across(self) -> list[list[sp.Expr]]:
+        """What both pairs carry, seen along the parallel axes."""
+        names = ("q", "along", "aimed", "offset")
+        carried = zip(names, self.carried(self.pair, self._other), strict=True)
+        return [[self.let(f"{n}{k}", m[k]) for k in (0, 1)] for n, m in carried]
+
+    @cached_property
     def distance(self) -> sp.Expr:
         """How far from each other the links have their ends."""
-        q, axis, aimed, offset = self.carried(self.pair, self._other)
-        (a, b), (u, v), (x, y), (e, f) = (
-            [self.let(f"{n}{k}", m[k]) for k in (0, 1)]
-            for n, m in (("axis", axis), ("aimed", aimed), ("q", q), ("offset", offset))
-        )
+        (x, y), (a, b), (u, v), (e, f) = self._across
         sine, cosine = self.let("cross", a * v - b * u), self.let("dot", a * u + b * v)
         length = self.let("length", sp.sqrt(sine**2 + cosine**2))
         lift = direction(sine, cosine, length, sp.Eq(length, 0))
@@ -187,22 +212,34 @@ class _Place:
         dx, dy = self.let("dx", x - c * e + s * f), self.let("dy", y - s * e - c * f)
         return self.let("distance", sp.sqrt(dx**2 + dy**2))
 
+    def is_within(self, low: sp.Expr, high: sp.Expr) -> sp.Basic:
+        """Whether the links reach."""
+        return sp.And(low <= self.distance, self.distance <= high)
+
     @cached_property
     def wrong(self) -> sp.Expr:
         """By how much more than rounding the place misses the target.
 
         The point is on its circle, and the axis is as far from being parallel as its aim.
         """
-        _, axis, aimed, _ = self.carried(self.pair, self._other)
-        (a, b), (u, v) = (v[:2] for v in (axis, aimed))
-        turned = self.let("turned", sp.sqrt(a**2 + b**2) - sp.sqrt(u**2 + v**2))
-        return self.let(
-            "wrong", sp.Max(sp.Abs(self.missed) / self.rounding, sp.Abs(turned) / ALIGNED)
-        )
+        missed, turned = sp.Abs(self.missed), sp.Abs(self.too_far)
+        return self.let("wrong", sp.Max(missed / self.rounding, turned / ALIGNED))
+
+    @cached_property
+    def aside(self) -> sp.Expr:
+        """The sine between the axis and those that are parallel, where the other joint turns it."""
+        _, (a, b), _, _ = self._across
+        return self.let("aside", sp.sqrt(a**2 + b**2))
+
+    @cached_property
+    def too_far(self) -> sp.Expr:
+        """By how much the axis is farther from being parallel than its aim."""
+        _, _, (u, v), _ = self._across
+        return self.let("turned", self.aside - sp.sqrt(u**2 + v**2))
 
     @cached_property
     def _aim(self) -> list[list[sp.Expr]]:
-        return self._with_rates("aim", lambda pair: self.carried(pair, self._other)[2])
+        return self._with_rates("aim", lambda pair: self.carried(pair, self._other)[2], self.pair)
 
     @cached_property
     def beside(self) -> sp.Expr:
@@ -221,6 +258,42 @@ class _Place:
     def aligned(self) -> _Place:
         """Turned to there, as if the turn were small."""
         return self.by(sp.Max(-1, sp.Min(1, self.to_aligned)), "a")
+
+    @cached_property
+    def level_rate(self) -> sp.Expr:
+        """The rate of half of the square of the axis' sine less that of its aim."""
+        other = self._other
+        axes = self._with_rates("axis", lambda pair: self.carried(self.pair, pair)[1], other)
+        ((a, da, _), (b, db, _)), ((u, du, _), (v, dv, _)) = axes, self._aim
+        (x, dx, _), (y, dy, _) = self.point
+        swing = self.let("swing_other", (x * dy - y * dx) / (x**2 + y**2))
+        return self.let("level_rate", (a * da + b * db) * swing - u * du - v * dv)
+
+    def level(self) -> _Place:
+        """Turned so that the axis is as far from being parallel as its aim, as if it were linear.
+
+        Where three solutions nearly meet, this is the one in the middle, if the axis is nearly
+        parallel here.
+        """
+        _, (a, b), _, _ = self._across
+        (u, *_), (v, *_) = self._aim
+        rate = self.level_rate
+        excess = self.let("level_off", (u - a) * (u + a) + (v - b) * (v + b))
+        turn = choose(sp.Eq(rate, 0), 0, excess / (2 * rate))
+        return self.by(sp.Max(-1, sp.Min(1, turn)), "l")
+
+    def inside(self, low: sp.Expr, high: sp.Expr, rate: sp.Expr) -> _Place:
+        """Turned by what the target does not distinguish, so that the links reach with some play.
+
+        A nearly parallel axis turns the offset much faster than the joint turns.
+        """
+        most = self.let("play", choose(sp.Eq(rate, 0), 0, ALIGNED * self.beside / 2 / sp.Abs(rate)))
+        goal = self.let("inside", sp.Min(sp.Max(self.distance, low), high))
+        away = self.let("outside", self.distance - goal)
+        ahead = self.by(most, "i")
+        change = self.let("change", ahead.distance - self.distance)
+        t = choose(sp.Abs(change) <= 2 * sp.Abs(away), 0, -2 * away / change)
+        return self.by(most * t, "j")
 
     @cached_property
     def moved(self) -> sp.Expr:

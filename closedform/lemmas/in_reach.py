@@ -339,11 +339,13 @@ class _Place:
         t = self.let("turn", sp.Piecewise((t1, first), (t2, True)))
         gap = self.let("gap", sp.Piecewise((g1, first), (g2, True)))
         crosses = self.let("beyond", gap * side) < 0
-        t = self.let("inside", sp.Piecewise((t * away / (away - gap), crosses), (0, True)))
+        over = self.let("over", choose(crosses, away - gap, 1))
+        t = self.let("inside", choose(crosses, t * away / over, 0))
         near = self.by(t, "n")
         gap = near.let("gap", near.distance - goal)
         apart = sp.Abs(away - gap) > sp.Abs(away) / 2
-        t = self.let("nearer", sp.Piecewise((t * away / (away - gap), apart), (t, True)))
+        over = near.let("over", choose(apart, away - gap, 1))
+        t = self.let("nearer", choose(apart, t * away / over, t))
         return self.by(t, "f")
 
 

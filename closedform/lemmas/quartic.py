@@ -169,7 +169,8 @@ def quartic_in(
     upper = program.bound(f"upper_{tag}", (1 + u) / 2, sp.S.One, meaning)
     lower = program.bound(f"lower_{tag}", (1 - u) / 2, sp.S.One, meaning)
     left = program.vanishes(f"left_{tag}", u, 0, "the root of the resolvent is not positive")
-    rest_a = choose(left, B**2 / lower, 0) + 2 * (E - u)
+    over = program.let(f"over_{tag}", choose(left, lower, 1))  # which is not zero
+    rest_a = choose(left, B**2 / over, 0) + 2 * (E - u)
     rest_b = choose(left, 0, A**2 / upper) - 2 * (E - u)
     cosine, m, at_a = _part(program, A, (upper, rest_a), u, f"a_{tag}")
     sine, d, at_b = _part(program, B, (lower, rest_b), -u, f"b_{tag}")

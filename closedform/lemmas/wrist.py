@@ -15,7 +15,7 @@ from closedform.lemmas.pairs import any_pair, direction
 from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.lemmas.rotate import Because, terms
 from closedform.lemmas.tangent import ANYWHERE, Goal, Reached, Tangency
-from closedform.model.functions import choose, real
+from closedform.model.functions import Program, choose, real
 from closedform.model.inverse import Relation
 from closedform.model.lemma import Lemma, label
 from closedform.model.tolerances import ROUNDING
@@ -182,8 +182,11 @@ def tilt_between(
         ("most", -1, "the wrist does not tilt as far"),
     ):
         sine = p.let(f"sine_{limit}{tag}", first * w3 - side * g3 * last)
-        within = p.let(f"{limit}{tag}", _versine(sine**2, h + side * g3 * w3))
-        margin = p.let(f"margin_{limit}{tag}", _versine(aside, side * v3) - within)
+        within = p.let(
+            f"{limit}{tag}", _versine(p, sine**2, h + side * g3 * w3, f"limit_{limit}{tag}")
+        )
+        tilt = _versine(p, aside, side * v3, f"tilt_{limit}{tag}")
+        margin = p.let(f"margin_{limit}{tag}", tilt - within)
         # what is missed of a cosine is more of a small angle
         missed = 2**8 * sp.Max(0, -margin) / ROUNDING
         p.determined(sp.sqrt(aside) + sp.Abs(sine), missed, "the wrist is at its limit")
@@ -239,9 +242,10 @@ def _reached(
     )
 
 
-def _versine(square: sp.Expr, cosine: sp.Expr) -> sp.Expr:
+def _versine(p: Program, square: sp.Expr, cosine: sp.Expr, name: str) -> sp.Expr:
     """1 minus a cosine, from it and from the square of the sine, with all digits."""
-    return sp.Piecewise((square / (1 + cosine), cosine > 0), (1 - cosine, True))
+    over = p.let(f"over_{name}", choose(cosine > 0, 1 + cosine, 1))  # which is not zero
+    return choose(cosine > 0, square / over, 1 - cosine)
 
 
 theorem(

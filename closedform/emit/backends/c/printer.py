@@ -41,7 +41,10 @@ class CPrinter(Printer):
         self.head = 0
         self._arguments = self._before_arctangents()
         self._given_up = dict(given_up_where(lowered))
-        self._unused_where = unused_where(self.schedule(), lowered.roots) | self._given_up
+        self._unused_where = unused_where(self.schedule(), lowered.roots)
+        for quotient, conditions in self._given_up.items():
+            others = [c for c in self._unused_where.get(quotient, ()) if c not in conditions]
+            self._unused_where[quotient] = (*conditions, *others)
         self._final = final_values(lowered)
         self._divided = Counter(n.args[1].id for n in lowered.schedule() if n.op == "div")
         self._tested: dict[int, str] = {}

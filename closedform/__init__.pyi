@@ -47,6 +47,7 @@ from closedform.lemmas.past_parallel import LinksPastParallel as LinksPastParall
 from closedform.lemmas.planes import Plane as Plane
 from closedform.lemmas.quartic import OnCircle as OnCircle
 from closedform.lemmas.quartic import quartic as quartic
+from closedform.lemmas.quotient import quotient as quotient
 from closedform.lemmas.rails import Rail as Rail
 from closedform.lemmas.registry import chain_lemma as chain_lemma
 from closedform.lemmas.registry import theorem as theorem

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from closedform.mechanics.arm import Serial
 from closedform.model.names import listed
+from closedform.scaffold.chains.among_turns import AmongTurnsMaker
 from closedform.scaffold.chains.arm_angle import NAME as ARM_ANGLE
 from closedform.scaffold.chains.arm_angle import ArmAngleMaker
 from closedform.scaffold.chains.chainlinks import Single, Singles, parallel, singles
@@ -312,6 +313,11 @@ def _candidates(arm: Serial, given: str) -> Iterator[_Candidate]:
             decoupled = DecoupledMaker(arm)
             write = partial(decoupled.decoupled, view)
             yield _Candidate(f"slides apart from turns{seen}", decoupled, write)
+        if n < 6:
+            for order in whole.orders():
+                among = AmongTurnsMaker(arm)
+                write = partial(among.among_turns, order)
+                yield _Candidate(f"slides among turns{_moved(order, whole)}", among, write)
 
 
 def _seven(arm: Serial, whole: Singles, given: str) -> Iterator[_Candidate]:

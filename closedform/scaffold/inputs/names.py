@@ -42,7 +42,7 @@ LINES = {
     "play", "carried", "radius_to_target", "radius_to_end", "lever", "past", "seen_across",
     "across", "missed_by", "pair_at", "aimed", "off_axis", "below_one", "squares", "at_end",
     "less", "more", "less_behind", "more_behind", "behind", "far", "tilt", "offset", "seen",
-    "R_shoulder",
+    "R_shoulder", "moved",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

@@ -1,0 +1,145 @@
+"""Writes the chain of slides among one or two joints that turn, whose axes are not parallel.
+
+Cranes whose boom turns between a lift and a telescope, and cylindrical joints one after another,
+are of this kind.  The joints that turn follow from the orientation alone.  Then the direction of
+each slide is known, and what is left of the position is linear in the slides.  Slides that become
+parallel determine their sum only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import sympy as sp
+
+from closedform.scaffold.chains.chainlinks import Single, Singles, plain
+from closedform.scaffold.chains.maker import Z, point, times
+from closedform.scaffold.chains.slides import Slides
+from closedform.scaffold.chains.subproblems import SubproblemMaker
+from closedform.scaffold.source import source
+
+NAMES = {1: "a slide", 2: "two slides", 3: "three slides"}
+
+
+@dataclass
+class Stretch:
+    """What is between two joints that turn: slides along directions, a shift and a rotation.
+
+    All are in the frame after the first of both joints.
+    """
+
+    shift: sp.Matrix = field(default_factory=lambda: sp.zeros(3, 1))
+    end: sp.Matrix = field(default_factory=lambda: sp.eye(3))
+    slides: list[tuple[Single, sp.Matrix]] = field(default_factory=list)
+
+    def extend(self, joint: Single) -> None:
+        if joint.slides:
+            self.slides.append((joint, _simple(self.end * Z)))
+        self.shift = _simple(self.shift + self.end * joint.shift)
+        self.end = _simple(self.end * joint.end)
+
+
+class AmongTurnsMaker(SubproblemMaker):
+    """Writes the lines for up to three slides among one or two joints that turn."""
+
+    def among_turns(self, arm: Singles) -> str:
+        """The pose of fewer than six joints."""
+        turning = [j for j in arm.joints if not j.slides]
+        slides = [j for j in arm.joints if j.slides]
+        self.require(
+            0 < len(turning) <= 2 and 0 < len(slides) <= 3,
+            "it has more than two joints that turn among its slides",
+            "Up to three slides among one or two joints that turn are solved after these.",
+        )
+        arm = replace(arm, joints=tuple(map(plain, arm.joints)))
+        stretches = self._stretches(arm)
+        axes = [s.end * Z for s in stretches[1:-1]]
+        self.require(
+            not any(axis[:2, 0].is_zero_matrix for axis in axes),
+            "its joints that turn are parallel",
+            "The joints that turn must follow from the orientation of the tool.",
+        )
+        R = self.centre(arm)
+        M = times(_simple(stretches[0].end.T * arm.lead[:3, :3].T), R)
+        self.add(f"M = ik.matrix('M', {M})")
+        after = _simple(stretches[-1].end * arm.tool[:3, :3])
+        ends = [replace(j, end=s.end) for j, s in zip(turning, stretches[1:], strict=True)]
+        self.orientation(ends, self.without_tool(after, "M"))
+        self._position(turning, stretches, Slides(self, slides, self.unknown))
+        self.add("ik.reached()")
+        turns = "two joints that turn" if len(turning) > 1 else "a joint that turns"
+        return f"{NAMES[len(slides)]} among {turns}"
+
+    def _stretches(self, arm: Singles) -> list[Stretch]:
+        """What is before, between and after the joints that turn; not the motion to the tool."""
+        found = [Stretch()]
+        last = arm.joints[-1]
+        still = replace(last, shift=sp.zeros(3, 1), end=sp.eye(3))
+        for joint in (*arm.joints[:-1], still):
+            if not joint.slides:
+                found.append(Stretch())
+            found[-1].extend(joint)
+        return found
+
+    def _position(
+        self, turning: Sequence[Single], stretches: Sequence[Stretch], helper: Slides
+    ) -> None:
+        """Solve the slides, seen from the stretch that has most of them."""
+        home = max(range(len(stretches)), key=lambda k: len(stretches[k].slides))
+        pairs = [f"pair{joint.number}" for joint in turning]
+
+        def seen(k: int, value: str) -> str:
+            """A vector of a stretch, in the frame of the one at home."""
+            for i in range(k, home):
+                value = f"turned({pairs[i]}).T * {times(stretches[i].end.T, value)}"
+            for i in range(k, home, -1):
+                value = times(stretches[i - 1].end, f"(turned({pairs[i - 1]}) * {value})")
+            return value
+
+        place = "p"
+        for k, stretch in enumerate(stretches[: home + 1]):
+            if not stretch.shift.is_zero_matrix:
+                place = f"({place} - {source(stretch.shift)})"
+            if k < home:
+                place = f"turned({pairs[k]}).T * {times(stretch.end.T, place)}"
+        for k, stretch in enumerate(stretches[home + 1 :], home + 1):
+            if not stretch.shift.is_zero_matrix:
+                place = f"{place} - {seen(k, source(stretch.shift))}"
+        self.vector("q", place)
+        fixed = stretches[home].slides
+        moving = [(k, *s) for k, part in enumerate(stretches) if k != home for s in part.slides]
+        self.require(
+            len(moving) < 2 and len(fixed) + len(moving) < 4,
+            "each of its three slides is between other joints that turn",
+            "Two of three slides have to be beside each other.",
+        )
+        for k, joint, direction in moving:
+            self.vector("moved", seen(k, source(direction)))
+            self._apart(joint, helper.sense[joint.number], [axis for _, axis in fixed])
+        helper.linear("q", sp.zeros(3, 1), fixed)
+
+    def _apart(self, joint: Single, sense: int, fixed: Sequence[sp.Matrix]) -> None:
+        """Solve a slide along ``moved`` by what is normal to the ``fixed`` directions."""
+        others = "the other slides" if len(fixed) > 1 else "the other slide"
+        if len(fixed) > 1:
+            normal = _simple(fixed[0].cross(fixed[1]))
+            normal = _simple(normal / sp.sqrt(normal.dot(normal)))
+            self.add(f"across = {source(normal)}.dot(moved)")
+            k, c = "across**2", f"across*{source(normal)}.dot(q)"
+            meaning = f"{joint.joint} slides in the plane of {others}"
+        else:
+            (axis,) = fixed
+            self.vector("across", source(axis.cross(point("moved"))))
+            k, c = "across.dot(across)", f"across.dot({source(axis.cross(point('q')))})"
+            meaning = f"{joint.joint} slides along {others}"
+        value, sign = f"{joint.joint}_", "" if sense > 0 else "-"
+        self.solve("quotient", f"{joint.joint}, {k}, {sign}{c}, meaning='{meaning}'", value)
+        self.vector("q", f"q - {sign}{value}*moved", "q_fixed")
+
+
+def _simple(value: sp.Matrix) -> sp.Matrix:
+    return sp.Matrix(value).applyfunc(sp.simplify)
+
+
+__all__ = ["AmongTurnsMaker"]

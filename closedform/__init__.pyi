@@ -39,6 +39,8 @@ from closedform.lemmas.links import turned as turned
 from closedform.lemmas.links import two_links as two_links
 from closedform.lemmas.oblique import LinksAndObliqueWrist as LinksAndObliqueWrist
 from closedform.lemmas.oblique import LinksPastTurn as LinksPastTurn
+from closedform.lemmas.on_rail import LinksAlongSlide as LinksAlongSlide
+from closedform.lemmas.on_rail import ReachingOnRail as ReachingOnRail
 from closedform.lemmas.parallelogram import Parallelogram as Parallelogram
 from closedform.lemmas.parallelogram import Prism as Prism
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
@@ -79,6 +81,7 @@ from closedform.lemmas.wrist import tilt as tilt
 from closedform.lemmas.wrist import tilt_between as tilt_between
 from closedform.lemmas.zyz import Reaching as Reaching
 from closedform.lemmas.zyz import ReachingAcross as ReachingAcross
+from closedform.lemmas.zyz import ReachingInPlane as ReachingInPlane
 from closedform.lemmas.zyz import zyz as zyz
 from closedform.lemmas.zyz import zyz_angles as zyz_angles
 from closedform.loops.bennett import Hinge as Hinge

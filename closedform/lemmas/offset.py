@@ -12,6 +12,15 @@ from closedform.model.functions import choose
 from closedform.model.pair import Pair
 from closedform.model.tolerances import VANISHING
 
+Plane = tuple[sp.Expr, sp.Expr]
+
+
+def chord(lengths: Plane, aside: sp.Expr) -> Plane:
+    """How near and how far two links reach along a line that is ``aside`` of their start."""
+    l1, l2 = lengths
+    near, far = (sp.sqrt(sp.Max(0, (e - aside) * (e + aside))) for e in (sp.Abs(l1 - l2), l1 + l2))
+    return near, far
+
 
 def plain(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Basic:
     """A condition that a value vanishes, for values that only the tangent case computes."""

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import sympy as sp
 
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain
 from closedform.lemmas.links import degenerate, differs_from_zero, vanishing
+from closedform.lemmas.on_rail import LinksAlongSlide
 from closedform.lemmas.registry import chain_lemma, theorem
-from closedform.model.functions import choose
+from closedform.model.functions import choose, real
+from closedform.model.inverse import Degenerate
 from closedform.model.lemma import Lemma, label
+from closedform.model.tolerances import ROUNDING
 
 theorem(
     "slide from a product",
@@ -28,6 +33,8 @@ def quotient(
     c: sp.Expr,
     *,
     meaning: str,
+    missed: sp.Expr = sp.S.Zero,
+    reaching: LinksAlongSlide | None = None,
     name: str = "",
 ) -> Applied:
     """``k d = c``: one solution.  d is free where k vanishes, as another slide is parallel there.
@@ -44,16 +51,29 @@ def quotient(
         the product
     meaning
         where k vanishes, in words
+    missed
+        a length that has to vanish where k does, if nothing compares it later
+    reaching
+        what the rest of the arm has to reach, if the slide decides on it
     name
         what the names end in, by default the number of the joint
     """
     p, tag = chain.program, name or label(d)
     k = chain.coefficient(f"k_{tag}", k, nonnegative=True)
     c = chain.coefficient(f"c_{tag}", c)
-    flag = sp.false
+    flag: Any = sp.false
     if not differs_from_zero(chain, k, sp.S.One):
         flag = p.vanishes(f"along_{tag}", k, 1, meaning, free=(d,), squares=True)
-    value = p.let(f"{d.name}_", choose(flag, 0, c / k))
+    if flag is not sp.false and missed != 0:
+        # half: what is allowed here stays well within the round trip that is promised
+        p.match(choose(flag, missed, 0), chain.size / 2, f"{d.name} does not move the point there")
+    found, returned = choose(flag, 0, c / k), "0 is returned."
+    near: tuple[sp.Symbol, ...] = ()
+    free: dict[sp.Symbol, sp.Expr] = {}
+    if reaching is not None:
+        found, near, free = _within_reach(chain, k, found, reaching, tag)
+        returned = "a value within reach is returned."
+    value = p.let(f"{d.name}_", found)
     chain.d.write(value, same=d.name)
     lemma = Lemma(
         "slide from a product",
@@ -63,5 +83,23 @@ def quotient(
         1,
         roles=(("k", k), ("d", d), ("c", c)),
     )
-    cases = degenerate(flag, [vanishing(k, c)], d, f"{meaning}; {d} is free, 0 is returned.")
+    locus = vanishing(k, c)
+    cases = degenerate(flag, [locus], d, f"{meaning}; {d} is free, {returned}")
+    if near and locus is not None:
+        cases += (Degenerate(near, locus | free, None, meaning),)
     return Applied(lemma, value, {value: d}, {}, cases)
+
+
+def _within_reach(
+    chain: Chain, k: sp.Expr, d: sp.Expr, reaching: LinksAlongSlide, tag: str
+) -> tuple[sp.Expr, tuple[sp.Symbol, ...], dict[sp.Symbol, sp.Expr]]:
+    """The slide, changed by no more than rounding so that links reach.
+
+    Also returns the flag that it is, and the free choice as any number.
+    """
+    p, size = chain.program, chain.size
+    raw = p.let(f"raw_{tag}", d)
+    near = p.let(f"near_{tag}", reaching.nearest(chain, raw, f"_{tag}"))
+    doubt = sp.sqrt(k) * sp.Abs(near - raw) - 4 * ROUNDING * (size + sp.Abs(near))
+    moves = p.vanishes(f"moves_{tag}", doubt, size, "the slide is free up to rounding")
+    return choose(moves, near, raw), (moves,), {near: real("t")}

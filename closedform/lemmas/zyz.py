@@ -12,7 +12,7 @@ from closedform.algebra.solutions import rotation_parametrisation
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
 from closedform.lemmas.links import named
-from closedform.lemmas.offset import Offset
+from closedform.lemmas.offset import Offset, chord
 from closedform.lemmas.pairs import direction
 from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.model.functions import Program, choose, real
@@ -215,6 +215,10 @@ class Reaching:
         """The least and the greatest distance to which the angle can turn the offset."""
         return sp.Abs(self._r - self.offset), self._r + self.offset
 
+    def _reach_near(self, there: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+        """The same, if a distance that is nearly right is known."""
+        return self._reach
+
     def _here(self, u: Pair) -> sp.Expr:
         """The distance at a direction."""
         (x, y) = self.target
@@ -234,11 +238,12 @@ class Reaching:
         That direction is returned too.  ``gain`` is what multiplies an error of u in the target.
         """
         p, size = self.chain.program, self.chain.size
-        (x, y), (least, most) = self.target, self._reach
+        x, y = self.target
         close = p.vanishes(
             "close", gain * self.lever - size / 2**11, size, "its direction may be inaccurate"
         )
         there = p.let("here", self._here(u))
+        least, most = self._reach_near(there)
         reach = p.let("in_reach", sp.Min(sp.Max(there, least), most))
         cross = p.let("cross", x * u.s - y * u.c)
         flat = p.vanishes("flat", sp.Abs(cross), size, "the offset is in line")
@@ -294,6 +299,48 @@ class ReachingAcross(Reaching):
         cc = let(f"k_{name}", sp.Max(0, self._r + reach), nonnegative=True)
         ss = let(f"d_{name}", sp.Max(0, self._r - reach), nonnegative=True)
         return past.turned(self.chain, (cc, ss, side), self.chain.size, name)
+
+
+@dataclass(frozen=True)
+class ReachingInPlane(ReachingAcross):
+    """The same of two links in a plane, which have to reach a point at a ``height`` there.
+
+    The angle turns the plane about the direction in which heights are measured.
+    """
+
+    height: sp.Expr
+
+    @classmethod
+    def by_links(
+        cls,
+        chain: Chain,
+        target: tuple[sp.Expr, sp.Expr],
+        point: tuple[sp.Expr, sp.Expr],
+        lengths: tuple[sp.Expr, sp.Expr],
+        *,
+        lever: sp.Expr,
+    ) -> ReachingInPlane:
+        """For a ``point`` at ``x u.c + y u.s`` and the first coordinate, and at the second one."""
+        none, (beside, height) = Pair(sp.S.Zero, sp.S.One), point
+        exact = [sp.sympify(e, strict=True) for e in lengths]
+        return cls(
+            chain, target, (exact[0], exact[1]), offset=sp.S.Zero, ahead=none, lever=lever,
+            beside=beside, height=height,
+        )  # fmt: skip
+
+    @property
+    def _reach(self) -> tuple[sp.Expr, sp.Expr]:
+        """That on the side of the axis on which the plane leads farther, and as near."""
+        return self._on_side(self.beside)
+
+    def _reach_near(self, there: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+        return self._on_side(there + self.beside)
+
+    def _on_side(self, where: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+        near, far = chord(self.lengths, sp.Abs(self.height))
+        ahead = where >= 0
+        low, high = (sp.Piecewise((a, ahead), (-b, True)) for a, b in ((near, far), (far, near)))
+        return low - self.beside, high - self.beside
 
 
 @chain_lemma("Rz(x1) Ry(x2) Rz(x3) = R", "the pair of x1")
@@ -390,9 +437,11 @@ def within_reach(
     the flags of the latter case, and free choices as the sine and cosine of an angle.
     """
     p = reaching.chain.program
+    # the pair of a joint is called by its label, and an article writes both names alike
+    name = f"raw_{label(first)}" if first in reaching.chain.joints else first.name
     raw = Pair(
-        p.let(f"s_{first}", choose(aligned, 0, u[1])),
-        p.let(f"c_{first}", choose(aligned, 1, u[0])),
+        p.let(f"s_{name}", choose(aligned, 0, u[1])),
+        p.let(f"c_{name}", choose(aligned, 1, u[0])),
     )
     back = -reaching.ahead
     start = reaching.middle() + back
@@ -422,6 +471,7 @@ __all__ = [
     "ALIGNED",
     "Reaching",
     "ReachingAcross",
+    "ReachingInPlane",
     "Zyz",
     "within_reach",
     "zyz",

@@ -130,7 +130,7 @@ def test_the_stages_of_a_telescope_are_named(tmp_path: Path) -> None:
 
 RAIL = """\
 joint, a, alpha, d, theta
-rail, 0, pi/2, rail, pi/2
+rail, 0, {}, rail, pi/2
 pan, 0.05, pi/2, 0.1, pan
 lift, 0.4, 0, 0, lift
 elbow, 0.35, 0, 0, elbow
@@ -139,13 +139,20 @@ roll, 0, 0, 0.08, roll
 """
 
 
-def test_an_arm_of_five_joints_on_a_rail_is_solved_if_the_rail_is_held(tmp_path: Path) -> None:
+def test_an_arm_of_five_joints_on_a_leaning_rail_is_solved_if_it_is_held(tmp_path: Path) -> None:
     """It was said that no three axes are parallel; and that a held joint has to be renamed."""
     path = tmp_path / "arm.csv"
-    path.write_text(RAIL, "utf-8")
+    leaning = RAIL.format("pi/3")
+    path.write_text(leaning, "utf-8")
     script = new("arm", "dh", path)
     assert "axes 3, 4 and 5 are parallel, and joint 1 beside them slides" in script.inverse
     line = "# rail = 0.1 m: held"
     assert line in script.advice
-    path.write_text(f"{RAIL}{line}\n", "utf-8")
+    path.write_text(f"{leaning}{line}\n", "utf-8")
     assert "an inverse with 4 branches" in new("arm", "dh", path).inverse
+
+
+def test_an_arm_of_five_joints_on_a_level_rail_is_solved(tmp_path: Path) -> None:
+    path = tmp_path / "arm.csv"
+    path.write_text(RAIL.format("pi/2"), "utf-8")
+    assert new("arm", "dh", path).structure == "a rail, a turret, three parallel joints and a roll"

@@ -26,8 +26,10 @@ from closedform.scaffold.chains.degree import (
     solutions_of_few,
     stays_regular,
 )
+from closedform.scaffold.chains.in_the_middle import MiddleMaker
 from closedform.scaffold.chains.known import KnownMaker
 from closedform.scaffold.chains.maker import Maker
+from closedform.scaffold.chains.on_a_rail import RailMaker
 from closedform.scaffold.chains.one_direction import OneDirectionMaker
 from closedform.scaffold.chains.proposal import NoChainError, Proposal, Tried
 from closedform.scaffold.chains.six import SixMaker
@@ -459,7 +461,7 @@ def _six(arm: Serial, whole: Singles, given: Single | None = None) -> Iterator[_
         for order in left.orders():
             for view, seen in ((order, ""), (order.reversed(), ", from the tool")):
                 shown = f"{name}{seen}{_moved(order, left)}"
-                yield candidate(shown, OneDirectionMaker(arm), solve, view)
+                yield candidate(shown, RailMaker(arm), solve, view)
 
 
 TURNING: tuple[tuple[str, _Solve], ...] = (
@@ -475,6 +477,8 @@ OF_FIVE: tuple[tuple[str, _Solve], ...] = (
 WITH_SLIDES: tuple[tuple[str, _Solve], ...] = (
     (f"four joints{ONE_WAY}", partial(OneDirectionMaker.in_one_direction, count=4)),
     (f"three joints in the middle{ONE_WAY}", OneDirectionMaker.in_one_direction_between),
+    (f"four joints in the middle{ONE_WAY}", MiddleMaker.in_the_middle),
+    ("an arm of five joints on a rail", RailMaker.on_a_rail),
     (
         "slides and turns of one plane in the middle",
         partial(OneDirectionMaker.with_slides, start=1),

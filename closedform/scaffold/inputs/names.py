@@ -14,14 +14,14 @@ IMPORTED = (
     "Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Max", "Piecewise", "Rational", "atan", "atan2",
 )  # fmt: skip
 CHAIN = (
-    "Carrying", "Reaching", "ReachingAcross", "arm_angle", "rotation", "sign_of", "turned",
-    "within_links", "within_tilt",
+    "Carrying", "Reaching", "ReachingAcross", "ReachingInPlane", "ReachingOnRail", "arm_angle",
+    "rotation", "sign_of", "turned", "within_links", "within_tilt",
     *chain_lemmas(),
 )  # fmt: skip
 LINKED = (
-    "CoordinateWithin", "LinkAcross", "LinkAtHeight", "Links", "LinksAndObliqueWrist",
-    "LinksAndWrist", "LinksAround", "LinksAtHeight", "LinksPastParallel", "LinksPastTurn",
-    "OnCircle", "Pair", "TwoTurns",
+    "CoordinateWithin", "LinkAcross", "LinkAtHeight", "Links", "LinksAlongSlide",
+    "LinksAndObliqueWrist", "LinksAndWrist", "LinksAround", "LinksAtHeight", "LinksPastParallel",
+    "LinksPastTurn", "OnCircle", "Pair", "TwoTurns",
 )  # fmt: skip
 AUTHOR = (
     "Chain",
@@ -42,7 +42,7 @@ LINES = {
     "play", "carried", "radius_to_target", "radius_to_end", "lever", "past", "seen_across",
     "across", "missed_by", "pair_at", "aimed", "off_axis", "below_one", "squares", "at_end",
     "less", "more", "less_behind", "more_behind", "behind", "far", "tilt", "offset", "seen",
-    "R_shoulder", "moved",
+    "R_shoulder", "moved", "along_rail", "missed",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

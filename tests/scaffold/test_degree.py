@@ -1,5 +1,6 @@
 """The number of solutions for a pose, and the degrees of the equations that give them."""
 
+import numpy as np
 import pytest
 import sympy as sp
 from chains import arm
@@ -10,7 +11,9 @@ from closedform.scaffold.chains import degree
 from closedform.scaffold.chains import propose as proposals
 from closedform.scaffold.chains.chainlinks import singles
 from closedform.scaffold.chains.degree import (
+    Numeric,
     Solutions,
+    free_joints,
     solutions,
     solutions_of_few,
     stays_regular,
@@ -157,3 +160,16 @@ def test_some_joints_leave_a_singular_arm_at_some_values(name: str) -> None:
     assert [j.number for j in whole.joints if stays_regular(whole, j)] == [
         *map(int, numbers.split())
     ]
+
+
+def test_a_slide_that_is_turned_moves_the_tool_as_its_table_says() -> None:
+    """The constant turn of a slide was left out: its joints were said to move each other's tool."""
+    rows = [(0, -pi / 2, None, 0), (0, -pi / 2, H), (H, pi / 2, None, pi / 2), (0, pi / 2, H),
+            (0, 0, 1)]  # fmt: skip
+    _, serial = arm(rows, "d1 t2 d3 t4 t5")
+    assert free_joints(singles(serial)) == []
+    at = dict(zip(serial.joints, (0.3, 0.7, -0.4, 1.1, 0.2), strict=True))
+    numeric = Numeric.of(singles(serial), np.random.default_rng(1))
+    T, _ = numeric.pose(np.array([list(at.values())], complex))
+    expected = np.array(serial.pose.subs(at).evalf().tolist(), float)
+    np.testing.assert_allclose(T[0], expected[:3], atol=1e-12)

@@ -18,7 +18,7 @@ import numpy as np
 import sympy as sp
 from sympy.combinatorics import Permutation, PermutationGroup
 
-from closedform.scaffold.chains.chainlinks import Single, Singles
+from closedform.scaffold.chains.chainlinks import Single, Singles, plain
 
 SEEDS = (20, 21, 22)
 LOOPS, ROUNDS, ENOUGH = 6, 6, 5
@@ -72,7 +72,8 @@ class Numeric:
 
     @classmethod
     def of(cls, arm: Singles, rng: np.random.Generator) -> Numeric:
-        joints = {s.joint for s in arm.joints}
+        joints, senses = {s.joint for s in arm.joints}, [s.sense for s in arm.joints]
+        arm = replace(arm, joints=tuple(map(plain, arm.joints)))
         held = {
             s
             for e in (arm.lead, *(m for j in arm.joints for m in (j.shift, j.end)))
@@ -89,7 +90,6 @@ class Numeric:
         for k, joint in enumerate(arm.joints):
             motions[k, :3, :3] = numbers(joint.end)
             motions[k, :3, 3] = numbers(joint.shift)[:, 0]
-        senses = [s.sense for s in arm.joints]
         slides = np.array([s.slides for s in arm.joints])
         return cls(numbers(arm.lead), motions, np.array(senses), slides)
 

@@ -14,6 +14,7 @@ from closedform.scaffold.chains.propose import NoChainError, propose
 
 A, B, D = (sp.Rational(n, 100) for n in (5, 40, 11))
 TWO, THREE = (f"{n} slides among two joints that turn" for n in ("two", "three"))
+PLANE = "a turn between two slides in its plane, and two more"
 ARMS = {
     "lift, boom and telescope": (
         [(0, -pi / 2, None, 0), (A, pi / 2, D), (B, 0, None, 0), (A, 0, D)], TWO, 1,
@@ -43,6 +44,16 @@ ARMS = {
     "one joint that turns": (
         [(0, pi / 3, None, 0), (A, pi / 3, None, 0), (A, pi / 3, D), (0, pi / 2, None, pi / 2)],
         "three slides among a joint that turns", 1,
+    ),
+    "telescope on a rail, with a wrist": (
+        [(0, -pi / 2, None, 0), (0, -pi / 2, D), (A, pi / 2, None, pi / 2), (0, pi / 2, 0),
+         (D, 0, B)],
+        PLANE, 2,
+    ),
+    "slides at the tool": (
+        [(0, pi / 2, D), (0, pi / 2, 0), (0, -pi / 2, None, pi / 2), (0, pi / 2, B),
+         (A, 0, None, 0)],
+        PLANE, 2,
     ),
 }  # fmt: skip
 PROPOSALS = Proposals(ARMS)
@@ -84,6 +95,14 @@ def test_slides_that_are_parallel_share_their_way(folder: Path) -> None:
     assert max(misses(PROPOSALS.pose(name, answers[:, 0])[:, None], T, status)) < 1e-13
     assert (status[:40] == SINGULAR).all() and (answers[:40, 0, 2] == 0).all()
     assert (status[40:] == OK).all()
+
+
+def test_a_telescope_beside_its_wrist_is_refused() -> None:
+    rows = [(0, -pi / 2, None, 0), (A, -pi / 2, D), (A, pi / 2, None, pi / 2), (0, pi / 2, D),
+            (0, 0, B)]  # fmt: skip
+    with pytest.raises(NoChainError) as error:
+        propose(arm(rows, names(rows))[1], count=False)
+    assert any("beside the line along which" in t.error.found for t in error.value.tried)
 
 
 def test_slides_of_three_stretches_are_refused() -> None:

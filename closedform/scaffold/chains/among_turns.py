@@ -1,4 +1,4 @@
-"""Writes the chain of slides among one or two joints that turn, whose axes are not parallel.
+"""Writes the chain of slides among joints that turn, whose axes are not parallel.
 
 Cranes whose boom turns between a lift and a telescope, and cylindrical joints one after another,
 are of this kind.  The joints that turn follow from the orientation alone.  Then the direction of
@@ -13,10 +13,12 @@ from dataclasses import dataclass, field, replace
 
 import sympy as sp
 
+from closedform.mechanics.frames import rotation
 from closedform.scaffold.chains.chainlinks import Single, Singles, plain
-from closedform.scaffold.chains.maker import Z, point, times
+from closedform.scaffold.chains.maker import Z, ahead_of_lift, heading, point, sine_cosine, times
 from closedform.scaffold.chains.slides import Slides
 from closedform.scaffold.chains.subproblems import SubproblemMaker
+from closedform.scaffold.chains.wrists import is_normal
 from closedform.scaffold.source import source
 
 NAMES = {1: "a slide", 2: "two slides", 3: "three slides"}
@@ -41,7 +43,7 @@ class Stretch:
 
 
 class AmongTurnsMaker(SubproblemMaker):
-    """Writes the lines for up to three slides among one or two joints that turn."""
+    """Writes the lines for up to three slides among one or two joints that turn, or three."""
 
     def among_turns(self, arm: Singles) -> str:
         """The pose of fewer than six joints."""
@@ -60,16 +62,78 @@ class AmongTurnsMaker(SubproblemMaker):
             "its joints that turn are parallel",
             "The joints that turn must follow from the orientation of the tool.",
         )
-        R = self.centre(arm)
-        M = times(_simple(stretches[0].end.T * arm.lead[:3, :3].T), R)
-        self.add(f"M = ik.matrix('M', {M})")
-        after = _simple(stretches[-1].end * arm.tool[:3, :3])
-        ends = [replace(j, end=s.end) for j, s in zip(turning, stretches[1:], strict=True)]
-        self.orientation(ends, self.without_tool(after, "M"))
-        self._position(turning, stretches, Slides(self, slides, self.unknown))
+        M = self._rotation(arm, stretches)
+        self.orientation(self._ends(turning, stretches), M)
+        pairs = [f"pair{joint.number}" for joint in turning]
+        self._position(pairs, stretches, Slides(self, slides, self.unknown))
         self.add("ik.reached()")
         turns = "two joints that turn" if len(turning) > 1 else "a joint that turns"
         return f"{NAMES[len(slides)]} among {turns}"
+
+    def in_a_plane(self, arm: Singles) -> str:
+        """Five joints: a turn between two slides in its plane, and two turns whose axes meet.
+
+        Where the first and the last of the turns are parallel, the slides reach each point of the
+        plane at any angle of the first but those at which they are parallel too.
+        """
+        kinds = "".join("P" if j.slides else "R" for j in arm.joints)
+        slides = [j for j in arm.joints if j.slides]
+        moved = replace(arm, joints=tuple(map(plain, arm.joints))).met(3, 2)
+        self.require(
+            kinds == "PRPRR" and moved is not None,
+            "it is not a turn between two slides, and two turns whose axes meet",
+            "Of five joints with two slides this chain needs these, in this order.",
+        )
+        assert moved is not None
+        turning = [j for j in moved.joints if not j.slides]
+        stretches = self._stretches(moved)
+        before, after = stretches[:2]
+        (_, a), (_, b) = (*before.slides, *after.slides)
+        a = _simple(before.end.T * a)
+        self.require(
+            a[2] == b[2] == 0 and not (after.end * Z)[:2, 0].is_zero_matrix,
+            "its slides are not in the plane of the turn between them",
+            "The known chain needs right angles there.",
+        )
+        self.require(
+            sp.simplify(b.cross(after.shift)[2]) == 0,
+            "the point where the last two axes meet is beside the line along which it slides",
+            "Where its slides are nearly parallel, one solution is far away then.",
+        )
+        ends = self._ends(turning, stretches)
+        self.require(
+            is_normal(ends),
+            "the axes of its turns are not at right angles",
+            "Where its slides are nearly parallel, one solution is far away then.",
+        )
+        M = self._rotation(moved, stretches)
+        first, *others = ends
+        turn = heading(a) - heading(b) + sp.pi / 2 + ahead_of_lift(first.end * Z)
+        turn = sp.atan2(*sine_cosine(turn))
+        back = rotation("z", -turn).applyfunc(sp.simplify)
+        if back != sp.eye(3):
+            self.add(f"M = ik.matrix('M_turned', {times(back, M)})")
+            M = "M"
+        self.orientation([replace(first, turn=first.turn - turn), *others], M)
+        sine, cosine = sine_cosine(turn)
+        ahead = "" if turn == 0 else f" + Pair({source(sine)}, {source(cosine)})"
+        helper = Slides(self, slides, self.unknown)
+        self._position([f"({self.lifted}{ahead})"], stretches, helper)
+        ((joint, axis),) = before.slides
+        slid = helper.sense[joint.number] * sp.Symbol(f"{joint.joint}_") * axis
+        self.add(f"ik.reached(q - {source(slid)})")
+        return "a turn between two slides in its plane, and two more"
+
+    def _ends(self, turning: Sequence[Single], stretches: Sequence[Stretch]) -> list[Single]:
+        """The joints that turn, each with the rotation to the next."""
+        return [replace(j, end=s.end) for j, s in zip(turning, stretches[1:], strict=True)]
+
+    def _rotation(self, arm: Singles, stretches: Sequence[Stretch]) -> str:
+        """The rotation that is left to the joints that turn."""
+        R = self.centre(arm)
+        M = times(_simple(stretches[0].end.T * arm.lead[:3, :3].T), R)
+        self.add(f"M = ik.matrix('M', {M})")
+        return self.without_tool(_simple(stretches[-1].end * arm.tool[:3, :3]), "M")
 
     def _stretches(self, arm: Singles) -> list[Stretch]:
         """What is before, between and after the joints that turn; not the motion to the tool."""
@@ -82,12 +146,12 @@ class AmongTurnsMaker(SubproblemMaker):
             found[-1].extend(joint)
         return found
 
-    def _position(
-        self, turning: Sequence[Single], stretches: Sequence[Stretch], helper: Slides
-    ) -> None:
-        """Solve the slides, seen from the stretch that has most of them."""
+    def _position(self, pairs: Sequence[str], stretches: Sequence[Stretch], helper: Slides) -> None:
+        """Solve the slides, seen from the stretch that has most of them.
+
+        ``pairs`` are those of the joints that turn.
+        """
         home = max(range(len(stretches)), key=lambda k: len(stretches[k].slides))
-        pairs = [f"pair{joint.number}" for joint in turning]
 
         def seen(k: int, value: str) -> str:
             """A vector of a stretch, in the frame of the one at home."""

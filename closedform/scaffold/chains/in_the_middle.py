@@ -13,7 +13,7 @@ from dataclasses import replace
 import sympy as sp
 
 from closedform.scaffold.chains.chainlinks import Single, Singles
-from closedform.scaffold.chains.maker import Z, heading, norm, point, sine_cosine, times
+from closedform.scaffold.chains.maker import Z, ahead_of_lift, norm, point, sine_cosine, times
 from closedform.scaffold.chains.one_direction import COUNTED, Block, OneDirectionMaker
 from closedform.scaffold.chains.wrists import is_normal
 from closedform.scaffold.source import source
@@ -88,8 +88,7 @@ class MiddleMaker(OneDirectionMaker):
 
         That is the directions along its axis and outward, in the frame of the links.
         """
-        e = one.end * Z
-        sine, cosine = sine_cosine(heading(-e if e[1].is_negative else e) - sp.pi / 2)
+        sine, cosine = sine_cosine(ahead_of_lift(one.end * Z))
         ahead = sp.Matrix([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
         level = simple(one.end.T * Z)
         return ahead, level, level.cross(Z)

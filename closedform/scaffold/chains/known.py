@@ -21,7 +21,16 @@ import sympy as sp
 from closedform.mechanics.arm import Group, Serial
 from closedform.mechanics.axes import met
 from closedform.mechanics.frames import rotation
-from closedform.scaffold.chains.maker import Maker, Z, heading, norm, point, sine_cosine, times
+from closedform.scaffold.chains.maker import (
+    Maker,
+    Z,
+    ahead_of_lift,
+    heading,
+    norm,
+    point,
+    sine_cosine,
+    times,
+)
 from closedform.scaffold.chains.proposal import NoChainError
 from closedform.scaffold.source import source
 
@@ -399,8 +408,7 @@ class KnownMaker(Maker):
         w = w + end[:2, 0]
         length = norm(w)
         lead = times(self.arm.lead[:3, :3].T, "ik.R")
-        e = parallel.end * Z
-        epsilon = heading(-e if e[1].is_negative else e) - sp.pi / 2
+        epsilon = ahead_of_lift(parallel.end * Z)
         angle = (heading(w) if length != 0 else sp.S.Zero) - epsilon
         sine, cosine = sine_cosine(angle)
         ahead = f"Pair({source(sine)}, {source(cosine)})"

@@ -162,11 +162,9 @@ class Maker:
             the names of its solutions, as they are written
         """
         first, middle, last = wrist
-        e, sense = first.end * Z, 1
+        e = first.end * Z
         self.require_normal(e[2], numbers[0], numbers[1])
-        if e[1].is_negative:  # a turn about -y is a turn about y in the other direction
-            e, sense = -e, -1
-        epsilon = heading(e) - sp.pi / 2
+        sense, epsilon = -1 if e[1].is_negative else 1, ahead_of_lift(e)
         W = rotation("z", -epsilon) * first.end * middle.end
         self.require_normal(sp.simplify(W[1, 2]), numbers[1], numbers[2])
         tau = heading((W[2, 2], W[0, 2]))
@@ -231,6 +229,14 @@ def heading(v: Sequence[Any]) -> Any:
     return sp.atan2(y, x)
 
 
+def ahead_of_lift(axis: sp.Matrix) -> Any:
+    """How far the first angle of a wrist is ahead of its joint, from the axis after that.
+
+    A turn about -y is a turn about y in the other direction.
+    """
+    return heading(-axis if axis[1].is_negative else axis) - sp.pi / 2
+
+
 def turning(w: Any, v: Any) -> tuple[Any, Any]:
     """The coefficients of sin(x) and cos(x) in the scalar product of ``v`` and ``Rz(x) w``."""
     return w[0] * v[1] - w[1] * v[0], w[0] * v[0] + w[1] * v[1]
@@ -240,6 +246,7 @@ __all__ = [
     "Maker",
     "Solved",
     "Z",
+    "ahead_of_lift",
     "followed",
     "heading",
     "norm",

@@ -18,8 +18,8 @@ import sympy as sp
 from closedform.scaffold.chains.chainlinks import Single, Singles, plain
 from closedform.scaffold.chains.maker import (
     Z,
+    ahead_of_lift,
     followed,
-    heading,
     norm,
     point,
     sine_cosine,
@@ -398,8 +398,7 @@ class OneDirectionMaker(SixMaker):
             if not (lengths and moves):
                 self.vector("to_end", to_end.format(f"pair{five.number}"))
             return
-        e = block.end * Z
-        epsilon = heading(-e if e[1].is_negative else e) - sp.pi / 2
+        epsilon = ahead_of_lift(block.end * Z)
         if lengths:
             self._reach_by_tilt(block, five, lengths, epsilon)
         self.orientation([lift, *others], "M")

@@ -316,10 +316,18 @@ def _candidates(arm: Serial, given: str) -> Iterator[_Candidate]:
             write = partial(decoupled.decoupled, view)
             yield _Candidate(f"slides apart from turns{seen}", decoupled, write)
         if n < 6:
-            for order in whole.orders():
-                among = AmongTurnsMaker(arm)
-                write = partial(among.among_turns, order)
-                yield _Candidate(f"slides among turns{_moved(order, whole)}", among, write)
+            yield from _slides_among_turns(arm, whole)
+
+
+def _slides_among_turns(arm: Serial, whole: Singles) -> Iterator[_Candidate]:
+    for order in whole.orders():
+        moved = _moved(order, whole)
+        among = AmongTurnsMaker(arm)
+        yield _Candidate(f"slides among turns{moved}", among, partial(among.among_turns, order))
+        for view, seen in ((order, ""), (order.reversed(), ", from the tool")):
+            plane = AmongTurnsMaker(arm)
+            name = f"a turn between slides{seen}{moved}"
+            yield _Candidate(name, plane, partial(plane.in_a_plane, view))
 
 
 def _seven(arm: Serial, whole: Singles, given: str) -> Iterator[_Candidate]:

@@ -156,3 +156,27 @@ def test_an_arm_of_five_joints_on_a_level_rail_is_solved(tmp_path: Path) -> None
     path = tmp_path / "arm.csv"
     path.write_text(RAIL.format("pi/2"), "utf-8")
     assert new("arm", "dh", path).structure == "a rail, a turret, three parallel joints and a roll"
+
+
+SEVEN = """\
+a, alpha, d, theta
+0, 0, 0.5, waist
+0, 0, 0.2, torso
+0, pi/2, 0.3, shoulder
+0.4, 0, 0, elbow
+0.3, 0, 0.1, bend
+0, pi/2, 0, tilt
+0.1, 0, 0.2, roll
+"""
+
+
+def test_joints_of_seven_that_move_the_tool_in_five_ways_are_named(tmp_path: Path) -> None:
+    """It was said that no joint leaves a spherical wrist, and that another one may be given."""
+    path = tmp_path / "arm.csv"
+    path.write_text(SEVEN, "utf-8")
+    script = new("arm", "dh", path)
+    told = "joints waist, torso and shoulder can move in two ways while the tool stands still"
+    assert told in script.inverse and script.advice.startswith("Give values to two of them")
+    held = "# waist = 0.1 rad: held\n# torso = 0.2 rad: held\n"
+    path.write_text(held + SEVEN, "utf-8")
+    assert "an inverse with" in new("arm", "dh", path).inverse

@@ -342,6 +342,17 @@ def free_joints(arm: Singles) -> list[Single]:
     return [j for j, e in zip(arm.joints, np.abs(least), strict=True) if e > 1e-6]
 
 
+def free_ways(arm: Singles) -> tuple[int, list[Single]]:
+    """In how many ways joints can move while the tool does not, at every posture; and which do."""
+    rng = np.random.default_rng(SEEDS[0])
+    _, twists = Numeric.of(arm, rng).pose(rng.normal(size=(4, len(arm.joints))) + 0j)
+    ranks = [int(np.linalg.matrix_rank(J, 1e-9)) for J in twists]
+    rank = max(ranks)
+    still = np.linalg.svd(twists[ranks.index(rank)])[2][rank:]
+    sizes = np.abs(still).max(axis=0, initial=0)
+    return len(still), [j for j, e in zip(arm.joints, sizes, strict=True) if e > 1e-6]
+
+
 def stays_regular(arm: Singles, single: Single) -> bool:
     """Whether the other six of seven joints are regular at every value of one that turns.
 
@@ -415,6 +426,7 @@ def solvable(group: PermutationGroup) -> bool:
 
 __all__ = [
     "Solutions",
+    "free_ways",
     "is_regular",
     "solutions",
     "solutions_of_few",

@@ -21,6 +21,7 @@ from closedform.scaffold.chains.decoupled import DecoupledMaker
 from closedform.scaffold.chains.degree import (
     Solutions,
     free_joints,
+    free_ways,
     is_regular,
     solutions,
     solutions_of_few,
@@ -140,6 +141,8 @@ def _refusal(
     n, whole = len(arm.joints), singles(arm)
     if n <= 6 and (free := free_joints(whole)):
         return _redundant(free).after(tried)
+    if n == 7 and (ways := free_ways(whole))[0] > 1:
+        return _redundant_of_seven(*ways).after(tried)
     error = next((t.error for t in tried if t.error.degree), tried[0].error)
     if n == 7 and given != ARM_ANGLE:
         single, *others = _to_give(whole, given)
@@ -184,6 +187,17 @@ def _redundant(free: Sequence[Single]) -> NoChainError:
     return NoChainError(
         f"at every posture its {names} can move while the tool stands still",
         f"Give a value to one of them: {_held(free[0])}",
+    )
+
+
+def _redundant_of_seven(count: int, free: Sequence[Single]) -> NoChainError:
+    """The same of seven joints, of which no one that is given leaves the others determined."""
+    *others, last = (joint.joint.name for joint in free)
+    ways = {2: "two", 3: "three"}.get(count, str(count))
+    return NoChainError(
+        f"at every posture its joints {', '.join(others)} and {last} can move in {ways} ways while "
+        f"the tool stands still",
+        f"Give values to {ways} of them: {_held(free[0])}",
     )
 
 

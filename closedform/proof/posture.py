@@ -28,7 +28,9 @@ class Posture:
             held = [j for j in inverse.unknowns if value.has(j) and j not in taken]
             if held:
                 taken.add(held[-1])
-                self.sums[held[-1]] = linear_root(value - symbol, held[-1])
+                # a sum may contain the sine and cosine of a given joint
+                total = linear_root(value - symbol, held[-1])
+                self.sums[held[-1]] = substitute(total, glue.meaning)
         self.names: dict[Expr, Expr] = {}
         self.extra_coordinates = glue.extra_coordinates
         self.meaning = glue.meaning

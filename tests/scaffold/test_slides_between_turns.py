@@ -5,9 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sympy as sp
-from arms import UNREACHABLE
-from proposals import Proposals
+from arms import OK, SINGULAR, UNREACHABLE, misses
+from chains import printed
+from proposals import Proposals, forward
 from sympy import pi
+
+from closedform.pipeline import scripts
+from closedform.pipeline.trial import fault
+from closedform.scaffold.new import InverseSearch, new
 
 A, B, C, D = (sp.Rational(n, 100) for n in (5, 40, 35, 11))
 WRIST = [(0, -pi / 2, B), (0, pi / 2, 0), (0, 0, 0)]
@@ -131,3 +136,39 @@ def test_other_poses_are_out_of_reach(name: str, folder: Path) -> None:
     turned = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0], [0.48, 0.64, 0.6]])
     T[:, :3, :3] = T[:, :3, :3] @ turned
     assert (PROPOSALS.made(name, folder).ik(T).status == UNREACHABLE).all()
+
+
+GIVEN = """\
+a, alpha, d, theta
+0.17, -pi/2, 0, t1
+0, pi/2, d2, 0
+0, 0, 0.23, t3
+0, -pi/2, 0.59, t4
+0, pi/2, 0, t5
+0.11, -pi/2, 0.43, t6
+0, 0, 0, t7
+"""
+
+
+def test_a_turn_beside_the_slide_may_be_given(tmp_path: Path) -> None:
+    """Its sine and cosine are in the sum of the turns; the proof did not know of which angle."""
+    table = tmp_path / "arm.csv"
+    table.write_text(GIVEN, "utf-8")
+    script = new("arm", "dh", table, search=InverseSearch(fault=fault))
+    assert script.structure.endswith("a slide between, 5 and 6 meet, with t3 given")
+    path = tmp_path / "arm.py"
+    path.write_text(script.text, "utf-8")
+    (source,) = scripts.find([str(path)])
+    robot = printed(scripts.load(source), tmp_path / "printed")
+    rows = [(0.17, -np.pi / 2, 0), (0, np.pi / 2, None, 0), (0, 0, 0.23), (0, -np.pi / 2, 0.59),
+            (0, np.pi / 2, 0), (0.11, -np.pi / 2, 0.43), (0, 0, 0)]  # fmt: skip
+    q = np.random.default_rng(4).uniform(-3, 3, (400, 7))
+    q[:100, 3:] = np.round(q[:100, 3:])
+    T = forward(rows, q)
+    answers, status = robot.ik(T, q[:, 2])
+    assert np.isin(status, (OK, SINGULAR)).any(axis=1).all()
+    reached = forward(rows, answers.reshape(-1, 7)).reshape(*answers.shape[:2], 4, 4)
+    assert max(misses(reached, T, status)) < 4e-12
+    turns = np.arange(7) != 1
+    off = np.where(turns, np.angle(np.exp(1j * (answers - q[:, None]))), answers - q[:, None])
+    assert np.nanmin(np.abs(off).max(axis=-1), axis=1)[100:].max() < 1e-8

@@ -58,6 +58,7 @@ from closedform.lemmas.rotate import rotate as rotate
 from closedform.lemmas.sine_cosine import linear_pair as linear_pair
 from closedform.lemmas.sine_cosine import sine_cosine as sine_cosine
 from closedform.lemmas.sine_cosine import turned_back as turned_back
+from closedform.lemmas.sliding_strut import SlidingStrut as SlidingStrut
 from closedform.lemmas.spheres import three_spheres as three_spheres
 from closedform.lemmas.tangent import CoordinateWithin as CoordinateWithin
 from closedform.lemmas.tangent import LinkAtHeight as LinkAtHeight

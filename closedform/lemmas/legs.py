@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import sympy as sp
 
@@ -334,6 +334,9 @@ class Slide(Slider):
     on_hand: Sequence[Any] = ()
     signs: int = 2
 
+    reaches: ClassVar[str] = "the rod reaches the line of the slider"
+    """What has to hold for a solution, in words."""
+
     def rate_at(self, end: sp.Matrix) -> sp.Matrix:
         return self.rate
 
@@ -357,11 +360,10 @@ class Slide(Slider):
         signed = {} if len(parts) == 1 else {"nonnegative": True}  # False would say negative
         aside = chain.let("aside", size, **signed) if parts else size
         start = len(p.body)
-        reaches = "the rod reaches the line of the slider"
         if parts:
-            root = chain.half_chord("root", r, aside, reaches)
+            root = chain.half_chord("root", r, aside, self.reaches)
         else:  # along the line the rod is the half chord itself, whose square would overflow
-            root = chain.bound("root", r, reaches)
+            root = chain.bound("root", r, self.reaches)
         value = chain.let("slide", m - sigma * root)
         lemma = Lemma(
             "line and sphere",

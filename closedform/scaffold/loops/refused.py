@@ -281,10 +281,9 @@ def on_strut(loop: Loop, onward: Sequence[Joint]) -> str:
         if balls and not slide.driven:
             return (
                 f".  {hands[0]} slides on {strut}, which {balls[0].name} holds on the ground, as "
-                f"in a MacPherson suspension; this is not derived in space.  The distance of both "
-                f"balls gives {slide.name} in one of two ways, and the rod the turn of {hands[0]} "
-                f"about their line in one of two: equations to write in Python.  Seen from the "
-                f"front it is a linkage in a plane, which is supported"
+                f"in a MacPherson suspension.  This is supported if {balls[0].name} is spherical "
+                f"and {strut} has no other joint, and if one rod with a ball at each end leads "
+                f"from {hands[0]} to the ground, or to a driven body there"
             )
     return ""
 

@@ -426,6 +426,8 @@ class _Way:
         """The same in words."""
         if self.guide:
             return self.guide.kind
+        if any(leg.call.startswith("SlidingStrut(") for leg in self.legs):
+            return "a hand on an arm and a strut"
         upright = self.name == "platform" and len(self.legs) == UPRIGHT
         return "a hand that stays upright" if upright else KINDS[self.name]
 
@@ -532,8 +534,9 @@ def _body(table: Table, way: _Way) -> list[str]:
     passive += [way.guide.slide] if way.guide and way.guide.slide else []
     lines += [f'{slide} = d.joint("{slide}", "prismatic", passive=True)' for slide in passive]
     if way.name == "two_arms":
-        turning = way.legs[1].joint.name
-        lines.append(f'{turning} = d.joint("{turning}", passive=True)')
+        second = way.legs[1].joint
+        slides = '"prismatic", ' * (second.kind == "prismatic")
+        lines.append(f'{second.name} = d.joint("{second.name}", {slides}passive=True)')
     if way.name in ("coupled", "slotted", "bennett") or (way.linkage and len(way.task) == 1):
         (x,) = way.task
         hand = [f"    ({x},),"] * bool(way.linkage)

@@ -1,4 +1,7 @@
-"""Recognises a hand in space that two arms and a rod hold, as the upright of a suspension."""
+"""Recognises a hand in space that two arms and a rod hold, as the upright of a suspension.
+
+A strut in which the hand slides may take the place of the second arm.
+"""
 
 from __future__ import annotations
 
@@ -16,10 +19,12 @@ HELD = 3
 def two_arms(loop: Loop) -> list[LoopLeg] | None:
     """The driven arm, the other one and the rod; None if the hand is of another kind."""
     hands = [body for body, at in loop.bodies.items() if loop.hand in at and _held(loop, body)]
+    hands += [body for body, at in loop.bodies.items() if loop.hand in at and _strut(loop, body)]
     if loop.dimensions != len("xyz") or len(hands) != 1 or loop.hand in loop.joints:
         return None
     (hand,) = hands
-    balls = loop.of(hand)
+    strut = _strut(loop, hand)
+    balls = [j for j in loop.of(hand) if not strut or j is not strut[0]]
     driven, passive, rods = [], [], []
     for ball in balls:
         hinge = _other_end(loop, ball.other(hand), ball)
@@ -31,13 +36,13 @@ def two_arms(loop: Loop) -> list[LoopLeg] | None:
             passive.append((hinge, ball))
         else:
             rods.append((hinge, ball))
-    if not (len(driven) == len(passive) == len(rods) == 1):
+    if not (len(driven) == len(rods) == 1 == len(passive) + bool(strut)):
         return None
     found = Legs(loop)
     place = {ball: _place(found, hand, ball) for ball in balls}
     legs = [
         _arm(found, *driven[0], place[driven[0][1]]),
-        _arm(found, *passive[0], place[passive[0][1]]),
+        _on_strut(found, hand, *strut) if strut else _arm(found, *passive[0], place[passive[0][1]]),
         _rod(found, hand, *rods[0], place[rods[0][1]]),
     ]
     found.end = hand
@@ -49,6 +54,19 @@ def _held(loop: Loop, body: str) -> bool:
     """Whether three balls hold a body, and nothing else."""
     balls = [j for j in loop.of(body) if j.kind in BALLS and j.axis is None]
     return body != GROUND and len(balls) == len(loop.of(body)) == HELD
+
+
+def _strut(loop: Loop, body: str) -> tuple[Joint, Joint] | None:
+    """The slide and the ball of a strut that leads from the ground to a body with two balls."""
+    slides = [j for j in loop.of(body) if j.kind == "prismatic" and not j.driven]
+    balls = [j for j in loop.of(body) if j.kind in BALLS and j.axis is None]
+    if body == GROUND or len(slides) != 1 or len(balls) != HELD - 1 or len(loop.of(body)) != HELD:
+        return None
+    (slide,) = slides
+    top = _other_end(loop, slide.other(body), slide)
+    if top is None or GROUND not in top.between or top.kind != "spherical":
+        return None
+    return slide, top
 
 
 def _other_end(loop: Loop, body: str, ball: Joint) -> Joint | None:
@@ -73,6 +91,26 @@ def _arm(found: Legs, hinge: Joint, ball: Joint, place: sp.Matrix) -> LoopLeg:
     else:
         words = f"the body {body} is an arm that turns freely and ends in a ball on the hand"
     return LoopLeg(hinge, call, words, place)
+
+
+def _on_strut(found: Legs, hand: str, slide: Joint, top: Joint) -> LoopLeg:
+    """A strut that a ball holds on the ground, and in which the hand slides."""
+    loop = found.loop
+    found.used |= {slide.name, top.name}
+    if slide.axis is None:
+        raise loop.error(f"{slide.name} slides; say in which direction with axis")
+    place = _place(found, hand, slide)
+    strut = loop.bodies[slide.other(hand)]
+    if slide.at in strut and top.at in strut:  # the ball may be beside the line of the slide
+        place += strut[top.at] - strut[slide.at]
+    base = found.point(GROUND, top)
+    call = (
+        f"SlidingStrut({slide.name}, {found.at(base)}, {found.at(place)}, {found.at(slide.axis)})"
+    )
+    words = (
+        f"the body {hand} slides by {slide.name} along a strut, which a ball holds on the ground"
+    )
+    return LoopLeg(slide, call, words, place)
 
 
 def _moved(found: Legs, joint: Joint, end: sp.Matrix, rod: str, place: sp.Matrix) -> str:

@@ -265,14 +265,15 @@ class _Reverse:
     def _stretches(self, dyad: Dyad) -> list[sp.Expr]:
         """By how much points of a dyad move more than its pin, or the angle of a follower."""
         m, found = self.m, []
+        ratios: list[sp.Expr] = []
         for body, near in zip(dyad.bodies, dyad.near, strict=True):
             length = m.length(body, near, dyad.pin)
             if body == m.follower:
                 found.append(self.size / length)
                 continue
             others = [p for p in m.points[body] if p not in (near, dyad.pin)]
-            found += [sp.Max(1, m.length(body, near, p) / length) for p in others]
-        return found
+            ratios += [m.length(body, near, p) / length for p in others]
+        return [*found, sp.Max(1, *ratios)]
 
     def _determined(self) -> None:
         """Whether the joints determine the posture: the dyads of the forward map."""

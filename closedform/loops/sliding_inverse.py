@@ -221,7 +221,7 @@ class _Reverse:
         if body == m.follower:
             return [self.size / length]
         others = [p for p in m.points[body] if p not in (near, pin)]
-        return [sp.Max(1, m.length(body, near, p) / length) for p in others]
+        return [sp.Max(1, *(m.length(body, near, p) / length for p in others))]
 
     def _write(self) -> None:
         m, d, g, solver = self.m, self.m.d, self.program, self.solver

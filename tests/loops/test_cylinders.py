@@ -163,6 +163,28 @@ def test_jacks_are_checked_where_the_leg_closes(tmp_path: Path) -> None:
     assert np.nanmin(abs(back - q[:, None]).max(axis=2), axis=1).max() < 1e-9
 
 
+def test_only_what_moves_far_is_singular(tmp_path: Path) -> None:
+    """A crane whose bodies have several pins: each of them was counted, as if one moved the next.
+
+    So a quarter of its answers were SINGULAR, where the hand moves by 20 to 100 times a cylinder.
+    """
+    crane, rng = module("loader_crane", tmp_path), np.random.default_rng(1)
+    q = rng.uniform([0.9, 0.3], [1.3, 1.0], (4000, 2))
+    fk = crane.fk(q)
+    there = fk.status == 0
+    back = crane.ik(fk.p[there])
+    away = np.abs(back.q - np.broadcast_to(q[:, None], (*there.shape, 2))[there][:, None]).max(-1)
+    own = back.status[np.arange(len(away)), np.nanargmin(away, axis=1)]
+    gain = np.linalg.norm(crane.jacobian(q)[there], 2, axis=(1, 2))
+    assert np.nanmin(away, axis=1).max() < 1e-7  # both answers of a leg may nearly meet
+    assert ((gain > 20) & (gain < 40)).sum() > 100
+    assert not own[gain < 40].any()
+    again, status = crane.fk(back.q[back.status == 0])
+    target = np.broadcast_to(fk.p[there][:, None], back.q.shape)[back.status == 0]
+    missed = np.linalg.norm(again - target[:, None], axis=-1)
+    assert np.where(status == 0, missed, np.inf).min(1).max() < 1e-12 * 2.65
+
+
 def test_a_short_boom_is_no_error(tmp_path: Path) -> None:
     """The condition number is 5000 there, and moves by 1600 roundings: lengths are rounded too."""
     text = (FOLDER / "backhoe.toml").read_text("utf-8")

@@ -144,3 +144,60 @@ def test_a_hand_that_turns_is_left_whole(tmp_path: Path) -> None:
         [joints]{joints}
     """
     assert "platform(" in script_of("t", text, tmp_path)
+
+
+WINGS = """
+hand = "psi"
+[bodies]
+ground = {O = [0, 0, 0], W1 = [0.02, 0.06, 0], W2 = [-0.02, 0.06, 0], D = [0.1, 0, 0.1]}
+crank = {A = [0.01, 0, 0], B = [-0.01, 0, 0]}
+rod1 = {length = 0.06}
+rod2 = {length = 0.06}
+wing1 = {W1 = [0.02, 0.06, 0], C1 = [0.04, 0.06, 0]}
+wing2 = {W2 = [-0.02, 0.06, 0], C2 = [-0.04, 0.06, 0]}
+tube = {}
+rod3 = {}
+[joints]
+theta = {between = ["ground", "crank"], at = "O", axis = [0, 0, 1], driven = true}
+psi = {between = ["ground", "wing1"], at = "W1", axis = [0.2, 0, 1]}
+other = {between = ["ground", "wing2"], at = "W2", axis = [-0.2, 0, 1]}
+a = {between = ["crank", "rod1"], at = "A", kind = "spherical"}
+b = {between = ["crank", "rod2"], at = "B", kind = "spherical"}
+c = {between = ["rod1", "wing1"], at = "C1", kind = "spherical"}
+e = {between = ["rod2", "wing2"], at = "C2", kind = "spherical"}
+f = {between = ["ground", "tube"], at = "D", kind = "spherical"}
+g = {between = ["tube", "rod3"], at = "D", kind = "prismatic"}
+h = {between = ["rod3", "crank"], at = "A", kind = "spherical"}
+"""
+"""A crank in space that two wings follow, and a damper."""
+
+
+@pytest.mark.parametrize("hand", ["psi", "other"])
+def test_what_follows_a_driven_body_in_space_is_left_out(hand: str, tmp_path: Path) -> None:
+    text = WINGS.replace('hand = "psi"', f'hand = "{hand}"')
+    wing = derived(f"wing_{hand}", script_of(f"wing_{hand}", text, tmp_path), tmp_path)
+    loop = read_loop(tmp_path / f"wing_{hand}.toml")
+    loop_script("wing", loop, "")
+    gone = "wing2, rod2, tube and rod3" if hand == "psi" else "wing1, rod1, tube and rod3"
+    assert loop.notes == [
+        f"wing_{hand}.toml: {gone} follow a driven body, and do not move the hand; they are left "
+        f"out"
+    ]
+    side = 1 if hand == "psi" else -1
+    axis = np.array([0.2 * side, 0, 1]) / np.sqrt(1.04)
+    arm = np.array([0.02 * side, 0, 0])
+    for q in np.linspace(-3, 3, 20):
+        p, status = wing.fk([q])
+        assert not status.any()
+        for psi in p[:, 0]:  # Rodrigues' formula
+            turned = arm * np.cos(psi) + np.cross(axis, arm) * np.sin(psi)
+            turned += axis * axis.dot(arm) * (1 - np.cos(psi))
+            end = turned + np.array([0.02 * side, 0.06, 0])
+            near = 0.01 * side * np.array([np.cos(q), np.sin(q), 0])
+            assert abs(np.linalg.norm(end - near) - 0.06) < 1e-14
+
+
+def test_what_follows_the_hand_stays(tmp_path: Path) -> None:
+    text = WINGS.replace('hand = "psi"', 'hand = "C2"')
+    with pytest.raises(TableError, match=r'other holds wing2 .* write hand = "other"; C2 follows'):
+        script_of("tip", text, tmp_path)

@@ -1,4 +1,4 @@
-"""Leaves out what does not move the hand: bodies of a planar linkage, and shafts in space."""
+"""Leaves out what does not move the hand: bodies of a planar linkage, and chains in space."""
 
 from __future__ import annotations
 
@@ -19,10 +19,36 @@ ALL = 6
 def without_idle(loop: Loop) -> Loop:
     """The loop without what the hand does not depend on.
 
-    This is the other jaw of a gripper, or the shaft that turns the tool of a Delta robot.  A loop
-    of another kind, or one that the joints do not determine, stays as it is.
+    This is the other jaw of a gripper, the shaft that turns the tool of a Delta robot, or a second
+    wing on the same crank.  A loop of another kind, or one that the joints do not determine, stays
+    as it is.
     """
-    return _without_bodies(loop) if loop.dimensions == 2 else _without_shafts(loop)
+    return _without_bodies(loop) if loop.dimensions == 2 else _without_shafts(_without_wings(loop))
+
+
+def _without_wings(loop: Loop) -> Loop:
+    """The loop without the passive chains from the ground to a driven body that hold nothing."""
+    driven = [j.other(GROUND) for j in loop.of(GROUND) if j.driven]
+    hands = {b for b, at in loop.bodies.items() if loop.hand in at and b != GROUND}
+    idle = [
+        chain
+        for end in driven
+        for chain in _chains(loop, end)
+        if not any(j.driven or loop.hand in (j.name, j.at) for j in chain)
+        and not {b for j in chain for b in j.between if b != end} & hands
+        and _freedoms(chain) == ALL
+    ]
+    if not idle:
+        return loop
+    used = {j.name for chain in idle for j in chain}
+    gone = list(dict.fromkeys(b for c in idle for j in c for b in j.between))
+    gone = [b for b in gone if b not in (GROUND, *driven)]
+    loop.notes.append(
+        f"{loop.file}: {listed(gone)} follow{'s' * (len(gone) == 1)} a driven body, and do"
+        f"{'es' * (len(gone) == 1)} not move the hand; {'it is' if len(gone) == 1 else 'they are'} "
+        f"left out"
+    )
+    return _without(loop, gone, {n: j for n, j in loop.joints.items() if n not in used})
 
 
 def _without_shafts(loop: Loop) -> Loop:
@@ -50,13 +76,20 @@ def _shaft_joints(loop: Loop, hand: str) -> Iterator[Joint]:
 
     The point of the hand may be on the last body of such a chain too.
     """
+    for chain in _chains(loop, hand):
+        if len(chain) > 3 and _freedoms(chain) >= ALL:
+            yield from chain
+
+
+def _chains(loop: Loop, end: str) -> Iterator[list[Joint]]:
+    """The joints of each chain from the ground to a body, without others on the way."""
     for first in loop.of(GROUND):
         chain, body = [first], first.other(GROUND)
-        while body != hand and len(onward := [j for j in loop.of(body) if j not in chain]) == 1:
+        while body != end and len(onward := [j for j in loop.of(body) if j not in chain]) == 1:
             chain.append(onward[0])
             body = onward[0].other(body)
-        if body == hand and len(chain) > 3 and _freedoms(chain) >= ALL:
-            yield from chain
+        if body == end:
+            yield chain
 
 
 def _freedoms(chain: Sequence[Joint]) -> int:

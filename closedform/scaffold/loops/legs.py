@@ -36,6 +36,7 @@ from closedform.scaffold.loops.refused import (
     hinges_of_leg,
     moving_driver,
     on_cylinder,
+    on_rocker,
     on_strut,
     on_turning_body,
     shafts,
@@ -214,6 +215,7 @@ class Legs:
             raise self.loop.error(
                 f"no leg contains {listed(left)}; a leg leads from the ground to {self.end} and "
                 f"has a driven joint, and only a rod may lead there without one"
+                + on_rocker(self.loop, left)
             )
         held = {body for joint in self.loop.joints.values() for body in joint.between}
         if loose := [name for name in self.loop.bodies if name not in {*held, GROUND}]:

@@ -319,6 +319,18 @@ def hinged_on(loop: Loop, joint: Joint) -> str:
     return ""
 
 
+def on_rocker(loop: Loop, left: Sequence[str]) -> str:
+    """What is said of a hand on a body that a passive joint holds on the ground."""
+    for joint in (loop.joints[name] for name in left):
+        body = joint.other(GROUND)
+        if GROUND in joint.between and loop.hand in loop.bodies[body]:
+            return (
+                f".  {joint.name} holds {body} on the ground.  If a single loop moves it, write "
+                f'hand = "{joint.name}"; {loop.hand} follows from this joint'
+            )
+    return ""
+
+
 def on_cylinder(loop: Loop, far: Joint, rod: str) -> str:
     """What is said of a leg whose end may slide along the axis about which it turns."""
     block = far.other(rod) if rod in far.between else ""
@@ -349,6 +361,7 @@ __all__ = [
     "hinges_of_leg",
     "moving_driver",
     "on_cylinder",
+    "on_rocker",
     "on_strut",
     "on_turning_body",
     "shafts",

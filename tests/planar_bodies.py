@@ -51,7 +51,7 @@ class Linkage:
     def held(self, body: str) -> list[str]:
         """The pins of a body."""
         on = [j for j in self.joints.values() if body in j["between"]]
-        return [j["at"] for j in on if not self.slides(j)]
+        return list(dict.fromkeys(j["at"] for j in on if not self.slides(j)))
 
     def split(self, t: np.ndarray) -> tuple[dict, dict]:
         """Where pins are, and the place and direction of each body."""

@@ -167,7 +167,7 @@ def _forward(m: SlidingLinkage, choice: Choice, loop: Step) -> tuple[Solver, Bra
 
 def _draw(m: SlidingLinkage, at: Solver, modes: Branches) -> None:
     here, meant = dict(at.here.at), dict(at.meant.at)
-    ground = list(m.points[GROUND])
+    still = {p: m.local(GROUND, p) for p in m.points[GROUND]}
     links: dict[str, tuple[str, ...]] = {}
     lengths: dict[tuple[str, str], sp.Expr] = {}
     closing: dict[tuple[str, str], sp.Expr] = {}
@@ -176,12 +176,12 @@ def _draw(m: SlidingLinkage, at: Solver, modes: Branches) -> None:
         if len(points) > 1 and body not in m.cylinders:
             links[body] = line
         for a, b in pairwise(line):
-            if {a, b} <= {*ground} and body != GROUND:
+            if {a, b} <= {*still} and body != GROUND:
                 continue
             lengths[a, b] = m.length(body, a, b)
-            still = at.meant.frames[body].still
-            if still != 0:
-                closing[a, b] = lengths[a, b] ** 2 * still
+            off = at.meant.frames[body].still
+            if off != 0:
+                closing[a, b] = lengths[a, b] ** 2 * off
     joints = _passive(m)
     for body, q in m.driven.items():
         if body in m.turning:
@@ -189,17 +189,16 @@ def _draw(m: SlidingLinkage, at: Solver, modes: Branches) -> None:
             continue
         slide, point = m.slide_of(body), m.points[body][0]
         zero = m.local(body, point) + sp.Matrix(slide.offset)
-        start = next((p for p in ground if m.local(GROUND, p) == zero), "")
+        start = next((p for p, place in still.items() if place == zero), "")
         if not start:
             start = f"{point}_zero"
-            here[start] = meant[start] = zero
-            ground.append(start)
+            here[start] = meant[start] = still[start] = zero
         joints[q] = (start, point)
         lengths[start, point] = q
     joints |= {q: m.points[body] for body, q in m.cylinders.items()}
     drawn = {p for line in (*links.values(), *joints.values()) for p in line}
     of_hand = [p for p in m.points[m.follower] if p in drawn] if m.follower else []
-    hand = m.hand_at or next((p for p in of_hand if p not in ground), [*of_hand, *drawn][0])
+    hand = m.hand_at or next((p for p in of_hand if p not in still), [*of_hand, *drawn][0])
     drawn.add(hand)
     skeleton(
         m.d,
@@ -208,7 +207,7 @@ def _draw(m: SlidingLinkage, at: Solver, modes: Branches) -> None:
         joints=joints,
         hand=hand,
         hand_at=in_space(meant[hand]),
-        ground=[p for p in ground if p in drawn],
+        ground=[p for p in still if p in drawn],
         lengths=lengths,
         program=at.program,
         branches=modes,

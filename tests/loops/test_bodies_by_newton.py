@@ -26,6 +26,7 @@ FILES: dict[str, float | tuple[float, ...]] = {
     "jib_crane": 1.1,
     "link_press": 0.6,
     "multi_link_engine": (0.4, -0.7),
+    "pantograph_leg": (0.05, -0.1),
     "pushrod": 0.1,
     "rack_steering": 0.02,
     "roberts": 1.2,

@@ -88,6 +88,10 @@ CRR = (TESTS / "held_out_loops" / "crr.toml").read_text("utf-8")
     ("text", "message"),
     [
         (KNEE, "degree 6; it can be solved if a or b is driven instead of q, whose length follows"),
+        (
+            KNEE.replace('hand = "P"', 'hand = "a"'),
+            "if a or b is driven instead of q, whose length",
+        ),
         (JACK, "it can be solved if a1 or a2 or v is driven instead of q, whose length follows"),
         (KNEE.replace("rear = {", "bar = {length = 1}\nrear = {") + BAR, "q drives this linkage"),
         (

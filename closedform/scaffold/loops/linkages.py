@@ -204,10 +204,13 @@ def other_drive(others: Sequence[str], cylinders: Sequence[str]) -> str:
 
 
 def reverse(loop: Loop, others: Sequence[str], driven: Iterable[Joint]) -> str:
-    """That the inverse is the forward problem of the same linkage, if its hand may drive it."""
-    if loop.hand not in others:
+    """That the inverse is the forward problem of the same linkage, if its hand may drive it.
+
+    A cylinder is not among the ``driven`` joints, and its length is no hand.
+    """
+    joint = next(iter(driven), None)
+    if loop.hand not in others or joint is None:
         return ""
-    (joint,) = driven
     return (
         f'.  Driven by {loop.hand}, with hand = "{joint.name}", its fk is the inverse of this one, '
         f"and its jacobian is the reciprocal"

@@ -209,6 +209,7 @@ def test_parallelograms_and_universal_joints_hold_together() -> None:
          "c1 has an axis; universal joints keep the hand from turning if a leg in space has them"),
         ('"C1", kind = "universal", axis = [0, 1, 0]', '"C1", kind = "universal", axis = [1, 0, 0]',
          "the axes of a1 and c1 have to be parallel, or the leg turns the hand"),
+        ("axis = [0, 1, 0]", "axis = [0, 0, 1]", "of all 3 legs have the same axis, about which"),
         (', axis = [0, 1, 0]', "", "If it is universal joints that keep it from turning, give"),
         ('kind = "universal", axis', "axis", "c1, c2 and c3 would hold platform by an axis"),
         ("copies = 3", "copies = 6", "6 joints are driven, but a hand that does not turn needs 3"),

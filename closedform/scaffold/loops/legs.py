@@ -91,6 +91,8 @@ class Legs:
         """What a rod joins a leg to."""
         self.halves, self.bars = halves(loop)
         """The halves of the hand, if it has two, and the number of bars that join them."""
+        self.axes: list[sp.Matrix] = []
+        """The axes of legs with universal joints that keep the hand from turning."""
         self.half_held: list[tuple[Joint, Joint]] = []
         """The hinge and the universal joint at the ends of a leg, which may turn the hand."""
         self.offset: sp.Matrix | None = None
@@ -155,6 +157,7 @@ class Legs:
                 f"the axes of {near.name} and {far.name} have to be parallel, or the leg turns "
                 f"{self.end}; for a hand that turns leave both out"
             )
+        self.axes.append(first)
         return first
 
     def direction(self, v: sp.Matrix, length: sp.Expr) -> sp.Matrix:

@@ -217,6 +217,12 @@ def _on_legs(found: Legs) -> _Way:
             + more * (len(legs) == loop.dimensions + 1)
             + IN_PLANE * (loop.dimensions == 3 and len(legs) == 2)
         )
+    if len(found.axes) == len(legs) and not any(any(found.axes[0].cross(e)) for e in found.axes):
+        raise loop.error(
+            f"the universal joints of all {len(legs)} legs have the same axis, about which the "
+            f"hand can always turn.  Give the legs axes in different directions, or add a fourth "
+            f"leg: {UPRIGHT} legs with vertical axes carry a hand that turns about z alone"
+        )
     return _Way(legs, list(AXES[: loop.dimensions]))
 
 

@@ -16,15 +16,16 @@ from closedform.lemmas.legs import turned_left, vector
 class ThroughBall:
     """A ball on a slider that moves along the z axis, and an arm of the hand that slides in it.
 
-    The joint moves the ball up from ``start``.  The arm is the line through the point of the hand
-    with the direction of the unit vector ``along``, in the plane x, y of the hand.  ``slide`` is
-    the passive joint: how far the ball is along the arm.
+    The joint moves the ball up from ``start``, or down if ``up`` is -1.  The arm is the line
+    through the point of the hand with the direction of the unit vector ``along``, in the plane x, y
+    of the hand.  ``slide`` is the passive joint: how far the ball is along the arm.
     """
 
     joint: sp.Symbol
     slide: sp.Symbol
     start: Sequence[Any]
     along: Sequence[Any]
+    up: int = 1
 
     rod: ClassVar[int] = 0
     on_hand: ClassVar[Sequence[Any]] = ()
@@ -35,6 +36,8 @@ class ThroughBall:
                 f"{self.joint}: the start of a ball needs 3 entries, and its arm is a vector in "
                 f"the plane of the hand with 2"
             )
+        if self.up not in (1, -1):
+            raise ShapeError(f"{self.joint}: a ball moves up (1) or down (-1), not {self.up}")
         if not all(e.is_number for e in self.way):
             raise ShapeError(f"{self.joint}: the direction of an arm must be numbers")
 
@@ -54,7 +57,7 @@ class ThroughBall:
 
     def end(self) -> sp.Matrix:
         """The ball."""
-        return self.base + sp.Matrix([0, 0, self.joint])
+        return self.base + sp.Matrix([0, 0, self.up * self.joint])
 
 
 __all__ = ["ThroughBall"]

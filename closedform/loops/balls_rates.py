@@ -33,9 +33,10 @@ def state_velocity(m: OnBalls, at: Posture, loop: Step) -> None:
     d.step(
         "Velocity and singular sets",
         "Let r_i lead from the point of the hand to the ball i, n be the axis of the hand and c_i "
-        "the direction across arm i.  The ball moves up by the rate of its joint, and relative to "
-        "the hand along its arm alone.  Along n this gives the rate of the joint from the motion "
-        "of the hand.  Along c_i it gives three equations for the rates of x, y and the twist, "
+        "the direction across arm i.  The ball moves along z by the rate of its joint, and "
+        "relative to the hand along its arm alone.  Along n this gives the rate of the joint from "
+        "the motion of the hand.  Along c_i it gives three equations for the rates of x, y and the "
+        "twist, "
         "whose matrix is C, because the part of c_i - (c_iz/n_z) n along z vanishes.  So A*dx = "
         "dq for the rates of the task.  If C is singular, the arms do not fix the twist.",
         {},
@@ -62,12 +63,13 @@ def state_velocity(m: OnBalls, at: Posture, loop: Step) -> None:
     volume = v.let("Delta", C.det())
     follow = v.matrix("F", C.adjugate()[:2, :] * right / volume)
     rows = []
-    for k, span in enumerate(spans, 1):
+    for k, (leg, span) in enumerate(zip(m.legs, spans, strict=True), 1):
         moved = [
             n[0] * follow[0, j] + n[1] * follow[1, j] + n.cross(axis).dot(span)
             for j, axis in enumerate(tilts)
         ]
-        rows.append([1, *(v.let(f"A_{k}{j + 2}", e / n[2]) for j, e in enumerate(moved))])
+        turned = (v.let(f"A_{k}{j + 2}", leg.up * e / n[2]) for j, e in enumerate(moved))
+        rows.append([leg.up, *turned])
     A = sp.Matrix(rows)
     J = _rates(m, at, v, (T, follow))
     det = v.let("det_J", J.det())
@@ -111,7 +113,7 @@ def _rates(m: OnBalls, at: Posture, v: Program, hand: tuple[sp.Matrix, sp.Matrix
     away = named(v, "away", (at.balls[0] - at.hand)[:2, 0])
     rise = away.T * steep - slope.T * follow * tilting
     rise[0] += 1
-    return rise.col_join(tilting)
+    return rise.col_join(tilting) * sp.diag(*(leg.up for leg in m.legs))
 
 
 def draw(m: OnBalls, at: Posture) -> None:

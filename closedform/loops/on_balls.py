@@ -89,7 +89,7 @@ def _close(m: OnBalls) -> Step:
     rows = [(str(k), leg.end().T, leg.way.T) for k, leg in enumerate(m.legs, 1)]
     d.loop = loop = d.step(
         "The loop",
-        "The joint of leg i moves a ball b up.  In the frame of the hand the arm i is a line "
+        "The joint of leg i moves a ball b along z.  In the frame of the hand the arm i is a line "
         "through the origin with the direction t.  So in this frame the vector from the point p of "
         "the hand to b has no part along the axis of the hand, and none across t.  R twists the "
         "hand about its own axis first, then turns it by tilt_x about the x axis of the base and "
@@ -319,7 +319,7 @@ def _inverse(m: OnBalls, loop: Step) -> None:
     n = exact.tilted * UP
     for k, leg in enumerate(m.legs, 1):
         off = sp.Matrix(leg.base[:2, 0]) - sp.Matrix([px, py])
-        rise = g.let(f"rise_{k}", Z - leg.base[2] - slope.dot(off))
+        rise = g.let(f"rise_{k}", leg.up * (Z - leg.base[2] - slope.dot(off)))
         lemma = Lemma(
             "line and plane",
             r"q = \frac{\mathbf n\cdot\mathbf w}{D}",
@@ -330,7 +330,8 @@ def _inverse(m: OnBalls, loop: Step) -> None:
         )
         found.append(Link((leg.joint,), lemma.equations, {}, lemma))
         away = sp.Matrix(leg.base[:2, 0]) - ASIDE
-        equations.append(Z - leg.base[2] - (n[0] * away[0] + n[1] * away[1]) / n[2] - leg.joint)
+        above = Z - leg.base[2] - (n[0] * away[0] + n[1] * away[1]) / n[2]
+        equations.append(leg.up * above - leg.joint)
         joints.append(rise)
     for k in (1, 2):
         _near(m, g, k + 1, slope.dot(m.bases[k] - m.bases[0]))
@@ -341,9 +342,9 @@ def _inverse(m: OnBalls, loop: Step) -> None:
         "The tilts give the plane, and the sliders meet it in the balls.  Where they are in the "
         "plane does not depend on the height: seen along the axis of the hand and enlarged by n_z, "
         "the part of its axis n along z, they are at m_i.  So the twist and then the place of the "
-        "point of the hand follow as in the forward problem, and each joint is the height of the "
-        "plane above its start.  Where h, the length of the vector that gives the twist, is less "
-        "than 2^-10 of Lambda, the sum of all lengths, the status is SINGULAR.",
+        "point of the hand follow as in the forward problem, and each joint is how far the plane "
+        "is from its start along z.  Where h, the length of the vector that gives the twist, is "
+        "less than 2^-10 of Lambda, the sum of all lengths, the status is SINGULAR.",
         {},
         uses=[loop],
         solves={"ik": ()},

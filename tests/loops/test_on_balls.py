@@ -43,6 +43,29 @@ def off(q: np.ndarray, p: np.ndarray, R: np.ndarray) -> np.ndarray:
     return np.concatenate([seen[:, 2], WAYS[:, 0] * seen[:, 1] - WAYS[:, 1] * seen[:, 0]])
 
 
+@pytest.mark.parametrize("up", [(-1, -1, -1), (1, -1, -1)])
+def test_sliders_may_point_down(up: tuple[int, ...], tmp_path: Path) -> None:
+    name = f"psp_{up.count(-1)}_down"
+    script = script_of(name, TEXT.replace("[0, 0, 1]", "[0, 0, -1]"), tmp_path)
+    assert script.count(", -1),") == 3
+    script = script.replace(", -1),", "),", up.count(1))
+    psp = derived(name, script, tmp_path, crosscheck=True)
+    x = targets(1000, 5) * (1, 0.5, 0.5)
+    q, status = psp.ik(x)
+    q = q[:, 0]
+    assert (status == OK).all()
+    for target, joints in zip(x, q, strict=True):
+        T = psp.hand_pose(target)
+        assert np.abs(off(up * joints, T[:3, 3], T[:3, :3])).max() < 1e-14
+    p, J, A = psp.fk(q).p[:, 0], psp.jacobian(q)[:, 0], psp.jacobian_parallel(q)[:, 0]
+    assert np.abs(p - x).max() < 1e-12
+    assert np.allclose(A @ J, np.eye(3), atol=1e-9)
+    for k, step in enumerate(1e-6 * np.eye(3)):
+        rate = (psp.fk(q + step).p - psp.fk(q - step).p)[:, 0] / 2e-6
+        assert np.allclose(rate, J[:, :, k], atol=1e-6)
+    assert np.allclose(psp.determinant(q)[:, 0], np.linalg.det(J), rtol=1e-8)
+
+
 def targets(count: int, seed: int) -> np.ndarray:
     return np.random.default_rng(seed).uniform(-1, 1, (count, 3)) * (1, 1.2, 1.2)
 

@@ -42,11 +42,12 @@ def _leg(found: Legs, hand: str, joint: Joint, ball: Joint, slide: Joint) -> Loo
             raise loop.error(f"{j.name} slides; say in which direction with axis")
     assert joint.axis is not None
     assert slide.axis is not None
-    if [*joint.axis] != [0, 0, 1]:
+    down = [*joint.axis] == [0, 0, -1]
+    if [*joint.axis] != [0, 0, 1] and not down:
         raise loop.error(
             f"{joint.name} moves a ball, through which an arm of {hand} slides, as in a 3-PSP "
             f"mechanism; this is supported for three parallel sliders: turn the drawing so that "
-            f"all of them move along the z axis, axis = [0, 0, 1]"
+            f"all of them move along the z axis, axis = [0, 0, 1] or [0, 0, -1]"
         )
     if slide.axis[2] != 0 or not all(e.is_number for e in slide.axis):
         raise loop.error(
@@ -64,7 +65,8 @@ def _leg(found: Legs, hand: str, joint: Joint, ball: Joint, slide: Joint) -> Loo
     along = sp.Matrix(slide.axis[:2])
     return LoopLeg(
         joint,
-        f"ThroughBall({joint.name}, {slide.name}, {found.at(start)}, {found.at(along)})",
+        f"ThroughBall({joint.name}, {slide.name}, {found.at(start)}, {found.at(along)}"
+        f"{', -1' * down})",
         f"{joint.name} moves a ball, through which an arm of {hand} slides",
         sp.zeros(3, 1),
         slide.name,

@@ -201,3 +201,43 @@ def test_what_follows_the_hand_stays(tmp_path: Path) -> None:
     text = WINGS.replace('hand = "psi"', 'hand = "C2"')
     with pytest.raises(TableError, match=r'other holds wing2 .* write hand = "other"; C2 follows'):
         script_of("tip", text, tmp_path)
+
+
+HUB = """
+hand = "f1"
+[bodies]
+ground = {O = [0, 0, 0], D = [0.05, 0.05, -0.2]}
+hub = {A = [0.1, 0, 0], B = [-0.1, 0, 0]}
+blade1 = {A = [0.1, 0, 0], C = [0.15, 0.06, 0]}
+blade2 = {B = [-0.1, 0, 0], E = [-0.15, -0.06, 0]}
+link1 = {length = 0.23}
+link2 = {length = 0.23}
+[joints]
+theta = {between = ["ground", "hub"], at = "O", axis = [0, 0, 1], driven = true}
+f1 = {between = ["hub", "blade1"], at = "A", axis = [1, 0, 0]}
+f2 = {between = ["hub", "blade2"], at = "B", axis = [-1, 0, 0]}
+c = {between = ["blade1", "link1"], at = "C", kind = "spherical"}
+g = {between = ["link1", "ground"], at = "D", kind = "spherical"}
+e = {between = ["blade2", "link2"], at = "E", kind = "spherical"}
+h = {between = ["link2", "ground"], at = "D", kind = "spherical"}
+"""
+"""A rotor with two blades, which rods from the ground turn on the hub."""
+
+
+@pytest.mark.parametrize(("hand", "way"), [("f1", 1), ("f2", -1)])
+def test_a_second_follower_on_a_driven_body_is_left_out(
+    hand: str, way: int, tmp_path: Path
+) -> None:
+    text = HUB.replace('hand = "f1"', f'hand = "{hand}"')
+    hub = derived(f"hub_{hand}", script_of(f"hub_{hand}", text, tmp_path), tmp_path)
+    closed = 0
+    for theta in np.linspace(-3, 3, 40):
+        p, status = hub.fk([theta])
+        for f in p[status == 0, 0]:
+            C = np.array([0.15 * way, 0.06 * way * np.cos(f), 0.06 * np.sin(f)])
+            x, y = (
+                np.array([[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]]) @ C[:2]
+            )
+            assert abs(np.linalg.norm([x - 0.05, y - 0.05, C[2] + 0.2]) - 0.23) < 1e-14
+            closed += 1
+    assert closed > 20

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from closedform.lemmas.named import named
+from closedform.lemmas.named import named, named_in
 from closedform.lemmas.registry import theorem
 from closedform.model.functions import Program
 from closedform.model.inverse import Link
@@ -19,7 +19,10 @@ theorem(
 u\cdot\mathbf v = \mathbf d\cdot\mathbf e$.  Exactly one rotation takes $\mathbf d$ to $\mathbf u$
 and $\mathbf e$ to $\mathbf v$,
 $$R = \frac{\mathbf u\,(\mathbf e \times \mathbf m)^T + \mathbf v\,(\mathbf m \times \mathbf d)^T +
-(\mathbf u \times \mathbf v)\,\mathbf m^T}{\mathbf m\cdot\mathbf m}.$$""",
+(\mathbf u \times \mathbf v)\,\mathbf m^T}{\mathbf m\cdot\mathbf m}.$$
+It is the same with $\mathbf e - k\,\mathbf d$ and $\mathbf v - k\,\mathbf u$ instead of $\mathbf e$
+and $\mathbf v$, for any $k$.  With $k = \mathbf d\cdot\mathbf e / \mathbf d\cdot\mathbf d$ fewer
+digits cancel where $\mathbf d$ and $\mathbf e$ are nearly parallel.""",
     proof=r"""A rotation with $R\,\mathbf d = \mathbf u$ and $R\,\mathbf e = \mathbf v$ has
 $R\,\mathbf m = \mathbf u \times \mathbf v$.  The vectors $\mathbf d$, $\mathbf e$ and $\mathbf m$
 are a basis, so these three equations determine $R$.  The rows $(\mathbf e \times \mathbf m)^T$,
@@ -46,12 +49,14 @@ def two_vectors(
     """
     p, (d, e), (u, v) = program, given, turned
     start = len(p.body)
-    m = named(p, "m", d.cross(e))
+    along = named_in(p, "along_d", e.dot(d) / d.dot(d))
+    across, turned_across = named(p, "e_across", e - along * d), named(p, "v_across", v - along * u)
+    m = named(p, "m", d.cross(across))
     over = p.let("over_m", 1 / m.dot(m), nonnegative=True)
-    rows = [named(p, name, x.cross(y) * over) for name, x, y in (("g", e, m), ("h", m, d))]
+    rows = [named(p, name, x.cross(y) * over) for name, x, y in (("g", across, m), ("h", m, d))]
     rows.append(named(p, "k", m * over))
-    w = named(p, "w", u.cross(v))
-    made = u * rows[0].T + v * rows[1].T + w * rows[2].T
+    w = named(p, "w", u.cross(turned_across))
+    made = u * rows[0].T + turned_across * rows[1].T + w * rows[2].T
     value = sp.Matrix(3, 3, lambda i, j: p.let(f"{name}_{i + 1}{j + 1}", made[i, j]))
     equations = (rotation * d - u, rotation * e - v, rotation * d.cross(e) - u.cross(v))
     lemma = Lemma(

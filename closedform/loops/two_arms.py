@@ -41,7 +41,7 @@ from closedform.model.inverse import Inverse, Link
 from closedform.model.step import Step
 
 IN_LINE = "the three points of the hand are not in line"
-MET = "the ball of the strut is close to that of the arm"
+MET = "both balls are close to each other"
 NEARLY = "the end of the rod is close to the line of both balls"
 ON_ARM = (
     "Two arms end in balls on the hand, in the points b of the first two rows, and a rod leads "
@@ -139,15 +139,16 @@ def _forward(m: TwoArms, loop: Step) -> Posture:
     end, link = named_point(f, found, THIRD, _roles(m))
     links.append(link)
     turned = [named(f, name, x - b) for name, x in zip("uv", (c, end), strict=True)]
-    pair = [turned[0], turned[1]]
-    if second.along != 0:
-        pair[1] = named(f, "v_beside", turned[1] - second.along * turned[0])
-    link, R = two_vectors(f, second.basis, pair, m.pose[:3, :3])
-    roles: list[tuple[str, Any]] = [(r"\mathbf d", m.spans[0]), (r"\mathbf u", "b_2 - b_1")]
-    if m.strut:
-        roles += [(rf"\mathbf {x}", rf"{x}_{{\mathrm{{beside}}}}") for x in "ev"]
-    else:
-        roles += [(r"\mathbf e", m.spans[1]), (r"\mathbf v", "C - b_1")]
+    apart = require_triangle(f, second.spans, size, IN_LINE)
+    first, other = second.spans
+    length = f.let("length_d", sp.sqrt(square(first)), nonnegative=True)
+    area = f.let("area", sp.sqrt(square(first.cross(other))), nonnegative=True)
+    for value, meaning in ((length, MET), (area / length, NEARLY)):
+        f.determined(value, 2 * size, meaning, size=size)
+    link, R = two_vectors(f, second.spans, turned, m.pose[:3, :3])
+    d_, e_ = m.spans
+    roles: list[tuple[str, Any]] = [(r"\mathbf d", d_), (r"\mathbf e", e_)]
+    roles += [(rf"\mathbf {x}", f"{e} - b_1") for x, e in zip("uv", ("b_2", "C"), strict=True)]
     links.append(with_roles(link, roles))
     position = named(f, "p", b - R * m.places[0])
     links += [coordinate(x, e) for x, e in zip(m.pose[:3, 3], position, strict=True)]
@@ -167,7 +168,8 @@ def _forward(m: TwoArms, loop: Step) -> Posture:
             f"UNREACHABLE: the {'arm, the strut' if m.strut else 'arms'} or the rod do not reach.",
             *where_free([second.met]),
             FREE_POINT,
-            *second.apart,
+            f"SINGULAR too where {MET}, or {NEARLY}.",
+            *apart,
             NEAR,
         ),
     )
@@ -206,21 +208,16 @@ class _Second:
     at: sp.Matrix
     near: sp.Matrix
     """The other end of the rod."""
-    basis: Sequence[sp.Matrix]
-    """Two vectors of the hand in its frame, whose directions in space are known next."""
+    spans: Sequence[sp.Matrix]
+    """The vectors from the first ball to the other ends, in the frame of the hand."""
     sides: Sequence[sp.Symbol]
     """The distances of the end of the rod from both balls."""
-    apart: Sequence[str]
-    """Notes on the points of the hand."""
-    along: sp.Expr = sp.S.Zero
-    """How much of the first vector is taken off the second one, so that they are not in line."""
 
 
 def _on_arm(m: TwoArms, names: Naming, sigma: sp.Symbol) -> _Second:
     """An arm that ends in the second ball."""
     f = names.program
     spans = [named(f, name, e) for name, e in zip("de", m.spans, strict=True)]
-    apart = require_triangle(f, spans, names.size, IN_LINE)
     b, n = named(f, "b_1", m.driver.end()), named(f, "b_3", m.tie.end())
     between, *sides = (
         f.let(name, e, nonnegative=True)
@@ -233,7 +230,7 @@ def _on_arm(m: TwoArms, names: Naming, sigma: sp.Symbol) -> _Second:
     c = named(f, "b_2", b - met.rod)
     body = (*met.link.body, *f.body[start:])
     link = replace(met.link, body=body, means=dict(zip(c, arm.end(), strict=True)))
-    return _Second(met, link, b, c, n, spans, sides, apart)
+    return _Second(met, link, ball=b, at=c, near=n, spans=spans, sides=sides)
 
 
 def _on_strut(m: TwoArms, names: Naming, sigma: sp.Symbol) -> _Second:
@@ -250,17 +247,11 @@ def _on_strut(m: TwoArms, names: Naming, sigma: sp.Symbol) -> _Second:
     found = named(f, "d", strut.reached(met.value) - first)
     body = (*met.link.body, *f.body[start:])
     link = replace(met.link, body=body, means=dict(zip(found, d, strict=True)))
-    along = f.let("along", e.dot(found) / square(found))
-    beside = named(f, "e_beside", e - along * found)
-    apart = require_triangle(f, [found, beside], names.size, IN_LINE)
-    for name, x, meaning in (("d", found, MET), ("e", beside, NEARLY)):
-        length = f.let(f"length_{name}", sp.sqrt(square(x)), nonnegative=True)
-        f.determined(length, 2 * names.size, meaning, size=names.size)
     sides = [
         f.let(name, sp.sqrt(square(x)), nonnegative=True)
         for name, x in (("side_13", e), ("side_23", e - found))
     ]
-    return _Second(met, link, b, c, n, [found, beside], sides, apart, along)
+    return _Second(met, link, ball=b, at=c, near=n, spans=[found, e], sides=sides)
 
 
 def _rod(f: Program, tie: Strut | Slide | Crank) -> sp.Expr:

@@ -91,11 +91,7 @@ class TwoArms:
         u, v = c - b, THIRD - b
         rod = sp.sympify(self.tie.rod, strict=True)
         reach = square(u) - square(d)
-        x, y = e, v
-        if self.strut:  # less what is along d, which may be nearly all
-            along = e.dot(d) / square(d)
-            x, y = e - along * d, v - along * u
-        turned = (R * d - u, R * x - y, R * d.cross(x) - u.cross(y))
+        turned = (R * d - u, R * e - v, R * d.cross(e) - u.cross(v))
         return (
             -reach if self.strut else reach,  # as the lemma has it
             square(v) - square(e),

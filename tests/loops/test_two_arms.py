@@ -248,6 +248,25 @@ def test_a_hand_whose_three_points_are_nearly_in_line_is_singular(beside: tuple)
     assert SINGULAR not in status[1]
 
 
+@pytest.mark.parametrize(("away", "status"), [(0.005, OK), (0.001, SINGULAR)])
+def test_the_rotation_of_a_slim_hand_is_one(away: float, status: int, tmp_path: Path) -> None:
+    """Where rounding decides the turn about the line of both balls, the status says so."""
+    upright = (
+        f"upright = {{B = [0, 0, -0.12], C = [0, 0, 0.12], T = [{away}, 0, 0.02], W = [0, 0, 0]}}"
+    )
+    text = "\n".join(
+        upright if line.startswith("upright") else line for line in SUSPENSION.splitlines()
+    )
+    name = f"slim_{status}"
+    robot = derived(name, script_of(name, text, tmp_path), tmp_path)
+    T, found = robot.fk(drawn(np.array([0.6, 0.3]), 20_000, 5))
+    R = T[np.isin(found, (OK, SINGULAR))][:, :3, :3]
+    assert len(R) > 50
+    assert (found[np.isin(found, (OK, SINGULAR))] == status).all()
+    if status == OK:
+        assert np.abs(R @ R.swapaxes(-1, -2) - np.eye(3)).max() < 1e-12
+
+
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [

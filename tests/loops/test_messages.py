@@ -446,3 +446,9 @@ def test_one_degree_of_freedom_is_one(tmp_path: Path) -> None:
     text = KNEE.replace('at = "A"}', 'at = "A", driven = true}')
     with pytest.raises(TableError, match="it has 1 degree of freedom"):
         script_of("knee", text, tmp_path)
+
+
+def test_a_file_without_joints_says_so(tmp_path: Path) -> None:
+    text = 'hand = "P"\n[bodies]\nground = {A = [2, 0, 3]}\ncam = {P = [0, 0, 0]}\n[joints]\n'
+    with pytest.raises(TableError, match="no joint is driven"):
+        script_of("t", text, tmp_path)

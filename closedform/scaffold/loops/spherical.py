@@ -103,7 +103,7 @@ def _centre(loop: Loop) -> sp.Matrix | None:
         if j.kind != "revolute" or j.axis is None or not places:
             return None
         lines += [(place, j.axis) for place in places]
-    if loop.rods or loop.parallelograms or loop.dimensions != SPACE:
+    if loop.rods or loop.parallelograms or loop.dimensions != SPACE or not lines:
         return None
     (start, along), *others = lines
     crossed = [(place, axis, along.cross(axis)) for place, axis in others]

@@ -303,9 +303,9 @@ class Derivation(Shown):
         return any(f.name == "fk" for f in self.functions)
 
     def program(self) -> Program:
-        """A program whose names differ from those of joints and parameters."""
+        """A program whose names differ from those of joints, parameters and the task."""
         symbols = [p.symbol for p in self.parameters] + [j.symbol for j in self.joints]
-        return Program(taken=frozenset(map(str, symbols)))
+        return Program(taken=frozenset(map(str, [*symbols, *self.task])))
 
     def step(
         self,

@@ -241,3 +241,26 @@ def test_a_second_follower_on_a_driven_body_is_left_out(
             assert abs(np.linalg.norm([x - 0.05, y - 0.05, C[2] + 0.2]) - 0.23) < 1e-14
             closed += 1
     assert closed > 20
+
+
+@pytest.mark.parametrize("name", ["c", "R_2", "slide_2"])
+def test_a_hand_may_have_the_name_of_a_quantity_of_a_program(name: str, tmp_path: Path) -> None:
+    """The crank of a shaper, whose hand is the lever."""
+    text = (
+        'hand = "psi"\n[parameters]\ng = {value = "0.3"}\nr = {value = "0.1"}\n[bodies]\n'
+        'ground = {C = [0, 0], O = [0, "g"]}\ncrank = {P = ["r", "g"]}\nblock = {P = [0, 0]}\n'
+        "lever = {}\n[joints]\n"
+        'theta = {between = ["ground", "crank"], at = "O", driven = true}\n'
+        'psi = {between = ["ground", "lever"], at = "C"}\n'
+        'pin = {between = ["crank", "block"], at = "P"}\n'
+        's = {between = ["block", "lever"], at = "C", kind = "prismatic", axis = [1, 0]}\n'
+    ).replace("psi", name)
+    folder = f"named_{name}".lower()
+    lever = derived(folder, script_of(folder, text, tmp_path), tmp_path)
+    psi, status = lever.fk([0.4])
+    assert not status.any()
+    pin = 0.3j + 0.1 * np.exp(0.4j)
+    assert np.abs(np.imag(pin * np.exp(-1j * psi[:, 0]))).max() < 1e-15
+    q, status = lever.ik(psi)
+    assert not status.any()
+    assert np.allclose(np.abs(q - 0.4).min(axis=(1, 2)), 0, atol=1e-12)

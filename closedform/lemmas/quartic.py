@@ -271,7 +271,8 @@ def _part(
     )
     zero = p.vanishes(f"no_{tag}", sp.Abs(a), 0, "the lines are parallel to an axis")
     long = p.let(f"long_{tag}", choose(zero, 1, a / sp.Abs(a)) * sp.sqrt(sp.Abs(rest)))
-    short = p.let(f"root_{tag}", choose(small, a / long, sp.sqrt(square)))
+    by = p.let(f"by_{tag}", choose(small, long, 1))
+    short = p.let(f"root_{tag}", choose(small, a / by, sp.sqrt(square)))
     none = p.vanishes(f"none_{tag}", sp.Abs(short), 0, "the lines are parallel to an axis")
     over = choose(none, 0, a / short)
     return short, p.let(f"over_{tag}", choose(small, long, over)), small

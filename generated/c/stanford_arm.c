@@ -1103,9 +1103,10 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const real_t one,
     const real_t t5 = cf_rounded(single, one, T34 * T34);
     const real_t size = cf_abs(d2) + cf_sqrt(t5 + t1);
     const real_t t6 = CLOSEDFORM_VANISHING * size;
-    const real_t t7 = CLOSEDFORM_C(1.0) / cf_divisor(single, h1 <= t6, h1 * (below1 + above1));
-    const real_t t8 = cf_rounded(single, one, T14 * t4 * t7);
     const real_t root1 = cf_sqrt(below1 * above1);
+    const real_t r_boom = cf_sqrt(t5 + cf_rounded(single, one, root1 * root1));
+    const real_t t7 = CLOSEDFORM_C(1.0) / cf_divisor(single, (h1 <= t6) | (r_boom <= t6), h1 * (below1 + above1));
+    const real_t t8 = cf_rounded(single, one, T14 * t4 * t7);
     const real_t t9 = CLOSEDFORM_C(2.0) * root1;
     const real_t t10 = cf_rounded(single, one, t7 * (T24 * t9));
     const real_t s1 = t8 + t10;
@@ -1138,7 +1139,6 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const real_t one,
     const int t36 = (t35 <= t2) & (t35 <= t3);
     const int unreachable = !t36;
     const real_t t37 = cf_poison(single, invalid | unreachable);
-    const real_t r_boom = cf_sqrt(t5 + cf_rounded(single, one, root1 * root1));
     const real_t t38 = r_boom + t37;
     const real_t t39 = cf_rounded(single, one, T13 * s1) + cf_rounded(single, one, T23 * t13);
     const real_t t40 = CLOSEDFORM_C(1.0) / cf_divisor(single, r_boom <= t6, r_boom);

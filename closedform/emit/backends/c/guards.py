@@ -47,6 +47,7 @@ def given_up_where(lowered: Lowered) -> Iterator[tuple[int, tuple[Node, ...]]]:
         return
     place = {node.id: k for k, node in enumerate(lowered.schedule())}
     conditions = list(_raised(lowered))
+    parts = {c.id: {n.id for n in reachable([c.args[0]])} for c in conditions}
     needs = {c.id: {n.id for n in reachable([c]) if n.op in ("div", "atan2")} for c in conditions}
     for node in lowered.schedule():
         if node.op != "div" or node.args[1].op == "const":
@@ -63,6 +64,11 @@ def given_up_where(lowered: Lowered) -> Iterator[tuple[int, tuple[Node, ...]]]:
                 found = max(vanish, key=lambda c: place[c.args[0].id])
                 limit = {n.id for n in reachable([found.args[1]])}
                 nearest |= {c.id: c for c in known if c is found or c.args[0].id in limit}
+                # a length may count as zero by another value that is made of the same ones
+                last = {c: max((place[k] for k in near & parts[c.id]), default=-1) for c in known}
+                most = max(last.values())
+                if most > place[found.args[0].id]:
+                    nearest |= {c.id: c for c in known if last[c] == most}
         if nearest:
             yield node.id, tuple(nearest.values())
 

@@ -1,11 +1,12 @@
 """Arms from tables with a proposed inverse, compared with plain numbers and Newton's method."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from arms import OK, SINGULAR, link, misses, newton
 from chains import arm, printed, solved
 
@@ -65,6 +66,20 @@ class Proposals:
         near = rng.choice([0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3], q.shape)
         special = rng.integers(-6, 7, q.shape) * np.pi / rng.choice([2, 6], q.shape) + near
         return np.where((rng.random(q.shape) < 0.5) & (np.arange(3000) > 500)[:, None], special, q)
+
+    def tests(self) -> tuple[Callable[[str, Path], None], Callable[[str, Path], None]]:
+        """Those that every arm passes: it reaches each pose, and no posture is left out."""
+        each = pytest.mark.parametrize("name", self.arms)
+
+        @each
+        def every_pose(name: str, folder: Path) -> None:
+            self.reach_every_pose(name, folder)
+
+        @each
+        def no_other(name: str, folder: Path) -> None:
+            self.are_all(name, folder)
+
+        return every_pose, no_other
 
     def reach_every_pose(self, name: str, folder: Path) -> None:
         q = self.postures(name, np.random.default_rng(1))

@@ -22,6 +22,12 @@ def chord(lengths: Plane, aside: sp.Expr) -> Plane:
     return near, far
 
 
+def on_side(ahead: sp.Basic, near: sp.Expr, far: sp.Expr) -> Plane:
+    """From where to where what is so near and so far is, ahead of its start or behind it."""
+    low, high = (sp.Piecewise((a, ahead), (-b, True)) for a, b in ((near, far), (far, near)))
+    return low, high
+
+
 def plain(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Basic:
     """A condition that a value vanishes, for values that only the tangent case computes."""
     return value <= scale * VANISHING

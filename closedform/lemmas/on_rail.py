@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from closedform.lemmas.chain import Chain
-from closedform.lemmas.offset import Plane, chord
+from closedform.lemmas.offset import Plane, chord, on_side
 from closedform.lemmas.pairs import direction
 from closedform.lemmas.zyz import Reaching
 from closedform.model.functions import sign_of
@@ -95,7 +95,7 @@ class ReachingOnRail(Reaching):
             let(f"{n}_{name}", e)
             for n, e in zip(("near", "far"), chord(self.lengths, sp.Abs(self.height)), strict=True)
         )
-        low, high = (sp.Piecewise((a, ahead), (-b, True)) for a, b in ((near, far), (far, near)))
+        low, high = on_side(ahead, near, far)
         return self.start + low, self.start + high
 
     def _toward(self, out: sp.Expr, side: sp.Expr, name: str) -> Pair:

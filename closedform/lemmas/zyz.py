@@ -12,7 +12,7 @@ from closedform.algebra.solutions import rotation_parametrisation
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
 from closedform.lemmas.links import named
-from closedform.lemmas.offset import Offset, chord
+from closedform.lemmas.offset import Offset, chord, on_side
 from closedform.lemmas.pairs import direction
 from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.model.functions import Program, choose, real
@@ -337,9 +337,7 @@ class ReachingInPlane(ReachingAcross):
         return self._on_side(there + self.beside)
 
     def _on_side(self, where: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-        near, far = chord(self.lengths, sp.Abs(self.height))
-        ahead = where >= 0
-        low, high = (sp.Piecewise((a, ahead), (-b, True)) for a, b in ((near, far), (far, near)))
+        low, high = on_side(where >= 0, *chord(self.lengths, sp.Abs(self.height)))
         return low - self.beside, high - self.beside
 
 

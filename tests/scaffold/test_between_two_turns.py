@@ -1,8 +1,5 @@
 """Four joints that turn about one direction or slide, between two that turn across it."""
 
-from pathlib import Path
-
-import pytest
 import sympy as sp
 from proposals import Proposals
 from sympy import pi
@@ -50,18 +47,4 @@ ARMS = {
     ),
 }  # fmt: skip
 PROPOSALS = Proposals(ARMS)
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("between_two")
-
-
-@pytest.mark.parametrize("name", ARMS)
-def test_every_pose_of_the_arm_is_reached(name: str, folder: Path) -> None:
-    PROPOSALS.reach_every_pose(name, folder)
-
-
-@pytest.mark.parametrize("name", ARMS)
-def test_newton_finds_no_other_posture(name: str, folder: Path) -> None:
-    PROPOSALS.are_all(name, folder)
+test_every_pose_of_the_arm_is_reached, test_newton_finds_no_other_posture = PROPOSALS.tests()

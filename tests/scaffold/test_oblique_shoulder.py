@@ -37,11 +37,6 @@ TOOL = (0.08, 0, 0)
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("shoulders")
-
-
-@pytest.fixture(scope="module")
 def exoskeleton(folder: Path) -> ModuleType:
     links, joints = ['<link name="l0"/>'], []
     for k, (axis, place) in enumerate([*EXOSKELETON, (None, TOOL)], 1):
@@ -76,14 +71,7 @@ def pose(q: np.ndarray) -> np.ndarray:
     return T
 
 
-@pytest.mark.parametrize("name", ARMS)
-def test_every_pose_of_the_arm_is_reached(name: str, folder: Path) -> None:
-    PROPOSALS.reach_every_pose(name, folder)
-
-
-@pytest.mark.parametrize("name", ARMS)
-def test_newton_finds_no_other_posture(name: str, folder: Path) -> None:
-    PROPOSALS.are_all(name, folder)
+test_every_pose_of_the_arm_is_reached, test_newton_finds_no_other_posture = PROPOSALS.tests()
 
 
 def test_what_is_ok_reaches_and_nothing_is_lost(exoskeleton: ModuleType) -> None:

@@ -3,9 +3,6 @@
 The last of those two, or the axis after them, may meet another one.
 """
 
-from pathlib import Path
-
-import pytest
 import sympy as sp
 from proposals import Proposals
 from sympy import pi
@@ -27,19 +24,5 @@ ARMS = {
     ),
 }  # fmt: skip
 PROPOSALS = Proposals(ARMS)
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("parallel")
-
-
-@pytest.mark.parametrize("name", ARMS)
-def test_every_pose_of_the_arm_is_reached(name: str, folder: Path) -> None:
-    """Code for the first could not be printed; the last lost poses where three solutions meet."""
-    PROPOSALS.reach_every_pose(name, folder)
-
-
-@pytest.mark.parametrize("name", ARMS)
-def test_newton_finds_no_other_posture(name: str, folder: Path) -> None:
-    PROPOSALS.are_all(name, folder)
+test_every_pose_of_the_arm_is_reached, test_newton_finds_no_other_posture = PROPOSALS.tests()
+"""Code for the first could not be printed; the last lost poses where three solutions meet."""

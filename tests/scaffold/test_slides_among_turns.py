@@ -57,21 +57,7 @@ ARMS = {
     ),
 }  # fmt: skip
 PROPOSALS = Proposals(ARMS)
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("slides_among")
-
-
-@pytest.mark.parametrize("name", ARMS)
-def test_every_pose_of_the_arm_is_reached(name: str, folder: Path) -> None:
-    PROPOSALS.reach_every_pose(name, folder)
-
-
-@pytest.mark.parametrize("name", ARMS)
-def test_newton_finds_no_other_posture(name: str, folder: Path) -> None:
-    PROPOSALS.are_all(name, folder)
+test_every_pose_of_the_arm_is_reached, test_newton_finds_no_other_posture = PROPOSALS.tests()
 
 
 @pytest.mark.parametrize("name", ARMS)

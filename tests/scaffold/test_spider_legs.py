@@ -1,8 +1,5 @@
 """Legs of walkers: four joints, the second and third meet, the last is parallel to the third."""
 
-from pathlib import Path
-
-import pytest
 import sympy as sp
 from proposals import Proposals
 from sympy import pi
@@ -16,19 +13,5 @@ ARMS = {
     "opposite axes": ([(A, pi / 2, D), (0, pi / 2, 0), (B, pi, 0), (C, 0, D)], STRUCTURE, 2),
 }
 PROPOSALS = Proposals(ARMS)
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("legs")
-
-
-@pytest.mark.parametrize("name", ARMS)
-def test_every_pose_of_the_arm_is_reached(name: str, folder: Path) -> None:
-    """The hip was solved by a point that may be on its axis; then poses were lost."""
-    PROPOSALS.reach_every_pose(name, folder)
-
-
-@pytest.mark.parametrize("name", ARMS)
-def test_newton_finds_no_other_posture(name: str, folder: Path) -> None:
-    PROPOSALS.are_all(name, folder)
+test_every_pose_of_the_arm_is_reached, test_newton_finds_no_other_posture = PROPOSALS.tests()
+"""The hip was solved by a point that may be on its axis; then poses were lost."""

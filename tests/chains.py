@@ -3,12 +3,15 @@
 from pathlib import Path
 from typing import Any
 
+import pytest
 import sympy as sp
 
 import closedform
+from closedform.check.clibrary import CLibrary, compiler
+from closedform.check.failures import UnavailableError
 from closedform.check.runners.python import module
 from closedform.emit.backend import Mechanism
-from closedform.emit.backends import numpy
+from closedform.emit.backends import c, numpy
 from closedform.lemmas.chain import Chain
 from closedform.mechanics.arm import Serial, from_dh
 from closedform.model.derivation import Derivation, Paper
@@ -56,4 +59,15 @@ def printed(d: Derivation, folder: Path) -> Any:
     return module(folder / "numpy", d.name)
 
 
-__all__ = ["arm", "printed", "run", "solved"]
+def compiled(d: Derivation, folder: Path) -> CLibrary:
+    """The C of a derivation, or a skipped test if there is no compiler."""
+    pages = c.BACKEND.pages(Mechanism(d, Proof(d.name, "own", (), 0, ()))).files
+    write(folder, {**pages, **c.BACKEND.shared([])})
+    try:
+        compiler()
+    except UnavailableError as error:
+        pytest.skip(str(error))
+    return CLibrary(d, folder / "c", folder)
+
+
+__all__ = ["arm", "compiled", "printed", "run", "solved"]

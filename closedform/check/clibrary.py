@@ -78,30 +78,30 @@ class CLibrary:
     def _run(
         self, one: Any, batch: Any, function: Function, inputs: Sequence[Any], params: Any
     ) -> Any:
-        planes = [self._planes(x, a.size) for x, a in zip(inputs, function.inputs, strict=True)]
-        n = planes[0].shape[1] if planes else 1
+        rows = [self._rows(x, a.size) for x, a in zip(inputs, function.inputs, strict=True)]
+        n = len(rows[0]) if rows else 1
         fields = (self._real * self._fields)(*map(float, params))
         results, outputs = results_of(function), []
         for result in results:
             dtype = self.dtype if result.kind == "real" else np.uint8
-            outputs.append(np.empty((prod(result.shape), n), dtype))
-        arguments: list[Any] = [ctypes.c_size_t(n), ctypes.byref(fields)]
-        for array in (*planes, *outputs):
-            arguments += [array.ctypes.data_as(ctypes.c_void_p), ctypes.c_size_t(n)]
+            outputs.append(np.empty((n, prod(result.shape)), dtype))
+        together = [np.ascontiguousarray(array[::2].T) for array in (*rows, *outputs)]
+        count = ctypes.c_size_t((n + 1) // 2)
+        arguments: list[Any] = [count, ctypes.byref(fields)]
+        for plane in together:
+            arguments += [plane.ctypes.data_as(ctypes.c_void_p), count]
         batch(*arguments)
-        alone = [np.ascontiguousarray(array.T[1::2]) for array in (*planes, *outputs)]
-        for k in range(n // 2):
-            places = (a.ctypes.data + k * a.strides[0] for a in alone)
+        for output, plane in zip(outputs, together[len(rows) :], strict=True):
+            output[::2] = plane.T
+        for k in range(1, n, 2):
+            places = (a.ctypes.data + k * a.strides[0] for a in (*rows, *outputs))
             one(ctypes.byref(fields), *map(ctypes.c_void_p, places))
-        for output, rows in zip(outputs, alone[len(planes) :], strict=True):
-            output[:, 1::2] = rows.T
         lead = (n,) if inputs else ()
-        shaped = [o.T.reshape((*lead, *r.shape)) for o, r in zip(outputs, results, strict=True)]
+        shaped = [o.reshape((*lead, *r.shape)) for o, r in zip(outputs, results, strict=True)]
         return shaped[0] if len(shaped) == 1 else tuple(shaped)
 
-    def _planes(self, value: Any, size: int) -> np.ndarray[Any, Any]:
-        array = np.asarray(value, self.dtype)
-        return np.ascontiguousarray(array.reshape(-1, size).T)
+    def _rows(self, value: Any, size: int) -> np.ndarray[Any, Any]:
+        return np.ascontiguousarray(np.asarray(value, self.dtype).reshape(-1, size))
 
 
 def _compiled(name: str, sources: Path, scratch: Path, single: bool) -> Path:

@@ -31,7 +31,7 @@ class SlidingStrut:
     on_hand: Sequence[Any]
     direction: Sequence[Any]
 
-    rod = 0
+    rod: ClassVar[int] = 0
     """It joins the hand to the ground without a rod."""
 
     @property

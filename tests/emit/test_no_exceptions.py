@@ -13,17 +13,11 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy as sp
-from chains import arm, solved
-from places import ROOT
+from chains import arm, compiled, solved
 from proposals import forward
 from sympy import pi
 
-from closedform.check.clibrary import CLibrary, compiler
-from closedform.check.failures import UnavailableError
-from closedform.emit.backend import Mechanism
-from closedform.emit.backends import c
-from closedform.pipeline.run import write
-from closedform.proof.prove import Proof
+from closedform.check.clibrary import CLibrary
 from closedform.scaffold.chains.propose import propose
 
 TRAPPED = 0x1 | 0x4 | 0x8
@@ -47,14 +41,6 @@ def hostile(joints: int, count: int) -> np.ndarray:
     return np.where(rng.random(q.shape) < 0.6, turns, q)
 
 
-def compiled(d: Any, sources: Path, folder: Path) -> CLibrary:
-    try:
-        compiler()
-    except UnavailableError as error:
-        pytest.skip(str(error))
-    return CLibrary(d, sources, folder)
-
-
 @linux
 @pytest.mark.parametrize("name", ARMS)
 def test_an_arm_from_a_table_raises_nothing(name: str, tmp_path: Path) -> None:
@@ -62,9 +48,7 @@ def test_an_arm_from_a_table_raises_nothing(name: str, tmp_path: Path) -> None:
     d, serial = arm(rows, **angles)
     solved(d, serial, propose(serial).source)
     serial.export(d)
-    pages = c.BACKEND.pages(Mechanism(d, Proof(d.name, "own", (), 0, ()))).files
-    write(tmp_path, {**pages, **c.BACKEND.shared([])})
-    library = compiled(d, tmp_path / "c", tmp_path)
+    library = compiled(d, tmp_path)
     plain = [[float(sp.sympify(e).subs({K: 1, J: 1})) for e in row] for row in rows]
     T = forward(plain, hostile(6, 3000))
     T[::7, :3, 3] *= 3
@@ -76,7 +60,7 @@ def test_an_arm_from_a_table_raises_nothing(name: str, tmp_path: Path) -> None:
 def test_an_arm_with_a_given_joint_raises_nothing(tmp_path: Path) -> None:
     code = importlib.import_module("closedform.generated.numpy.franka_arm")
     d = importlib.import_module("closedform.derivations.franka_arm").d
-    library = compiled(d, ROOT / "generated/c", tmp_path)
+    library = compiled(d, tmp_path)
     q, parameters = hostile(7, 6000), [float(p) for p in code.Parameters()]
     given = zip(code.fk(q), q[:, 6:], strict=True)
     assert not [k for k, x in enumerate(given) if raised(library, d.name, parameters, *x)]

@@ -7,16 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 from arms import OK, SINGULAR, misses
-from chains import arm, printed, solved
+from chains import arm, compiled, printed, solved
 from proposals import forward
 from sympy import Rational, pi
 
-from closedform.check.clibrary import CLibrary, compiler
-from closedform.check.failures import UnavailableError
-from closedform.emit.backend import Mechanism
-from closedform.emit.backends import c
-from closedform.pipeline.run import write
-from closedform.proof.prove import Proof
 from closedform.scaffold.chains.propose import propose
 
 H, THIRD = Rational(1, 2), Rational(1, 3)
@@ -63,14 +57,7 @@ def test_no_posture_is_lost_where_a_fourth_axis_is_parallel(
 @pytest.mark.parametrize("name", ARMS)
 def test_one_call_gives_what_a_batch_gives(name: str, tmp_path: Path) -> None:
     """They are different programs; a call once divided by 1 instead of what is not zero."""
-    try:
-        compiler()
-    except UnavailableError as error:
-        pytest.skip(str(error))
-    d = made(name)
-    pages = c.BACKEND.pages(Mechanism(d, Proof(d.name, "own", (), 0, ()))).files
-    write(tmp_path, {**pages, **c.BACKEND.shared([])})
-    library = CLibrary(d, tmp_path / "c", tmp_path)
+    library = compiled(made(name), tmp_path)
     q = np.random.default_rng(4).uniform(-np.pi, np.pi, (500, 6))
     T = np.repeat(forward(ARMS[name], q), 2, axis=0)
     answers, status = library.function("ik")(T, ())

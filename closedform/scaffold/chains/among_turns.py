@@ -15,7 +15,15 @@ import sympy as sp
 
 from closedform.mechanics.frames import rotation
 from closedform.scaffold.chains.chainlinks import Single, Singles, plain
-from closedform.scaffold.chains.maker import Z, ahead_of_lift, heading, point, sine_cosine, times
+from closedform.scaffold.chains.maker import (
+    Z,
+    ahead_of_lift,
+    heading,
+    point,
+    simple,
+    sine_cosine,
+    times,
+)
 from closedform.scaffold.chains.slides import Slides
 from closedform.scaffold.chains.subproblems import SubproblemMaker
 from closedform.scaffold.chains.wrists import is_normal
@@ -37,9 +45,9 @@ class Stretch:
 
     def extend(self, joint: Single) -> None:
         if joint.slides:
-            self.slides.append((joint, _simple(self.end * Z)))
-        self.shift = _simple(self.shift + self.end * joint.shift)
-        self.end = _simple(self.end * joint.end)
+            self.slides.append((joint, simple(self.end * Z)))
+        self.shift = simple(self.shift + self.end * joint.shift)
+        self.end = simple(self.end * joint.end)
 
 
 class AmongTurnsMaker(SubproblemMaker):
@@ -89,7 +97,7 @@ class AmongTurnsMaker(SubproblemMaker):
         stretches = self._stretches(moved)
         before, after = stretches[:2]
         (_, a), (_, b) = (*before.slides, *after.slides)
-        a = _simple(before.end.T * a)
+        a = simple(before.end.T * a)
         self.require(
             a[2] == b[2] == 0 and not (after.end * Z)[:2, 0].is_zero_matrix,
             "its slides are not in the plane of the turn between them",
@@ -131,9 +139,9 @@ class AmongTurnsMaker(SubproblemMaker):
     def _rotation(self, arm: Singles, stretches: Sequence[Stretch]) -> str:
         """The rotation that is left to the joints that turn."""
         R = self.centre(arm)
-        M = times(_simple(stretches[0].end.T * arm.lead[:3, :3].T), R)
+        M = times(simple(stretches[0].end.T * arm.lead[:3, :3].T), R)
         self.add(f"M = ik.matrix('M', {M})")
-        return self.without_tool(_simple(stretches[-1].end * arm.tool[:3, :3]), "M")
+        return self.without_tool(simple(stretches[-1].end * arm.tool[:3, :3]), "M")
 
     def _stretches(self, arm: Singles) -> list[Stretch]:
         """What is before, between and after the joints that turn; not the motion to the tool."""
@@ -187,8 +195,8 @@ class AmongTurnsMaker(SubproblemMaker):
         """Solve a slide along ``moved`` by what is normal to the ``fixed`` directions."""
         others = "the other slides" if len(fixed) > 1 else "the other slide"
         if len(fixed) > 1:
-            normal = _simple(fixed[0].cross(fixed[1]))
-            normal = _simple(normal / sp.sqrt(normal.dot(normal)))
+            normal = simple(fixed[0].cross(fixed[1]))
+            normal = simple(normal / sp.sqrt(normal.dot(normal)))
             self.add(f"across = {source(normal)}.dot(moved)")
             k, c = "across**2", f"across*{source(normal)}.dot(q)"
             meaning = f"{joint.joint} slides in the plane of {others}"
@@ -200,10 +208,6 @@ class AmongTurnsMaker(SubproblemMaker):
         value, sign = f"{joint.joint}_", "" if sense > 0 else "-"
         self.solve("quotient", f"{joint.joint}, {k}, {sign}{c}, meaning='{meaning}'", value)
         self.vector("q", f"q - {sign}{value}*moved", "q_fixed")
-
-
-def _simple(value: sp.Matrix) -> sp.Matrix:
-    return sp.Matrix(value).applyfunc(sp.simplify)
 
 
 __all__ = ["AmongTurnsMaker"]

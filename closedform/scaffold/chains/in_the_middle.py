@@ -13,7 +13,15 @@ from dataclasses import replace
 import sympy as sp
 
 from closedform.scaffold.chains.chainlinks import Single, Singles
-from closedform.scaffold.chains.maker import Z, ahead_of_lift, norm, point, sine_cosine, times
+from closedform.scaffold.chains.maker import (
+    Z,
+    ahead_of_lift,
+    norm,
+    point,
+    simple,
+    sine_cosine,
+    times,
+)
 from closedform.scaffold.chains.one_direction import COUNTED, Block, OneDirectionMaker
 from closedform.scaffold.chains.wrists import is_normal
 from closedform.scaffold.source import source
@@ -136,8 +144,4 @@ class MiddleMaker(OneDirectionMaker):
         self.more = ", reaching=reaching"
 
 
-def simple(value: sp.Matrix) -> sp.Matrix:
-    return sp.Matrix(value).applyfunc(sp.simplify)
-
-
-__all__ = ["MiddleMaker", "simple"]
+__all__ = ["MiddleMaker"]

@@ -229,6 +229,11 @@ def heading(v: Sequence[Any]) -> Any:
     return sp.atan2(y, x)
 
 
+def simple(value: sp.Matrix) -> sp.Matrix:
+    """A matrix with each entry simplified."""
+    return sp.Matrix(value).applyfunc(sp.simplify)
+
+
 def ahead_of_lift(axis: sp.Matrix) -> Any:
     """How far the first angle of a wrist is ahead of its joint, from the axis after that.
 
@@ -251,6 +256,7 @@ __all__ = [
     "heading",
     "norm",
     "point",
+    "simple",
     "sine_cosine",
     "times",
     "turning",

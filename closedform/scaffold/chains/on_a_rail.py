@@ -12,8 +12,8 @@ from collections.abc import Sequence
 import sympy as sp
 
 from closedform.scaffold.chains.chainlinks import Single, Singles, plain
-from closedform.scaffold.chains.in_the_middle import MiddleMaker, simple
-from closedform.scaffold.chains.maker import Z, point, times
+from closedform.scaffold.chains.in_the_middle import MiddleMaker
+from closedform.scaffold.chains.maker import Z, point, simple, times
 from closedform.scaffold.chains.one_direction import Block
 from closedform.scaffold.chains.wrists import is_normal
 from closedform.scaffold.source import source

@@ -22,6 +22,7 @@ from closedform.scaffold.chains.maker import (
     followed,
     norm,
     point,
+    simple,
     sine_cosine,
     times,
     turning,
@@ -68,10 +69,10 @@ class Block:
         for joint in map(plain, joints):
             if not joint.slides:
                 break
-            lead = _simple(lead * joint.end)
+            lead = simple(lead * joint.end)
         frame, turns, levels = lead.T, [], [Level(sp.zeros(3, 1))]
         for joint in map(plain, joints):
-            axis, level = _simple(frame * Z), levels[-1]
+            axis, level = simple(frame * Z), levels[-1]
             if joint.slides:
                 level = replace(level, slides=(*level.slides, (joint, axis)))
             elif axis[:2, 0].is_zero_matrix:
@@ -81,8 +82,8 @@ class Block:
                 return None
             if not joint.slides:
                 levels.append(level)
-            levels[-1] = replace(level, shift=_simple(level.shift + frame * joint.shift))
-            frame = _simple(frame * joint.end)
+            levels[-1] = replace(level, shift=simple(level.shift + frame * joint.shift))
+            frame = simple(frame * joint.end)
         return cls(tuple(joints), lead, tuple(turns), tuple(levels), frame)
 
     @property
@@ -106,7 +107,7 @@ class Block:
     def normal(self) -> sp.Matrix:
         """What is normal to one or two slides, the direction of the turns if there is only one."""
         (_, _, first), *others = self.slides
-        return _simple(others[0][2].cross(first) if others else Z.cross(first))
+        return simple(others[0][2].cross(first) if others else Z.cross(first))
 
     @property
     def reach(self) -> tuple[sp.Expr, ...]:
@@ -134,7 +135,7 @@ class OneDirectionMaker(SixMaker):
         R = self.centre(arm)
         if block.lead != sp.eye(3):
             self.vector("p", times(block.lead.T, "p"), "p1")
-        lead = _simple(arm.lead[:3, :3] * block.lead)
+        lead = simple(arm.lead[:3, :3] * block.lead)
         self._name_rotation(arm, times(lead.T, R))
         if not block.levels[0].shift.is_zero_matrix:
             self.vector("p", f"p - {source(block.levels[0].shift)}", "p2")
@@ -226,9 +227,9 @@ class OneDirectionMaker(SixMaker):
         if start:
             one = joints[start - 1]
             shift, end = one.shift + one.end * moved[:3, 3], one.end * block.lead
-            joints[start - 1] = replace(one, shift=_simple(shift), end=_simple(end))
+            joints[start - 1] = replace(one, shift=simple(shift), end=simple(end))
         else:
-            lead = _simple(lead * moved)
+            lead = simple(lead * moved)
         view = replace(arm, joints=tuple(joints), lead=lead)
         return self.parallel_middle(view) if start else self.parallel_first(view)
 
@@ -310,7 +311,7 @@ class OneDirectionMaker(SixMaker):
     def _one_before(self, arm: Singles, block: Block) -> Single:
         """The first joint, which turns the others; its motion ends in the frame of the block."""
         one = arm.joints[0]
-        end = _simple(one.end * block.lead)
+        end = simple(one.end * block.lead)
         self.require(
             not one.slides
             and not (end * Z)[:2, 0].is_zero_matrix
@@ -319,7 +320,7 @@ class OneDirectionMaker(SixMaker):
             "The joint before them has to turn about another direction, and their slides have to "
             "be normal to theirs.",
         )
-        return replace(one, shift=_simple(one.shift + end * block.levels[0].shift), end=end)
+        return replace(one, shift=simple(one.shift + end * block.levels[0].shift), end=end)
 
     def _name_rotation(self, arm: Singles, M: str) -> None:
         """Name the rotation that the target leaves to the joints that turn."""
@@ -351,7 +352,7 @@ class OneDirectionMaker(SixMaker):
             independent = len(levels) == 1 and len(slides) in ((2,) if turns == 1 else (1, 2))
             if independent:
                 across = block.normal[:2, 0] if turns == 2 else block.normal[2:, 0]
-                independent = not _simple(across).is_zero_matrix
+                independent = not simple(across).is_zero_matrix
         self.require(
             turns in count and independent,
             f"{named} are not links and slides of this kind",
@@ -370,7 +371,7 @@ class OneDirectionMaker(SixMaker):
         axes = [block.end * Z, *(joint.end * Z for joint in others[:-1])]
         self.require(
             not any(joint.slides for joint in others)
-            and not any(_simple(axis[:2, 0]).is_zero_matrix for axis in axes),
+            and not any(simple(axis[:2, 0]).is_zero_matrix for axis in axes),
             "the other joints do not turn about other directions",
             "Beside joints that turn about one direction, neighbours must not be parallel.",
         )
@@ -466,7 +467,7 @@ class OneDirectionMaker(SixMaker):
                 "    return Reaching.turning(ik, (p[0], p[1]), links, offset, lever=ik.size)",
             ]
         ((level, *_), *_), n = block.across, block.normal / norm(block.normal[:2, 0])
-        moved, p, carried = _simple(ahead.T * n), point("p"), point("carried")
+        moved, p, carried = simple(ahead.T * n), point("p"), point("carried")
         sine, cosine = turning(moved, p) if level else (-e for e in turning(carried, n))
         beside = -moved.dot(carried) if level else n.dot(p)
         target = f"({source(cosine)}, {source(sine)}), {source(beside)}, {lengths[0]}"
@@ -583,10 +584,6 @@ class OneDirectionMaker(SixMaker):
         slides = "two slides" if len(block.slides) > 1 else "a slide"
         more = "two more" if len(others) > 1 else "one more"
         return f"{turns}, {slides} and {more}"
-
-
-def _simple(value: sp.Matrix) -> sp.Matrix:
-    return sp.Matrix(value).applyfunc(sp.simplify)
 
 
 __all__ = ["OneDirectionMaker"]

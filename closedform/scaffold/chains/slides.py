@@ -12,7 +12,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.scaffold.chains.chainlinks import Single, parallel, plain
-from closedform.scaffold.chains.maker import Maker, Solved, Z, point, times, turning
+from closedform.scaffold.chains.maker import Maker, Solved, Z, point, simple, times, turning
 from closedform.scaffold.chains.proposal import NoChainError
 from closedform.scaffold.source import source
 
@@ -55,7 +55,7 @@ class Slides:
         return Solved("a slide", [("", one.end)], rest)
 
     def _rp(self, one: Single, two: Single) -> Solved:
-        c, b = one.shift + one.end * two.shift, _simple(one.end * Z)
+        c, b = one.shift + one.end * two.shift, simple(one.end * Z)
         if b[:2, 0].is_zero_matrix:
             self._slide(two, (point("p")[2] - c[2]) * b[2])
             pair = self._rotate(one, source(c[:2, 0]), "p")
@@ -69,7 +69,7 @@ class Slides:
         return Solved("a turret and a slide", [(pair, one.end), ("", two.end)], rest)
 
     def _pr(self, one: Single, two: Single) -> Solved:
-        a, u = _simple(one.end.T * Z), two.shift
+        a, u = simple(one.end.T * Z), two.shift
         self._vector("q", times(one.end.T, f"(p - {source(one.shift)})"))
         q = point("q")
         if a[2] != 0:
@@ -88,16 +88,16 @@ class Slides:
     # Three joints
 
     def _ppp(self, one: Single, two: Single, three: Single) -> Solved:
-        G = _simple(one.end * two.end)
+        G = simple(one.end * two.end)
         self.linear("p", one.shift + one.end * two.shift + G * three.shift, (
             (one, Z), (two, one.end * Z), (three, G * Z),
         ))  # fmt: skip
         return Solved("gantry", [("", j.end) for j in self.joints])
 
     def _rpp(self, one: Single, two: Single, three: Single) -> Solved:
-        a, b = _simple(one.end * Z), _simple(one.end * two.end * Z)
+        a, b = simple(one.end * Z), simple(one.end * two.end * Z)
         c = one.shift + one.end * (two.shift + two.end * three.shift)
-        n = _simple(a.cross(b))
+        n = simple(a.cross(b))
         self._require_turning(n, one, "its two slides are normal to its first axis")
         pair = self._turn(one, n, "p", n.dot(c))
         self._vector("q", f"turned({pair}).T * p")
@@ -105,9 +105,9 @@ class Slides:
         return Solved("a turret and two slides", [(pair, one.end), ("", two.end), ("", three.end)])
 
     def _ppr(self, one: Single, two: Single, three: Single) -> Solved:
-        a, b, G = Z, _simple(one.end * Z), _simple(one.end * two.end)
-        c, n = one.shift + one.end * two.shift, _simple(Z.cross(b))
-        g = _simple(G.T * n)
+        a, b, G = Z, simple(one.end * Z), simple(one.end * two.end)
+        c, n = one.shift + one.end * two.shift, simple(Z.cross(b))
+        g = simple(G.T * n)
         self._require_turning(g, three, "axis 3 is normal to its two slides")
         value = n.dot(point("p") - c)
         pair = self._turned_by(three, three.shift, g, value)
@@ -117,7 +117,7 @@ class Slides:
         return Solved("two slides and a turn", [("", one.end), ("", two.end), (pair, three.end)])
 
     def _prp(self, one: Single, two: Single, three: Single) -> Solved:
-        a, b = _simple(one.end.T * Z), _simple(two.end * Z)
+        a, b = simple(one.end.T * Z), simple(two.end * Z)
         t = two.shift + two.end * three.shift
         self._vector("q", times(one.end.T, f"(p - {source(one.shift)})"))
         q = point("q")
@@ -145,14 +145,14 @@ class Slides:
         return Solved("a slide, a turn and a slide", turned)
 
     def _rrp(self, one: Single, two: Single, three: Single) -> Solved:
-        t, b = two.shift + two.end * three.shift, _simple(two.end * Z)
+        t, b = two.shift + two.end * three.shift, simple(two.end * Z)
         if parallel(one) and b[:2, 0].is_zero_matrix and one.end == sp.eye(3):
             value = (point("p")[2] - one.shift[2] - t[2]) * b[2]
             turned = self._level(one, two, t)
             self._slide(three, value)
             return Solved("two links and a slide along their axes", [*turned, ("", three.end)])
         if not parallel(one) and b[2] == 0:
-            g = _simple(one.end * Z)
+            g = simple(one.end * Z)
             first = self._turn(one, g, "p", t[2] + g.dot(one.shift))
             self._vector("q", times(one.end.T, f"(turned({first}).T * p - {source(one.shift)})"))
             m = Z.cross(b)
@@ -166,7 +166,7 @@ class Slides:
             self._root(three, e, "p_norm", source(h))
             reach = f"{three.joint}_*{source(self.sense[three.number] * b)}"
             self._vector("to_end", f"{source(t)} + {reach}")
-            v, g = point("to_end"), _simple(one.end.T * Z)
+            v, g = point("to_end"), simple(one.end.T * Z)
             second = self._turned_by(two, v, g, point("p")[2])
             self._vector("both_links", times(one.end, f"(turned({second}) * to_end)"))
             because = f"{{{three.joint}: 1, {self.angle(two)}: -(both_links[2] + p[2])}}"
@@ -183,8 +183,8 @@ class Slides:
         return Solved("a turret, a joint and a slide", turned)
 
     def _rpr(self, one: Single, two: Single, three: Single) -> Solved:
-        a, G = _simple(one.end * Z), _simple(one.end * two.end)
-        g, c = _simple(G * Z), one.shift + one.end * two.shift
+        a, G = simple(one.end * Z), simple(one.end * two.end)
+        g, c = simple(G * Z), one.shift + one.end * two.shift
         if sp.eye(3) == G and a[:2, 0].is_zero_matrix:
             value = (point("p")[2] - c[2] - three.shift[2]) * a[2]
             (first, _), (second, _) = self._level(replace(one, shift=c), three, three.shift)
@@ -192,7 +192,7 @@ class Slides:
         elif sp.simplify(a.dot(g)) == 0 and not g[:2, 0].is_zero_matrix:
             first = self._turn(one, g, "p", g.dot(c) + three.shift[2])
             self._vector("q", times(G.T, f"(turned({first}).T * p - {source(c)})"))
-            along = _simple(G.T * a)
+            along = simple(G.T * a)
             m = Z.cross(along)
             second = self._turned_by(three, three.shift, m, m.dot(point("q")))
             self._vector("q", f"q - turned({second}) * {source(three.shift)}", "q2")
@@ -208,7 +208,7 @@ class Slides:
         return Solved("a turret, a slide and a joint", turned)
 
     def _prr(self, one: Single, two: Single, three: Single) -> Solved:
-        a = _simple(one.end.T * Z)
+        a = simple(one.end.T * Z)
         self._vector("p", times(one.end.T, f"(p - {source(one.shift)})"), "p1")
         p, u = point("p"), three.shift
         if two.end == sp.eye(3) and a[2] != 0:
@@ -229,7 +229,7 @@ class Slides:
         across = sp.sqrt(p.cross(a).dot(p.cross(a)))
         self._root(one, -a.dot(p), source(size), source(across))
         self._vector("q", f"p - {one.joint}_*{source(self.sense[one.number] * a)}")
-        q, g = point("q"), _simple(two.end.T * Z)
+        q, g = point("q"), simple(two.end.T * Z)
         third = self._turned_by(three, u, g, q[2])
         self._vector("to_end", times(two.end, f"(turned({third}) * {source(u)})"))
         because = f"{{{one.joint}: -1, {self.angle(three)}: -(to_end[2] + q[2])}}"
@@ -242,7 +242,7 @@ class Slides:
 
         What is normal to both gives the second.
         """
-        p, m, g = point("p"), Z.cross(a), _simple(two.end.T * Z)
+        p, m, g = point("p"), Z.cross(a), simple(two.end.T * Z)
         carried = (
             f"{source(two.shift)} + {times(two.end, f'(turned({{}}) * {source(three.shift)})')}"
         )
@@ -292,13 +292,13 @@ class Slides:
     def linear(self, q: str, c: sp.Matrix, slides: Sequence[tuple[Single, sp.Matrix]]) -> None:
         """Solve slides along given directions for what the point ``q`` leaves after ``c``."""
         A = sp.Matrix.hstack(*(direction for _, direction in slides))
-        square = _simple(A.T * A)
+        square = simple(A.T * A)
         self.maker.require(
             sp.simplify(square.det()) != 0,
             "the directions of its slides depend on each other",
             "Slides need independent directions.",
         )
-        values = _simple(square.inv() * A.T) * (point(q) - c)
+        values = simple(square.inv() * A.T) * (point(q) - c)
         for (joint, _), value in zip(slides, values, strict=True):
             self._slide(joint, value)
 
@@ -342,10 +342,6 @@ class Slides:
             found,
             f"Joint {joint.number} must move the point across its slides.",
         )
-
-
-def _simple(value: sp.Matrix) -> sp.Matrix:
-    return sp.Matrix(value).applyfunc(sp.simplify)
 
 
 __all__ = ["Slides"]

@@ -15,7 +15,7 @@ from functools import cached_property
 import sympy as sp
 
 from closedform.scaffold.chains.chainlinks import Single, Singles, parallel, plain
-from closedform.scaffold.chains.maker import Z, point, times, turning
+from closedform.scaffold.chains.maker import Z, point, simple, times, turning
 from closedform.scaffold.chains.slides import Slides
 from closedform.scaffold.chains.subproblems import SubproblemMaker
 from closedform.scaffold.source import source
@@ -33,7 +33,7 @@ class Ends:
 
     @cached_property
     def axis(self) -> sp.Matrix:
-        return _simple(self.joint.end * Z)
+        return simple(self.joint.end * Z)
 
     @property
     def inclined(self) -> sp.Expr:
@@ -74,19 +74,19 @@ class TwoSlidesMaker(SubproblemMaker):
         lead = arm.lead[:3, :3]
         self.vector("tool", times(lead.T, self.last_axis(arm, R)))
         if kinds[0]:
-            frame, start = _simple(one.end * two.end), _simple(one.shift + one.end * two.shift)
+            frame, start = simple(one.end * two.end), simple(one.shift + one.end * two.shift)
             self.vector("p", times(frame.T, f"(p - {source(start)})"), "p_turret")
             self.vector("tool", times(frame.T, "tool"), "tool_turret")
-            lead = _simple(lead * frame)
-            slides = (one, _simple(frame.T * Z)), (two, _simple(two.end.T * Z))
+            lead = simple(lead * frame)
+            slides = (one, simple(frame.T * Z)), (two, simple(two.end.T * Z))
             turret, start, F = three, three.shift, three.end
         else:
-            slides = (two, _simple(one.end * Z)), (three, _simple(one.end * two.end * Z))
-            turret, F = one, _simple(one.end * two.end * three.end)
-            start = _simple(one.shift + one.end * (two.shift + two.end * three.shift))
+            slides = (two, simple(one.end * Z)), (three, simple(one.end * two.end * Z))
+            turret, F = one, simple(one.end * two.end * three.end)
+            start = simple(one.shift + one.end * (two.shift + two.end * three.shift))
         ends = Ends(four)
         write = self._after if kinds[0] else self._before
-        pair = write(turret, [a for _, a in slides], start, _simple(F * Z), ends)
+        pair = write(turret, [a for _, a in slides], start, simple(F * Z), ends)
         frame = f"turned({pair}).T"
         self.vector("aimed", times(F.T, f"({frame} * tool)"))
         fourth = self._rotate(four, source(ends.axis[:2, 0]), "aimed", scale="1")
@@ -109,7 +109,7 @@ class TwoSlidesMaker(SubproblemMaker):
     def _normal(self, turret: Single, slides: Sequence[sp.Matrix], axis: sp.Matrix) -> sp.Matrix:
         """The unit vector across the slides."""
         first, second = slides
-        normal = _simple(first.cross(second))
+        normal = simple(first.cross(second))
         self.require(
             not normal.is_zero_matrix,
             "the directions of its slides depend on each other",
@@ -120,7 +120,7 @@ class TwoSlidesMaker(SubproblemMaker):
             f"joint {turret.number} does not move the tool across its slides",
             "A turret has to turn its slides or the axis after them.",
         )
-        return _simple(normal / sp.sqrt(normal.dot(normal)))
+        return simple(normal / sp.sqrt(normal.dot(normal)))
 
     def _before(
         self,
@@ -132,7 +132,7 @@ class TwoSlidesMaker(SubproblemMaker):
     ) -> str:
         """Solve a turret that turns the slides; return its pair."""
         normal, tool = self._normal(turret, slides, axis), point("tool")
-        beside, place = _simple(normal.cross(axis)), point("p") - ends.ahead * tool
+        beside, place = simple(normal.cross(axis)), point("p") - ends.ahead * tool
         across = [
             sp.simplify(a - ends.aside * b)
             for a, b in zip(turning(normal, place), turning(beside, tool), strict=True)
@@ -151,7 +151,7 @@ class TwoSlidesMaker(SubproblemMaker):
     ) -> str:
         """Solve a turret that the slides move; return its pair."""
         normal, tool = self._normal(turret, slides, axis), point("tool")
-        beside, link = tool.cross(normal), _simple(start + ends.level * axis)
+        beside, link = tool.cross(normal), simple(start + ends.level * axis)
         across = [
             sp.simplify(a + ends.aside * b)
             for a, b in zip(turning(link, normal), turning(axis, beside), strict=True)
@@ -175,10 +175,6 @@ class TwoSlidesMaker(SubproblemMaker):
         self.vector("both", "across + side*along")
         a, b, c = point("both")
         return self._turn(turret, (a, b, c))
-
-
-def _simple(value: sp.Matrix) -> sp.Matrix:
-    return sp.Matrix(value).applyfunc(sp.simplify)
 
 
 __all__ = ["TwoSlidesMaker"]

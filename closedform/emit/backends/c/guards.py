@@ -39,9 +39,9 @@ def given_up_where(lowered: Lowered) -> Iterator[tuple[int, tuple[Node, ...]]]:
     """For quotients of a common case, the conditions that a factor of their divisor counts as zero.
 
     If one holds, the whole program is evaluated instead.  For each factor it is, among the
-    conditions that are already known, the one whose value is nearest to the factor, and those about
-    what its limit is a multiple of.  A divisor is left out if it vanishes with a bound that no
-    condition is about.
+    conditions that are already known, the one whose value is nearest to the factor, those about
+    what its limit is a multiple of, and those whose value is made of what is nearer to the factor.
+    A divisor is left out if it vanishes with a bound that no condition is about.
     """
     if lowered.results[-1].name != "rare":
         return

@@ -107,7 +107,7 @@ class Maker:
         if value.is_Symbol:
             return str(value)
         self.count += 1
-        name = f"alpha{self.count}"
+        name = f"psi{self.count}"
         self.add(f"{name} = ik.angle('{name}', {source(value)})")
         return name
 

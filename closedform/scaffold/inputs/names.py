@@ -46,7 +46,7 @@ LINES = {
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""
-NUMBERED = re.compile(r"(alpha|link|pair|left|tilted)\d+_?")
+NUMBERED = re.compile(r"(psi|link|pair|left|tilted)\d+_?")
 """Names with a number that the written script uses itself."""
 
 

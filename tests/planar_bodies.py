@@ -101,14 +101,17 @@ class Linkage:
         if joint is None:
             [body] = [n for n in self.free if self.hand in self.bodies[n]]
             x, y, turn = poses[body]
-            return turned(turn) @ self.bodies[body][self.hand] + [x, y]
+            place = turned(turn) @ self.bodies[body][self.hand] + [x, y]
+            return np.array([*place, turn]) if len(self.turns) > 2 else place
         x, y, turn = poses[self.other(joint)]
         return np.array([[x, y] @ np.array(joint["axis"]) if self.slides(joint) else turn])
 
     @property
-    def turns(self) -> bool:
-        """Whether the hand is an angle."""
-        return self.hand in self.joints and not self.slides(self.joints[self.hand])
+    def turns(self) -> list[bool]:
+        """Which coordinates of the hand are angles."""
+        if self.hand in self.joints:
+            return [not self.slides(self.joints[self.hand])]
+        return [False, False, True] if len(self.q) > 2 else [False, False]
 
     def assembled(self, rng: np.random.Generator) -> np.ndarray | None:
         """The hand in a posture that is found from a random start, if any is."""

@@ -130,6 +130,11 @@ def turned_left(v: sp.Matrix) -> sp.Matrix:
     return sp.Matrix([-v[1], v[0]])
 
 
+def rotated(v: sp.Matrix, pair: Pair) -> sp.Matrix:
+    """A vector of a plane, turned to the left by the angle of a pair."""
+    return sp.Matrix([pair.c * v[0] - pair.s * v[1], pair.s * v[0] + pair.c * v[1]])
+
+
 def closing_weights(vectors: Sequence[sp.Matrix]) -> tuple[sp.Expr, ...]:
     """Factors with which three vectors of a plane add up to zero."""
     return tuple(sp.simplify(cross_in_plane(vectors[k - 2], vectors[k - 1])) for k in range(3))
@@ -498,6 +503,7 @@ __all__ = [
     "Strut",
     "closing_weights",
     "cross_in_plane",
+    "rotated",
     "sign_of_leg",
     "turned_left",
     "vector",

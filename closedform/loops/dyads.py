@@ -19,6 +19,7 @@ from closedform.loops.leg_by_leg import SIGN, Choice, named, record
 from closedform.loops.linkage import GROUND, Body, Linkage, Solved
 from closedform.loops.modes import NO_MODE, Exported, export
 from closedform.loops.parallel import NEAR
+from closedform.loops.posed import pose_of, pose_rates
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
@@ -27,6 +28,7 @@ from closedform.model.inverse import Inverse, Link
 from closedform.model.step import Step
 
 STILL = "hand stands still"
+OF_PINS = ", of which the last are the task"
 
 
 def linkage(
@@ -42,20 +44,20 @@ def linkage(
     Parameters
     ----------
     d
-        the derivation, with its parameters and one or two joints
+        the derivation, with its parameters and one to three joints
     hand
-        the symbols of the task: the two coordinates of a point, or the joint of a body
+        the symbols of the task: the two coordinates of a point, these and the yaw of its body, or
+        the joint of a body
     bodies
         all bodies, one of which is called ``ground``; see :class:`~closedform.loops.linkage.Body`
     at
-        the point that is the hand, if it is a point
+        the point that is the hand, if it is a point; with a yaw, of one body only
     modes
         the names of the assembly modes of a dyad, by the sign of its determinant
     """
     m = Linkage(d, sp.Matrix(hand), bodies, at)
-    square = len(m.hand) == len(m.driven)
     d.poles = tuple(f"{pole(step)} in line" for step in m.solved)
-    d.singularities = (*[STILL] * square, *d.poles)
+    d.singularities = (*[STILL] * (len(m.hand) == len(d.actuated)), *d.poles)
     loop = _state(m)
     at_posture = _forward(m, modes, loop)
     _draw(m, at_posture)
@@ -113,7 +115,7 @@ def _forward(m: Linkage, choice: Choice, loop: Step) -> Posture:
         met = _meet(m, found, (k, step, sigma), size)
         outputs = [met.lemma[x] for x in step.unknowns]
         link, start = met.link, len(f.body)
-        if step is not m.solved[-1]:
+        if step in m.inner:
             place = named(f, f"p{step.goal}", sp.Matrix(outputs))
             found.points[step.goal] = place
             meant = dict(zip(place, step.unknowns, strict=True))
@@ -128,6 +130,10 @@ def _forward(m: Linkage, choice: Choice, loop: Step) -> Posture:
         outputs, last = [solved.value], solved.link
         links.append(last)
         found.points[step.pin] = found.points[step.near[1]] - solved.rod
+    turn = pose_of(m, f, found.points, size) if m.posed else None
+    if turn:
+        outputs = [*found.points[m.at], turn.yaw]
+        links += turn.links
     apart = m.require_apart(f)
     d.step(
         "Forward: dyad by dyad",
@@ -137,7 +143,7 @@ def _forward(m: Linkage, choice: Choice, loop: Step) -> Posture:
         {},
         uses=[loop],
     )
-    what = f"{m.hand[0]}" if m.follower else "Position of the hand"
+    what = f"{m.hand[0]}" if m.follower else f"Position{' and yaw' * m.posed} of the hand"
     d.function(
         "fk",
         f"{what} in all assembly modes.",
@@ -153,16 +159,17 @@ def _forward(m: Linkage, choice: Choice, loop: Step) -> Posture:
             NEAR,
         ),
     )
-    inner = tuple(e for step in m.circles if step is not m.solved[-1] for e in step.unknowns)
+    passive = [e for step in m.circles if step in m.inner for e in step.unknowns]
+    equations = [*m.loop, *(turn.equations if turn else ())]
     record(
         d,
         Inverse(
             "fk",
             tuple(m.hand),
-            (sp.S.Zero,) * len(m.loop),
-            tuple(m.loop),
+            (sp.S.Zero,) * len(equations),
+            tuple(equations),
             links=tuple(links),
-            passive=inner,
+            passive=(*passive, *[turn.length] * bool(turn)) if turn else tuple(passive),
         ),
     )
     return _again(m, found)
@@ -171,6 +178,10 @@ def _forward(m: Linkage, choice: Choice, loop: Step) -> Posture:
 def _ending(m: Linkage) -> str:
     if m.follower:
         return f"The last pin gives the angle {m.hand[0]} of the {m.follower}."
+    if m.posed:
+        return (
+            f"Two pins give the yaw of the {m.carrier}, and so its point {m.at}, which is the hand."
+        )
     last = m.solved[-1]
     if last.pin == last.goal:
         return "The last pin is the hand."
@@ -254,7 +265,7 @@ def _again(m: Linkage, found: Posture) -> Posture:
         _carry_last(m, v, step, points)
         span = points[step.pin] - points[step.near[1]]
         found.spans.append((points[step.pin] - points[step.near[0]], span))
-    else:
+    elif not m.posed:
         step = m.solved[-1]
         near = found.points[step.near[0]]
         found.points[step.goal] = named(v, f"p{step.goal}", near + found.spans[-1][0])
@@ -332,7 +343,7 @@ def _velocity(m: Linkage, at: Posture, loop: Step) -> None:
     d.step(
         "Velocity and singular sets",
         "The derivatives of the equations of all dyads, halved, give A*du = B*dq for the "
-        "coordinates u of the pins, of which the last are the task.  A is block triangular, "
+        f"coordinates u of the pins{OF_PINS * (not m.posed)}.  A is block triangular, "
         "because each dyad depends on those before it.  Its determinant is the product of those of "
         "the dyads.  One of them vanishes if both bars of the dyad are in line (parallel: the pin "
         "can move while the joints stand still).",
@@ -365,13 +376,18 @@ def _velocity(m: Linkage, at: Posture, loop: Step) -> None:
         moved = v.matrix("B_last", rod.T * near.times + longer)
         J = moved / _product(volumes, near.dyads) / volume
         still = moved[0] if n == 1 else sp.S.Zero
+    elif m.posed:
+        start, end = m.solved[-1].near[0], m.solved[-1].pin
+        moving = {p: rates[p].times / _product(volumes, rates[p].dyads) for p in (start, end, m.at)}
+        J = pose_rates(m, at.points, moving)
+        still = sp.Matrix.vstack(rates[start].times, rates[""].times[1, :]).det()
     else:
         hand = rates[m.at]
         J = hand.times / _product(volumes, hand.dyads)
         still = rates[""].times.det() if n == 2 else sp.S.Zero
     pole_note = "Not finite at a parallel singularity."
     A_at, B_at = _rows_at(m, at)
-    order = "u are the coordinates of the pins, dyad by dyad, of which the last are the task."
+    order = f"u are the coordinates of the pins, dyad by dyad{OF_PINS * (not m.posed)}."
     functions: list[Exported] = [
         ("jacobian_parallel", "A of A*du = B*dq.", {"A": A_at.tolist()}, (order,)),
         ("jacobian_serial", "B of A*du = B*dq.", {"B": B_at.tolist()}, (order,)),

@@ -13,8 +13,9 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 
 from closedform.lemmas.circles import two_circles
-from closedform.lemmas.legs import Naming, Solution, Stretch
+from closedform.lemmas.legs import Naming, Solution, Stretch, cross_in_plane
 from closedform.lemmas.missed import MOST_LOST, lost, missed_circles
+from closedform.loops.bar_errors import Bars, hand_error
 from closedform.loops.from_hand import export_inverse, turned
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import MISSED, named, where_free
@@ -38,12 +39,12 @@ def known_points(m: Linkage, p: Program, bodies: Sequence[str]) -> dict[str, sp.
 
 def inverse(m: Linkage, loop: Step) -> None:
     """Derive and export the inverse, or say why there is none."""
-    known = [GROUND, *[m.follower] * bool(m.follower)]
     bars = {name: at for name, at in m.points.items() if name not in m.cylinders}
-    found = order(bars, known, [m.at] * bool(m.at), sought=m.driven)
+    points = [m.at] * bool(m.at)
+    found = order(bars, m.known, points, sought=m.driven)
     if found.left and len(m.d.actuated) > 1 and m.at:
         even = parallel_to_ground(m)
-        again = order(bars, known, [m.at], sought=m.driven, parallel=even)
+        again = order(bars, m.known, points, sought=m.driven, parallel=even)
         found = found if again.left or again.held else again
     if found.left:
         m.d.no_inverse(f"with the hand held, {found.undone}")
@@ -83,12 +84,12 @@ class _Reverse:
         self.size = self.program.let("size", m.size)
         self.share: sp.Expr = sp.S.Half
         """The part of the size by which a bar may miss; more where accuracy is lost."""
-        self.at = known_points(m, self.program, [m.follower] * bool(m.follower))
+        self.at = known_points(m, self.program, m.known[1:])
         self.meant = {p: m.ground(p) for p in m.points[GROUND]}
-        if m.follower:
-            self.meant |= {p: m.on_turning(m.follower, p) for p in m.points[m.follower]}
-        else:
-            self.at[m.at] = self.meant[m.at] = m.hand
+        for body in m.known[1:]:
+            self.meant |= {p: m.on_turning(body, p) for p in m.points[body]}
+        if m.at:
+            self.at[m.at] = self.meant[m.at] = m.hand[:2, :]
 
     def export(self) -> None:
         for k, step in enumerate(self.order.steps, 1):
@@ -262,31 +263,23 @@ class _Reverse:
         for e, unit in ((sp.cos(q), crank.along), (sp.sin(q), crank.across)):
             self.equations.append(rho * e - meant.dot(sp.Matrix(unit)))
 
-    def _stretches(self, dyad: Dyad) -> list[sp.Expr]:
-        """By how much points of a dyad move more than its pin, or the angle of a follower."""
-        m, found = self.m, []
-        ratios: list[sp.Expr] = []
-        for body, near in zip(dyad.bodies, dyad.near, strict=True):
-            length = m.length(body, near, dyad.pin)
-            if body == m.follower:
-                found.append(self.size / length)
-                continue
-            others = [p for p in m.points[body] if p not in (near, dyad.pin)]
-            ratios += [m.length(body, near, p) / length for p in others]
-        return [*found, sp.Max(1, *ratios)]
-
     def _determined(self) -> None:
-        """Whether the joints determine the posture: the dyads of the forward map."""
+        """Whether the joints determine the posture: how far the forward map moves the hand."""
         m, g = self.m, self.program
-        volumes, scales = [], []
+        bars = []
         for k, dyad in enumerate(m.dyads, 1):
             a, b = (self.at[dyad.pin] - self.at[near] for near in dyad.near)
-            volumes.append(g.let(f"Delta_{k}", sp.Abs(a[0] * b[1] - a[1] * b[0]), nonnegative=True))
-            scales += [e.subs(self.values) for e in self._lengths(dyad)] + self._stretches(dyad)
+            first, second = (e.subs(self.values) for e in self._lengths(dyad))
+            volume = g.let(f"Delta_{k}", cross_in_plane(a, b))
+            bars.append(Bars((a, b), (first, second), volume))
         missed = g.let("missed", sp.Add(*self.missed))
-        meet = "both bars of a dyad are in line"
         g.determined(
-            sp.Mul(*volumes), sp.Mul(*scales), meet, name=r"|\det A|", missed=missed, size=self.size
+            sp.Abs(sp.Mul(*(pair.volume for pair in bars))),
+            hand_error(m, g, self.at, bars, self.size),
+            "both bars of a dyad are in line",
+            name=r"|\det A|",
+            missed=missed,
+            size=self.size,
         )
 
     def _write(self) -> None:
@@ -300,8 +293,8 @@ class _Reverse:
             + "The target has to be on the curve of the hand, which the last distance tells.  "
             * on_curve
             + "Near a parallel singularity rounded joints do not determine the hand.  The status "
-            "is SINGULAR if the product of the determinants of all dyads is less than 2^-10 of the "
-            f"product of the lengths of their bars.  {MISSED}",
+            "is SINGULAR if the hand moves more than 2^10 times as far as the bars of the dyads "
+            f"miss their lengths.  {MISSED}",
             {},
             uses=[self.loop],
             solves={"ik": ()},
@@ -333,7 +326,7 @@ class _Reverse:
             links=self.links,
             equations=self.equations,
             passive=self.passive,
-            angles=tuple(m.hand) if m.follower else (),
+            angles=tuple(m.hand) if m.follower else tuple(m.hand[2:]),
             on_curve=on_curve,
             images="" if parallel else "fk",
         )

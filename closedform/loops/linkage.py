@@ -7,7 +7,8 @@ dyad follows.  So each dyad has two assembly modes.
 
 A point of a body is seen from another one of its points as a third one is, turned and stretched by
 constants.  If the hand is on a body of the last dyad, the same turn and stretch take the circles of
-the pin to those of the hand, as in :mod:`closedform.loops.on_rod`.
+the pin to those of the hand, as in :mod:`closedform.loops.on_rod`.  Three driven joints move the
+hand and turn its body as well; then the last pin gives the pose.
 """
 
 from __future__ import annotations
@@ -20,14 +21,17 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.legs import Crank, vector
+from closedform.lemmas.legs import Crank, rotated, vector
 from closedform.loops.hand import square
 from closedform.mechanics.assur import Dyad, Order, degrees, freedoms, needed_for, order
 from closedform.mechanics.lengths import lengths_in_numbers
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Program, choose, real
+from closedform.model.pair import Pair
 
 GROUND = "ground"
+POSE = 3
+"""The number of coordinates of a hand that turns: x, y and yaw."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +69,10 @@ class Solved:
 
 @dataclass(frozen=True)
 class Linkage:
-    """The bodies of a linkage, and its hand: a point, or the joint of a body that is not driven."""
+    """The bodies of a linkage, and its hand.
+
+    The hand is a point, a point and the yaw of its body, or the joint of a body that is not driven.
+    """
 
     d: Derivation
     hand: sp.Matrix
@@ -86,6 +93,11 @@ class Linkage:
             *self.d.actuated
         }:
             raise ShapeError(f"{name}: each driven joint must belong to a body")
+        if self.posed and len(self.d.actuated) != POSE:
+            raise ShapeError(
+                f"{name}: a hand with x, y and yaw needs {POSE} driven joints, and there are "
+                f"{len(self.d.actuated)}"
+            )
         free = freedoms(self.points)
         if free != len(self.driven):
             raise ShapeError(
@@ -134,6 +146,29 @@ class Linkage:
         found = [n for n, b in self.bodies.items() if b.joint is not None and n not in self.driven]
         return found[0] if found else ""
 
+    @property
+    def posed(self) -> bool:
+        """Whether the hand turns too: its yaw is that of the only body that has its point."""
+        return len(self.hand) == POSE
+
+    @cached_property
+    def carrier(self) -> str:
+        """The body whose pose is the task; empty if the hand does not turn."""
+        if not self.posed:
+            return ""
+        found = [name for name, at in self.points.items() if self.at in at]
+        if len(found) != 1:
+            raise ShapeError(
+                f"{self.d.name}: the hand {self.at} must be a point of one body, whose yaw is the "
+                f"task too"
+            )
+        return found[0]
+
+    @property
+    def known(self) -> list[str]:
+        """The bodies that are known if the hand is."""
+        return [GROUND, *[name for name in (self.follower, self.carrier) if name]]
+
     @cached_property
     def order(self) -> Order:
         return order(self.points, [GROUND, *self.driven])
@@ -144,7 +179,7 @@ class Linkage:
         dyads, bodies = self.order.dyads, self.points
         for dyad in dyads:
             for body in dyad.bodies:
-                if body == self.follower or (self.at in bodies[body] and self.at not in dyad.near):
+                if body in self.known or (self.at in bodies[body] and self.at not in dyad.near):
                     kept = needed_for(dyads, bodies, dyad)
                     return [*kept[:-1], dyad if dyad.bodies[0] == body else swapped(dyad)]
         raise ShapeError(f"{self.d.name}: the hand is on no body that the dyads move")
@@ -154,9 +189,9 @@ class Linkage:
         """Each dyad with the point that it is solved for; the last may have a joint instead."""
         found = []
         for dyad in self.dyads:
-            last = dyad is self.dyads[-1]
-            goal = self.at if last and self.at else dyad.pin
-            point = self.hand if last and self.at else self.unknown(goal)
+            last = dyad is self.dyads[-1] and bool(self.at) and not self.posed
+            goal = self.at if last else dyad.pin
+            point = self.hand if last else self.unknown(goal)
             turned = self.turn(dyad.bodies[0], dyad.near[0], dyad.pin, goal)
             found.append(Solved(dyad, goal, point, turned))
         return found
@@ -254,7 +289,10 @@ class Linkage:
         )
 
     def on_turning(self, body: str, point: str) -> sp.Matrix:
-        """Where a point of a body with a joint is."""
+        """Where a point of a body is whose joint or pose is known."""
+        if body == self.carrier:
+            x, y, yaw = self.hand
+            return sp.Matrix([x, y]) + rotated(self.span(body, self.at, point), Pair.of(yaw))
         if point == self.pivot(body):
             return self.ground(point)
         return self.crank(body, point).end()
@@ -342,13 +380,21 @@ class Linkage:
 
     @cached_property
     def variables(self) -> tuple[sp.Symbol, ...]:
-        """The coordinates of the goals, in the order of the dyads; the task is last."""
-        inner = [e for step in self.solved[:-1] for e in step.unknowns]
-        return (*inner, *self.hand)
+        """The coordinates of the goals, in the order of the dyads; the task is last.
+
+        If the hand turns, it follows from the last pin, and is not among them.
+        """
+        inner = [e for step in self.inner for e in step.unknowns]
+        return (*inner, *self.hand) if not self.posed else (*inner,)
+
+    @property
+    def inner(self) -> list[Solved]:
+        """The dyads whose goal is not the hand."""
+        return self.solved if self.posed else self.solved[:-1]
 
 
 def swapped(dyad: Dyad) -> Dyad:
     return Dyad(dyad.pin, (dyad.bodies[1], dyad.bodies[0]), (dyad.near[1], dyad.near[0]))
 
 
-__all__ = ["GROUND", "Body", "Linkage", "Solved"]
+__all__ = ["GROUND", "POSE", "Body", "Linkage", "Solved"]

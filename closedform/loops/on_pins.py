@@ -21,6 +21,7 @@ from closedform.lemmas.legs import (
     Solution,
     closing_weights,
     cross_in_plane,
+    rotated,
     turned_left,
     vector,
 )
@@ -145,11 +146,6 @@ class _OnPins:
             rotated(sleeve.normal, self.pair).dot(sleeve.leg.end() - self.hand) - sleeve.aside
             for sleeve in self.legs
         )
-
-
-def rotated(v: sp.Matrix, pair: Pair) -> sp.Matrix:
-    """A vector of the hand, as the base sees it."""
-    return sp.Matrix([pair.c * v[0] - pair.s * v[1], pair.s * v[0] + pair.c * v[1]])
 
 
 def on_pins(d: Derivation, legs: Sequence[Sleeve], modes: Choice = SIGN) -> None:

@@ -33,6 +33,7 @@ FILES: dict[str, float | tuple[float, ...]] = {
     "stephenson_three": 0.8,
     "take_up": 0.9,
     "trailing_arm": 0.27,
+    "turned_tool": (2.2, 0.9, 0.2),
     "umbrella": 0.35,
     "wipers": 0.8,
 }
@@ -52,7 +53,7 @@ def test_bodies_that_newton_puts_together_are_those_of_fk(
     exist, met = p[status == OK], np.zeros(np.count_nonzero(status == OK), dtype=bool)
     assert len(exist)
     for hand in filter(lambda e: e is not None, (linkage.assembled(rng) for _ in range(STARTS))):
-        near = apart(exist, hand, np.array([linkage.turns])) < 1e-6 * linkage.size
+        near = apart(exist, hand, np.array(linkage.turns)) < 1e-6 * linkage.size
         assert near.any()
         met |= near
     assert met.all()

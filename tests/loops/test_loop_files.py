@@ -175,6 +175,16 @@ v = {between = ["p3", "bucket"], at = "V"}
 """
 
 
+CLAW = BUCKET.replace("P = [0.6, 0]}", "W = [0.2, 0], X = [0.1, 0.2]}").replace(
+    "[joints]", "claw = {W = [0, 0], Y = [0.1, 0.2], P = [0.4, 0]}\nt4 = {}\np4 = {}\n[joints]"
+)
+FOURTH = """w = {between = ["bucket", "claw"], at = "W"}
+x = {between = ["bucket", "t4"], at = "X"}
+q4 = {between = ["t4", "p4"], at = "X", kind = "prismatic", axis = [1, 0], driven = true}
+y = {between = ["p4", "claw"], at = "Y"}
+"""
+
+
 LAMP = """hand = "P"
 [parameters]
 l = {value = "0.4"}
@@ -207,10 +217,11 @@ def test_the_file_of_a_desk_lamp_is_told_what_to_write_instead(tmp_path: Path) -
 
 def test_the_file_of_an_excavator_is_told_what_to_write_instead(tmp_path: Path) -> None:
     assert "linkage(" in script_of("excavator", EXCAVATOR, tmp_path)
+    assert 'real("yaw")' in script_of("excavator", BUCKET + THIRD, tmp_path)
     with pytest.raises(TableError, match=r'write each loop as a file of its own.*hand = "o"'):
-        script_of("excavator", BUCKET + THIRD, tmp_path)
-    first = BUCKET.replace("[joints]", "[joints]\n" + THIRD)
-    with pytest.raises(TableError, match=r"leg of q3.*write each loop as a file of its own"):
+        script_of("excavator", CLAW + THIRD + FOURTH, tmp_path)
+    first = CLAW.replace("[joints]", "[joints]\n" + FOURTH) + THIRD
+    with pytest.raises(TableError, match=r"leg of q4.*write each loop as a file of its own"):
         script_of("excavator", first, tmp_path)
     boom = 'hand = "o"' + EXCAVATOR.removeprefix('hand = "P"').split("e = {between")[0]
     lines = [line for line in boom.splitlines() if not line.startswith(("stick", "t2", "p2"))]

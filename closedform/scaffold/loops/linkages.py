@@ -9,6 +9,7 @@ import sympy as sp
 
 from closedform.mechanics.assur import Dyad, Order, degrees, freedoms, order
 from closedform.model.names import listed
+from closedform.scaffold.inputs.tables import TableError
 from closedform.scaffold.loops.bodies import (
     GROUND,
     Joint,
@@ -22,6 +23,8 @@ from closedform.scaffold.source import literal, source
 
 FEW = {1: 3, 2: 4}
 """The number of moving bodies of a single loop, for as many driven joints."""
+POSE = 3
+"""The number of driven joints that move a hand and turn it."""
 
 
 @dataclass(frozen=True)
@@ -34,10 +37,32 @@ class LinkageLines:
     slides: tuple[str, ...] = ()
     passive: tuple[str, ...] = ()
     """The passive slides."""
+    posed: bool = False
+    """Whether the task has the yaw of the body with the hand too."""
 
 
-def linkage(loop: Loop) -> LinkageLines | None:
-    """The lines of a linkage; None if the file is of another kind."""
+def posed_linkage(loop: Loop) -> LinkageLines | None:
+    """The lines of a linkage whose hand three joints move and turn; None if it is not right."""
+    try:
+        lines = linkage(loop, posed=True)
+    except TableError:
+        return None  # what the other kinds say of it is nearer
+    if lines is None:
+        return None
+    points = _points(joined(with_pivots(loop))[0])
+    if len(on := [name for name, at in points.items() if lines.hand in at]) > 1:
+        raise loop.error(
+            f"three joints move the hand {loop.hand} and turn it, and it is a pin of {listed(on)}; "
+            f"give one of them a point of another name there, which is the hand"
+        )
+    return lines
+
+
+def linkage(loop: Loop, *, posed: bool = False) -> LinkageLines | None:
+    """The lines of a linkage; None if the file is of another kind.
+
+    Of three driven joints only those of a hand that is ``posed`` are read.
+    """
     loop, cylinders = joined(with_pivots(loop))
     driven = [j for j in loop.joints.values() if j.driven]
     follower = loop.joints.get(loop.hand)
@@ -46,7 +71,7 @@ def linkage(loop: Loop) -> LinkageLines | None:
     _check_slides(loop, inputs, moving > few)
     if (
         loop.dimensions != 2
-        or inputs not in FEW
+        or inputs not in ((POSE,) if posed else FEW)
         or any(j.kind != "revolute" for j in loop.joints.values())
         or any(GROUND not in j.between for j in driven)
         or loop.parallelograms
@@ -56,8 +81,10 @@ def linkage(loop: Loop) -> LinkageLines | None:
     point_of_one = inputs == 1 and not follower
     if moving < few or (moving == few and not point_of_one):
         return None
-    if inputs == 2 and any(_without(loop, name) for name in loop.bodies):
+    if inputs > 1 and any(_without(loop, name) for name in loop.bodies):
         return None  # a leg may leave out where its body is joined, and its messages say more
+    if posed and (follower or _on_legs(loop, driven)):
+        return None
     points = _points(loop)
     _check_pins(loop, points)
     turned = {j.other(GROUND): j for j in driven}
@@ -71,9 +98,14 @@ def linkage(loop: Loop) -> LinkageLines | None:
     for joint in turning.values():
         check_pivot(loop, joint)
     bodies = tuple(line_of(name, at, turning) for name, at in points.items())
-    return LinkageLines(
-        bodies, "" if follower else safe(loop.hand), _words(turned, cylinders, found)
-    )
+    words = _words(turned, cylinders, found)
+    return LinkageLines(bodies, "" if follower else safe(loop.hand), words, posed=posed)
+
+
+def _on_legs(loop: Loop, driven: Sequence[Joint]) -> bool:
+    """Whether the hand is on legs that are no dyads, as that of a 3-RPR or 3-RRR mechanism."""
+    known = [GROUND, *(j.other(GROUND) for j in driven)]
+    return bool(order(_points(loop), known).left)
 
 
 def _check_slides(loop: Loop, inputs: int, more: bool) -> None:
@@ -258,6 +290,7 @@ __all__ = [
     "linkage",
     "no_point",
     "other_drive",
+    "posed_linkage",
     "reverse",
     "safe",
 ]

@@ -20,7 +20,7 @@ from closedform.scaffold.loops.hinges import hinged
 from closedform.scaffold.loops.idle import without_idle
 from closedform.scaffold.loops.inverted import inverted
 from closedform.scaffold.loops.legs import TURNING, UPRIGHT, Legs, LoopLeg
-from closedform.scaffold.loops.linkages import LinkageLines, linkage
+from closedform.scaffold.loops.linkages import LinkageLines, linkage, posed_linkage
 from closedform.scaffold.loops.mirrored import mirrored
 from closedform.scaffold.loops.on_balls import on_balls
 from closedform.scaffold.loops.on_cylinders import on_cylinders
@@ -103,9 +103,10 @@ def _way(loop: Loop) -> _Way:
         return _first_way(loop)
     except TableError:
         try:
-            lines = sliding(again, few=True)
+            lines = sliding(deepcopy(again), few=True)
         except TableError:
             lines = None  # what the other kinds say of it is nearer
+        lines = lines or posed_linkage(again)
         if lines is None:
             raise
         return _bodies(again, lines)
@@ -115,7 +116,8 @@ def _bodies(loop: Loop, lines: LinkageLines) -> _Way:
     """A linkage of bodies."""
     if loop.hand in loop.joints:
         return _Way([], [loop.hand], linkage=lines)
-    return _Way([], list(AXES[:2]), f"at={literal(lines.hand)}", lines)
+    task = [*AXES[:2], *["yaw"] * lines.posed]
+    return _Way([], task, f"at={literal(lines.hand)}", lines)
 
 
 def _first_way(loop: Loop) -> _Way:

@@ -1,0 +1,140 @@
+"""Planar linkages whose hand three joints move and turn: an excavator, and a tool on a five-bar.
+
+The other route is the drawing: lengths of cylinders and rods between points of rigid bodies.
+"""
+
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from loop_files import apart, derived, script_of
+from places import TESTS
+
+from closedform.scaffold.inputs.tables import TableError
+
+FOLDER = TESTS / "held_out_loops"
+OK, SINGULAR = 0, 2
+TURNS = np.array([False, False, True])
+
+
+def text(name: str) -> str:
+    return (FOLDER / f"{name}.toml").read_text("utf-8")
+
+
+@cache
+def loop(name: str, folder: Path) -> ModuleType:
+    return derived(f"{name}_posed", script_of(f"{name}_posed", text(name), folder), folder)
+
+
+@pytest.fixture(scope="module")
+def excavator(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+    return loop("excavator", tmp_path_factory.mktemp("excavator"))
+
+
+@pytest.fixture(scope="module")
+def tool(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+    return loop("turned_tool", tmp_path_factory.mktemp("tool"))
+
+
+def drawn(v, boom: np.ndarray, stick: np.ndarray, lever: np.ndarray) -> tuple:
+    """The lengths of the cylinders, and the two poses of the bucket, as complex numbers."""
+    turns = np.exp(1j * np.cumsum([boom, stick, lever], axis=0))
+    E = v.b * turns[0]
+    on_stick = {
+        name: E + turns[1] * at
+        for name, at in {
+            "H": -0.8 + 0.3j, "K": 0.4 + 0.5j, "L": v.s - 0.45 + 0.05j, "B": v.s
+        }.items()
+    }  # fmt: skip
+    M = on_stick["L"] + 0.6j * turns[2]
+    q = [
+        abs(turns[0] * (2.4 + 0.6j) - (0.5 - 0.6j)),
+        abs(on_stick["H"] - turns[0] * (2.6 + 1j)),
+        abs(M - on_stick["K"]),
+    ]
+    across = M - on_stick["B"]
+    ear, gap = abs(0.45 + 0.1j), abs(across)
+    with np.errstate(invalid="ignore"):
+        bent = np.arccos((gap**2 + ear**2 - 0.6**2) / (2 * gap * ear))
+    yaw = np.angle(across) + np.outer([1, -1], bent) - np.angle(0.45 + 0.1j)
+    tip = on_stick["B"] - 1.5j * np.exp(1j * yaw)
+    return np.stack(q, -1), np.stack([tip.real, tip.imag, yaw], -1)
+
+
+def postures(v, count: int, seed: int) -> tuple:
+    """Angles of an excavator at work; of those in which the bucket's rods reach."""
+    rng = np.random.default_rng(seed)
+    angles = rng.uniform([-0.6, -2.6, -0.6], [0.9, -0.4, 1.2], (count, 3)).T
+    q, poses = drawn(v, *angles)
+    reached = np.isfinite(poses).all(axis=(0, 2))
+    return q[reached], poses[:, reached]
+
+
+def test_an_excavator_has_every_posture_of_its_drawing(excavator: ModuleType) -> None:
+    q, poses = postures(excavator.Parameters(), 4000, 1)
+    assert len(q) > 2000 and len(excavator.ASSEMBLY_MODES) == 16
+    forward = excavator.fk(q).p
+    for pose in poses:
+        found, status = excavator.ik(pose)
+        assert (apart(forward, pose[:, None], TURNS).min(axis=1) < 1e-9).all()
+        near = np.abs(found - q[:, None]).max(axis=-1) < 1e-8
+        assert (near & np.isin(status, (OK, SINGULAR))).any(axis=1).all()
+        assert (near & (status == OK)).any(axis=1).mean() > 0.97
+
+
+@pytest.mark.parametrize("name", ["excavator", "tool"])
+def test_what_is_ok_has_the_target_among_its_images(
+    name: str, request: pytest.FixtureRequest
+) -> None:
+    mechanism, rng = request.getfixturevalue(name), np.random.default_rng(2)
+    q = rng.uniform(0.3, 4, (4000, 3)) if name == "excavator" else near_right_angles(rng, 4000)
+    images, status = mechanism.fk(q)
+    targets = images[status == OK]
+    found, status = mechanism.ik(targets)
+    assert len(targets) > 1000 and np.isin(status, (OK, SINGULAR)).any(axis=1).all()
+    for answers, said in zip(np.moveaxis(found, 1, 0), status.T, strict=True):
+        back = mechanism.fk(answers[said == OK]).p
+        missed = apart(back, targets[said == OK][:, None], TURNS)
+        assert (np.nanmin(missed, axis=1) < 1e-12).all()
+
+
+def near_right_angles(rng: np.random.Generator, count: int) -> np.ndarray:
+    q = rng.uniform(-np.pi, np.pi, (count, 3))
+    beside = rng.choice([-1, 0, 1], q.shape) * 10 ** rng.uniform(-14, -1, q.shape)
+    return np.where(rng.random(q.shape) < 0.4, rng.integers(-2, 3, q.shape) * np.pi / 2 + beside, q)
+
+
+def test_the_jacobian_is_the_derivative_of_the_pose(excavator: ModuleType) -> None:
+    q, _ = postures(excavator.Parameters(), 300, 3)
+    steps = 1e-6 * np.eye(3)
+    rates = [(excavator.fk(q + s).p - excavator.fk(q - s).p) / 2e-6 for s in steps]
+    J = excavator.jacobian(q)
+    close = (
+        np.abs(J - np.stack(rates, axis=-1))
+        < 1e-6 * (1 + np.abs(J).max(axis=(2, 3)))[..., None, None]
+    )
+    away = np.abs(excavator.singularities(q)[..., 1:]).min(axis=-1) > 0.05
+    assert away.sum() > 500 and close[away].all()
+    np.testing.assert_allclose(excavator.determinant(q)[away], np.linalg.det(J[away]), rtol=1e-9)
+
+
+def test_the_hand_stands_still_where_its_factor_vanishes(excavator: ModuleType) -> None:
+    """The stick is stretched along the boom."""
+    q, _ = drawn(excavator.Parameters(), *np.array([[0.4], [0.0], [0.3]]))
+    still = np.abs(excavator.singularities(q)[0, :, 0]).min()
+    assert excavator.SINGULARITIES[0] == "hand stands still" and still < 1e-12
+
+
+def test_a_target_out_of_reach_is_told(excavator: ModuleType) -> None:
+    v = excavator.Parameters()
+    assert not excavator.workspace_contains([v.b + v.s + 1.6, 0, 0])
+    assert excavator.workspace_contains([6, -1, 0])
+
+
+def test_a_pin_of_two_bodies_is_refused_as_the_hand(tmp_path: Path) -> None:
+    with pytest.raises(
+        TableError, match="B and turn it, and it is a pin of stick and bucket; give"
+    ):
+        script_of("pin", text("excavator").replace('hand = "P"', 'hand = "B"'), tmp_path)

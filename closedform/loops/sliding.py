@@ -20,6 +20,7 @@ from closedform.loops.hand import square
 from closedform.loops.linkage import GROUND, Body
 from closedform.mechanics.assur import degrees
 from closedform.mechanics.assur_slides import (
+    Fold,
     Group,
     Meet,
     SlidingOrder,
@@ -85,6 +86,16 @@ class Frame:
         if point == self.local:
             return self.start
         return self.start + self.vector(point - self.local)
+
+    def seen(self, place: sp.Matrix) -> sp.Matrix:
+        """The coordinates that a place has on the body."""
+        back = Frame(self.local, self.start, self.span, self.arm)
+        return back.at(place)
+
+    def carried(self, part: Frame) -> Frame:
+        """Where a part is that is known in the coordinates of this body."""
+        still = (1 + self.still) * (1 + part.still) - 1
+        return Frame(self.at(part.start), part.local, self.vector(part.arm), part.span, still)
 
 
 @dataclass(frozen=True)
@@ -175,7 +186,8 @@ class SlidingLinkage:
 
     @cached_property
     def order(self) -> SlidingOrder:
-        return sliding_order(self.points, self.pairs, [GROUND, *self.driven])
+        known = [GROUND, *self.driven]
+        return sliding_order(self.points, self.pairs, known, bars=self.cylinders)
 
     @cached_property
     def groups(self) -> list[Group]:
@@ -185,6 +197,11 @@ class SlidingLinkage:
         if not last:
             raise ShapeError(f"{self.d.name}: the hand is on no body that the joints move")
         return groups_for(groups, self.points, self.pairs, last)
+
+    @cached_property
+    def folded(self) -> dict[str, str]:
+        """The bodies that are parts of another one, with this."""
+        return {b: g.on for g in self.groups if isinstance(g, Fold) for b in g.bodies}
 
     @property
     def direct(self) -> bool:
@@ -262,4 +279,9 @@ def swing_name(group: Swing) -> str:
     return f"t_{group.bodies[0]}"
 
 
-__all__ = ["Frame", "Sliding", "SlidingLinkage", "swing_name"]
+def fold_name(group: Fold) -> str:
+    """The name of the common pin of two bodies, in the coordinates of a third one."""
+    return f"{group.far}_on_{group.on}"
+
+
+__all__ = ["Frame", "Sliding", "SlidingLinkage", "fold_name", "swing_name"]

@@ -19,7 +19,7 @@ from closedform.loops.parallel import NEAR
 from closedform.loops.sliding import Sliding, SlidingLinkage
 from closedform.loops.sliding_inverse import inverse
 from closedform.loops.sliding_solver import Block, Solver
-from closedform.mechanics.assur_slides import Group, Meet, OnCircle, Swing
+from closedform.mechanics.assur_slides import Fold, Group, Meet, OnCircle, Swing
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation
 from closedform.model.functions import SINGLE, Branches, Program, branches
@@ -91,6 +91,13 @@ def _how(m: SlidingLinkage, group: Group) -> str:
             for h in group.holds
         ]
         return f"{' and '.join(said)}, and {group.pin} is on both"
+    if isinstance(group, Fold):
+        first, second = group.bodies
+        joined = f"slides on {group.on}" if group.slide is not None else f"turns about {group.pin}"
+        return (
+            f"{first} {joined} and {second} about {group.near} of {group.on}, and {group.far} is "
+            f"on both: the three bodies are one from here on"
+        )
     if isinstance(group, Swing):
         return f"they slide on each other, and turn about {' and '.join(group.near)}"
     return f"it is at {m.points[group.body][0]}, and is not turned to another body"
@@ -301,7 +308,9 @@ def _velocity(m: SlidingLinkage, at: Solver, modes: Branches, loop: Step) -> Non
     if tasks:
         rows.append(sp.Matrix(task).jacobian([*u, *tasks]))
         driven.append(-sp.Matrix(task).jacobian(list(d.actuated)))
-    A, B = (sp.Matrix.vstack(*part).applyfunc(sp.expand) for part in (rows, driven))
+    A, B = (sp.Matrix.vstack(*part) for part in (rows, driven))
+    if not m.folded:
+        A, B = (M.applyfunc(sp.expand) for M in (A, B))
     equations = [e for b in blocks for e in b.equations] + task
     halved = [h for b in blocks for h in b.halved] + [False] * len(task)
     half = sp.diag(*(sp.Rational(1, 2) if h else 1 for h in halved))

@@ -14,10 +14,11 @@ from closedform.loops.from_hand import export_inverse
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import MISSED
 from closedform.loops.linkage import GROUND
-from closedform.loops.sliding import Frame, SlidingLinkage, swing_name
+from closedform.loops.sliding import Frame, SlidingLinkage, fold_name, swing_name
 from closedform.loops.sliding_solver import Block, Solver
 from closedform.mechanics.assur_slides import (
     EitherWay,
+    Fold,
     Hold,
     Meet,
     OnLine,
@@ -172,6 +173,9 @@ class _Reverse:
             A = g.matrix(f"A_{k}", block.matrix.applyfunc(lambda e: e.xreplace(known)))
             volumes.append(g.let(f"Delta_{k}", sp.Abs(A.det()), nonnegative=True))
             scales.append(self._scale(block).xreplace(known))
+        for fold in [group for group in m.groups if isinstance(group, Fold)]:
+            for body, near in zip(fold.bodies, (fold.pin, fold.near), strict=True):
+                scales += self._stretches(body, near, fold.far) if near else []
         meets = [group for group in m.groups if isinstance(group, Meet)]
         for pin, hold in [(group.pin, hold) for group in meets for hold in group.holds]:
             if isinstance(hold, OnLine):
@@ -200,6 +204,10 @@ class _Reverse:
         for group in m.groups:
             if isinstance(group, Meet):
                 known |= dict(zip(m.unknown(group.pin), solver.here.at[group.pin], strict=True))
+            elif isinstance(group, Fold):
+                base = solver.here.frames[group.on]
+                seen = base.seen(solver.here.at[group.far])
+                known |= dict(zip(m.unknown(fold_name(group)), seen, strict=True))
             elif isinstance(group, Swing):
                 way = m.slides[group.slide].way
                 here = solver.here.frames[group.bodies[0]].vector(way)
@@ -217,11 +225,19 @@ class _Reverse:
         m = self.m
         if body in m.cylinders:
             return []
-        length = m.length(body, near, pin)
+        length = self._apart(body, near, pin)
         if body == m.follower:
             return [self.size / length]
-        others = [p for p in m.points[body] if p not in (near, pin)]
-        return [sp.Max(1, *(m.length(body, near, p) / length for p in others))]
+        parts = [b for b, on in m.folded.items() if on == body]
+        others = [p for b in (body, *parts) for p in m.points[b] if p not in (near, pin)]
+        return [sp.Max(1, *(self._apart(body, near, p) / length for p in dict.fromkeys(others)))]
+
+    def _apart(self, body: str, near: str, far: str) -> sp.Expr:
+        """The distance of two points of a body, or of parts of it."""
+        if {near, far} <= {*self.m.points[body]}:
+            return self.m.length(body, near, far)
+        here = self.solver.here.at
+        return sp.sqrt(square(here[far] - here[near]))
 
     def _write(self) -> None:
         m, d, g, solver = self.m, self.m.d, self.program, self.solver

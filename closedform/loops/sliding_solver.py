@@ -22,8 +22,9 @@ from closedform.loops.from_hand import turned
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import named, named_in
 from closedform.loops.linkage import GROUND
-from closedform.loops.sliding import Frame, Sliding, SlidingLinkage, swing_name
+from closedform.loops.sliding import Frame, Sliding, SlidingLinkage, fold_name, swing_name
 from closedform.mechanics.assur_slides import (
+    Fold,
     Group,
     Meet,
     OnCircle,
@@ -64,6 +65,8 @@ class World:
 
     frames: dict[str, Frame] = field(default_factory=dict)
     at: dict[str, sp.Matrix] = field(default_factory=dict)
+    folded: dict[str, dict[str, Frame]] = field(default_factory=dict)
+    """The parts of a body that are known from it, and where they are in its coordinates."""
 
 
 @dataclass
@@ -100,6 +103,23 @@ class Solver:
                 local = self.m.local(body, point)
                 self.here.at[point] = named(self.program, f"p{point}", frame.at(local))
                 self.meant.at[point] = meant.at(local)
+        for part, own in self.here.folded.get(body, {}).items():
+            self.know(part, frame.carried(own), meant.carried(self.meant.folded[body][part]))
+
+    def local(self, body: str, point: str, world: World) -> sp.Matrix:
+        """A point of a body, or of a part of it, in the coordinates of the body."""
+        if point in self.m.points[body]:
+            return self.m.local(body, point)
+        for part, frame in world.folded.get(body, {}).items():
+            if (at := self._of_part(part, point, world)) is not None:
+                return frame.at(at)
+        raise KeyError(point)
+
+    def _of_part(self, part: str, point: str, world: World) -> sp.Matrix | None:
+        try:
+            return self.local(part, point, world)
+        except KeyError:
+            return None
 
     def start(self, bodies: Sequence[str]) -> None:
         """Add bodies with known joints."""
@@ -112,14 +132,21 @@ class Solver:
             self._meet(group, k)
         elif isinstance(group, Swing):
             self._swing(group, k)
+        elif isinstance(group, Fold):
+            self._fold(group, k)
         elif isinstance(group, Place):
             self.parallel(group.body, group.like, group.near)
 
     def parallel(self, body: str, like: str, point: str) -> None:
         """A body with a known point that is not turned to another one."""
-        local = self.m.local(body, point)
         frames = [
-            Frame(w.at[point], local, w.frames[like].arm, w.frames[like].span, w.frames[like].still)
+            Frame(
+                w.at[point],
+                self.local(body, point, w),
+                w.frames[like].arm,
+                w.frames[like].span,
+                w.frames[like].still,
+            )
             for w in (self.here, self.meant)
         ]
         self.know(body, *frames)
@@ -128,7 +155,7 @@ class Solver:
         """The line on which a body holds a point."""
         slide = self.m.slides[hold.slide]
         frame = world.frames[slide.other(hold.body)]
-        at = self.m.local(hold.body, point) + slide.shift(hold.body)
+        at = self.local(hold.body, point, world) + slide.shift(hold.body)
         return Ray(frame.at(at), frame.vector(slide.way))
 
     def _sign(self, name: str) -> sp.Symbol:
@@ -155,11 +182,8 @@ class Solver:
         lines.sort(key=lambda h: m.slides[h.slide].other(h.body) != GROUND)
         circles = [h for h in group.holds if isinstance(h, OnCircle)]
         unknowns = m.unknown(group.pin)
-        lengths = [m.length(c.body, c.near, group.pin) for c in circles]
-        radii = [
-            r if r in m.moving else tag.let(f"r{i}", r, nonnegative=True)
-            for i, r in enumerate(lengths, 1)
-        ]
+        lengths = [self.length(c.body, c.near, group.pin, self.here) for c in circles]
+        radii = self._radii(tag, lengths)
         centres = [named(p, f"b{i}_{k}", self.here.at[c.near]) for i, c in enumerate(circles, 1)]
         raw = [self.ray(h, group.pin, self.here) for h in lines]
         rays = [
@@ -171,19 +195,8 @@ class Solver:
             rays = [rays[0], self._all_named(rays[1], f"2_{k}")]
         if len(circles) == 2:
             sigma = self._sign(f"{k}")
-            met = two_circles(
-                replace(p, suffix=f"_{k}"),
-                centres,
-                radii,
-                tuple(unknowns),
-                sigma,
-                scale=self.size,
-                share=self.share,
-                free=self.free,
-            )
-            link = met.link
-            apart = sp.sqrt(square(centres[1] - centres[0]))
-            self.missed.append(missed_circles(apart, (radii[0], radii[1])))
+            link, missed = self._circles(k, (centres, radii), unknowns, sigma)
+            self.missed.append(missed)
         elif circles:
             sigma = self._sign(f"{k}")
             link, missed = line_and_circle(tag, rays[0], (centres[0], radii[0]), unknowns, sigma)
@@ -192,6 +205,7 @@ class Solver:
             link = two_lines(tag, (rays[0], rays[1]), unknowns, self.whole, self.free, fixed=fixed)
         place = self._done(link, unknowns, f"p{group.pin}")
         drawn = [self.ray(h, group.pin, self.meant) for h in lines]
+        lengths = [self.length(c.body, c.near, group.pin, self.meant) for c in circles]
         squares = [
             square(unknowns - self.meant.at[c.near]) - r**2
             for c, r in zip(circles, lengths, strict=True)
@@ -210,13 +224,100 @@ class Solver:
             like = m.slides[hold.slide].other(hold.body)
             self.parallel(hold.body, like, group.pin)
         for circle, equation, r in zip(circles, squares, lengths, strict=True):
-            local = m.local(circle.body, circle.near)
-            span = m.local(circle.body, group.pin) - local
             frames = [
-                Frame(w.at[circle.near], local, w.at[group.pin] - w.at[circle.near], span, still)
+                self._between(circle, group.pin, w, still)
                 for w, still in ((self.here, sp.S.Zero), (self.meant, equation / r**2))
             ]
             self.know(circle.body, *frames)
+
+    def length(self, body: str, near: str, far: str, world: World) -> sp.Expr:
+        """The distance of two points of a body, or of parts of it."""
+        if {near, far} <= {*self.m.points[body]}:
+            return self.m.length(body, near, far)
+        ends = [self.local(body, point, world) for point in (near, far)]
+        return sp.sqrt(square(ends[1] - ends[0]))
+
+    def _between(self, hold: OnCircle, pin: str, world: World, still: sp.Expr) -> Frame:
+        """Where a body is that holds a known pin about a known point."""
+        start, place = self.local(hold.body, hold.near, world), world.at[hold.near]
+        span = self.local(hold.body, pin, world) - start
+        return Frame(place, start, world.at[pin] - place, span, still)
+
+    def _fold(self, group: Fold, k: int) -> None:
+        """Two bodies as parts of a third one, in whose coordinates their common pin is found."""
+        m, p, (first, second), name = self.m, self.program, group.bodies, fold_name(group)
+        slide = None if group.slide is None else m.slides[group.slide]
+        turning = [(second, group.near)] if slide else [(first, group.pin), (second, group.near)]
+        unknowns, sigma, tag = m.unknown(name), self._sign(f"{k}"), self.names(f"{k}")
+        drawn, lengths = (
+            [self.length(body, end, group.far, w) for body, end in turning]
+            for w in (self.meant, self.here)
+        )
+        radii = self._radii(tag, lengths)
+        centres = [
+            named(p, f"b{i}_{k}", self.local(group.on, end, self.here))
+            for i, (_, end) in enumerate(turning, 1)
+        ]
+        squares = [
+            square(unknowns - self.local(group.on, end, self.meant)) - r**2
+            for (_, end), r in zip(turning, drawn, strict=True)
+        ]
+        if slide:
+            at, line = (
+                Ray(self.local(first, group.far, w) + slide.shift(first), slide.way)
+                for w in (self.here, self.meant)
+            )
+            ray = Ray(named(p, f"a1_{k}", at.at), self._way(at.way, f"1_{k}"))
+            link, missed = line_and_circle(tag, ray, (centres[0], radii[0]), unknowns, sigma)
+            equations, halved = [line.equation(unknowns), *squares], (False, True)
+            what = f"{second} across the slide of {first} on {group.on}"
+        else:
+            link, missed = self._circles(k, (centres, radii), unknowns, sigma)
+            equations, halved = squares, (True, True)
+            what = f"{second} and {first} on {group.on} in line"
+        self.missed.append(missed)
+        place = self._done(link, unknowns, f"p{name}")
+        block = Block(what, tuple(unknowns), tuple(equations), halved, sp.Mul(*drawn))
+        self.blocks.append(block)
+        for world, far in ((self.here, place), (self.meant, unknowns)):
+            parts = world.folded.setdefault(group.on, {})
+            if slide:
+                own = self.local(first, group.far, world)
+                parts[first] = Frame(far, own, slide.way, slide.way)
+            for (body, end), equation, r in zip(turning, squares, drawn, strict=True):
+                start, own = (self.local(b, end, world) for b in (group.on, body))
+                span = self.local(body, group.far, world) - own
+                still = equation / r**2 if world is self.meant else sp.S.Zero
+                parts[body] = Frame(start, own, far - start, span, still)
+
+    def _radii(self, tag: Naming, lengths: Sequence[sp.Expr]) -> list[sp.Symbol]:
+        """The radii of circles under names, unless they are joints."""
+        return [
+            r if r in self.m.moving else tag.let(f"r{i}", r, nonnegative=True)
+            for i, r in enumerate(lengths, 1)
+        ]
+
+    def _circles(
+        self,
+        k: int,
+        circles: tuple[Sequence[sp.Matrix], Sequence[sp.Symbol]],
+        unknowns: sp.Matrix,
+        sigma: sp.Symbol,
+    ) -> tuple[Link, sp.Expr]:
+        """Where two circles meet, and the length by which they miss each other."""
+        centres, radii = circles
+        met = two_circles(
+            replace(self.program, suffix=f"_{k}"),
+            centres,
+            radii,
+            tuple(unknowns),
+            sigma,
+            scale=self.size,
+            share=self.share,
+            free=self.free,
+        )
+        apart = sp.sqrt(square(centres[1] - centres[0]))
+        return met.link, missed_circles(apart, (radii[0], radii[1]))
 
     def _way(self, way: sp.Matrix, tag: str) -> sp.Matrix:
         """A direction with its coordinates under names, unless they are rational numbers."""
@@ -246,8 +347,15 @@ class Solver:
         m, p, tag = self.m, self.program, self.names(f"{k}")
         (first, second), slide = group.near, m.slides[group.slide]
         a, b = group.bodies
-        local = m.local(b, second) + slide.shift(b) - m.local(a, first)
-        offset = sp.simplify(cross_in_plane(slide.way, local))
+        drawn, offset = (
+            sp.simplify(
+                cross_in_plane(
+                    slide.way,
+                    self.local(b, second, w) + slide.shift(b) - self.local(a, first, w),
+                )
+            )
+            for w in (self.meant, self.here)
+        )
         unknowns, sigma = m.unknown(swing_name(group)), self._sign(f"{k}")
         w = named(p, f"w_{k}", self.here.at[second] - self.here.at[first])
         e = offset if offset == 0 else tag.coefficient("e", offset)
@@ -258,13 +366,13 @@ class Solver:
         less = self.size * (self.size / (2**10 * sp.sqrt(square(w)) + self.size / 2**30))
         self.size = tag.let("size", sp.Max(self.size, less), nonnegative=True)
         between = self.meant.at[second] - self.meant.at[first]
-        equations = (cross_in_plane(unknowns, between) - offset, square(unknowns) - 1)
+        equations = (cross_in_plane(unknowns, between) - drawn, square(unknowns) - 1)
         name = f"{a} and {b} with both pivots at right angles to their slide"
         block = Block(name, tuple(unknowns), equations, (False, True))
         self.blocks.append(block)
         for body, near in zip(group.bodies, group.near, strict=True):
             frames = [
-                Frame(world.at[near], m.local(body, near), arm, slide.way, still)
+                Frame(world.at[near], self.local(body, near, world), arm, slide.way, still)
                 for world, arm, still in (
                     (self.here, t, sp.S.Zero),
                     (self.meant, unknowns, equations[1]),

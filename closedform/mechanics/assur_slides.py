@@ -5,14 +5,17 @@ is known but for one number, and each of its points is on a line.  A group is a 
 each of which holds it on a circle or on such a line; a body that slides on two known ones; or two
 bodies that slide on each other, each of which is pinned to a known point.
 
+Three bodies of which each is pinned to both others are rigid together.  If one of them is a
+cylinder, its length folds the two others.  They are one body for the groups that follow.
+
 Whether crossed bars keep a body parallel to another one is a matter of lengths, so it is given.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
+from itertools import combinations, product
 
 from closedform.mechanics.assur import freedoms
 
@@ -91,7 +94,23 @@ class EitherWay(_One):
     near: str
 
 
-Group = Meet | Swing | Place | Hold | EitherWay
+@dataclass(frozen=True)
+class Fold:
+    """Two bodies that become parts of the body ``on``, because all three are rigid together.
+
+    The first one turns about this body at ``pin``, or slides on it by ``slide``.  The second one is
+    pinned to it at ``near``, and both bodies meet in ``far``.
+    """
+
+    bodies: tuple[str, str]
+    on: str
+    pin: str
+    near: str
+    far: str
+    slide: int | None = None
+
+
+Group = Meet | Swing | Place | Hold | EitherWay | Fold
 
 
 @dataclass
@@ -147,6 +166,15 @@ class _Known:
                     ways.append(other)
         return ""
 
+    def fold(self, group: Fold) -> None:
+        """Make both bodies parts of the one that they are folded onto."""
+        points = [p for name in (group.on, *group.bodies) for p in self.on[name]]
+        self.on[group.on] = tuple(dict.fromkeys(points))
+
+    def shared(self, first: str, second: str) -> list[str]:
+        """The points at which two bodies are pinned together."""
+        return [p for p in self.on[first] if p in self.on[second]]
+
     def holds(self, body: str) -> OnCircle | OnLine | None:
         """How an unknown body holds its other points."""
         if lines := self.lines(body):
@@ -161,19 +189,42 @@ def sliding_order(
     known: Iterable[str],
     points: Iterable[str] = (),
     parallel: Sequence[tuple[str, str]] = (),
+    *,
+    bars: Collection[str] = (),
 ) -> SlidingOrder:
     """The order for bodies with named points, some of which slide on each other.
 
-    Bodies that have a point of the same name are pinned together there.  Some bodies are ``known``,
-    and some ``points`` besides theirs.  The first body of a ``parallel`` pair is parallel to the
-    second but for half a turn; this is used where nothing else is left.
+    Parameters
+    ----------
+    bodies
+        the names of the points of each body; where two have a point of the same name, they are
+        pinned together
+    slides
+        the pairs of bodies that slide on each other
+    known
+        the bodies that are known
+    points
+        the points that are known besides those of these bodies
+    parallel
+        pairs whose first body is parallel to the second but for half a turn; this is used where
+        nothing else is left
+    bars
+        the bodies onto which no other one is folded, such as cylinders
     """
     on = {name: tuple(dict.fromkeys(at)) for name, at in bodies.items()}
     here = {*known}
     now = _Known(on, slides, here, {p for name in here for p in on[name]} | {*points})
     found = SlidingOrder(left=[name for name in on if name not in here])
-    while group := _next(now, found.left) or _either_way(now, found.left, parallel):
+    while (
+        group := _next(now, found.left)
+        or _either_way(now, found.left, parallel)
+        or _fold(now, found.left, bars)
+    ):
         found.groups.append(group)
+        if isinstance(group, Fold):
+            now.fold(group)
+            found.left = [name for name in found.left if name not in group.bodies]
+            continue
         now.bodies |= {*group.bodies}
         now.points |= {p for name in group.bodies for p in on[name]}
         if isinstance(group, Meet):
@@ -215,6 +266,25 @@ def _either_way(
     return None
 
 
+def _fold(now: _Known, left: Sequence[str], bars: Collection[str]) -> Fold | None:
+    """Three bodies, each of which is joined to both others; that with the most points has them."""
+    whole = [name for name in left if name not in bars]
+    pinned = [name for name in left if not any(now.of(name))]
+    for on in sorted(whole, key=lambda name: -len(now.on[name])):
+        slid = {b: k for k, b in now.of(on) if [*now.of(b)] == [(k, on)]}
+        loose = sorted(pinned, key=lambda b: (b in bars, -len(now.on[b])))
+        for first, second in product([*loose, *slid], loose):
+            if on in (first, second) or first == second:
+                continue
+            nears, fars = (now.shared(second, other) for other in (on, first))
+            pins = [""] if first in slid else now.shared(first, on)
+            for pin, near, far in product(pins, nears, fars):
+                if len({pin, near, far}) == len((pin, near, far)):
+                    ends = {"pin": pin, "near": near, "far": far}
+                    return Fold((first, second), on, **ends, slide=slid.get(first))
+    return None
+
+
 def sliding_freedoms(bodies: Mapping[str, Iterable[str]], slides: Sequence[tuple[str, str]]) -> int:
     """The number of joints that have to be driven, by the count of bodies, pins and slides.
 
@@ -241,13 +311,20 @@ def groups_for(
     """
     kept: list[Group] = []
     points: set[str] = set()
+    folded = {b: group.on for group in groups if isinstance(group, Fold) for b in group.bodies}
     names = {wanted}
+    while wanted in folded:
+        wanted = folded[wanted]
+        names.add(wanted)
     for group in groups:
         if isinstance(group, Place) and group.body == wanted:
             names |= {*_between(slides, wanted, group.like)}
     for group in reversed(groups):
-        near, on = _needs(group, slides)
-        given = {p for name in group.bodies for p in bodies[name]} - near
+        near, on = _needs(group, bodies, slides)
+        moved = [*group.bodies]
+        for name in moved:
+            moved += [b for b, base in folded.items() if base == name]
+        given = {p for name in moved for p in bodies[name]} - near
         if names & {*group.bodies} or points & given:
             kept.insert(0, group)
             points |= near
@@ -284,7 +361,9 @@ def holder(
     return ""
 
 
-def _needs(group: Group, slides: Sequence[tuple[str, str]]) -> tuple[set[str], set[str]]:
+def _needs(
+    group: Group, bodies: Mapping[str, Iterable[str]], slides: Sequence[tuple[str, str]]
+) -> tuple[set[str], set[str]]:
     """The points and the bodies that have to be known before a group."""
 
     def other(k: int, body: str) -> str:
@@ -292,9 +371,12 @@ def _needs(group: Group, slides: Sequence[tuple[str, str]]) -> tuple[set[str], s
 
     if isinstance(group, Meet):
         near = {h.near for h in group.holds if isinstance(h, OnCircle)}
+        near |= {group.pin for h in group.holds if group.pin not in bodies[h.body]}
         return near, {other(h.slide, h.body) for h in group.holds if isinstance(h, OnLine)}
     if isinstance(group, Swing):
         return {*group.near}, set()
+    if isinstance(group, Fold):
+        return {group.pin, group.near} - {""}, {group.on}
     if isinstance(group, Place | EitherWay):
         return {group.near}, {group.like}
     return {*group.points}, {other(k, group.body) for k in group.slides}
@@ -302,6 +384,7 @@ def _needs(group: Group, slides: Sequence[tuple[str, str]]) -> tuple[set[str], s
 
 __all__ = [
     "EitherWay",
+    "Fold",
     "Group",
     "Hold",
     "Meet",

@@ -30,6 +30,7 @@ FILES: dict[str, float | tuple[float, ...]] = {
     "pushrod": 0.1,
     "rack_steering": 0.02,
     "roberts": 1.2,
+    "side_stay": 0.3,
     "stephenson_three": 0.8,
     "take_up": 0.9,
     "trailing_arm": 0.27,

@@ -29,31 +29,13 @@ e = {between = ["piston", "shank"], at = "E"}
 """
 BAR = """
 g = {between = ["front", "bar"], at = "C"}
-h = {between = ["bar", "rear"], at = "D"}
+h = {between = ["bar", "ground"], at = "F"}
 """
-JACK = """
-hand = "T"
-[bodies]
-ground = {A = [0, 0]}
-bar1 = {length = 0.2}
-bar2 = {length = 0.2}
-bar3 = {length = 0.2}
-bar4 = {length = 0.2}
-nut = {}
-screw = {}
-roller = {T = [0, 0]}
-[joints]
-a1 = {between = ["ground", "bar1"], at = "A"}
-a2 = {between = ["ground", "bar2"], at = "A"}
-l = {between = ["bar1", "bar3"], at = "L"}
-r = {between = ["bar2", "bar4"], at = "R"}
-t = {between = ["bar3", "roller"], at = "T"}
-u = {between = ["bar4", "roller"], at = "T"}
-v = {between = ["ground", "roller"], at = "A", kind = "prismatic", axis = [0, 1]}
-n = {between = ["bar1", "nut"], at = "L"}
-q = {between = ["nut", "screw"], at = "L", kind = "prismatic", driven = true}
-s = {between = ["bar2", "screw"], at = "R"}
-"""
+LIFT = (TESTS / "held_out_loops" / "folded_scissor.toml").read_text("utf-8")
+LIFT = LIFT.replace('["bar1", "tube"], at = "E"', '["ground", "tube"], at = "R"')
+LIFT = LIFT.replace("ground = {O", "ground = {R = [0.5, -0.1], O").replace(
+    'at = "E", k', 'at = "R", k'
+)
 LEG = """
 [bodies.t{k}]
 [bodies.p{k}]
@@ -92,7 +74,7 @@ CRR = (TESTS / "held_out_loops" / "crr.toml").read_text("utf-8")
             KNEE.replace('hand = "P"', 'hand = "a"'),
             "if a or b is driven instead of q, whose length",
         ),
-        (JACK, "it can be solved if a1 or a2 or v is driven instead of q, whose length follows"),
+        (LIFT, "it can be solved if w or o is driven instead of q, whose length follows"),
         (KNEE.replace("rear = {", "bar = {length = 1}\nrear = {") + BAR, "q drives this linkage"),
         (
             OTHER_WAY,

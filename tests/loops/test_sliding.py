@@ -17,7 +17,14 @@ from places import TESTS
 from closedform.scaffold.inputs.tables import TableError
 
 FOLDER = TESTS / "held_out_loops"
-MODES = {"shaper": 4, "scissor_lift": 4, "swivelling_rod": 2, "macpherson": 2, "oldham": 1}
+MODES = {
+    "shaper": 4,
+    "scissor_lift": 4,
+    "swivelling_rod": 2,
+    "macpherson": 2,
+    "oldham": 1,
+    "braced_carriage": 4,
+}
 OK, UNREACHABLE, SINGULAR = 0, 1, 2
 LINES = 40
 

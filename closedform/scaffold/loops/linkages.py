@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import sympy as sp
 
@@ -39,6 +40,8 @@ class LinkageLines:
     """The passive slides."""
     posed: bool = False
     """Whether the task has the yaw of the body with the hand too."""
+    folded: bool = False
+    """Whether three bodies that are pinned to each other are solved as one, without slides too."""
 
 
 def posed_linkage(loop: Loop) -> LinkageLines | None:
@@ -87,6 +90,7 @@ def linkage(loop: Loop, *, posed: bool = False) -> LinkageLines | None:
         return None
     points = _points(loop)
     _check_pins(loop, points)
+    check_apart(loop, points, cylinders)
     turned = {j.other(GROUND): j for j in driven}
     turning = dict(turned)
     found = _ordered(loop, points, turning, cylinders)
@@ -192,8 +196,6 @@ def _ordered(
             f"{step.body} is joined to {listed(step.points)}, which the driven joints and the "
             f"bodies before it place already, so they could not move"
         )
-    for dyad in found.dyads:
-        check_apart(loop, dyad.bodies, dyad.near, dyad.pin)
     if not found.left:
         return found
     degree = ", which leads to an equation of degree 6" if len(found.left) == 4 else ""
@@ -249,12 +251,27 @@ def reverse(loop: Loop, others: Sequence[str], driven: Iterable[Joint]) -> str:
     )
 
 
-def check_apart(loop: Loop, bodies: Sequence[str], near: Sequence[str], pin: str) -> None:
-    """Refuse two bodies that are pinned together twice, which no length can change."""
-    if len(set(near)) == 1:
+def check_apart(
+    loop: Loop, points: Mapping[str, Mapping[str, sp.Matrix]], cylinders: Mapping[str, Joint]
+) -> None:
+    """Refuse two bodies that are pinned together twice, which are rigid together."""
+    for bodies in combinations(points, 2):
+        shared = [p for p in points[bodies[0]] if p in points[bodies[1]]]
+        if len(shared) < 2:
+            continue
+        places = " and at ".join(shared)
+        bars = all(len(points[body]) == 2 for body in bodies)
+        if bars or any(body in cylinders for body in bodies):
+            raise loop.error(
+                f"{listed(bodies)} are both pinned at {places}, so together they are one "
+                f"bar, whose length cannot change; one of them has to be pinned elsewhere"
+            )
+        if GROUND in bodies:
+            body = next(b for b in bodies if b != GROUND)
+            raise loop.error(f"{body} is pinned to the ground at {places}, so it cannot move")
         raise loop.error(
-            f"{listed(bodies)} are both pinned at {near[0]} and at {pin}, so together they are one "
-            f"bar, whose length cannot change; one of them has to be pinned elsewhere"
+            f"{listed(bodies)} are pinned together at {places}, so they are rigid "
+            f"together.  Write them as one body with the points of both"
         )
 
 

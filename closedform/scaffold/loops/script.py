@@ -418,7 +418,8 @@ class _Way:
         if self.function:
             return self.function
         if self.linkage:
-            return "sliding_linkage" if self.linkage.slides else "linkage"
+            grouped = self.linkage.slides or self.linkage.folded
+            return "sliding_linkage" if grouped else "linkage"
         if self.guide:
             return "guided"
         if named := BY_LEG.get(self.legs[0].call.partition("(")[0]):
@@ -436,6 +437,8 @@ class _Way:
             return self.guide.kind
         if any(leg.call.startswith("SlidingStrut(") for leg in self.legs):
             return "a hand on an arm and a strut"
+        if self.linkage and not self.linkage.slides:
+            return KINDS["linkage"]
         upright = self.name == "platform" and len(self.legs) == UPRIGHT
         return "a hand that stays upright" if upright else KINDS[self.name]
 
@@ -445,7 +448,7 @@ class _Way:
         if self.linkage:
             bodies = [f"        {body}," for body in self.linkage.bodies]
             lines = [f"        {slide}," for slide in self.linkage.slides]
-            slides = ["    [", *lines, "    ],"] if lines else []
+            slides = ["    [", *lines, "    ],"] if lines else ["    [],"] * self.linkage.folded
             return ["    {", *bodies, "    },", *slides, *[f"    {self.at},"] * bool(self.at)]
         legs = [leg.call for leg in self.legs]
         if self.name in ("coupled", "slotted", "on_rod", "two_arms"):

@@ -8,8 +8,8 @@ import sympy as sp
 
 from closedform.mechanics.assur import degrees
 from closedform.mechanics.assur_slides import (
+    Fold,
     Meet,
-    OnCircle,
     SlidingOrder,
     Swing,
     sliding_freedoms,
@@ -97,6 +97,9 @@ def sliding(loop: Loop, *, few: bool = False) -> LinkageLines | None:
     _read_slides(found)
     _separate(found)
     order = _ordered(found)
+    folded = any(isinstance(group, Fold) for group in order.groups)
+    if not (found.slides or folded):
+        return None
     follower = loop.joints.get(loop.hand)
     hand = "" if follower else _hand(found)
     turning = {b: j for b, j in found.with_joint.items() if j.kind == "revolute"}
@@ -105,7 +108,7 @@ def sliding(loop: Loop, *, few: bool = False) -> LinkageLines | None:
     bodies = tuple(line_of(name, at, turning) for name, at in found.points.items())
     slides = tuple(_line(found, s) for s in found.slides)
     passive = tuple(s.joint.name for s in found.slides if not _own(found, s))
-    return LinkageLines(bodies, hand, _words(found, order), slides, passive)
+    return LinkageLines(bodies, hand, _words(found, order), slides, passive, folded=folded)
 
 
 def _has_joints(found: Found) -> bool:
@@ -130,7 +133,7 @@ def _is_one(found: Found, *, few: bool) -> bool:
     if (
         loop.dimensions != 2
         or inputs not in FEW
-        or not slides
+        or not (slides or few)
         or loop.parallelograms
         or not _has_joints(found)
     ):
@@ -298,6 +301,7 @@ def _hand(found: Found) -> str:
 def _ordered(found: Found) -> SlidingOrder:
     """The groups of the linkage, if all are solved alone."""
     loop = found.loop
+    check_apart(loop, found.points, found.cylinders)
     free = sliding_freedoms(found.points, found.pairs) + len(found.cylinders)
     driven = [*found.driven.values(), *found.cylinders.values()]
     if free != len(driven):
@@ -307,16 +311,13 @@ def _ordered(found: Found) -> SlidingOrder:
             + instead_of_count(free, len(driven))
         )
     _check_directions(found)
-    order = sliding_order(found.points, found.pairs, [GROUND, *found.driven])
+    known = [GROUND, *found.driven]
+    order = sliding_order(found.points, found.pairs, known, bars=found.cylinders)
     for step in order.held:
         raise loop.error(
             f"the driven joints and the bodies before it hold {step.body} already, so they could "
             f"not move"
         )
-    for group in order.groups:
-        if isinstance(group, Meet) and all(isinstance(h, OnCircle) for h in group.holds):
-            near = [h.near for h in group.holds if isinstance(h, OnCircle)]
-            check_apart(loop, group.bodies, near, group.pin)
     if order.left:
         without = {name: at for name, at in found.points.items() if name not in found.cylinders}
         others = [
@@ -379,6 +380,8 @@ def _words(found: Found, order: SlidingOrder) -> str:
             told.append(f"{names} meet in {group.pin}" if len(group.bodies) > 1 else names)
         elif isinstance(group, Swing):
             told.append(f"{names} slide on each other")
+        elif isinstance(group, Fold):
+            told.append(f"{names} meet on {safe(group.on)}")
         else:
             told.append(names)
     return f"Joint {listed(moved)}.  Then {', '.join(told)}."

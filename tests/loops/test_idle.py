@@ -30,6 +30,29 @@ y = {between = ["tie2", "right"], at = "K2"}
 delta = {between = ["ground", "left"], at = "L"}
 other = {between = ["ground", "right"], at = "R"}
 """
+IDLER = """
+hand = "delta"
+[bodies]
+ground = {P = [-0.3, 0], I = [0.3, 0], L = [-0.7, 0], R = [0.7, 0]}
+pitman = {P = [-0.3, 0], A = [-0.3, -0.15]}
+idler = {I = [0.3, 0], B = [0.3, -0.15]}
+relay = {A = [0, 0], B = [0.6, 0]}
+tie1 = {length = 0.35}
+tie2 = {length = 0.35}
+left = {L = [-0.7, 0], K1 = [-0.65, -0.14]}
+right = {R = [0.7, 0], K2 = [0.65, -0.14]}
+[joints]
+q = {between = ["ground", "pitman"], at = "P", driven = true}
+i = {between = ["ground", "idler"], at = "I"}
+a = {between = ["pitman", "relay"], at = "A"}
+b = {between = ["idler", "relay"], at = "B"}
+t1 = {between = ["relay", "tie1"], at = "A"}
+t2 = {between = ["relay", "tie2"], at = "B"}
+k1 = {between = ["tie1", "left"], at = "K1"}
+k2 = {between = ["tie2", "right"], at = "K2"}
+delta = {between = ["ground", "left"], at = "L"}
+other = {between = ["ground", "right"], at = "R"}
+"""
 
 
 def test_the_other_jaw_of_a_gripper_is_left_out(tmp_path: Path) -> None:
@@ -264,3 +287,15 @@ def test_a_hand_may_have_the_name_of_a_quantity_of_a_program(name: str, tmp_path
     q, status = lever.ik(psi)
     assert not status.any()
     assert np.allclose(np.abs(q - 0.4).min(axis=(1, 2)), 0, atol=1e-12)
+
+
+def test_bodies_stay_together_at_a_pin_of_one_that_is_left_out(tmp_path: Path) -> None:
+    """The tie rod of a steering gear is pinned to the relay rod where this is pinned to the arm."""
+    script = script_of("idler", IDLER, tmp_path)
+    assert "coupled(" in script and "relay" not in script
+    gear = derived("idler", script, tmp_path)
+    q = np.linspace(-0.4, 0.4, 9)[:, None]
+    p, status = gear.fk(q)
+    pin = -0.3 - 0.15j * np.exp(1j * q)
+    arm = -0.7 + (0.05 - 0.14j) * np.exp(1j * p[..., 0])
+    assert (status == 0).all() and np.abs(np.abs(pin - arm) - 0.35).max() < 1e-14

@@ -108,7 +108,7 @@ def _without_bodies(loop: Loop) -> Loop:
     if found is None:
         return loop
     known = [GROUND, *found.driven]
-    groups = sliding_order(found.points, found.pairs, known).groups
+    groups = sliding_order(found.points, found.pairs, known, bars=found.cylinders).groups
     follower = loop.joints.get(loop.hand)
     last = follower.other(GROUND) if follower else holder(groups, found.points, known, found.hand)
     if not any(last in group.bodies for group in groups):
@@ -119,7 +119,7 @@ def _without_bodies(loop: Loop) -> Loop:
     if not idle:
         return loop
     idle += [b for b in loop.bodies if b not in found.points and found.half_of(b) in idle]
-    joints = {n: j for n, j in loop.joints.items() if not {*j.between} & {*idle}}
+    joints = _held_without(loop, idle)
     if not any(last in j.between for j in joints.values() if j is not follower):
         return loop  # its direction is that of a body on which it slides, as in an Oldham coupling
     loop.notes.append(
@@ -127,6 +127,30 @@ def _without_bodies(loop: Loop) -> Loop:
         f"{'is' if len(idle) == 1 else 'are'} left out"
     )
     return _without(loop, idle, joints)
+
+
+def _held_without(loop: Loop, gone: Sequence[str]) -> dict[str, Joint]:
+    """The joints without some bodies; bodies that one of these joins at a pin stay together."""
+    kept = {n: j for n, j in loop.joints.items() if not {*j.between} & {*gone}}
+    for name, joint in loop.joints.items():
+        stay = [b for b in joint.between if b not in gone]
+        if joint.kind != "revolute" or len(stay) != 1 or name in kept:
+            continue
+        before, after = (
+            _pinned([j for j in joints if j.kind == "revolute" and j.at == joint.at], stay[0])
+            for joints in (loop.joints.values(), kept.values())
+        )
+        if others := [b for b in before if b not in gone and b not in after]:
+            kept[name] = replace(joint, between=(others[0], stay[0]))
+    return {name: kept[name] for name in loop.joints if name in kept}
+
+
+def _pinned(pins: Sequence[Joint], body: str) -> list[str]:
+    """The bodies that the joints at a pin hold together, one of which is given first."""
+    found = [body]
+    for one in found:
+        found += [b for j in pins if one in j.between if (b := j.other(one)) not in found]
+    return found
 
 
 def _without(loop: Loop, gone: Sequence[str], joints: Mapping[str, Joint]) -> Loop:

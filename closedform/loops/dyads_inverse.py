@@ -21,7 +21,7 @@ from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import MISSED, named, where_free
 from closedform.loops.linkage import GROUND, Linkage
 from closedform.loops.parallelograms import home, parallel_to_ground, state
-from closedform.mechanics.assur import Dyad, Held, Order, Parallel, order
+from closedform.mechanics.assur import Dyad, Held, Order, Parallel, Shifted, order
 from closedform.model.functions import Program, choose, real
 from closedform.model.inverse import Link
 from closedform.model.step import Step
@@ -42,7 +42,7 @@ def inverse(m: Linkage, loop: Step) -> None:
     bars = {name: at for name, at in m.points.items() if name not in m.cylinders}
     points = [m.at] * bool(m.at)
     found = order(bars, m.known, points, sought=m.driven)
-    if found.left and len(m.d.actuated) > 1 and m.at:
+    if found.left and (m.follower or len(m.d.actuated) > 1):  # not for a hand on a curve
         even = parallel_to_ground(m)
         again = order(bars, m.known, points, sought=m.driven, parallel=even)
         found = found if again.left or again.held else again
@@ -113,7 +113,7 @@ class _Reverse:
 
     def _widen(self, k: int) -> None:
         """Let a dyad tolerate what those before have lost, unless the hand is on a curve."""
-        if self.lost and isinstance(self.order.steps[k - 1], Dyad) and not self.on_curve:
+        if self.lost and isinstance(self.order.steps[k - 1], Dyad | Shifted) and not self.on_curve:
             grown = sp.Max(1, *self.lost) / 2
             self.share = self.program.let(f"may_miss_{k}", grown, nonnegative=True)
 
@@ -139,20 +139,23 @@ class _Reverse:
                 self.at[point] = named(self.program, f"p{point}", self.at[step.near] + span)
                 self.meant[point] = self.meant[step.near] + span
 
-    def _crank(self, step: Dyad, body: str, k: int) -> None:
+    def _crank(self, step: Dyad | Shifted, body: str, k: int) -> None:
         """A driven body and the bar that it moves."""
         m, p = self.m, self.program
         i = step.bodies.index(body)
         other, near = step.bodies[1 - i], step.near[1 - i]
-        rod = m.length(other, near, step.pin)
+        pin, end = step.pins[i], step.pins[1 - i]
+        shift = self._shift(step) * (1 if i else -1)
+        rod = m.length(other, near, end)
         names = Naming(p, self.size, f"_{k}", self.share)
-        drawn = m.crank(body, step.pin, rod)
+        drawn = m.crank(body, pin, rod)
         crank = drawn.named(names)
         self.signs.append(sigma := real(f"sigma_{body}"))
-        w = self.at[near] - crank.base
+        centre = self.at[near] + shift
+        w = centre - crank.base
         solved = crank.solve(names, w, sigma)
         start = len(p.body)
-        place = named(p, f"p{step.pin}", self.at[near] - solved.rod)
+        place = named(p, f"p{pin}", centre - solved.rod)
         link = replace(
             solved.link,
             body=(*solved.link.body, *p.body[start:]),
@@ -163,13 +166,27 @@ class _Reverse:
         self.found.append(solved)
         self.values[crank.joint] = solved.value
         self.missed.append(solved.missed)
-        self.equations.append(square(drawn.end() - self.meant[near]) - rod**2)
-        self.at[step.pin], self.meant[step.pin] = place, drawn.end()
+        self.equations.append(square(drawn.end() - self.meant[near] - shift) - rod**2)
+        self.at[pin], self.meant[pin] = place, drawn.end()
+        if any(shift):
+            self._moved(end, pin, -shift)
         self._lose(step)
-        self._carry(body, m.pivot(body), step.pin)
-        self._carry(other, near, step.pin)
+        self._carry(body, m.pivot(body), pin)
+        self._carry(other, near, end)
 
-    def _circles(self, step: Dyad, k: int) -> None:
+    def _shift(self, step: Dyad | Shifted) -> sp.Matrix:
+        """By how much the pin of the second body is away from that of the first one."""
+        if isinstance(step, Dyad):
+            return sp.zeros(2, 1)
+        turn, span = home(self.m, step.on), self.m.span(step.on, *step.pins)
+        return (turn * span).applyfunc(sp.simplify)
+
+    def _moved(self, point: str, pin: str, by: sp.Matrix) -> None:
+        """Add a point that is at a constant vector from a known one."""
+        self.at[point] = named(self.program, f"p{point}", self.at[pin] + by)
+        self.meant[point] = self.meant[pin] + by
+
+    def _circles(self, step: Dyad | Shifted, k: int) -> None:
         """Two bodies that no joint drives."""
         m, p = self.m, self.program
         self.signs.append(sigma := real(f"sigma_{step.pin}"))
@@ -179,7 +196,11 @@ class _Reverse:
             r if r.is_Symbol else p.let(f"r{i}_{k}", r, nonnegative=True)
             for i, r in enumerate(lengths, 1)
         ]
-        centres = [named(p, f"b{i}_{k}", self.at[n]) for i, n in enumerate(step.near, 1)]
+        shifts = (self._shift(step), sp.zeros(2, 1))
+        first, second = zip(step.near, shifts, strict=True)
+        centres = [
+            named(p, f"b{i}_{k}", self.at[n] + by) for i, (n, by) in enumerate((first, second), 1)
+        ]
         met = two_circles(
             replace(p, suffix=f"_{k}"),
             centres,
@@ -199,24 +220,27 @@ class _Reverse:
             apart = sp.sqrt(square(centres[1] - centres[0]))
             self.missed.append(missed_circles(apart, (radii[0], radii[1])))
         self.passive += unknowns
-        for near, length in zip(step.near, lengths, strict=True):
-            self.equations.append(square(unknowns - self.meant[near]) - length**2)
+        for (near, by), length in zip((first, second), lengths, strict=True):
+            self.equations.append(square(unknowns - self.meant[near] - by) - length**2)
         self.at[step.pin], self.meant[step.pin] = place, unknowns
+        if isinstance(step, Shifted):
+            self._moved(step.far, step.pin, -shifts[0])
         self._lose(step)
-        for body, near in zip(step.bodies, step.near, strict=True):
-            self._carry(body, near, step.pin)
+        for body, near, pin in zip(step.bodies, step.near, step.pins, strict=True):
+            self._carry(body, near, pin)
 
-    def _lose(self, step: Dyad) -> None:
+    def _lose(self, step: Dyad | Shifted) -> None:
         """Note that a pin is moved far by rounding if its bars are in line, or both begin there."""
-        a, b = (self.at[step.pin] - self.at[near] for near in step.near)
+        a, b = (self.at[p] - self.at[near] for p, near in zip(step.pins, step.near, strict=True))
         size = sp.Mul(*self._lengths(step))
-        apart = sp.sqrt(square(self.at[step.near[0]] - self.at[step.near[1]]))
+        between = self.at[step.near[0]] + self._shift(step) - self.at[step.near[1]]
+        apart = sp.sqrt(square(between))
         self.lost.append(lost(size, sp.Abs(a[0] * b[1] - a[1] * b[0])))
         self.lost.append(lost(self.size, apart))
 
-    def _lengths(self, step: Dyad) -> list[sp.Expr]:
-        pairs = zip(step.bodies, step.near, strict=True)
-        return [self.m.length(body, near, step.pin) for body, near in pairs]
+    def _lengths(self, step: Dyad | Shifted) -> list[sp.Expr]:
+        ends = zip(step.bodies, step.near, step.pins, strict=True)
+        return [self.m.length(*end) for end in ends]
 
     def _stretch(self, step: Held, k: int) -> None:
         """A cylinder, both of whose ends are known."""
@@ -301,7 +325,7 @@ class _Reverse:
         )
         apart = m.require_apart(g)
         parallel = bool(self.order.parallel)
-        passive = [s for s in self.order.dyads if not {*s.bodies} & {*m.driven}]
+        passive = [s for s in self.order.pairs if not {*s.bodies} & {*m.driven}]
         export_inverse(
             d,
             g,
@@ -333,7 +357,8 @@ class _Reverse:
 
     def _told(self) -> str:
         return ", ".join(
-            " and ".join(s.bodies) if isinstance(s, Dyad) else s.body for s in self.order.steps
+            " and ".join(s.bodies) if isinstance(s, Dyad | Shifted) else s.body
+            for s in self.order.steps
         )
 
 

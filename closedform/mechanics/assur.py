@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
+from itertools import combinations, permutations
 
 
 @dataclass(frozen=True)
@@ -19,6 +19,11 @@ class Dyad:
     pin: str
     bodies: tuple[str, str]
     near: tuple[str, str]
+
+    @property
+    def pins(self) -> tuple[str, str]:
+        """The pins of both bodies, which are the same."""
+        return self.pin, self.pin
 
 
 @dataclass(frozen=True)
@@ -43,11 +48,32 @@ class Parallel:
     bars: tuple[tuple[str, str], ...]
 
 
+@dataclass(frozen=True)
+class Shifted:
+    """A dyad whose ``pin`` is on a body that is not turned, and carries the end of the first bar.
+
+    The first one of the ``bodies`` is pinned to the body ``on`` at ``far``, the second one at
+    ``pin``, and the points in ``near`` are known before.  So the first one holds the pin as if both
+    its ends were moved from ``far`` to ``pin``.
+    """
+
+    pin: str
+    bodies: tuple[str, str]
+    near: tuple[str, str]
+    on: str
+    far: str
+
+    @property
+    def pins(self) -> tuple[str, str]:
+        """The pins of both bodies, at different points of the body that is not turned."""
+        return self.far, self.pin
+
+
 @dataclass
 class Order:
     """The steps in which the bodies become known, and the bodies that are left."""
 
-    steps: list[Dyad | Held | Parallel] = field(default_factory=list)
+    steps: list[Dyad | Held | Parallel | Shifted] = field(default_factory=list)
     left: list[str] = field(default_factory=list)
 
     @property
@@ -61,6 +87,11 @@ class Order:
     @property
     def parallel(self) -> list[Parallel]:
         return [s for s in self.steps if isinstance(s, Parallel)]
+
+    @property
+    def pairs(self) -> list[Dyad | Shifted]:
+        """The steps in which two bodies meet in a pin."""
+        return [s for s in self.steps if isinstance(s, Dyad | Shifted)]
 
     @property
     def undone(self) -> str:
@@ -88,8 +119,12 @@ def order(
     there = {p for name in known for p in on[name]} | set(points)
     found = Order(left=[name for name in on if name not in set(known)])
     even = {p.body: p for p in parallel}
-    while step := _beside(on, found, there, even) or _next(on, found.left, there, {*sought}):
-        solved = step.bodies if isinstance(step, Dyad) else (step.body,)
+    while (
+        step := _beside(on, found, there, even)
+        or _next(on, found.left, there, {*sought})
+        or _shifted(on, found.left, there, even, {*sought})
+    ):
+        solved = step.bodies if isinstance(step, Dyad | Shifted) else (step.body,)
         found.steps.append(step)
         found.left = [name for name in found.left if name not in solved]
         there |= {p for name in solved for p in on[name]}
@@ -131,6 +166,30 @@ def _next(
     return min(dyads, key=lambda dyad: not sought & {*dyad.bodies}, default=None)
 
 
+def _shifted(
+    on: Mapping[str, Sequence[str]],
+    left: Sequence[str],
+    there: set[str],
+    even: Mapping[str, Parallel],
+    sought: set[str],
+) -> Shifted | None:
+    """Two bodies with known points that are pinned to a body which is not turned."""
+    near = {name: [p for p in on[name] if p in there] for name in left}
+    pins = {
+        name: [(b, p) for b in left for p in on[b] if b != name and near[b] and p in on[name]]
+        for name in left
+        if name in even
+    }
+    bars = {name: {bar for pair in even[name].bars for bar in pair} for name in pins}
+    found = [
+        Shifted(pin, (a, b), (near[a][0], near[b][0]), name, far)
+        for name in pins
+        for (a, far), (b, pin) in permutations(pins[name], 2)
+        if a in bars[name] and b not in bars[name] and pin != far
+    ]
+    return min(found, key=lambda step: step.bodies[0] not in sought, default=None)
+
+
 def needed_for(
     steps: Sequence[Dyad], bodies: Mapping[str, Iterable[str]], last: Dyad
 ) -> list[Dyad]:
@@ -157,4 +216,14 @@ def degrees(free: int) -> str:
     return f"{free} degree{'s' * (free != 1)} of freedom"
 
 
-__all__ = ["Dyad", "Held", "Order", "Parallel", "degrees", "freedoms", "needed_for", "order"]
+__all__ = [
+    "Dyad",
+    "Held",
+    "Order",
+    "Parallel",
+    "Shifted",
+    "degrees",
+    "freedoms",
+    "needed_for",
+    "order",
+]

@@ -11,7 +11,7 @@ from places import TESTS
 from closedform import prove
 
 TEXT = (TESTS / "held_out_loops" / "palletizer.toml").read_text("utf-8")
-OK = 0
+OK, UNREACHABLE, SINGULAR = range(3)
 
 
 @pytest.fixture(scope="module")
@@ -67,3 +67,43 @@ def test_sides_of_other_lengths_keep_nothing_level(tmp_path: Path) -> None:
     text = TEXT.replace('r2 = {length = "f"}', 'r2 = {length = "u"}')
     d = read_script(script_of("bent", text, tmp_path))
     assert [i.function for i in prove(d).inverses] == ["fk"]
+
+
+def test_a_relay_rod_that_stays_parallel_has_an_inverse(tmp_path: Path) -> None:
+    """Its joint turns on the circle of the pitman arm, moved along the relay rod."""
+    text = (TESTS / "held_out_loops" / "idler_steering.toml").read_text("utf-8")
+    gear = derived("gear", script_of("gear", text, tmp_path), tmp_path, crosscheck=True)
+    q = np.random.default_rng(5).uniform(-np.pi, np.pi, 2000)
+    joint = -0.3 - 0.15j * np.exp(1j * q) + 0.15 - 0.02j
+    away, arm = joint + 0.7, np.abs(0.05 - 0.14j)
+    share = (arm**2 + np.abs(away) ** 2 - 0.5**2) / (2 * arm * np.abs(away))
+    reached = np.abs(share) < 1
+    count = 0
+    for sign in (1, -1):
+        swing = sign * np.arccos(share[reached]) - np.angle(0.05 - 0.14j)
+        turn = np.angle(away[reached]) + swing
+        answers, status = gear.ik(turn[:, None])
+        assert (status <= SINGULAR).all() and (status != UNREACHABLE).all()
+        off = np.abs(np.angle(np.exp(1j * (answers[..., 0] - q[reached, None]))))
+        assert (off.min(axis=1) < 1e-6).all() and np.median(off.min(axis=1)) < 1e-14
+        again = gear.fk(answers[status == OK]).p[..., 0]
+        at = np.repeat(turn[:, None], 2, axis=1)[status == OK]
+        gap = np.abs(np.angle(np.exp(1j * (again - at[:, None]))))
+        assert (np.nanmin(gap, axis=1) < 1e-12).all()
+        count += len(again)
+    assert count > 2000
+
+
+def test_arms_that_no_motor_turns_carry_a_level_table(tmp_path: Path) -> None:
+    text = (TESTS / "held_out_loops" / "tail_lift.toml").read_text("utf-8")
+    lift = derived("tail", script_of("tail", text, tmp_path), tmp_path)
+    arm = np.random.default_rng(6).uniform(-1, 1, 500)
+    end = 0.8 * np.exp(1j * arm)
+    q = np.abs(end - 1 + 0.4j)
+    away = end + 0.4 + 0.1j - 1.6  # the rod, from the pivot of the lever
+    share = (0.3**2 + np.abs(away) ** 2 - 0.5**2) / (2 * 0.3 * np.abs(away))
+    met = np.abs(share) < 1
+    psi = np.angle(away[met]) + np.arccos(share[met]) - np.pi / 2
+    answers, status = lift.ik(psi[:, None])
+    assert met.sum() > 100 and (status != UNREACHABLE).any(axis=1).all()
+    assert (np.abs(answers[..., 0] - q[met, None]).min(axis=1) < 1e-9).all()

@@ -126,6 +126,7 @@ from closedform.loops.three_planes import ThreePlanes as ThreePlanes
 from closedform.loops.tripod import tripod as tripod
 from closedform.loops.tripod_legs import Upright as Upright
 from closedform.loops.two_arms import two_arms as two_arms
+from closedform.loops.two_arms_hand import Damper as Damper
 from closedform.mechanics.arm import from_dh as from_dh
 from closedform.mechanics.arm import from_screws as from_screws
 from closedform.mechanics.frames import adjoint as adjoint

@@ -17,7 +17,7 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.lemmas.legs import Crank, Naming, Slide, Solution, Strut
+from closedform.lemmas.legs import Crank, Naming, Slide, Solution, Strut, vector
 from closedform.lemmas.lines import coordinate
 from closedform.lemmas.missed import MOVED, SHARE
 from closedform.lemmas.sliding_strut import SlidingStrut
@@ -33,7 +33,7 @@ from closedform.loops.leg_by_leg import (
     where_free,
 )
 from closedform.loops.points import FREE_POINT, NEAR, named_point, require_triangle, with_roles
-from closedform.loops.two_arms_hand import THIRD, Posture, TwoArms
+from closedform.loops.two_arms_hand import THIRD, Damper, Posture, TwoArms
 from closedform.loops.two_arms_rates import draw, velocity
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Program, branches, real
@@ -63,10 +63,14 @@ BY_STRUT = (
     "The arm gives its ball.  Its distance from the ball of the strut says how far the hand slid, "
     "in one of two ways: on the hand a line meets a sphere.  "
 )
+BY_DAMPER = (
+    "The damper {joint} leads from the ground to the first arm.  Its length gives the angle of "
+    "this arm in one of two ways: a crank and a rod.  "
+)
 BY_ROD = (
     "The end C of the rod is at known distances from both balls and from the other end of the rod: "
-    "three spheres meet in two points.  So there are four assembly modes.  The three points give "
-    "the rotation R of the hand, and so its position."
+    "three spheres meet in two points.  So there are {modes} assembly modes.  The three points "
+    "give the rotation R of the hand, and so its position."
 )
 
 
@@ -75,12 +79,13 @@ def two_arms(
     driver: Crank | Slide,
     follower: Crank | SlidingStrut,
     tie: Strut | Slide | Crank,
+    damper: Damper | None = None,
 ) -> None:
     """Derive and export a hand that two arms and a rod hold.
 
-    It exports ``fk``, the pose of the hand in four assembly modes, ``jacobian``, ``singularities``
-    and ``skeleton``.  The hand moves along a curve, or on a surface if the rod is driven too, so
-    there is no ``ik``.
+    It exports ``fk``, the pose of the hand in four assembly modes, or eight with a damper,
+    ``jacobian``, ``singularities`` and ``skeleton``.  The hand moves along a curve, or on a surface
+    if the rod is driven too, so there is no ``ik``.
 
     Parameters
     ----------
@@ -94,8 +99,10 @@ def two_arms(
         passive
     tie
         the rod, with its length: a ``Strut``, or a driven ``Slide`` or ``Crank``
+    damper
+        a cylinder that turns the first arm, whose joint is passive then
     """
-    m = TwoArms(d, driver, follower, tie)
+    m = TwoArms(d, driver, follower, tie, damper)
     loop = d.loop = _state(m)
     at = _forward(m, loop)
     draw(m, at)
@@ -109,23 +116,36 @@ def _state(m: TwoArms) -> Step:
     tie = sp.sympify(m.tie.rod, strict=True)
     return m.d.step(
         "The loop",
-        (ON_STRUT if m.strut else ON_ARM).format(tie=tie, joint=m.given.joint),
+        (ON_STRUT if m.strut else ON_ARM).format(tie=tie, joint=m.given.joint) + _damped(m),
         {},
         rows=[("i", "b", "e"), *rows],
+    )
+
+
+def _damped(m: TwoArms) -> str:
+    """What is said of the damper, if there is one."""
+    if not (m.damper and m.pushed):
+        return ""
+    return (
+        f"  The first arm is not driven either: the damper of length {m.damper.joint} leads from "
+        f"{tuple(m.damper.base)} to its point {tuple(m.pushed.end())}."
     )
 
 
 def _forward(m: TwoArms, loop: Step) -> Posture:
     d, f = m.d, m.d.program()
     arm, rod = real("sigma_arm"), real("sigma_rod")
-    modes = branches((arm, SIGN), (rod, SIGN))
+    push = real("sigma_damper")
+    modes = branches(*[(push, SIGN)] * bool(m.damper), (arm, SIGN), (rod, SIGN))
     d.assembly_modes = modes.labels
     slid = [e.joint for e in (m.driver, m.tie) if isinstance(e, Slide)]
+    slid += [m.damper.joint] if m.damper else []
     size = f.let("size", size_of(d, (m.driver, m.given, m.tie), slid))
     naming = Naming(f, size, "_2", MOVED if slid else SHARE)
-    second = (_on_strut if m.strut else _on_arm)(m, naming, arm)
+    pushed = _pushed(m, replace(naming, tag="_0"), push)
+    second = (_on_strut if m.strut else _on_arm)(m, naming, arm, pushed)
     b, c, n = second.ball, second.at, second.near
-    links = [second.link]
+    links = [*([pushed.link] if pushed else []), second.link]
     found = three_spheres(
         replace(f, suffix="_C"),
         [b, c, n],
@@ -165,8 +185,9 @@ def _forward(m: TwoArms, loop: Step) -> Posture:
         branches=modes,
         result="Positions",
         notes=(
-            f"UNREACHABLE: the {'arm, the strut' if m.strut else 'arms'} or the rod do not reach.",
-            *where_free([second.met]),
+            f"UNREACHABLE: the {'arm, the strut' if m.strut else 'arms'}"
+            f"{', the damper' if m.damper else ''} or the rod do not reach.",
+            *where_free([*([pushed.met] if pushed else []), second.met]),
             FREE_POINT,
             f"SINGULAR too where {MET}, or {NEARLY}.",
             *apart,
@@ -180,7 +201,7 @@ def _forward(m: TwoArms, loop: Step) -> Posture:
             (sp.S.Zero,) * len(m.equations),
             m.equations,
             links=tuple(links),
-            passive=(m.given.joint, *THIRD),
+            passive=(*[m.driver.joint] * bool(m.damper), m.given.joint, *THIRD),
         )
     )
     for link in links[:told]:
@@ -193,7 +214,40 @@ def _forward(m: TwoArms, loop: Step) -> Posture:
         ends=(b, c, end),
         spans=turned,
         near=n,
+        pushed=pushed.end if pushed else None,
     )
+
+
+@dataclass(frozen=True)
+class _Pushed:
+    """How a damper turns the first arm, in the names of a program."""
+
+    met: Solution
+    link: Link
+    end: sp.Matrix
+    """That of the damper on the arm."""
+    ball: sp.Matrix
+
+
+def _pushed(m: TwoArms, names: Naming, sigma: sp.Symbol) -> _Pushed | None:
+    """The first arm, which a damper turns."""
+    f, damper = names.program, m.damper
+    if not (damper and m.pushed):
+        return None
+    arm, driver = m.pushed.named(names), m.driver
+    assert isinstance(driver, Crank)
+    base = named(f, "b_0", damper.base)
+    met = arm.solve(names, base - arm.base, sigma)
+    start = len(f.body)
+    end = named(f, "e_0", base - met.rod)
+    sine, cosine = met.value.args
+    radius = f.let("radius_ball", sp.sqrt(sine**2 + cosine**2), nonnegative=True)
+    c, s = f.let("c_0", cosine / radius), f.let("s_0", sine / radius)
+    ahead, beside = (vector(e) for e in (driver.along, driver.across))
+    ball = named(f, "b_1", driver.base + driver.length * (c * ahead + s * beside))
+    means = dict(zip((*end, *ball), (*arm.end(), *driver.end()), strict=True))
+    link = replace(met.link, body=(*met.link.body, *f.body[start:]), means=means)
+    return _Pushed(met, link, end, ball)
 
 
 @dataclass(frozen=True)
@@ -214,11 +268,12 @@ class _Second:
     """The distances of the end of the rod from both balls."""
 
 
-def _on_arm(m: TwoArms, names: Naming, sigma: sp.Symbol) -> _Second:
+def _on_arm(m: TwoArms, names: Naming, sigma: sp.Symbol, pushed: _Pushed | None) -> _Second:
     """An arm that ends in the second ball."""
     f = names.program
     spans = [named(f, name, e) for name, e in zip("de", m.spans, strict=True)]
-    b, n = named(f, "b_1", m.driver.end()), named(f, "b_3", m.tie.end())
+    b = pushed.ball if pushed else named(f, "b_1", m.driver.end())
+    n = named(f, "b_3", m.tie.end())
     between, *sides = (
         f.let(name, e, nonnegative=True)
         for name, e in zip(("side_12", "side_13", "side_23"), m.sides, strict=True)
@@ -233,12 +288,12 @@ def _on_arm(m: TwoArms, names: Naming, sigma: sp.Symbol) -> _Second:
     return _Second(met, link, ball=b, at=c, near=n, spans=spans, sides=sides)
 
 
-def _on_strut(m: TwoArms, names: Naming, sigma: sp.Symbol) -> _Second:
+def _on_strut(m: TwoArms, names: Naming, sigma: sp.Symbol, pushed: _Pushed | None) -> _Second:
     """A strut that holds the second ball, in which the hand slides."""
     f, strut = names.program, m.strut
     assert strut
-    legs = (m.driver, strut, m.tie)
-    b, c, n = (named(f, f"b_{k}", leg.end()) for k, leg in enumerate(legs, 1))
+    b = pushed.ball if pushed else named(f, "b_1", m.driver.end())
+    c, n = (named(f, f"b_{k}", leg.end()) for k, leg in ((2, strut), (3, m.tie)))
     (d, e), first = m.spans, m.places[0]
     e = named(f, "e", e)
     distance = names.let("distance", sp.sqrt(square(c - b)), nonnegative=True)
@@ -277,15 +332,18 @@ def _state_modes(m: TwoArms, loop: Step) -> None:
     reached = m.driver.end() + R * (third - first)
     at = dict(zip(THIRD, reached, strict=True))
     length = square(reached - m.tie.end()) - rod**2
+    second = "strut" if m.strut else "second arm"
     m.d.step(
-        f"Forward: the {'strut' if m.strut else 'second arm'}, and three spheres",
-        (BY_STRUT if m.strut else BY_ARM) + BY_ROD,
+        f"Forward: {'the damper, ' * bool(m.damper)}the {second}, and three spheres",
+        (BY_DAMPER.format(joint=m.damper.joint) if m.damper else "")
+        + (BY_STRUT if m.strut else BY_ARM)
+        + BY_ROD.format(modes="eight" if m.damper else "four"),
         {},
         proves="The end of the rod satisfies its equation if and only if the pose does.",
-        equal=[(m.equations[3].xreplace(at), length)],
+        equal=[(m.rod.xreplace(at), length)],
         uses=[loop],
         solves={"fk": ()},
     )
 
 
-__all__ = ["two_arms"]
+__all__ = ["Damper", "two_arms"]

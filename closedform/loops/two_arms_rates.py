@@ -36,6 +36,12 @@ BY_STRUT = (
 )
 
 
+BY_DAMPER = (
+    "  The length of the damper, times its rate, is Delta_0 times that of the angle of its arm.  "
+    "Delta_0 vanishes where the damper is in line with the hinge of the arm."
+)
+
+
 def velocity(m: TwoArms, at: Posture, loop: Step) -> None:
     """The step on velocities, and what follows from them."""
     d = m.d
@@ -52,9 +58,15 @@ def velocity(m: TwoArms, at: Posture, loop: Step) -> None:
     over = v.let("over_u", 1 / square(u), nonnegative=True)
     to_hand = named(v, "to_hand", at.position - b)
     columns = []
-    rates = [(m.driver.rate, sp.zeros(3, 1))]
+    first, factors = m.driver.rate, [along, volume]
+    if m.damper and m.pushed and at.pushed is not None:
+        push = v.let("Delta_0", (at.pushed - m.damper.base).dot(m.pushed.rate_at(at.pushed)))
+        first, factors = m.driver.rate_at(b) * m.damper.joint / push, [push, *factors]
+    rates = [(first, sp.zeros(3, 1))]
     if not isinstance(m.tie, Strut):
         rates.append((sp.zeros(3, 1), m.tie.rate))
+    if m.damper and not isinstance(m.tie, Strut):
+        rates.reverse()  # the joint of the damper is the last one
     for k, (moved, pulled) in enumerate(rates, 1):
         moved, pulled = named(v, f"m_{k}", moved), named(v, f"n_{k}", pulled)
         turn = v.let(f"phi_{k}", u.dot(moved) / along)
@@ -75,13 +87,13 @@ def velocity(m: TwoArms, at: Posture, loop: Step) -> None:
             ),
             (
                 "singularities",
-                f"The {'strut' if m.strut else 'second arm'} cannot turn the hand, or the rod "
-                f"cannot.",
-                {"factors": [along, volume]},
+                f"{'The damper cannot turn its arm, or the' if m.damper else 'The'} "
+                f"{'strut' if m.strut else 'second arm'} cannot turn the hand, or the rod cannot.",
+                {"factors": factors},
                 (),
             ),
         ],
-        {"J": r"\boldsymbol\omega", "factors": r"\Delta_1"},
+        {"J": r"\boldsymbol\omega", "factors": r"\Delta_0" if m.damper else r"\Delta_1"},
     )
 
 
@@ -97,6 +109,11 @@ def _state_velocity(m: TwoArms, loop: Step) -> None:
     swept = u.cross(moved)
     pulled = along * square(u) * s.dot(n - r) - s.dot(swept.cross(v))
     omega = swept * volume + pulled * u
+    pushed = []
+    if m.damper and m.pushed:
+        end, joint = m.pushed.end(), m.driver.joint
+        away = end - m.damper.base
+        pushed = [(away.dot(m.pushed.rate_at(end)), sp.diff(square(away), joint) / 2)]
     names = letters(m.d, "uvsrmn")
     U, V, S, R, M, N = (rf"\mathbf {x}" for x in names)
     rate = rf"\dot{{{U}}}"
@@ -108,7 +125,7 @@ def _state_velocity(m: TwoArms, loop: Step) -> None:
         "Velocity and singular sets",
         (BY_STRUT if m.strut else BY_ARM).format(u=u_, v=v_, s=s_, r=r_, n=n_, m=m_)
         + "Those of the rod meet where Delta_2 vanishes: the rod is in the plane of the three "
-        "points of the hand.",
+        "points of the hand." + BY_DAMPER * bool(m.damper),
         {
             r"\boldsymbol\omega": rf"\frac{{{U} \times {rate}}}{{{U}\cdot{U}}} + \lambda\,{U}",
             rate: rf"\frac{{{U}\cdot{R}}}{{\Delta_1}}\,{M} - {R}",
@@ -122,6 +139,7 @@ def _state_velocity(m: TwoArms, loop: Step) -> None:
             (omega.cross(u), moved * square(u) * volume),
             (u.dot(moved), sp.S.Zero),
             (s.dot(omega.cross(v)), along * square(u) * volume * s.dot(n - r)),
+            *pushed,
         ],
         uses=[loop],
     )
@@ -138,8 +156,12 @@ def draw(m: TwoArms, at: Posture) -> None:
     near = "A3" if isinstance(m.tie, Strut) else "B3"
     links, joints, lengths = _legs(m, names, near)
 
-    def placed(ends: Sequence[sp.Matrix], start: sp.Matrix, hand: sp.Matrix) -> dict[str, Any]:
+    def placed(
+        ends: Sequence[sp.Matrix], start: sp.Matrix, hand: sp.Matrix, pushed: sp.Matrix | None
+    ) -> dict[str, Any]:
         found = {"A1": m.driver.base, "A2": m.given.base, "A3": m.tie.base}
+        if m.damper and pushed is not None:
+            found |= {"A4": m.damper.base, "B4": pushed}
         found |= {near: start, **dict(zip(names, ends, strict=True))}
         return {name: in_space(e) for name, e in {"P": hand, **found}.items()}
 
@@ -162,18 +184,20 @@ def draw(m: TwoArms, at: Posture) -> None:
         lengths[pair] = side_length(side)
         closing[pair] = sp.expand(square(gap) - square(side))
     rod = near, names[2]
-    lengths[rod], closing[rod] = sp.sympify(m.tie.rod, strict=True), m.equations[3]
+    lengths[rod], closing[rod] = sp.sympify(m.tie.rod, strict=True), m.rod
+    if m.damper:
+        closing["A4", "B4"] = m.equations[0]
     if strut:
         closing["A2", names[1]] = square(ends[1] - strut.end()) - strut.joint**2
-    posture = placed(ends, m.tie.end(), position)
+    posture = placed(ends, m.tie.end(), position, m.pushed.end() if m.pushed else None)
     skeleton(
         m.d,
-        placed(shown, at.near, at.position),
+        placed(shown, at.near, at.position, at.pushed),
         links=links,
         joints=joints,
         hand="P",
         hand_at=posture["P"],
-        ground=("A1", "A2", "A3"),
+        ground=("A1", "A2", "A3", *["A4"] * bool(m.damper)),
         lengths=lengths,
         program=at.program,
         branches=at.modes,
@@ -210,9 +234,19 @@ def _legs(
         links["crank3"] = ("A3", near)
     joints: dict[sp.Symbol, _Points] = {}
     lengths: dict[tuple[str, str], sp.Expr] = {}
+    passive = [m.driver.joint] if m.damper else []
+    if m.damper and m.pushed:
+        links["arm1"] = ("A1", first, "B4", "A1")
+        joints[m.damper.joint] = ("A4", "B4")
+        lengths["A4", "B4"] = m.damper.joint
+        arm, end = m.driver, m.pushed.end().subs(m.driver.joint, 0)
+        start = arm.end().subs(arm.joint, 0)
+        lengths["B4", "A1"] = side_length(end - arm.base)
+        lengths[first, "B4"] = side_length(end - start)
     for leg, base, end in ((m.driver, "A1", first), (m.given, "A2", second), (m.tie, "A3", near)):
         if not isinstance(leg, Strut):
-            joints[leg.joint] = (base,) if isinstance(leg, Crank) else (base, end)
+            if leg.joint not in passive:
+                joints[leg.joint] = (base,) if isinstance(leg, Crank) else (base, end)
             length = leg.length if isinstance(leg, Crank) else leg.joint
             lengths[base, end] = sp.sympify(length, strict=True)
     return links, joints, lengths

@@ -545,9 +545,9 @@ def _body(table: Table, way: _Way) -> list[str]:
     passive += [way.guide.slide] if way.guide and way.guide.slide else []
     lines += [f'{slide} = d.joint("{slide}", "prismatic", passive=True)' for slide in passive]
     if way.name == "two_arms":
-        second = way.legs[1].joint
-        slides = '"prismatic", ' * (second.kind == "prismatic")
-        lines.append(f'{second.name} = d.joint("{second.name}", {slides}passive=True)')
+        for arm in (leg.joint for leg in way.legs[:2] if not leg.joint.driven):
+            slides = '"prismatic", ' * (arm.kind == "prismatic")
+            lines.append(f'{arm.name} = d.joint("{arm.name}", {slides}passive=True)')
     if way.name in ("coupled", "slotted", "bennett") or (way.linkage and len(way.task) == 1):
         (x,) = way.task
         hand = [f"    ({x},),"] * bool(way.linkage)

@@ -23,14 +23,15 @@ def two_arms(loop: Loop) -> list[LoopLeg] | None:
     if loop.dimensions != len("xyz") or len(hands) != 1 or loop.hand in loop.joints:
         return None
     (hand,) = hands
-    strut = _strut(loop, hand)
+    strut, damper = _strut(loop, hand), _damper(loop)
     balls = [j for j in loop.of(hand) if not strut or j is not strut[0]]
     driven, passive, rods = [], [], []
     for ball in balls:
-        hinge = _other_end(loop, ball.other(hand), ball)
+        hinge = _other_end(loop, ball.other(hand), ball, damper)
         if hinge is None:
             return None
-        if GROUND in hinge.between and hinge.driven:
+        arm = damper[0] if damper else ""
+        if GROUND in hinge.between and (hinge.driven or (arm and arm in hinge.between)):
             driven.append((hinge, ball))
         elif GROUND in hinge.between and hinge.kind == "revolute":
             passive.append((hinge, ball))
@@ -45,6 +46,8 @@ def two_arms(loop: Loop) -> list[LoopLeg] | None:
         _on_strut(found, hand, *strut) if strut else _arm(found, *passive[0], place[passive[0][1]]),
         _rod(found, hand, *rods[0], place[rods[0][1]]),
     ]
+    if damper:
+        legs.append(_on_damper(found, driven[0][0], *damper[1:]))
     found.end = hand
     found.check_all_used()
     return legs
@@ -69,9 +72,35 @@ def _strut(loop: Loop, body: str) -> tuple[Joint, Joint] | None:
     return slide, top
 
 
-def _other_end(loop: Loop, body: str, ball: Joint) -> Joint | None:
-    """The joint at the other end of a body that has two."""
-    others = [j for j in loop.of(body) if j is not ball]
+def _damper(loop: Loop) -> tuple[str, Joint, Joint, Joint] | None:
+    """A body on a hinge with what turns it: the driven slide of a cylinder, and both its ends."""
+    slides = [j for j in loop.joints.values() if j.driven and j.kind == "prismatic"]
+    for slide in [j for j in slides if GROUND not in j.between]:
+        ends = [_other_end(loop, body, slide) for body in slide.between]
+        if not all(j and j.kind in BALLS and j.axis is None for j in ends):
+            continue
+        for base, end in (ends, ends[::-1]):
+            if base and end and GROUND in base.between and GROUND not in end.between:
+                arm = next(b for b in end.between if b not in slide.between)
+                return arm, slide, base, end
+    return None
+
+
+def _on_damper(found: Legs, hinge: Joint, slide: Joint, base: Joint, end: Joint) -> LoopLeg:
+    """The damper that turns an arm."""
+    found.used |= {slide.name, base.name, end.name}
+    arm = hinge.other(GROUND)
+    place = found.point(GROUND, hinge) + found.point(arm, end) - found.point(arm, hinge)
+    call = f"Damper({slide.name}, {found.at(found.point(GROUND, base))}, {found.at(place)})"
+    words = f"{slide.name} is the length of a cylinder that turns {arm}"
+    return LoopLeg(slide, call, words, place)
+
+
+def _other_end(
+    loop: Loop, body: str, ball: Joint, damper: tuple[str, Joint, Joint, Joint] | None = None
+) -> Joint | None:
+    """The joint at the other end of a body that has two, without that of a damper."""
+    others = [j for j in loop.of(body) if j is not ball and not (damper and j is damper[3])]
     return others[0] if len(others) == 1 else None
 
 

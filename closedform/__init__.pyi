@@ -41,6 +41,7 @@ from closedform.lemmas.oblique import LinksAndObliqueWrist as LinksAndObliqueWri
 from closedform.lemmas.oblique import LinksPastTurn as LinksPastTurn
 from closedform.lemmas.on_rail import LinksAlongSlide as LinksAlongSlide
 from closedform.lemmas.on_rail import ReachingOnRail as ReachingOnRail
+from closedform.lemmas.opposite_links import opposite_links as opposite_links
 from closedform.lemmas.parallelogram import Parallelogram as Parallelogram
 from closedform.lemmas.parallelogram import Prism as Prism
 from closedform.lemmas.parallelogram import parallelogram as parallelogram

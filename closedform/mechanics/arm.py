@@ -6,7 +6,7 @@ at home.  One call derives, proves and exports all that serial arms have in comm
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -17,7 +17,8 @@ import sympy as sp
 from closedform.algebra.operations import operations
 from closedform.mechanics import linkwise, mounted
 from closedform.mechanics.by_axes import AXES, by_axes
-from closedform.mechanics.entries import RowError, check_unit, constant, exact, rigid
+from closedform.mechanics.coupled import Coupling, coupled_groups, coupling_of, require_driven
+from closedform.mechanics.entries import RowError, check_unit, constant, dh_row, exact, rigid
 from closedform.mechanics.factored import factored_determinant
 from closedform.mechanics.frames import (
     denavit_hartenberg,
@@ -62,6 +63,8 @@ class Serial:
     last: sp.Matrix
     unmounted: Serial | None = None
     """The same without the first of the moves, if that is a tilted mount."""
+    coupling: Coupling | None = None
+    """How the joints move the axes, if some follow others."""
 
     @cached_property
     def _frames(self) -> Places:
@@ -73,30 +76,45 @@ class Serial:
             return mounted.moved(self.moves[0], self.unmounted.pose)
         return self._frames.pose()
 
+    @property
+    def axes(self) -> tuple[sp.Symbol, ...]:
+        """The joint of each axis; those that follow others are no joints of the arm."""
+        return self.coupling.axes if self.coupling else self.joints
+
+    def _by_joint(self, columns: Iterable[sp.Matrix]) -> sp.Matrix:
+        """The twists of the joints from those of the axes."""
+        twists = sp.Matrix.hstack(*columns)
+        return reduce_circle(twists * self.coupling.rates) if self.coupling else twists
+
+    def _driven(self, twists: Named) -> Named:
+        """The same in the names of a program."""
+        coupled = self.coupling
+        return Named(twists.program, twists.matrix * coupled.rates) if coupled else twists
+
     @cached_property
     def space(self) -> sp.Matrix:
         if self.unmounted:
             return mounted.carried(self.moves[0], self.unmounted.space)
-        return sp.Matrix.hstack(*(self._frames.at_base(k, j) for k, j in self.places))
+        return self._by_joint(self._frames.at_base(k, j) for k, j in self.places)
 
     @cached_property
     def body(self) -> sp.Matrix:
         if self.unmounted:
             return self.unmounted.body
-        return sp.Matrix.hstack(*(self._frames.at_end(k, j) for k, j in self.places))
+        return self._by_joint(self._frames.at_end(k, j) for k, j in self.places)
 
     @cached_property
     def geometric(self) -> sp.Matrix:
         if self.unmounted:
             return mounted.turned(self.moves[0], self.unmounted.geometric)
-        return sp.Matrix.hstack(*(self._frames.at_tool(k, j) for k, j in self.places))
+        return self._by_joint(self._frames.at_tool(k, j) for k, j in self.places)
 
     @cached_property
     def middle(self) -> sp.Matrix:
         """The twists in that frame along the chain in which they are shortest."""
         return min(
             (
-                sp.Matrix.hstack(*(self._frames.seen_from(k, j, cut) for k, j in self.places))
+                self._by_joint(self._frames.seen_from(k, j, cut) for k, j in self.places)
                 for cut in range(1, len(self.groups) + 1)
             ),
             key=operations,
@@ -104,7 +122,7 @@ class Serial:
 
     @property
     def places(self) -> list[tuple[int, int]]:
-        """The group of each joint, and its position in the group."""
+        """The group of each axis, and its position in the group."""
         return [(k, j) for k, group in enumerate(self.groups) for j in range(len(group.rows))]
 
     @property
@@ -114,12 +132,12 @@ class Serial:
     @property
     def links(self) -> list[linkwise.Link]:
         """The groups of links between the base and the tool, joints with parallel axes together."""
-        return linkwise.links_of(self.groups, self.joints, self.lead, self.last)
+        return linkwise.links_of(self.groups, self.axes, self.lead, self.last)
 
     def require_regular(self, name: str) -> None:
         """Raise ``SingularEverywhereError`` if no posture is regular."""
         task, n = self.coordinates(), len(self.joints)
-        if task is None and (n > 6 or dependent_in_chain(self.groups, self.joints)[0] == n):
+        if task is None and (n > 6 or self._rank() == n):
             return
         J = self.middle if task is None else task.J
         square = J.rows == n
@@ -148,7 +166,8 @@ class Serial:
 
     def _rank(self) -> int:
         """The number of ways in which the joints move the tool, at ordinary postures."""
-        return dependent_in_chain(self.groups, self.joints)[0]
+        rates = self.coupling.rates if self.coupling else None
+        return dependent_in_chain(self.groups, self.joints, rates)[0]
 
     def _yaw(self) -> sp.Expr:
         """The angle of the tool about z, for an arm whose joints turn it about z alone."""
@@ -195,11 +214,11 @@ class Serial:
         )
         d.explain({f"A_{i}": "motion from link to link" for i in range(1, len(self.moves) + 1)})
         _export(d, ("pose", POSE), q, {"T": pose}, equation="T")
-        drawn = serial_skeleton(d, self.groups, q, self.lead, self.last)
+        drawn = serial_skeleton(d, self.groups, self.axes, self.lead, self.last)
         skeleton(d, **drawn, hand_at=self.position)
-        geometric = linkwise.geometric_jacobian(d.program(), links, q)
-        space = linkwise.space_jacobian(d.program(), links, q)
-        body = linkwise.body_jacobian(d.program(), links, q)
+        geometric = self._driven(linkwise.geometric_jacobian(d.program(), links, self.axes))
+        space = self._driven(linkwise.space_jacobian(d.program(), links, self.axes))
+        body = self._driven(linkwise.body_jacobian(d.program(), links, self.axes))
         spelled = max(operations(self.space), operations(self.body)) <= SPELLED
 
         def equal() -> list[tuple[Any, Any]]:
@@ -418,7 +437,7 @@ def from_dh(
     links: list[Link] = []
     for i, row in enumerate(rows, 1):
         where = f"{d.name}: row {i} of the Denavit-Hartenberg table"
-        a, alpha, offset, theta = entries = _dh_row(d, row, where)
+        a, alpha, offset, theta = entries = dh_row(d, row, where)
         moves.append(denavit_hartenberg(a, alpha, offset, theta, modified=modified))
         motion = _motion(d, entries, where)
         step = homogeneous(rotation("x", alpha), (a, 0, 0))
@@ -439,24 +458,8 @@ def from_dh(
     if lead[:2, 2].is_zero_matrix:  # the base is turned about the first axis, as the joint turns
         turned, lead = lead[:3, :3], homogeneous(sp.eye(3), tuple(lead[:3, 3]))
     joints = tuple(link.motion.joint for link in links)
-    return Serial(joints, (*moves, *rest), tuple(groups_of(links, turned)), lead, last)
-
-
-def _dh_row(d: Derivation, row: Sequence[Any], where: str) -> list[sp.Expr]:
-    """The exact entries of a row, which contain only parameters and joints."""
-    if len(row) != 4:
-        raise RowError(
-            f"{where} has {len(row)} entries ({', '.join(map(str, row))}); it needs 4: a, alpha, "
-            f"d, theta"
-        )
-    entries = [exact(e, where) for e in row]
-    known = {p.symbol for p in d.parameters} | {j.symbol for j in d.joints}
-    if unknown := sorted(map(str, {s for e in entries for s in e.free_symbols} - known)):
-        raise RowError(
-            f"{where}: the symbol {unknown[0]} is neither a parameter nor a joint; declare it "
-            f"with d.parameter or d.joint"
-        )
-    return entries
+    arm = Serial(joints, (*moves, *rest), tuple(groups_of(links, turned)), lead, last)
+    return _coupled(d, arm)
 
 
 def _motion(d: Derivation, entries: Sequence[sp.Expr], where: str) -> Motion | None:
@@ -468,7 +471,7 @@ def _motion(d: Derivation, entries: Sequence[sp.Expr], where: str) -> Motion | N
     if len(held) > 1:
         raise RowError(f"{where} must contain at most one joint, not {', '.join(map(str, held))}")
     (joint,) = held
-    _require_motor(d, joint, where)
+    require_driven(d, joint, where)
     column, name = (3, "theta") if joints[joint] == "revolute" else (2, "d")
     place = entries[column]
     if not place.has(joint):
@@ -485,16 +488,6 @@ def _motion(d: Derivation, entries: Sequence[sp.Expr], where: str) -> Motion | N
             f"{place if sense not in (1, -1) else tuple(entries)}"
         )
     return Motion(joint, joints[joint] == "prismatic", int(sense))
-
-
-def _require_motor(d: Derivation, joint: sp.Symbol, where: str) -> None:
-    """Refuse a joint that follows others: its functions would need the angles of all joints."""
-    if joint not in d.actuated:
-        raise RowError(
-            f"{where}: {joint} is moved by other joints; a serial arm has a motor for each joint, "
-            f"or a column of motors.  If a parallelogram keeps the hand level, add the lengths "
-            f"from the wrist to the hand to those of the turret, as docs/adding-a-mechanism.md says"
-        )
 
 
 def _followed(lead: sp.Matrix, links: list[Link], step: sp.Matrix) -> sp.Matrix:
@@ -533,7 +526,7 @@ def from_screws(
         joint = next((s for s in variable.free_symbols if s in kinds), variable)
         if joint not in kinds:
             raise RowError(f"{where}: {joint} is not a joint; declare it with d.joint")
-        _require_motor(d, joint, where)
+        require_driven(d, joint, where)
         (offset,) = constant(d, [variable - joint], where)
         if offset != 0 and kinds[joint] != "revolute":
             raise RowError(f"{where}: {joint} slides; put {offset} into the points after it")
@@ -566,8 +559,18 @@ def from_screws(
             groups.append(Group(tuple(current), _seen(frame, after)))
             frame, current = after, []
     moved = tuple(motion.joint for motion in motions)
-    arm = Serial(moved, (*moves, home), tuple(groups), lead, sp.eye(4))
+    arm = _coupled(d, Serial(moved, (*moves, home), tuple(groups), lead, sp.eye(4)))
     return arm if base is None else _mounted(arm, rigid(d, base, "the base"))
+
+
+def _coupled(d: Derivation, arm: Serial) -> Serial:
+    """The arm of axes that may follow others, in the joints that have motors."""
+    coupling = coupling_of(d, arm.joints)
+    if coupling is None:
+        return arm
+    moves, groups = tuple(map(d.couple, arm.moves)), coupled_groups(d, arm.groups)
+    joints = tuple(q for q in arm.joints if q in d.actuated)
+    return replace(arm, joints=joints, moves=moves, groups=groups, coupling=coupling)
 
 
 def _mounted(arm: Serial, mount: sp.Matrix) -> Serial:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import sympy as sp
@@ -30,6 +31,23 @@ def constant(d: Derivation, entries: Any, where: str) -> sp.Matrix:
             f"{where}: the symbol {symbol} is not a parameter; declare it with d.parameter"
         )
     return matrix
+
+
+def dh_row(d: Derivation, row: Sequence[Any], where: str) -> list[sp.Expr]:
+    """The exact entries of a row, which contain only parameters and joints."""
+    if len(row) != 4:
+        raise RowError(
+            f"{where} has {len(row)} entries ({', '.join(map(str, row))}); it needs 4: a, alpha, "
+            f"d, theta"
+        )
+    entries = [exact(e, where) for e in row]
+    known = {p.symbol for p in d.parameters} | {j.symbol for j in d.joints}
+    if unknown := sorted(map(str, {s for e in entries for s in e.free_symbols} - known)):
+        raise RowError(
+            f"{where}: the symbol {unknown[0]} is neither a parameter nor a joint; declare it "
+            f"with d.parameter or d.joint"
+        )
+    return entries
 
 
 def _short(value: sp.Expr) -> str:
@@ -108,4 +126,4 @@ def exact(value: Any, where: str) -> sp.Expr:
     return expr
 
 
-__all__ = ["RowError", "check_unit", "constant", "exact", "rigid"]
+__all__ = ["RowError", "check_unit", "constant", "dh_row", "exact", "rigid"]

@@ -29,9 +29,12 @@ def dependent_joints(J: sp.Matrix, joints: Sequence[sp.Symbol]) -> tuple[int, li
 
 
 def dependent_in_chain(
-    groups: Sequence[Group], joints: Sequence[sp.Symbol]
+    groups: Sequence[Group], joints: Sequence[sp.Symbol], rates: sp.Matrix | None = None
 ) -> tuple[int, list[sp.Symbol]]:
-    """The same for a serial chain, without writing its twists out."""
+    """The same for a serial chain, without writing its twists out.
+
+    ``rates`` say how fast each axis moves by each joint, if some follow others.
+    """
     parts = [
         sp.Matrix.hstack(
             group.transform(),
@@ -43,6 +46,7 @@ def dependent_in_chain(
     free = set().union(*(part.free_symbols for part in parts)) - set(joints)
     symbols = [*joints, *sorted(free, key=str)]
     evaluate = [sp.lambdify(symbols, part, "numpy") for part in parts]
+    by_joint = np.eye(len(joints)) if rates is None else np.array(rates, dtype=float)
 
     def jacobian(point: np.ndarray) -> np.ndarray:
         T, columns = np.eye(4), []
@@ -53,7 +57,7 @@ def dependent_in_chain(
             for V in (T @ V @ np.linalg.inv(T) for V in twists):
                 columns.append([*V[:3, 3], V[2, 1], V[0, 2], V[1, 0]])
             T = T @ step
-        return np.array(columns).T
+        return np.asarray(np.array(columns).T @ by_joint)
 
     return _dependent(jacobian, len(symbols), joints)
 

@@ -307,7 +307,7 @@ class _Serial:
             "joints": self.joints,
             "hand": self.here,
             "lengths": self.lengths,
-            "inputs": tuple(self.joints),
+            "inputs": tuple(joint for joint in self.joints if joint in d.actuated),
             "program": self.program,
             "ground": tuple(self.links.get("ground", ("base",))),
         }

@@ -184,7 +184,7 @@ class Singles:
 def singles(arm: Serial) -> Singles:
     """The joints of an arm one by one; the tool is part of the last motion."""
     joints: list[Single] = []
-    names = iter(arm.joints)
+    names = iter(arm.axes)
     for group in arm.groups:
         for i, row in enumerate(group.rows):
             end = group.end if i == len(group.rows) - 1 else sp.eye(3)

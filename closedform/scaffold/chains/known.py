@@ -129,22 +129,33 @@ class KnownMaker(Maker):
         vectors = self.links(group, turns)
         self._tool(group, vectors)
         self.add(f"{', '.join(names)} = ik.x")
-        yaw = self.arm.coordinates().values[-1]  # type: ignore[union-attr]
         joints = [rows[i].turn for i in turns]
-        total = sum(joints)
-        # the last link is at the angle of the yaw, up to a constant
-        ahead = sp.Symbol("yaw") + sp.simplify(total - yaw)
-        last_link = rotation("z", ahead) * sp.Matrix([*vectors[2], 0])
-        x, y = self._less_by(self.arm.lead[:2, 3] + last_link[:2, 0])
+        x, y = self._less_by(self.arm.lead[:2, 3] + self._hand(joints, vectors[2]))
         self.two_links(joints[:2], vectors[:2], x, y, alone=x == "x")
-        for i in slides:
+        self._lift(rows)
+        self._remaining_yaw(joints[2])
+        return "planar arm of two links and a yaw" + (", with a slide (SCARA)" if slides else "")
+
+    def _hand(self, joints: Sequence[sp.Expr], vector: sp.Matrix) -> sp.Matrix:
+        """The last link: it is at the angle of the yaw, up to a constant."""
+        yaw = self.arm.coordinates().values[-1]  # type: ignore[union-attr]
+        ahead = sp.Symbol("yaw") + sp.simplify(sp.Add(*joints) - yaw)
+        last_link = rotation("z", ahead) * sp.Matrix([*vector, 0])
+        return last_link[:2, 0]
+
+    def _lift(self, rows: Sequence[Any]) -> None:
+        """Solve the slides along the axes by z."""
+        for i in (i for i, row in enumerate(rows) if row.slides):
             symbol = _symbol(self.arm, rows, i)
             (value,) = sp.solve(self.arm.position[2] - sp.Symbol("z", real=True), symbol)
             self.solve("slide", f"{symbol}, {source(value)}")
-        last = _only(joints[2].free_symbols & set(self.arm.joints))
+
+    def _remaining_yaw(self, turn: sp.Expr) -> None:
+        """Solve the last joint by the yaw."""
+        yaw = self.arm.coordinates().values[-1]  # type: ignore[union-attr]
+        last = _only(turn.free_symbols & set(self.arm.joints))
         (value,) = sp.solve(yaw - sp.Symbol("yaw", real=True), last)
         self.solve("remainder", f"{last}, {source(value)}")
-        return "planar arm of two links and a yaw" + (", with a slide (SCARA)" if slides else "")
 
     def _slides_and_yaw(self, names: Sequence[str]) -> str:
         """Solve an arm whose last joint turns the tool about z, and whose others slide."""

@@ -15,6 +15,8 @@ from closedform.scaffold.source import GIVEN, source
 
 Z = sp.Matrix([0, 0, 1])
 FLIP = "{+1: 'noflip', -1: 'flip'}"
+LINE = "{+1: 'first', -1: 'second'}"
+SIDE = "{+1: 'left', -1: 'right'}"
 
 
 @dataclass(frozen=True)
@@ -93,6 +95,22 @@ class Maker:
         arguments = f"({a}, {b}), ({x}, {y}), ({', '.join(names)})"
         self.solve("two_links", f"{arguments}, {{+1: 'up', -1: 'down'}}{more}", f"{a}_, {b}_", 2)
         self.pairs = (f"{a}_", f"{b}_")
+
+    def by_quartic(
+        self, angle: str, double: tuple[str, str], radius: str, pair: str, more: str = ""
+    ) -> None:
+        """Solve an angle: where the ellipse of ``centre``, ``along`` and ``aside`` meets a circle.
+
+        The circle is around the origin.  The equation is the difference of the squares of both
+        distances; ``double`` are the coefficients of twice the angle in it.  The result is a
+        ``pair`` of this name.  ``more`` are further arguments of ``OnCircle``.
+        """
+        square = f"centre.dot(centre) + (along.dot(along) + aside.dot(aside))/2 - {radius}**2"
+        ellipse = "lambda pair: centre + along*pair.c + aside*pair.s"
+        self.add(f"on_circle = OnCircle({ellipse}, {radius}{more})")
+        linear = "centre.dot(along), centre.dot(aside)"
+        arguments = f"{angle}, ({', '.join(double)}, {linear}, {square})"
+        self.solve("quartic", f"{arguments}, ({LINE}, {SIDE}), on_circle", pair, 4)
 
     def length_of(self, name: str, value: Any) -> str:
         """The length of a link, under a ``name`` unless it is a parameter."""
@@ -248,6 +266,9 @@ def turning(w: Any, v: Any) -> tuple[Any, Any]:
 
 
 __all__ = [
+    "FLIP",
+    "LINE",
+    "SIDE",
     "Maker",
     "Solved",
     "Z",

@@ -17,6 +17,7 @@ from closedform.scaffold.chains.among_turns import AmongTurnsMaker
 from closedform.scaffold.chains.arm_angle import NAME as ARM_ANGLE
 from closedform.scaffold.chains.arm_angle import ArmAngleMaker
 from closedform.scaffold.chains.chainlinks import Single, Singles, parallel, singles
+from closedform.scaffold.chains.coupled_turns import CoupledMaker
 from closedform.scaffold.chains.decoupled import DecoupledMaker
 from closedform.scaffold.chains.degree import (
     Solutions,
@@ -86,7 +87,7 @@ def propose(
                 tried=tuple(tried),
                 doubt=_doubt_of_given(arm, found),
             )
-    if refused or not count:
+    if refused or arm.coupling or not count:
         raise tried[0].error.after(tried)
     raise _refusal(arm, given, tried, progress)
 
@@ -312,6 +313,10 @@ class _Candidate(NamedTuple):
 def _candidates(arm: Serial, given: str) -> Iterator[_Candidate]:
     """The chains to try, the cheapest first."""
     n, task = len(arm.joints), arm.coordinates()
+    if arm.coupling:
+        coupled = CoupledMaker(arm)
+        yield _Candidate("joints that follow others", coupled, coupled.coupled)
+        return
     if task is not None or n == 6:
         known = KnownMaker(arm)
         yield _Candidate("a known structure", known, known.whole)

@@ -12,11 +12,10 @@ from typing import Any
 import sympy as sp
 
 from closedform.scaffold.chains.chainlinks import Single, parallel, plain
-from closedform.scaffold.chains.maker import Maker, Solved, Z, point, simple, times, turning
+from closedform.scaffold.chains.maker import SIDE, Maker, Solved, Z, point, simple, times, turning
 from closedform.scaffold.chains.proposal import NoChainError
 from closedform.scaffold.source import source
 
-SIDE = "{+1: 'left', -1: 'right'}"
 REACH = "{+1: 'front', -1: 'back'}"
 
 
@@ -344,4 +343,4 @@ class Slides:
         )
 
 
-__all__ = ["Slides"]
+__all__ = ["REACH", "Slides"]

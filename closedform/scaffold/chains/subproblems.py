@@ -20,6 +20,7 @@ from closedform.mechanics.frames import plane_angle, rotation
 from closedform.scaffold.chains.chainlinks import Single, Singles, parallel
 from closedform.scaffold.chains.ellipse import Ellipse, folds
 from closedform.scaffold.chains.maker import (
+    SIDE,
     Solved,
     Z,
     followed,
@@ -31,7 +32,7 @@ from closedform.scaffold.chains.maker import (
 )
 from closedform.scaffold.chains.proposal import NoChainError
 from closedform.scaffold.chains.slides import Slides
-from closedform.scaffold.chains.wrists import ELBOW, SIDE, WristMaker, is_normal
+from closedform.scaffold.chains.wrists import ELBOW, WristMaker, is_normal
 from closedform.scaffold.source import source
 
 
@@ -547,13 +548,8 @@ class SubproblemMaker(WristMaker):
         The equation is the difference of the squares of both distances; ``double`` are the
         coefficients of twice the angle in it.  ``more`` are further arguments of ``OnCircle``.
         """
-        square = f"centre.dot(centre) + (along.dot(along) + aside.dot(aside))/2 - {radius}**2"
-        ellipse = "lambda pair: centre + along*pair.c + aside*pair.s"
-        self.add(f"on_circle = OnCircle({ellipse}, {radius}{more})")
-        linear = "centre.dot(along), centre.dot(aside)"
-        arguments = f"{self.unknown(joint)}, ({', '.join(double)}, {linear}, {square})"
         pair = f"pair{joint.number}"
-        self.solve("quartic", f"{arguments}, ({LINE}, {SIDE}), on_circle", pair, 4)
+        self.by_quartic(self.unknown(joint), double, radius, pair, more)
         return pair
 
     def _circles_met(self, joint: Single) -> str:
@@ -582,9 +578,6 @@ class SubproblemMaker(WristMaker):
         )
         scale = "(p_norm + ik.size/2**44)/2"
         return self._turn(joint, (a, b, c), toward, scale=scale, by_size=True)
-
-
-LINE = "{+1: 'first', -1: 'second'}"
 
 
 __all__ = ["SubproblemMaker"]

@@ -15,10 +15,9 @@ import sympy as sp
 
 from closedform.mechanics.arm import Group, Row
 from closedform.scaffold.chains.chainlinks import Single, parallel
-from closedform.scaffold.chains.maker import FLIP, Maker, Z, times, turning
+from closedform.scaffold.chains.maker import FLIP, SIDE, Maker, Z, times, turning
 from closedform.scaffold.source import source
 
-SIDE = "{+1: 'left', -1: 'right'}"
 ELBOW = "{+1: 'up', -1: 'down'}"
 """A branch of a joint that a distance determines is an elbow."""
 
@@ -313,4 +312,4 @@ def is_normal(wrist: Sequence[Single]) -> bool:
     return all(sp.simplify((j.end * Z)[2]) == 0 for j in wrist[:2])
 
 
-__all__ = ["ELBOW", "SIDE", "Carried", "WristMaker", "is_normal"]
+__all__ = ["ELBOW", "Carried", "WristMaker", "is_normal"]

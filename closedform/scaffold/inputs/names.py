@@ -36,7 +36,7 @@ AUTHOR = (
 SCRIPT = {"arm", "coupling", "d", "forward", "links", "motors", "pair"}
 LINES = {
     "M", "ahead", "ik", "p", "q", "reaching", "turn1", "turn2", "wx", "wy", "x", "y", "yaw", "z",
-    "rho", "given", "left", "axis", "p_norm", "to_end", "to_target", "to_elbow", "to_wrist",
+    "rho", "rho_", "given", "left", "axis", "p_norm", "to_end", "to_target", "to_elbow", "to_wrist",
     "both_links", "on_ellipse", "R_inverse", "R_rest", "R_last", "R_between", "R_before",
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
     "play", "carried", "radius_to_target", "radius_to_end", "lever", "past", "seen_across",

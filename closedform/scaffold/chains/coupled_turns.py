@@ -1,0 +1,227 @@
+"""Writes the chain of parallel axes of which one motor turns several, as a belt does.
+
+Wafer robots and fingers are of this kind.  Seen along the axes each link turns by the angle of the
+first joint, plus a multiple of that of the motor.  The sums of the links with one multiple are what
+counts.  If there are
+
+- two, and their multiples differ by 1: they are two links;
+- two whose multiples differ by 2, or three in steps of 1: the outer two turn against each other,
+  seen from the direction between them (``opposite_links``), unless they are equally long: then they
+  reach along that direction, together with the one between them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from closedform.mechanics.arm import Group
+from closedform.mechanics.frames import rotation
+from closedform.model.names import listed
+from closedform.scaffold.chains.known import KnownMaker
+from closedform.scaffold.chains.maker import Z, heading, norm, simple
+from closedform.scaffold.chains.proposal import NoChainError
+from closedform.scaffold.chains.slides import REACH
+from closedform.scaffold.chains.wrists import ELBOW
+from closedform.scaffold.source import source
+
+NEEDED = (
+    "Known are arms with axes along z that reach x and y by a joint of its own and, after it, "
+    "joints that one motor turns about parallel axes: also with a slide along them, with a last "
+    "joint that turns the hand, or after a turret."
+)
+
+
+@dataclass(frozen=True)
+class Fan:
+    """Links of a plane: at the angle ``base`` plus each multiple of ``motor``, a vector."""
+
+    base: sp.Expr
+    motor: sp.Symbol
+    vectors: Mapping[int, sp.Matrix]
+
+    @property
+    def steps(self) -> tuple[int, ...]:
+        return tuple(sorted(self.vectors))
+
+    @property
+    def degree(self) -> int:
+        """That of the equation of the motor."""
+        return self.steps[-1] - self.steps[0]
+
+
+class CoupledMaker(KnownMaker):
+    """Writes the lines for arms whose joints follow others."""
+
+    def coupled(self) -> str:
+        task, groups = self.arm.coordinates(), self.arm.groups
+        names = task.names if task else ()
+        kinds = ["".join("P" if row.slides else "R" for row in g.rows) for g in groups]
+        if len(groups) == 1 and names[:2] == ("x", "y"):
+            return self._flat(groups[0], names)
+        if (
+            kinds[:1] == ["R"]
+            and len(kinds) == 2
+            and names == ("x", "y", "z")
+            and set(kinds[1]) == {"R"}
+        ):
+            return self._upright(groups)
+        followers = [q.name for q in self.arm.axes if q not in self.arm.joints]
+        raise NoChainError(
+            f"{listed(followers)} {'follows' if len(followers) == 1 else 'follow'} other joints, "
+            f"and the axes are {' | '.join(kinds)} (R turns, P slides, | where the direction "
+            f"changes)",
+            NEEDED,
+        )
+
+    def _flat(self, group: Group, names: Sequence[str]) -> str:
+        """Solve an arm with parallel axes, with or without a slide or a yaw."""
+        self._require_z("its first axis is not parallel to the z axis of the base")
+        turns = [i for i, row in enumerate(group.rows) if not row.slides]
+        vectors = self.links(group, turns)
+        self._tool(group, vectors)
+        joints = [group.rows[i].turn for i in turns]
+        self.add(f"{', '.join(names)} = ik.x")
+        if "yaw" not in names:
+            self._reach(self._fan(joints, vectors), *self._less_by(self.arm.lead[:2, 3]))
+            self._lift(group.rows)
+            return TURNS + ", with a slide" * ("z" in names)
+        before = {s for e in joints[:-1] for s in e.free_symbols}
+        self.require(
+            joints[-1].free_symbols - before,
+            "its last joint has no motor of its own",
+            "A hand whose yaw is a target needs one.",
+        )
+        hand = self._hand(joints, vectors[-1])
+        at = self._less_by(self.arm.lead[:2, 3] + hand)
+        self._reach(self._fan(joints[:-1], vectors[:-1]), *at)
+        self._lift(group.rows)
+        self._remaining_yaw(joints[-1])
+        return f"{TURNS} and a yaw" + ", with a slide" * ("z" in names)
+
+    def _upright(self, groups: Sequence[Group]) -> str:
+        """Solve a turret and coupled joints in its plane."""
+        base, second = groups
+        self.require_normal((base.end * Z)[2], 1, 2)
+        beside = sum((row.shift[2] for row in second.rows), (second.end * self.arm.last[:3, 3])[2])
+        self.require(
+            sp.simplify(beside) == 0,
+            "its tool is beside the plane through axis 1 in which the coupled joints move",
+            "The known chains of a turret and coupled joints need it in this plane.",
+        )
+        self.add("p = Matrix(ik.x)")
+        self._lead_away("p")
+        vectors = self.links(second, range(len(second.rows)))
+        self._tool(second, vectors)
+        self._turn_base(base, sp.S.Zero)
+        self._reach(self._fan([row.turn for row in second.rows], vectors), "q[0]", "q[1]")
+        return f"turret and {TURNS}"
+
+    def _fan(self, joints: Sequence[sp.Expr], vectors: Sequence[sp.Matrix]) -> Fan:
+        """The links by the multiples of the motor; each turns with the other joint."""
+        angles = [sp.Add(*joints[: k + 1]) for k in range(len(joints))]
+        moved = [q for q in self.arm.joints if any(e.has(q) for e in angles)]
+        rates = {q: {e.diff(q) for e in angles} for q in moved}
+        whole = [q for q in moved if rates[q] in ({1}, {-1})]
+        self.require(
+            len(moved) == 2 and whole,
+            f"{len(moved)} motors turn its parallel links, and {len(whole) or 'none'} of these "
+            f"turns all of them",
+            "A point of a plane needs two motors, of which the first turns all links.",
+        )
+        base, motor = whole[0], next(q for q in moved if q != whole[0])
+        at_zero, found = dict.fromkeys(moved, sp.S.Zero), dict[int, sp.Matrix]()
+        for angle, vector in zip(angles, vectors, strict=True):
+            step, ahead = int(angle.diff(motor)), rotation("z", angle.xreplace(at_zero))
+            turned = (ahead * sp.Matrix([*vector, 0]))[:2, 0]
+            found[step] = simple(found.get(step, sp.zeros(2, 1)) + turned)
+        left = {n: v for n, v in found.items() if not v.is_zero_matrix}
+        return Fan(angles[0].diff(base) * base, motor, left)
+
+    def _reach(self, fan: Fan, x: str, y: str) -> None:
+        """Solve the two motors of a fan, whose end is at x, y."""
+        steps, v = fan.steps, fan.vectors
+        if len(steps) == 2 and fan.degree == 1:
+            turn = fan.base + steps[0] * fan.motor
+            self.two_links((turn, fan.motor), [v[n] for n in steps], x, y, alone=x == "x")
+            return
+        self.require(
+            fan.degree == 2,
+            f"seen from its first joint, its links turn by {listed([str(n) for n in steps])} times "
+            f"the angle of {fan.motor}, which gives an equation of degree {fan.degree}",
+            "Known are links whose multiples differ by 2 at most.",
+        )
+        low, high = steps[0], steps[-1]
+        half = (heading(v[high]) + heading(v[low])) / 2
+        turn = fan.base + (low + 1) * fan.motor + half
+        opposite = fan.motor + (heading(v[high]) - heading(v[low])) / 2
+        middle = v.get(low + 1, sp.zeros(2, 1))
+        ahead, aside, _ = simple(rotation("z", -half) * sp.Matrix([*middle, 0]))
+        if ahead.could_extract_minus_sign():
+            ahead, aside, turn, opposite = -ahead, -aside, turn + sp.pi, opposite + sp.pi
+        angles, lengths = (self.angle(turn), self.angle(opposite)), (norm(v[high]), norm(v[low]))
+        if sp.simplify(lengths[0] - lengths[1]) != 0:
+            self._against(angles, lengths, (ahead, aside), (x, y))
+        elif aside == 0:
+            self._along(angles, ahead + 2 * lengths[0] * sp.cos(opposite), (x, y))
+        else:
+            self._beside(angles, 2 * lengths[0], (ahead, aside), (x, y))
+
+    def _along(self, angles: tuple[str, str], reach: sp.Expr, at: tuple[str, str]) -> None:
+        """Solve links that reach along the direction between the two that turn apart."""
+        (a, b), (x, y) = angles, at
+        (cosine,) = reach.atoms(sp.cos)
+        length, rest = reach.coeff(cosine), reach.xreplace({cosine: sp.S.Zero})
+        self.add(f"rho = ik.length('rho', {source(reach)})")
+        self.solve("polar", f"{a}, rho, ({x}, {y}), {REACH}", f"{a}_, rho_", 2)
+        sides = f"(0, {source(length)}, {source(sp.Symbol('rho_') - rest)})"
+        self.solve("turn", f"{b}, {sides}, {ELBOW}", f"{b}_", 2)
+
+    def _beside(
+        self, angles: tuple[str, str], reach: sp.Expr, offset: tuple[Any, Any], at: tuple[str, str]
+    ) -> None:
+        """The same with a link between them that leads aside."""
+        (a, b), (ahead, aside), (x, y) = angles, offset, at
+        seen = f"(turned(pair).T * Matrix([{x}, {y}, 0]))[0]"
+        less = f" - ({source(ahead)})" if ahead != 0 else ""
+        self.add(f"along = CoordinateWithin(lambda pair: {seen}{less}, {source(reach)})")
+        sides = f"({x}, -{y}, {source(-aside)})"
+        self.solve("turn", f"{a}, {sides}, {REACH}, toward=along", f"{a}_", 2)
+        sides = f"(0, {source(reach)}, {source(sp.Symbol(f'{a}_.ahead') - ahead)})"
+        self.solve("turn", f"{b}, {sides}, {ELBOW}", f"{b}_", 2)
+
+    def _against(
+        self,
+        angles: tuple[str, str],
+        lengths: tuple[Any, Any],
+        offset: tuple[Any, Any],
+        at: tuple[str, str],
+    ) -> None:
+        """Solve links that turn against each other, seen from the direction between them."""
+        (a, b), (x, y) = angles, at
+        one, two = (self.length_of(f"link{i}", e) for i, e in enumerate(lengths, 1))
+        along, aside = f"({one} + {two})*{b}_.c", f"({one} - {two})*{b}_.s"
+        self.add(f"radius = ik.let('radius', sqrt({x}**2 + {y}**2))")
+        if offset[1] == 0:
+            h = "0" if offset[0] == 0 else self.length_of("link3", offset[0])
+            arguments = f"({one}, {two}, {h}), radius, ({REACH}, {ELBOW})"
+            self.solve("opposite_links", f"{b}, {arguments}", f"{b}_", 4)
+            end = f"{along} + {h}" if h != "0" else along, aside
+        else:
+            self.add(f"centre = {source(sp.Matrix(offset))}")
+            self.add(f"along, aside = Matrix([{one} + {two}, 0]), Matrix([0, {one} - {two}])")
+            self.by_quartic(b, (f"2*{one}*{two}", "0"), "radius", f"{b}_")
+            self.add(f"q = ik.vector('q', centre + Matrix([{along}, {aside}]))")
+            miss = "ik.let('at_end', sqrt(q[0]**2 + q[1]**2)) - radius"
+            self.add(f"ik.program.match({miss}, ik.size/2, 'the point is one of the arm')")
+            end = "q[0]", "q[1]"
+        self.solve("rotate", f"{a}, ({', '.join(end)}), ({x}, {y}), because={{{b}: 1}}", f"{a}_")
+
+
+TURNS = "parallel joints of which one motor turns several"
+
+
+__all__ = ["CoupledMaker"]

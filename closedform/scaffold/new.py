@@ -26,8 +26,9 @@ from closedform.model.paper import Paper
 from closedform.scaffold.chains.proposal import Tried
 from closedform.scaffold.chains.propose import NoChainError, propose
 from closedform.scaffold.chains.recognise import recognised
+from closedform.scaffold.inputs.followers import declared, follow
 from closedform.scaffold.inputs.mjcf import read_mjcf
-from closedform.scaffold.inputs.motors import motors_of
+from closedform.scaffold.inputs.motors import geared, motors_of
 from closedform.scaffold.inputs.names import AUTHOR, CHAIN, IMPORTED
 from closedform.scaffold.inputs.spelling import mistaken_units
 from closedform.scaffold.inputs.tables import (
@@ -53,6 +54,11 @@ LONGER = (
 FAILED = "Write the chain yourself, and report the table: a proposed chain should be proved."
 IMPORTS = frozenset({"numpy", "sympy", "flint", "jinja2"})
 """Modules that a script of the same name would shadow."""
+GEARED = (
+    "The angles are taken as they are given, and not reduced: a whole turn of a joint need not be "
+    "one of its motor."
+)
+"""A note on motors with gears."""
 MOST_JOINTS = 7
 """Of an arm with an inverse; of seven joints one is given."""
 
@@ -147,6 +153,7 @@ def new(
         table = read_tree(path, choice)
     else:
         table = read_dh(path, modified=modified) if kind == "dh" else read_screws(path)
+        follow(table, path.name)
     check_names(table, path.name)
     if mistaken := mistaken_units(table.parameters):
         raise TableError(f"{path.name}: {mistaken}")
@@ -175,7 +182,7 @@ def without_short(
 
     Nothing is tried if there are too many joints.
     """
-    if not table.short or len(table.joints) > MOST_JOINTS:
+    if not table.short or len(table.joints) - len(table.followers) > MOST_JOINTS:
         return ""
 
     def first(say: Callable[[str], None]) -> str:
@@ -218,9 +225,10 @@ def skeleton(name: str, table: Table, origin: str, search: InverseSearch) -> Scr
         d = Derivation(name, name, Paper("own", "own", ()), "")
         for symbol in table.parameters:
             d.parameter(symbol, value=1, unit="", meaning="", nonnegative=symbol not in negative)
-        for joint, kind in table.joints.items():
-            d.joint(joint, kind)  # type: ignore[arg-type]
-        known = {s.name: s for s in (*(p.symbol for p in d.parameters), *d.actuated)}
+        for joint, kind, coupling in declared(table):
+            d.joint(joint, kind, coupling=coupling)  # type: ignore[arg-type]
+        symbols = [*(p.symbol for p in d.parameters), *(j.symbol for j in d.joints)]
+        known = {symbol.name: symbol for symbol in symbols}
         return _arm(d, table, known)
 
     head = _head(name, table, origin, negative)
@@ -268,8 +276,10 @@ def _head(name: str, table: Table, origin: str, negative: Sequence[str]) -> list
             f'{symbol} = d.parameter("{symbol}", value={exact}, unit={unit}, '
             f'meaning={meaning}, source="{origin}"{sign})'
         )
-    for joint, kind in table.joints.items():
+    for joint, kind, coupling in declared(table):
         argument = ', "prismatic"' if kind == "prismatic" else ""
+        if coupling is not None:
+            argument += f", coupling={source(coupling)}"
         if joint in table.limits:
             least, most = (f'Rational("{value}")' for value in table.limits[joint])
             argument += f", limits=({least}, {most})"
@@ -285,9 +295,11 @@ def _head(name: str, table: Table, origin: str, negative: Sequence[str]) -> list
 
 def _told(table: Table) -> str:
     """What the article says of the arm, for the author to extend."""
-    slides = sum(kind == "prismatic" for kind in table.joints.values())
+    slides, count = sum(k == "prismatic" for k in table.joints.values()), len(table.joints)
     kinds = f", of which {slides} {'slides' if slides == 1 else 'slide'}" if slides else ""
-    arm = f"An arm of {len(table.joints)} {'joint' if len(table.joints) == 1 else 'joints'}{kinds}"
+    if moved := len(table.followers):
+        kinds += f"; {moved} of them {'follow' if moved > 1 else 'follows'} others"
+    arm = f"An arm of {count} {'joint' if count == 1 else 'joints'}{kinds}"
     if table.rows:
         kind = "modified (Craig's)" if table.modified else "standard"
         return (
@@ -360,7 +372,8 @@ def _motor_lines(table: Table, origin: str) -> list[str]:
         driven = ", ".join(f"{q}: ({before}, {source(a)})" for q, (before, a) in through.items())
         motors = ", ".join(f'"{name}"' for name in names)
         return ["", f"parallelogram_drive(d, {{{driven}}}, [{motors}])"]
-    joints = ", ".join(table.joints)
+    joints = ", ".join(joint for joint, _, coupling in declared(table) if coupling is None)
+    note = [f"    notes=[{literal(GEARED)}],"] if geared(table, matrix) else []
     symbols = ", ".join(f'real("{name}")' for name in names)
     return [
         "",
@@ -372,12 +385,14 @@ def _motor_lines(table: Table, origin: str) -> list[str]:
         '    "The angles of the joints from those of their motors.",',
         '    {"motors": motors},',
         '    {"q": coupling * motors},',
+        *note,
         ")",
         "d.function(",
         '    "motors_from_joints",',
         '    "The angles of the motors from those of the joints.",',
         f'    {{"q": Matrix([{joints}])}},',
         f'    {{"motors": coupling.inv() * Matrix([{joints}])}},',
+        *note,
         ")",
     ]
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import sympy as sp
 
@@ -123,8 +124,11 @@ class Mimic:
     def slides(self) -> bool:
         return MOVING[self.joint.kind] == "prismatic"
 
-    def couple(self, table: Table) -> None:
-        """Let a neighbour on the same axis turn by what this joint adds, or slide along with it."""
+    def couple(self, table: Table) -> tuple[sp.Symbol, list[Any], list[Any]] | None:
+        """Let a neighbour on the same axis turn by what this joint adds, or slide along with it.
+
+        Returns the axis of a joint that follows a parallel one instead; None if there is none.
+        """
         mimicked, factor = symbol_of(self.joint.mimics), self.joint.factor
         told, kind = _where(self.joint, self.file), MOVING[self.joint.kind]
         slides = self.slides
@@ -136,6 +140,8 @@ class Mimic:
         ]
         near.sort(key=lambda found: found[0] != mimicked)
         whole = factor.is_Integer and kind == table.joints[mimicked]
+        if not near and whole and self._turns_beside(table):
+            return self._follower(table)
         if not near or not (slides or (whole and near[0][0] != mimicked)):
             alone = bool(near) and near[0][0] == mimicked
             why = self._refusal(alone=alone, near=bool(near), alike=kind == table.joints[mimicked])
@@ -158,6 +164,29 @@ class Mimic:
         )
         driven = f"{'; this is ' if slides else ' '}{table.couplings[name]}"
         table.notes.append(f"{told}; {both}{driven} in those of the motors")
+        return None
+
+    def _turns_beside(self, table: Table) -> bool:
+        """Whether the joint turns about an axis parallel to that of the one it mimics, and so does
+        a joint before that one, with no other direction between them."""
+        names = [str(joint) for joint, *_ in table.axes]
+        mimicked = symbol_of(self.joint.mimics)
+        at = names.index(mimicked)
+        if self.slides or mimicked in table.couplings or at >= self.after:
+            return False
+        before = [k for k in range(at) if table.joints[names[k]] == "revolute"]
+        between_axes = table.axes[before[-1] : self.after] if before else []
+        turning = [w for joint, w, _ in between_axes if table.joints[str(joint)] == "revolute"]
+        return bool(turning) and all(map(self.along, turning))
+
+    def _follower(self, table: Table) -> tuple[sp.Symbol, list[Any], list[Any]]:
+        """The axis of the joint, which follows the one that it mimics."""
+        mimicked, factor = symbol_of(self.joint.mimics), self.joint.factor
+        where = f"{self.file}, joint {shown_name(self.joint.name)}"
+        symbol = declare(replace(self.joint, limits=None), table, where)
+        table.followers[symbol.name] = mimicked, factor
+        table.notes.append(f"{_where(self.joint, self.file)}; it turns by {factor} times its angle")
+        return symbol, list(self.axis), list(self.place[:3, 3])
 
     def _refusal(self, *, near: bool, alone: bool, alike: bool) -> str:
         """Why the joint is not one with another: is a neighbour ``near`` on its axis, the one that
@@ -264,8 +293,16 @@ def _turned_by(total: sp.Rational) -> str:
 def couple(mimics: Sequence[Mimic], table: Table) -> None:
     """Add what joints that mimic others do to those that they are one with."""
     _refuse_finger(mimics, table)
-    for mimic in mimics:
-        mimic.couple(table)
+    axes = [(mimic.after, axis) for mimic in mimics if (axis := mimic.couple(table))]
+    for after, axis in reversed(axes):
+        table.axes.insert(after, axis)
+    for follower, (leader, _) in table.followers.items():
+        if leader in table.couplings:
+            raise TableError(
+                f"{mimics[0].file}, joint {follower}: it mimics {leader}, about whose axis another "
+                f"joint turns too, so that the angle of {leader} is not that of its motor; write "
+                f"the arm as a table with a column motors"
+            )
     for name, driven in table.couplings.items():
         limits = table.limits.pop(name, None)
         share = driven / real(f"m_{name}")

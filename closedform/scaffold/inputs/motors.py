@@ -11,7 +11,8 @@ from closedform.scaffold.inputs.tables import Table, TableError
 
 def motors_of(table: Table, where: str) -> tuple[list[str], sp.Matrix]:
     """The names of the motors, and the matrix that takes their angles to those of the joints."""
-    driven = {j: table.couplings.get(j, real(f"m_{j}")) for j in table.joints}
+    own = [joint for joint in table.joints if joint not in table.followers]
+    driven = {j: table.couplings.get(j, real(f"m_{j}")) for j in own}
     names = list(dict.fromkeys(str(s) for e in driven.values() for s in _in_order(e)))
     names = [n for n in names if n not in table.parameters]
     if clash := [n for n in names if n in table.joints or n in TAKEN]:
@@ -25,16 +26,26 @@ def motors_of(table: Table, where: str) -> tuple[list[str], sp.Matrix]:
     return names, matrix
 
 
-def _invertible(table: Table, matrix: sp.Matrix) -> bool:
-    """Whether the joints determine the motors: turns up to whole turns, slides at all."""
-    turns = [k for k, kind in enumerate(table.joints.values()) if kind == "revolute"]
+def geared(table: Table, matrix: sp.Matrix) -> bool:
+    """Whether a whole turn of a joint need not be one of its motor."""
+    return bool(abs(_turning(table, matrix).det()) != 1)
+
+
+def _turning(table: Table, matrix: sp.Matrix) -> sp.Matrix:
+    """The part of the matrix for joints that turn, and the motors that turn them."""
+    kinds = [kind for joint, kind in table.joints.items() if joint not in table.followers]
+    turns = [k for k, kind in enumerate(kinds) if kind == "revolute"]
     own = [k for k in range(matrix.cols) if any(matrix[i, k] != 0 for i in turns)]
-    whole = len(own) == len(turns) and abs(matrix.extract(turns, own).det()) == 1
-    return bool(whole and sp.simplify(matrix.det()) != 0)
+    return matrix.extract(turns, own)
+
+
+def _invertible(table: Table, matrix: sp.Matrix) -> bool:
+    """Whether the joints determine the motors, and those that turn the motors that turn them."""
+    return _turning(table, matrix).is_square and bool(sp.simplify(matrix.det()) != 0)
 
 
 def _in_order(e: sp.Expr) -> list[sp.Symbol]:
     return sorted(e.free_symbols, key=str)
 
 
-__all__ = ["motors_of"]
+__all__ = ["geared", "motors_of"]

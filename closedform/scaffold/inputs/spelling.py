@@ -7,6 +7,10 @@ import re
 from collections.abc import Mapping
 from fractions import Fraction
 
+import sympy as sp
+
+from closedform.scaffold.source import source
+
 LENGTHS = ("m", "cm", "mm", "in", "inch", "ft")
 """Units of lengths, which have to be the same in a table."""
 PI = re.compile(r"(?i:pi)|M_PI")
@@ -37,6 +41,23 @@ def instead(text: str) -> str:
     return next((what for pattern, what in SPELLINGS if pattern.search(text)), "")
 
 
+def rounded(angle: sp.Expr, text: str) -> str:
+    """What to write for an angle in degrees (a whole number) or a rounded one (1.5708 for pi/2)."""
+    value = angle.as_coeff_Add()[0]
+    if not value.is_Rational or value == 0:
+        return ""
+    turns = {sp.Rational(k, 12) * sp.pi for k in range(-24, 25)}
+    near = [t for t in turns if abs(t - value) < sp.Rational(1, 500)]
+    if value.is_Integer or abs(value) > 2 * sp.pi:
+        near = [value * sp.pi / 180]
+    if not near:
+        return ""
+    return (
+        f"angles must be in radians and exact, as multiples of pi; write "
+        f"{source(angle - value + near[0])} instead of {text}"
+    )
+
+
 def mistaken_units(parameters: Mapping[str, Mapping[str, str]]) -> str:
     """A sentence on units of parameters that do not go together; empty if they do."""
     of: dict[str, str] = {}
@@ -56,4 +77,4 @@ def mistaken_units(parameters: Mapping[str, Mapping[str, str]]) -> str:
     return ""
 
 
-__all__ = ["PI", "instead", "mistaken_units"]
+__all__ = ["PI", "instead", "mistaken_units", "rounded"]

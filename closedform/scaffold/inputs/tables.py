@@ -7,8 +7,8 @@ to correct it.
 A Denavit-Hartenberg table is CSV with the columns ``a, alpha, d, theta`` and optionally ``joint``,
 the name of the variable of a row.  By default this is the symbol in ``theta``, or the one in ``d``
 if ``theta`` is a number.  A row without a variable is a fixed transform.  A column ``motors`` says
-what moves a joint that is not driven by a motor of its own, as ``m3 - m2`` for a parallelogram, or
-``pitch/(2*pi)*m3`` for a screw.
+what moves a joint that is not driven by a motor of its own, as ``m3 - m2`` for a parallelogram,
+``m3/50`` for a gear, ``pitch/(2*pi)*m3`` for a screw, or ``-2*m2`` if a belt leads from another.
 Screws are TOML with ``[[axes]]`` and ``[home]``.  Every other symbol is a parameter; its value,
 unit and meaning come from comment lines ``# name = value unit: meaning`` or from the table
 ``[parameters]``.
@@ -31,8 +31,7 @@ from closedform.model.functions import real
 from closedform.model.names import check_symbol
 from closedform.scaffold.inputs import exact
 from closedform.scaffold.inputs.names import is_taken, names_in, symbol_of
-from closedform.scaffold.inputs.spelling import PI, instead
-from closedform.scaffold.source import source
+from closedform.scaffold.inputs.spelling import PI, instead, rounded
 
 COLUMNS = ("a", "alpha", "d", "theta")
 LARGEST = 64_000
@@ -77,7 +76,9 @@ class Table:
     limits: dict[str, tuple[str, str]] = field(default_factory=dict)
     """The least and the largest value of a joint, as decimals."""
     couplings: dict[str, Any] = field(default_factory=dict)
-    """Joints that several motors drive: each as a sum of motors, with integers if it turns."""
+    """What drives joints: each as a sum of motors, with rational factors if it turns."""
+    followers: dict[str, tuple[str, Any]] = field(default_factory=dict)
+    """Joints that move with another one, which has a motor: its name and the factor."""
     notes: list[str] = field(default_factory=list)
     """Entries that were not taken literally, in words for the author of the table."""
     end: str = ""
@@ -253,7 +254,8 @@ def _read_row(table: Table, header: Sequence[str], cells: Sequence[str], where: 
     names = names_in(cell[c] for c in COLUMNS)
     entries = {c: expression(cell[c], places[c], names) for c in COLUMNS}
     for column in ("alpha", "theta"):
-        _check_angle(entries[column], cell[column], places[column])
+        if what := rounded(entries[column], cell[column]):
+            raise TableError(f"{places[column]}: {what}")
     held = {n for n in names - {*table.parameters} if symbol_of(n) in table.parameters}
     entries = _renamed(entries, held, table, where)
     given = cell.get("joint", "")
@@ -311,10 +313,10 @@ def _couple(table: Table, joint: str, text: str, where: str) -> None:
     total = sp.expand(expression(text, where))
     motors = total.free_symbols - {real(name) for name in table.parameters}
     factors = [total.diff(motor) for motor in motors]
-    if table.joints[joint] == "revolute" and not all(k.is_Integer for k in factors):
+    if table.joints[joint] == "revolute" and not all(k.is_Rational for k in factors):
         raise TableError(
-            f"{where}: {shown(text)} is not a sum of motors with integer coefficients, such as "
-            f"m3 - m2"
+            f"{where}: {shown(text)} is not a sum of motors with integer or rational coefficients, "
+            f"such as m3 - m2 or m3/50"
         )
     if (
         not motors
@@ -361,22 +363,6 @@ def _header(cells: Sequence[str], where: str) -> list[str]:
     if twice := [c for i, c in enumerate(header) if c in header[:i]]:
         raise TableError(f"{where}: there are two columns {shown_name(twice[0])}")
     return header
-
-
-def _check_angle(angle: Any, text: str, where: str) -> None:
-    """Refuse an angle in degrees (a whole number) or a rounded one (1.5708 for pi/2)."""
-    value = angle.as_coeff_Add()[0]
-    if not value.is_Rational or value == 0:
-        return
-    turns = {sp.Rational(k, 12) * sp.pi for k in range(-24, 25)}
-    near = [t for t in turns if abs(t - value) < sp.Rational(1, 500)]
-    if value.is_Integer or abs(value) > 2 * sp.pi:
-        near = [value * sp.pi / 180]
-    if near:
-        raise TableError(
-            f"{where}: angles must be in radians and exact, as multiples of pi; write "
-            f"{source(angle - value + near[0])} instead of {text}"
-        )
 
 
 def _joint(
@@ -441,7 +427,7 @@ def read_screws(path: Path) -> Table:
 
 def _read_axis(table: Table, axis: Any, where: str, usual: str) -> None:
     """Add a joint to a table, which has a ``usual`` name in messages."""
-    check_keys(axis, ("joint", "kind", "direction", "point"), where)
+    check_keys(axis, ("joint", "kind", "direction", "point", "motors"), where)
     for key in ("joint", "direction"):
         if key not in axis:
             raise TableError(f"{where}: {key} is missing")
@@ -457,6 +443,8 @@ def _read_axis(table: Table, axis: Any, where: str, usual: str) -> None:
         _vector(axis.get(key, [0, 0, 0]), f"{where}, {key}") for key in ("direction", "point")
     )
     table.axes.append((real(joint), direction, point))
+    if "motors" in axis:
+        _couple(table, joint, axis["motors"], f"{where}, motors")
 
 
 def use_exact(table: Table, file: str) -> None:

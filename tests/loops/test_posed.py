@@ -9,9 +9,14 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+import sympy as sp
 from loop_files import apart, derived, script_of
 from places import TESTS
 
+from closedform import Body, Derivation, Paper, real
+from closedform.loops.bar_errors import Bars, hand_error
+from closedform.loops.linkage import Linkage
+from closedform.model.functions import Program
 from closedform.scaffold.inputs.tables import TableError
 
 FOLDER = TESTS / "held_out_loops"
@@ -138,3 +143,61 @@ def test_a_pin_of_two_bodies_is_refused_as_the_hand(tmp_path: Path) -> None:
         TableError, match="B and turn it, and it is a pin of stick and bucket; give"
     ):
         script_of("pin", text("excavator").replace('hand = "P"', 'hand = "B"'), tmp_path)
+
+
+def crossing(a: complex, b: complex, first: float, second: float) -> complex:
+    """The point to the left of the line from ``a`` to ``b``, at these distances from them."""
+    gap = abs(b - a)
+    along = (gap**2 + first**2 - second**2) / (2 * gap)
+    return a + (b - a) / gap * (along + 1j * np.sqrt(first**2 - along**2))
+
+
+def test_the_error_of_the_hand_is_the_sum_over_the_bars() -> None:
+    """Against differences of the lengths of the bars, one after the other."""
+    D, E, F = 0.1 + 0.2j, 0.5 + 0.3j, 0.2 + 0.1j
+    lengths = np.array([0.4, 0.35, 0.1, 0.45])
+
+    def hand(sizes: np.ndarray) -> np.ndarray:
+        Q = crossing(D, E, *sizes[:2])
+        tip = crossing(Q, F, *sizes[2:])
+        return np.array([Q.real, Q.imag, np.angle(tip - Q)])
+
+    Q = crossing(D, E, *lengths[:2])
+    G = crossing(Q, F, *lengths[2:])
+    rates = [(hand(lengths + s) - hand(lengths - s)) / 2e-6 for s in 1e-6 * np.eye(4)]
+    expected = np.abs(np.array(rates) * [1, 1, 7]).sum()
+    places = {"D": D, "E": E, "F": F, "Q": Q, "G": G, "P": Q}
+    points = {
+        name: sp.Matrix([sp.Rational(at.real), sp.Rational(at.imag)]) for name, at in places.items()
+    }
+    m = Linkage(
+        (d := derivation()),
+        sp.Matrix([real("x"), real("y"), real("yaw")]),
+        {
+            "ground": Body({"A": (0, 0), "B": (1, 0), "C": (2, 0)}),
+            "crank1": Body({"A": (0, 0), "D": (1, 0)}, d.actuated[0]),
+            "crank2": Body({"B": (1, 0), "E": (2, 0)}, d.actuated[1]),
+            "crank3": Body({"C": (2, 0), "F": (3, 0)}, d.actuated[2]),
+            "rod1": Body({"D": (0, 0), "Q": (sp.Rational(2, 5), 0)}),
+            "rod2": Body({"E": (0, 0), "Q": (sp.Rational(7, 20), 0)}),
+            "rod3": Body({"F": (0, 0), "G": (sp.Rational(9, 20), 0)}),
+            "tool": Body({"Q": (0, 0), "G": (sp.Rational(1, 10), 0), "P": (0, 0)}),
+        },
+        "P",
+    )
+    bars, volumes = [], []
+    by_name = dict(zip(("rod1", "rod2", "tool", "rod3"), map(sp.Rational, lengths), strict=True))
+    for step in m.dyads:
+        a, b = (points[step.pin] - points[near] for near in step.near)
+        volumes.append(a[0] * b[1] - a[1] * b[0])
+        bars.append(Bars((a, b), tuple(by_name[body] for body in step.bodies), volumes[-1]))
+    program = Program()
+    found = program.explicit(hand_error(m, program, points, bars, sp.Integer(7)))
+    assert float(found) / abs(float(np.prod(volumes))) == pytest.approx(expected, rel=1e-6)
+
+
+def derivation() -> Derivation:
+    d = Derivation("toy", "Toy", Paper("toy", "Toy", ("nobody",)), "A toy.")
+    for name in ("q1", "q2", "q3"):
+        d.joint(name)
+    return d

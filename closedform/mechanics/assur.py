@@ -97,6 +97,8 @@ class Order:
     def undone(self) -> str:
         """Why the bodies that are left are not solved."""
         left, four = ", ".join(self.left), len(self.left) == 4
+        if len(self.left) == 1:
+            return f"{left} can still move"
         group = "class III, which leads to an equation of degree 6" if four else "a class above II"
         return f"no two of the bodies {left} are a dyad; they are a group of {group}"
 

@@ -10,7 +10,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 import sympy as sp
-from loop_files import apart, derived, script_of
+from loop_files import apart, derived, read_script, script_of
 from places import TESTS
 
 from closedform import Body, Derivation, Paper, real
@@ -143,6 +143,29 @@ def test_a_pin_of_two_bodies_is_refused_as_the_hand(tmp_path: Path) -> None:
         TableError, match="B and turn it, and it is a pin of stick and bucket; give"
     ):
         script_of("pin", text("excavator").replace('hand = "P"', 'hand = "B"'), tmp_path)
+
+
+REDUNDANT = """hand = "P"
+[bodies]
+ground = {A = [0, 0], B = [0.3, 0]}
+crank1 = {A = [0, 0], C = [0.4, 0]}
+crank2 = {B = [0.3, 0], D = [0.5, 0]}
+plate = {C = [0, 0], E = [0.35, 0.1], P = [0.1, 0.2]}
+tube = {}
+rod = {}
+[joints]
+t1 = {between = ["ground", "crank1"], at = "A", driven = true}
+t2 = {between = ["ground", "crank2"], at = "B", driven = true}
+c = {between = ["crank1", "plate"], at = "C"}
+d = {between = ["crank2", "tube"], at = "D"}
+q = {between = ["tube", "rod"], at = "D", kind = "prismatic", driven = true}
+e = {between = ["rod", "plate"], at = "E"}
+"""
+
+
+def test_two_motors_that_do_the_same_leave_no_inverse(tmp_path: Path) -> None:
+    d = read_script(script_of("redundant", REDUNDANT, tmp_path))
+    assert d.without_inverse == "with the hand held, crank2 can still move"
 
 
 def crossing(a: complex, b: complex, first: float, second: float) -> complex:

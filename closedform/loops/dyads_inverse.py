@@ -16,7 +16,7 @@ from closedform.lemmas.circles import two_circles
 from closedform.lemmas.legs import Naming, Solution, Stretch, cross_in_plane
 from closedform.lemmas.missed import MOST_LOST, lost, missed_circles
 from closedform.loops.bar_errors import Bars, hand_error
-from closedform.loops.from_hand import export_inverse, turned
+from closedform.loops.from_hand import export_inverse, turned, undetermined
 from closedform.loops.hand import square
 from closedform.loops.leg_by_leg import MISSED, named, where_free
 from closedform.loops.linkage import GROUND, Linkage
@@ -39,6 +39,8 @@ def known_points(m: Linkage, p: Program, bodies: Sequence[str]) -> dict[str, sp.
 
 def inverse(m: Linkage, loop: Step) -> None:
     """Derive and export the inverse, or say why there is none."""
+    if undetermined(m.d, m.hand):
+        return
     bars = {name: at for name, at in m.points.items() if name not in m.cylinders}
     points = [m.at] * bool(m.at)
     found = order(bars, m.known, points, sought=m.driven)

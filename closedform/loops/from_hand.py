@@ -67,6 +67,18 @@ def turned(
     return Turned(link, lemma[joint], rho, (a, b))
 
 
+def undetermined(d: Derivation, hand: Sequence[sp.Symbol]) -> bool:
+    """Whether more joints are driven than the hand has coordinates; then says so."""
+    more = len(d.actuated) > len(hand)
+    if more:
+        d.no_inverse(
+            f"{len(d.actuated)} joints are driven and the hand has "
+            f"{'one coordinate' if len(hand) == 1 else f'{len(hand)} coordinates'}, so a target "
+            f"does not determine them"
+        )
+    return more
+
+
 def export_inverse(
     d: Derivation,
     g: Program,
@@ -143,4 +155,4 @@ def export_inverse(
     )
 
 
-__all__ = ["Turned", "export_inverse", "turned"]
+__all__ = ["Turned", "export_inverse", "turned", "undetermined"]

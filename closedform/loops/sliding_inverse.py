@@ -8,14 +8,17 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from closedform.lemmas.legs import Naming, Stretch, cross_in_plane
+from closedform.lemmas.lines import Ray, two_lines
 from closedform.lemmas.missed import MOST_LOST, lost
 from closedform.loops.crossed import Crossed, crossed, state
-from closedform.loops.from_hand import export_inverse
+from closedform.loops.from_hand import export_inverse, undetermined
 from closedform.loops.hand import square
-from closedform.loops.leg_by_leg import MISSED
+from closedform.loops.leg_by_leg import MISSED, named
 from closedform.loops.linkage import GROUND
+from closedform.loops.pantograph import Pantograph, pantograph
+from closedform.loops.pantograph import state as in_line
 from closedform.loops.sliding import Frame, SlidingLinkage, fold_name, swing_name
-from closedform.loops.sliding_solver import Block, Solver
+from closedform.loops.sliding_solver import Block, Solver, World
 from closedform.mechanics.assur_slides import (
     EitherWay,
     Fold,
@@ -32,11 +35,21 @@ from closedform.model.step import Step
 
 def inverse(m: SlidingLinkage, loop: Step, poles: Sequence[Block]) -> None:
     """Derive and export the inverse, or say why there is none."""
+    if undetermined(m.d, m.hand):
+        return
     known = [GROUND, *[m.follower] * bool(m.follower)]
     bars = {name: at for name, at in m.points.items() if name not in m.cylinders}
     bars_across = {case.body: case for case in crossed(m)}
     parallel = [(body, GROUND) for body in bars_across]
-    found = sliding_order(bars, m.pairs, known, [m.hand_at] * bool(m.hand_at), parallel)
+    points = [m.hand_at] * bool(m.hand_at)
+    found = sliding_order(bars, m.pairs, known, points, parallel)
+    case = pantograph(m) if found.left and m.hand_at else None
+    if case:
+        sliders = [m.slides[k].other(GROUND) for k in case.sliders.values()]
+        others = {name: at for name, at in bars.items() if name not in case.links}
+        again = sliding_order(others, m.pairs, [*known, *sliders], points, parallel)
+        case = None if again.left or again.held else case
+        found = again if case else found
     if found.left:
         m.d.no_inverse(f"with the hand held, {found.undone}")
         return
@@ -49,8 +62,10 @@ def inverse(m: SlidingLinkage, loop: Step, poles: Sequence[Block]) -> None:
             m.d.no_inverse(f"with the hand held, the end {loose[0]} of {name} can still move")
             return
     used = {g.body: bars_across[g.body] for g in found.groups if isinstance(g, EitherWay)}
-    steps = [loop, *(state(m, case, loop) for case in used.values())]
-    _Reverse(m, steps, found, poles, used).export()
+    steps = [loop, *(state(m, crossing, loop) for crossing in used.values())]
+    if case:
+        steps.append(in_line(m, case, loop))
+    _Reverse(m, steps, found, poles, across=used, case=case).export()
 
 
 @dataclass
@@ -63,6 +78,7 @@ class _Reverse:
     poles: Sequence[Block]
     across: Mapping[str, Crossed]
     """The bodies that crossed bars keep parallel to the ground."""
+    case: Pantograph | None = None
     values: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     lost: list[sp.Expr] = field(default_factory=list)
     """How much each group enlarges an error of the target."""
@@ -78,7 +94,46 @@ class _Reverse:
         if m.hand_at:
             self.solver.here.at[m.hand_at] = self.solver.meant.at[m.hand_at] = m.hand
 
+    def _in_line(self, case: Pantograph) -> None:
+        """The points of a pantograph that slides hold on lines, from the hand."""
+        m, p, solver, shares = self.m, self.program, self.solver, case.shares
+        (first, k), (second, j) = case.sliders.items()
+        hand, ways = shares[m.hand_at], [m.slides[i].way for i in (k, j)]
+
+        def other(place: sp.Matrix, unknown: str, world: World) -> sp.Matrix:
+            known = second if unknown == first else first
+            moved = hand * world.at[m.hand_at] + shares[known] * place
+            return (-moved / shares[unknown]).applyfunc(sp.simplify)
+
+        def lines(world: World) -> list[sp.Matrix]:
+            holds = [OnLine(m.slides[i].other(GROUND), i) for i in (k, j)]
+            own, far = (
+                solver.ray(hold, point, world).at
+                for hold, point in zip(holds, (first, second), strict=True)
+            )
+            return [own, other(far, first, world)]
+
+        unknowns = m.unknown(first)
+        rays = [
+            Ray(named(p, f"a{i}_0", at), way)
+            for i, (at, way) in enumerate(zip(lines(solver.here), ways, strict=True), 1)
+        ]
+        fixed = cross_in_plane(*ways).is_number
+        link = two_lines(solver.names("0"), (rays[0], rays[1]), unknowns, self.size, fixed=fixed)
+        place = solver.done(link, unknowns, f"p{first}")
+        drawn = [Ray(at, way) for at, way in zip(lines(solver.meant), ways, strict=True)]
+        equations = tuple(ray.equation(unknowns) for ray in drawn)
+        solver.blocks.append(Block("", tuple(unknowns), equations, (False, False), sp.S.One))
+        for world, at in ((solver.here, place), (solver.meant, unknowns)):
+            world.at[first] = at
+            world.at[second] = other(at, second, world)
+        solver.here.at[second] = named(p, f"p{second}", solver.here.at[second])
+        for point, i in case.sliders.items():
+            solver.parallel(m.slides[i].other(GROUND), GROUND, point)
+
     def export(self) -> None:
+        if self.case:
+            self._in_line(self.case)
         for k, group in enumerate(self.order.groups, 1):
             if isinstance(group, Hold):
                 self._hold(group, k)
@@ -239,6 +294,14 @@ class _Reverse:
         here = self.solver.here.at
         return sp.sqrt(square(here[far] - here[near]))
 
+    def _told(self) -> str:
+        """The bodies in their order."""
+        groups = [" and ".join(group.bodies) for group in self.order.groups]
+        if self.case:
+            sliders = [self.m.slides[k].other(GROUND) for k in self.case.sliders.values()]
+            groups.insert(0, f"{' and '.join(sliders)}, where the points in line are on both lines")
+        return ", ".join(groups)
+
     def _write(self) -> None:
         m, d, g, solver = self.m, self.m.d, self.program, self.solver
         on_curve = bool(self.order.held)
@@ -246,7 +309,7 @@ class _Reverse:
         d.step(
             "Inverse: group by group, from the hand",
             "The hand is known instead of the joints.  The bodies are found in this order, again "
-            f"group by group: {', '.join(' and '.join(g.bodies) for g in self.order.groups)}.  "
+            f"group by group: {self._told()}.  "
             + "The length of a cylinder is the distance of its ends.  " * bool(m.cylinders)
             + "The target has to be on the curve of the hand, which the body that is held tells.  "
             * on_curve
@@ -279,12 +342,15 @@ class _Reverse:
                     f"only where it is parallel to the {GROUND}."
                     for body, c in self.across.items()
                 ),
+                *["Left out: the postures in which the parallelogram is crossed."]
+                * bool(self.case),
             ),
             links=solver.links,
             equations=self.equations,
             passive=[x for b in solver.blocks for x in b.unknowns if x not in {*d.actuated}],
             angles=tuple(m.hand) if m.follower in m.turning else (),
             on_curve=on_curve,
+            images="" if self.case else "fk",
         )
 
 

@@ -162,7 +162,7 @@ class Solver:
         self.signs.append(sigma := real(f"sigma_{name}"))
         return sigma
 
-    def _done(self, link: Link, unknowns: sp.Matrix, name: str) -> sp.Matrix:
+    def done(self, link: Link, unknowns: sp.Matrix, name: str) -> sp.Matrix:
         """Record a link; returns the names of its solution."""
         p, lemma = self.program, link.lemma
         assert lemma is not None
@@ -203,7 +203,7 @@ class Solver:
             self.missed.append(missed)
         else:
             link = two_lines(tag, (rays[0], rays[1]), unknowns, self.whole, self.free, fixed=fixed)
-        place = self._done(link, unknowns, f"p{group.pin}")
+        place = self.done(link, unknowns, f"p{group.pin}")
         drawn = [self.ray(h, group.pin, self.meant) for h in lines]
         lengths = [self.length(c.body, c.near, group.pin, self.meant) for c in circles]
         squares = [
@@ -276,7 +276,7 @@ class Solver:
             equations, halved = squares, (True, True)
             what = f"{second} and {first} on {group.on} in line"
         self.missed.append(missed)
-        place = self._done(link, unknowns, f"p{name}")
+        place = self.done(link, unknowns, f"p{name}")
         block = Block(what, tuple(unknowns), tuple(equations), halved, sp.Mul(*drawn))
         self.blocks.append(block)
         for world, far in ((self.here, place), (self.meant, unknowns)):
@@ -361,7 +361,7 @@ class Solver:
         e = offset if offset == 0 else tag.coefficient("e", offset)
         link, missed = direction(tag, w, e, unknowns, sigma, free=self.free)
         self.missed.append(missed)
-        t = self._done(link, unknowns, f"p{swing_name(group)}")
+        t = self.done(link, unknowns, f"p{swing_name(group)}")
         # a direction between near points is less accurate, and so is what follows from it
         less = self.size * (self.size / (2**10 * sp.sqrt(square(w)) + self.size / 2**30))
         self.size = tag.let("size", sp.Max(self.size, less), nonnegative=True)
@@ -388,7 +388,7 @@ class Solver:
         m, (along, way) = self.m, ways
         unknowns = m.unknown(f"t_{body}")
         link = either_way(way, unknowns, self._sign(f"{k}"))
-        t = self._done(link, unknowns, f"pt_{body}")
+        t = self.done(link, unknowns, f"pt_{body}")
         equations = (cross_in_plane(unknowns, way), square(unknowns) - 1)
         self.blocks.append(Block("", tuple(unknowns), equations, (False, True), sp.S.One))
         frames = [

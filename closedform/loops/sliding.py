@@ -115,9 +115,11 @@ class SlidingLinkage:
         for slide in self.slides:
             if missing := [b for b in slide.between if b not in self.bodies]:
                 raise ShapeError(f"{name}: there is no body {missing[0]}")
-            if slide.joint is not None and slide.between[0] != GROUND:
+            task = slide.joint is not None and slide.joint not in self.d.actuated
+            if task and slide.between[0] != GROUND:
                 raise ShapeError(f"{name}: {slide.joint} must slide on the {GROUND}")
         joints = [*self.turning.values(), *self.sliders.values(), *self.cylinders.values()]
+        joints += self.glides.values()
         if {*joints} - {self.follower_joint} != {*self.d.actuated}:
             raise ShapeError(f"{name}: each driven joint must belong to a body")
         if self.freedoms != len(self.d.actuated):
@@ -151,7 +153,14 @@ class SlidingLinkage:
     @cached_property
     def sliders(self) -> dict[str, sp.Symbol]:
         """The bodies with a joint that slides on the ground."""
-        return {s.between[1]: s.joint for s in self.slides if s.joint is not None}
+        on_ground = [s for s in self.slides if s.between[0] == GROUND]
+        return {s.between[1]: s.joint for s in on_ground if s.joint is not None}
+
+    @cached_property
+    def glides(self) -> dict[int, sp.Symbol]:
+        """The driven slides between moving bodies, by their numbers."""
+        moving = [(k, s) for k, s in enumerate(self.slides) if s.between[0] != GROUND]
+        return {k: s.joint for k, s in moving if s.joint is not None}
 
     @cached_property
     def cylinders(self) -> dict[str, sp.Symbol]:
@@ -187,7 +196,9 @@ class SlidingLinkage:
     @cached_property
     def order(self) -> SlidingOrder:
         known = [GROUND, *self.driven]
-        return sliding_order(self.points, self.pairs, known, bars=self.cylinders)
+        return sliding_order(
+            self.points, self.pairs, known, bars=self.cylinders, driven=self.glides
+        )
 
     @cached_property
     def groups(self) -> list[Group]:
@@ -231,7 +242,8 @@ class SlidingLinkage:
 
     def slide_of(self, body: str) -> Sliding:
         """The slide of a body with a joint."""
-        return next(s for s in self.slides if s.joint is not None and s.between[1] == body)
+        on_ground = (s for s in self.slides if s.between[0] == GROUND)
+        return next(s for s in on_ground if s.joint is not None and s.between[1] == body)
 
     def moved(self, body: str) -> Frame:
         """Where a body with a joint is, or the ground."""
@@ -270,7 +282,7 @@ class SlidingLinkage:
     @property
     def moving(self) -> list[sp.Symbol]:
         """The driven joints that are lengths."""
-        q = {*self.sliders.values(), *self.cylinders.values()}
+        q = {*self.sliders.values(), *self.cylinders.values(), *self.glides.values()}
         return [joint for joint in self.d.actuated if joint in q]
 
 

@@ -11,7 +11,7 @@ import sympy as sp
 from closedform.lemmas.legs import cross_in_plane
 from closedform.lemmas.missed import MOVED, SHARE
 from closedform.loops.conditioning import JACOBIAN, conditioning
-from closedform.loops.hand import in_space
+from closedform.loops.hand import in_space, square
 from closedform.loops.leg_by_leg import SIGN, Choice, record_lemma
 from closedform.loops.linkage import GROUND, Body
 from closedform.loops.modes import NO_MODE, Exported, export
@@ -91,6 +91,8 @@ def _how(m: SlidingLinkage, group: Group) -> str:
             for h in group.holds
         ]
         return f"{' and '.join(said)}, and {group.pin} is on both"
+    if isinstance(group, Fold) and not group.far:
+        return f"it slides on {group.on} by its joint: both are one body from here on"
     if isinstance(group, Fold):
         first, second = group.bodies
         joined = f"slides on {group.on}" if group.slide is not None else f"turns about {group.pin}"
@@ -190,6 +192,7 @@ def _draw(m: SlidingLinkage, at: Solver, modes: Branches) -> None:
             if off != 0:
                 closing[a, b] = lengths[a, b] ** 2 * off
     joints = _passive(m)
+    _draw_feet(m, at, _Drawing(here, meant, links, lengths=lengths, closing=closing, joints=joints))
     for body, q in m.driven.items():
         if body in m.turning:
             joints[q] = (m.pivot(body),)
@@ -231,9 +234,42 @@ def _passive(m: SlidingLinkage) -> dict[sp.Symbol, tuple[str, ...]]:
         first, second = slide.between
         for p, q in product(m.points[first], m.points[second]):
             apart = m.local(second, q) + slide.shift(second) - m.local(first, p)
-            if slide.slide and p != q and sp.simplify(cross_in_plane(slide.way, apart)) == 0:
-                found.setdefault(slide.slide, (p, q))
+            own = slide.slide or (slide.joint if first != GROUND else None)
+            if own and p != q and sp.simplify(cross_in_plane(slide.way, apart)) == 0:
+                found.setdefault(own, (p, q))
     return found
+
+
+@dataclass(frozen=True)
+class _Drawing:
+    """The points of a skeleton in both worlds, and its links, lengths and joints."""
+
+    here: dict[str, sp.Matrix]
+    meant: dict[str, sp.Matrix]
+    links: dict[str, tuple[str, ...]]
+    lengths: dict[tuple[str, str], sp.Expr]
+    closing: dict[tuple[str, str], sp.Expr]
+    joints: dict[sp.Symbol, tuple[str, ...]]
+
+
+def _draw_feet(m: SlidingLinkage, at: Solver, drawn: _Drawing) -> None:
+    """Join a body that no point has on the line of its driven slide to the foot on this line."""
+    for k, q in m.glides.items():
+        if q in drawn.joints:
+            continue
+        slide = m.slides[k]
+        first, second = slide.between
+        near, far = m.points[first][0], m.points[second][0]
+        start, own = m.local(first, near) - slide.shift(second), m.local(second, far)
+        place = start + slide.way * slide.way.dot(own - start)
+        gap, foot = (own - place).applyfunc(sp.simplify), f"{far}_foot"
+        length = sp.sqrt(sp.factor(square(gap)))
+        drawn.here[foot], drawn.meant[foot] = (
+            w.frames[second].at(place) for w in (at.here, at.meant)
+        )
+        drawn.joints[q], drawn.links[foot] = (near, foot), (far, foot)
+        drawn.lengths[far, foot] = length
+        drawn.closing[far, foot] = length**2 * at.meant.frames[second].still
 
 
 @dataclass(frozen=True)

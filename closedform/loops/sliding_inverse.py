@@ -207,6 +207,9 @@ class _Reverse:
             else:
                 places = (solver.slid(body, w) for w in (solver.here, solver.meant))
                 self.values[q] = solver.linear(q, *places)
+        for k, q in m.glides.items():
+            places = (solver.glided(k, w) for w in (solver.here, solver.meant))
+            self.values[q] = solver.linear(q, *places)
         for body, q in m.cylinders.items():
             near, far = m.points[body]
             names = Naming(self.program, self.size, f"_{q}")
@@ -228,7 +231,7 @@ class _Reverse:
             A = g.matrix(f"A_{k}", block.matrix.applyfunc(lambda e: e.xreplace(known)))
             volumes.append(g.let(f"Delta_{k}", sp.Abs(A.det()), nonnegative=True))
             scales.append(self._scale(block).xreplace(known))
-        for fold in [group for group in m.groups if isinstance(group, Fold)]:
+        for fold in [group for group in m.groups if isinstance(group, Fold) and group.far]:
             for body, near in zip(fold.bodies, (fold.pin, fold.near), strict=True):
                 scales += self._stretches(body, near, fold.far) if near else []
         meets = [group for group in m.groups if isinstance(group, Meet)]
@@ -259,7 +262,7 @@ class _Reverse:
         for group in m.groups:
             if isinstance(group, Meet):
                 known |= dict(zip(m.unknown(group.pin), solver.here.at[group.pin], strict=True))
-            elif isinstance(group, Fold):
+            elif isinstance(group, Fold) and group.far:
                 base = solver.here.frames[group.on]
                 seen = base.seen(solver.here.at[group.far])
                 known |= dict(zip(m.unknown(fold_name(group)), seen, strict=True))

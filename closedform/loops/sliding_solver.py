@@ -133,7 +133,7 @@ class Solver:
         elif isinstance(group, Swing):
             self._swing(group, k)
         elif isinstance(group, Fold):
-            self._fold(group, k)
+            (self._fold if group.far else self._glide)(group, k)
         elif isinstance(group, Place):
             self.parallel(group.body, group.like, group.near)
 
@@ -242,6 +242,24 @@ class Solver:
         start, place = self.local(hold.body, hold.near, world), world.at[hold.near]
         span = self.local(hold.body, pin, world) - start
         return Frame(place, start, world.at[pin] - place, span, still)
+
+    def _glide(self, group: Fold, _: int) -> None:
+        """A body as a part of another one, on which a driven slide moves it."""
+        ((body,), on), k = (group.bodies, group.on), group.slide
+        assert k is not None
+        slide, q, right = self.m.slides[k], self.m.glides[k], sp.Matrix([1, 0])
+        start = slide.shift(body) + q * slide.way * (1 if body == slide.between[1] else -1)
+        for world in (self.here, self.meant):
+            zero = sp.zeros(2, 1)
+            world.folded.setdefault(on, {})[body] = Frame(start, zero, right, right)
+
+    def glided(self, k: int, world: World) -> sp.Expr:
+        """How far a body slid on another one."""
+        slide = self.m.slides[k]
+        on, body = slide.between
+        point, frame = self.m.points[body][0], world.frames[on]
+        zero = frame.at(self.m.local(body, point) + slide.shift(body))
+        return frame.vector(slide.way).dot(world.at[point] - zero)
 
     def _fold(self, group: Fold, k: int) -> None:
         """Two bodies as parts of a third one, in whose coordinates their common pin is found."""

@@ -99,14 +99,15 @@ class Fold:
     """Two bodies that become parts of the body ``on``, because all three are rigid together.
 
     The first one turns about this body at ``pin``, or slides on it by ``slide``.  The second one is
-    pinned to it at ``near``, and both bodies meet in ``far``.
+    pinned to it at ``near``, and both bodies meet in ``far``.  If the slide is driven, one body is
+    a part of another one without a second one.
     """
 
-    bodies: tuple[str, str]
+    bodies: tuple[str, ...]
     on: str
-    pin: str
-    near: str
-    far: str
+    pin: str = ""
+    near: str = ""
+    far: str = ""
     slide: int | None = None
 
 
@@ -191,6 +192,7 @@ def sliding_order(
     parallel: Sequence[tuple[str, str]] = (),
     *,
     bars: Collection[str] = (),
+    driven: Collection[int] = (),
 ) -> SlidingOrder:
     """The order for bodies with named points, some of which slide on each other.
 
@@ -210,13 +212,16 @@ def sliding_order(
         nothing else is left
     bars
         the bodies onto which no other one is folded, such as cylinders
+    driven
+        the slides between moving bodies whose joints are driven
     """
     on = {name: tuple(dict.fromkeys(at)) for name, at in bodies.items()}
     here = {*known}
     now = _Known(on, slides, here, {p for name in here for p in on[name]} | {*points})
     found = SlidingOrder(left=[name for name in on if name not in here])
     while (
-        group := _next(now, found.left)
+        group := _glide(now, found.left, driven)
+        or _next(now, found.left)
         or _either_way(now, found.left, parallel)
         or _fold(now, found.left, bars)
     ):
@@ -263,6 +268,15 @@ def _either_way(
     for body, like in parallel:
         if body in left and like in now.bodies and (near := now.near(body)):
             return EitherWay(body, like, near[0])
+    return None
+
+
+def _glide(now: _Known, left: Sequence[str], driven: Collection[int]) -> Fold | None:
+    """A body that a driven slide moves on another one, and that slides on no more bodies."""
+    for k in driven:
+        for body, on in (now.slides[k], now.slides[k][::-1]):
+            if body in left and on in left and len([*now.of(body)]) == 1:
+                return Fold((body,), on, slide=k)
     return None
 
 

@@ -108,7 +108,9 @@ def _without_bodies(loop: Loop) -> Loop:
     if found is None:
         return loop
     known = [GROUND, *found.driven]
-    groups = sliding_order(found.points, found.pairs, known, bars=found.cylinders).groups
+    groups = sliding_order(
+        found.points, found.pairs, known, bars=found.cylinders, driven=found.glides
+    ).groups
     follower = loop.joints.get(loop.hand)
     last = follower.other(GROUND) if follower else holder(groups, found.points, known, found.hand)
     if not any(last in group.bodies for group in groups):

@@ -40,8 +40,8 @@ class LinkageLines:
     """The passive slides."""
     posed: bool = False
     """Whether the task has the yaw of the body with the hand too."""
-    folded: bool = False
-    """Whether three bodies that are pinned to each other are solved as one, without slides too."""
+    grouped: bool = False
+    """Whether it is solved as a linkage with slides, though it has none."""
 
 
 def posed_linkage(loop: Loop) -> LinkageLines | None:

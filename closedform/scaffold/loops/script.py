@@ -418,7 +418,7 @@ class _Way:
         if self.function:
             return self.function
         if self.linkage:
-            grouped = self.linkage.slides or self.linkage.folded
+            grouped = self.linkage.slides or self.linkage.grouped
             return "sliding_linkage" if grouped else "linkage"
         if self.guide:
             return "guided"
@@ -448,7 +448,7 @@ class _Way:
         if self.linkage:
             bodies = [f"        {body}," for body in self.linkage.bodies]
             lines = [f"        {slide}," for slide in self.linkage.slides]
-            slides = ["    [", *lines, "    ],"] if lines else ["    [],"] * self.linkage.folded
+            slides = ["    [", *lines, "    ],"] if lines else ["    [],"] * self.linkage.grouped
             return ["    {", *bodies, "    },", *slides, *[f"    {self.at},"] * bool(self.at)]
         legs = [leg.call for leg in self.legs]
         if self.name in ("coupled", "slotted", "on_rod", "two_arms"):

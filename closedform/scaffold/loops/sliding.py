@@ -80,6 +80,12 @@ class Found:
         return {body: j for body, j in self.with_joint.items() if j.driven}
 
     @property
+    def glides(self) -> dict[int, Joint]:
+        """The driven slides between moving bodies, by their numbers."""
+        moving = [(k, s.joint) for k, s in enumerate(self.slides) if GROUND not in s.between]
+        return {k: joint for k, joint in moving if joint.driven}
+
+    @property
     def pairs(self) -> list[tuple[str, str]]:
         return [s.between for s in self.slides]
 
@@ -97,9 +103,7 @@ def sliding(loop: Loop, *, few: bool = False) -> LinkageLines | None:
     _read_slides(found)
     _separate(found)
     order = _ordered(found)
-    folded = any(isinstance(group, Fold) for group in order.groups)
-    if not (found.slides or folded):
-        return None
+    plain = not found.slides
     follower = loop.joints.get(loop.hand)
     hand = "" if follower else _hand(found)
     turning = {b: j for b, j in found.with_joint.items() if j.kind == "revolute"}
@@ -108,7 +112,7 @@ def sliding(loop: Loop, *, few: bool = False) -> LinkageLines | None:
     bodies = tuple(line_of(name, at, turning) for name, at in found.points.items())
     slides = tuple(_line(found, s) for s in found.slides)
     passive = tuple(s.joint.name for s in found.slides if not _own(found, s))
-    return LinkageLines(bodies, hand, _words(found, order), slides, passive, folded=folded)
+    return LinkageLines(bodies, hand, _words(found, order), slides, passive, grouped=plain)
 
 
 def _has_joints(found: Found) -> bool:
@@ -117,7 +121,7 @@ def _has_joints(found: Found) -> bool:
     joints = found.loop.joints.values()
     return (
         all(j.kind in ("revolute", "prismatic") for j in joints)
-        and all(GROUND in j.between for j in joints if j.driven)
+        and all(GROUND in j.between or j.kind == "prismatic" for j in joints if j.driven)
         and not (follower and (follower.driven or GROUND not in follower.between))
     )
 
@@ -138,6 +142,8 @@ def _is_one(found: Found, *, few: bool) -> bool:
         or not _has_joints(found)
     ):
         return False
+    if not few and any(GROUND not in j.between for j in driven):
+        return False
     least = FEW[inputs] - len(found.cylinders)
     return few or moving > least or (moving == least and inputs == 1 and not follower)
 
@@ -146,7 +152,7 @@ def placed(loop: Loop) -> Found | None:
     """The bodies of a planar linkage, with or without slides, that the joints determine."""
     joined_loop, cylinders = joined(with_pivots(loop))
     found = Found(joined_loop, cylinders)
-    inputs = len(found.driven) + len(cylinders)
+    inputs = sum(j.driven for j in found.loop.joints.values()) + len(cylinders)
     fits = loop.dimensions == 2 and inputs in FEW and not loop.parallelograms
     if not fits or not _has_joints(found):
         return None
@@ -232,7 +238,7 @@ def _from_line(found: Found, joint: Joint, between: tuple[str, str], place: sp.M
     assert axis is not None
     if not other:
         other |= dict.fromkeys(_pins(loop, body) or [joint.at], place)
-    elif joint not in found.with_joint.values():
+    elif not joint.driven and joint not in found.with_joint.values():
         if len(other) == 1:
             (only,) = other.values()
             return place - only
@@ -303,7 +309,7 @@ def _ordered(found: Found) -> SlidingOrder:
     loop = found.loop
     check_apart(loop, found.points, found.cylinders)
     free = sliding_freedoms(found.points, found.pairs) + len(found.cylinders)
-    driven = [*found.driven.values(), *found.cylinders.values()]
+    driven = [*found.driven.values(), *found.cylinders.values(), *found.glides.values()]
     if free != len(driven):
         raise loop.error(
             f"{listed([j.name for j in driven])} drive{'s' * (len(driven) == 1)} this linkage, but "
@@ -312,7 +318,9 @@ def _ordered(found: Found) -> SlidingOrder:
         )
     _check_directions(found)
     known = [GROUND, *found.driven]
-    order = sliding_order(found.points, found.pairs, known, bars=found.cylinders)
+    order = sliding_order(
+        found.points, found.pairs, known, bars=found.cylinders, driven=found.glides
+    )
     for step in order.held:
         raise loop.error(
             f"the driven joints and the bodies before it hold {step.body} already, so they could "
@@ -372,6 +380,9 @@ def _words(found: Found, order: SlidingOrder) -> str:
         f"{j.name} {'turns' if j.kind == 'revolute' else 'moves'} {safe(body)}"
         for body, j in found.driven.items()
     ]
+    for joint in found.glides.values():
+        first, second = map(safe, joint.between)
+        moved.append(f"{joint.name} moves {second} on {first}")
     moved += [f"{j.name} is the length of {safe(body)}" for body, j in found.cylinders.items()]
     told = []
     for group in order.groups:
@@ -381,7 +392,11 @@ def _words(found: Found, order: SlidingOrder) -> str:
         elif isinstance(group, Swing):
             told.append(f"{names} slide on each other")
         elif isinstance(group, Fold):
-            told.append(f"{names} meet on {safe(group.on)}")
+            told.append(
+                f"{names} meet on {safe(group.on)}"
+                if group.far
+                else f"{safe(group.on)} carries {names}"
+            )
         else:
             told.append(names)
     return f"Joint {listed(moved)}.  Then {', '.join(told)}."

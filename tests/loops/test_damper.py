@@ -154,3 +154,13 @@ def test_what_a_damper_turns_is_an_arm(tmp_path: Path) -> None:
         exec(compile(slider, "script.py", "exec"), {})
     with pytest.raises(TableError, match="lower has no point L"):
         script_of("t", TEXT.replace("lower = {L = [0, 0, 0], ", "lower = {"), tmp_path)
+
+
+def test_a_strut_in_space_that_is_driven_is_told_what_to_drive(tmp_path: Path) -> None:
+    text = (TESTS / "held_out_loops" / "macpherson_strut.toml").read_text("utf-8")
+    text = text.replace("axis = [1, 0, 0], driven = true", "axis = [1, 0, 0]")
+    text = text.replace("axis = [-0.05, -0.15, 1]", "axis = [-0.05, -0.15, 1], driven = true")
+    with pytest.raises(
+        TableError, match=r"s is the slide of a strut, .* Drive the hinge of the arm"
+    ):
+        script_of("t", text, tmp_path)

@@ -434,3 +434,28 @@ def test_a_file_without_joints_says_so(tmp_path: Path) -> None:
     text = 'hand = "P"\n[bodies]\nground = {A = [2, 0, 3]}\ncam = {P = [0, 0, 0]}\n[joints]\n'
     with pytest.raises(TableError, match="no joint is driven"):
         script_of("t", text, tmp_path)
+
+
+def test_halves_that_slide_on_each_other_are_told_of(tmp_path: Path) -> None:
+    """Both halves have the point of the hand, as in an I4."""
+    legs = "".join(
+        f'q{k} = {{between = ["ground", "car{k}"], at = "A{k}", kind = "prismatic", '
+        f"axis = [1, 0, 0], driven = true}}\n"
+        f'b{k} = {{between = ["car{k}", "rod{k}"], at = "B{k}"}}\n'
+        f'c{k} = {{between = ["rod{k}", "half{(k + 1) // 2}"], at = "C{k}"}}\n'
+        for k in range(1, 5)
+    )
+    bodies = "".join(
+        f"car{k} = {{B{k} = [0, {k}, 0]}}\nrod{k} = {{length = 3, parallelogram = [0, 0.1, 0]}}\n"
+        for k in range(1, 5)
+    )
+    ground = ", ".join(f"A{k} = [0, {k}, 0]" for k in range(1, 5))
+    i4 = (
+        f'hand = "P"\n[bodies]\nground = {{{ground}}}\n{bodies}'
+        "half1 = {P = [0, 0, 0], C1 = [0, 0.2, 0], C2 = [0, 0.1, 0]}\n"
+        "half2 = {P = [0, 0, 0], C3 = [0, -0.1, 0], C4 = [0, -0.2, 0]}\n"
+        f"[joints]\n{legs}"
+        's = {between = ["half1", "half2"], at = "P", kind = "prismatic", axis = [1, 0, 0]}\n'
+    )
+    with pytest.raises(TableError, match=r"no leg contains s; .* s lets half2 slide on half1, as"):
+        script_of("t", i4, tmp_path)

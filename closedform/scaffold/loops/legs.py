@@ -32,6 +32,7 @@ from closedform.scaffold.loops.refused import (
     beyond,
     carried,
     driven_mast,
+    halves_on,
     hinged_on,
     hinges_of_leg,
     moving_driver,
@@ -215,10 +216,14 @@ class Legs:
                     f"hand on the ground, a universal and a spherical one in space are supported"
                 )
         if left := [name for name in self.loop.joints if name not in self.used]:
+            slides = [self.loop.joints[name] for name in left]
+            halves = (
+                halves_on(self.loop, j, j.between[1]) for j in slides if GROUND not in j.between
+            )
             raise self.loop.error(
                 f"no leg contains {listed(left)}; a leg leads from the ground to {self.end} and "
                 f"has a driven joint, and only a rod may lead there without one"
-                + on_rocker(self.loop, left)
+                + (on_rocker(self.loop, left) or next(filter(None, halves), ""))
             )
         held = {body for joint in self.loop.joints.values() for body in joint.between}
         if loose := [name for name in self.loop.bodies if name not in {*held, GROUND}]:

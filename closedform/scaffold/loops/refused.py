@@ -231,15 +231,22 @@ def sliding_halves(loop: Loop, far: Joint) -> str:
     """What is said of a hand whose two halves slide on each other, as of an I4."""
     for half in far.between:
         for slide in loop.of(half):
-            other = slide.other(half)
-            if slide.kind == "prismatic" and not slide.driven and loop.hand in loop.bodies[other]:
-                return (
-                    f".  {slide.name} lets {half} slide on {other}, as the halves of an I4.  Two "
-                    f"halves are supported if pins join them to one bar, or to two, as of an H4 or "
-                    f"a Par 4.  Here each leg is solved alone: it is that of a hand that does not "
-                    f"turn, whose position is that of its half"
-                )
+            if text := halves_on(loop, slide, half):
+                return text
     return ""
+
+
+def halves_on(loop: Loop, slide: Joint, half: str) -> str:
+    """The same of a slide between a half and another one that has the point of the hand."""
+    other = slide.other(half)
+    if slide.kind != "prismatic" or slide.driven or loop.hand not in loop.bodies[other]:
+        return ""
+    return (
+        f".  {slide.name} lets {half} slide on {other}, as the halves of an I4.  Two "
+        f"halves are supported if pins join them to one bar, or to two, as of an H4 or "
+        f"a Par 4.  Here each leg is solved alone: it is that of a hand that does not "
+        f"turn, whose position is that of its half"
+    )
 
 
 def ball_on_driven(loop: Loop, onward: Sequence[Joint]) -> str:
@@ -356,6 +363,7 @@ __all__ = [
     "beyond",
     "carried",
     "driven_mast",
+    "halves_on",
     "hinge_loop",
     "hinged_on",
     "hinges_of_leg",

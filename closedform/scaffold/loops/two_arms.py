@@ -20,7 +20,11 @@ def two_arms(loop: Loop) -> list[LoopLeg] | None:
     """The driven arm, the other one and the rod; None if the hand is of another kind."""
     hands = [body for body, at in loop.bodies.items() if loop.hand in at and _held(loop, body)]
     hands += [body for body, at in loop.bodies.items() if loop.hand in at and _strut(loop, body)]
-    if loop.dimensions != len("xyz") or len(hands) != 1 or loop.hand in loop.joints:
+    if loop.dimensions != len("xyz") or loop.hand in loop.joints:
+        return None
+    if not hands:
+        _check_strut(loop)
+    if len(hands) != 1:
         return None
     (hand,) = hands
     strut, damper = _strut(loop, hand), _damper(loop)
@@ -53,15 +57,27 @@ def two_arms(loop: Loop) -> list[LoopLeg] | None:
     return legs
 
 
+def _check_strut(loop: Loop) -> None:
+    """Refuse a hand that a driven slide moves on its strut."""
+    for body in [body for body, at in loop.bodies.items() if loop.hand in at]:
+        if found := _strut(loop, body, driven=True):
+            slide, top = found
+            raise loop.error(
+                f"{slide.name} is the slide of a strut, as of a MacPherson suspension.  Drive the "
+                f"hinge of the arm instead: then fk gives the pose of {body}, and the strut is as "
+                f"long as {top.at} is away from it"
+            )
+
+
 def _held(loop: Loop, body: str) -> bool:
     """Whether three balls hold a body, and nothing else."""
     balls = [j for j in loop.of(body) if j.kind in BALLS and j.axis is None]
     return body != GROUND and len(balls) == len(loop.of(body)) == HELD
 
 
-def _strut(loop: Loop, body: str) -> tuple[Joint, Joint] | None:
+def _strut(loop: Loop, body: str, *, driven: bool = False) -> tuple[Joint, Joint] | None:
     """The slide and the ball of a strut that leads from the ground to a body with two balls."""
-    slides = [j for j in loop.of(body) if j.kind == "prismatic" and not j.driven]
+    slides = [j for j in loop.of(body) if j.kind == "prismatic" and j.driven == driven]
     balls = [j for j in loop.of(body) if j.kind in BALLS and j.axis is None]
     if body == GROUND or len(slides) != 1 or len(balls) != HELD - 1 or len(loop.of(body)) != HELD:
         return None

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy as sp
-from arms import OK, SINGULAR, differences, wrapped
+from arms import OK, SINGULAR, check_jacobians, differences, link, misses, wrapped
 from chains import printed
 
 from closedform.mechanics.arm import RowError, from_dh
@@ -167,10 +167,23 @@ ARMS: dict[str, tuple[str, str, Callable[[np.ndarray], np.ndarray], int]] = {
 """The format, the text, the place of the tool in plain numbers, and the number of branches."""
 
 
+WRIST = "0, -pi/2, 0.3, t5,", "0, pi/2, 0, t6,", "0, 0, e, t7,"
+ELBOWS: dict[str, tuple[Any, ...]] = {
+    "rolling": ("l1, 0, 0, t2,", "e, 0, 0, t3, m", "0, pi/2, 0, t4 + pi/2, m", 16),
+    "rolling_equal": ("0.3, 0, 0, t2,", "e, 0, 0, t3, m", "0, pi/2, 0, t4 + pi/2, m", 16),
+    "level_arm": ("l1, 0, 0, t2,", "l2, 0, 0, t3, m", "e, pi/2, 0, t4 + pi/2, -m", 8),
+}
+"""Of arms with six motors: an elbow of two axes that roll on each other, or a level upper arm."""
+FILES = {name: (kind, text, branches) for name, (kind, text, _, branches) in ARMS.items()} | {
+    name: ("dh", table("e, pi/2, h, t1,", *rows, *WRIST), branches)
+    for name, (*rows, branches) in ELBOWS.items()
+}
+
+
 @cache
 def made(name: str, folder: Path) -> Any:
     """The printed module of an arm whose proposed inverse is proved."""
-    kind, text, _, branches = ARMS[name]
+    kind, text, branches = FILES[name]
     path = folder / f"{name}.{kind}"
     path.write_text(text, "utf-8")
     script = new(name, kind, path)
@@ -224,6 +237,32 @@ def test_the_jacobian_is_that_of_the_motors(name: str, folder: Path) -> None:
     rates = np.stack(differences(place, q), -1)
     np.testing.assert_allclose(robot.jacobian(q), rates, atol=1e-8)
     np.testing.assert_allclose(robot.determinant(q), np.linalg.det(rates), atol=1e-7)
+
+
+@pytest.mark.parametrize("name", ELBOWS)
+def test_a_spherical_wrist_after_coupled_joints(name: str, folder: Path) -> None:
+    robot = made(name, folder)
+    a3, a4, sign = (0.25, 0.1, -1) if name == "level_arm" else (0.1, 0.0, 1)
+
+    def pose(q: np.ndarray) -> np.ndarray:
+        t = np.moveaxis(q, -1, 0)
+        T = link(0.1, np.pi / 2, 0.2, t[0]) @ link(0.3, 0, 0, t[1]) @ link(a3, 0, 0, t[2])
+        T = T @ link(a4, np.pi / 2, 0, sign * t[2] + np.pi / 2)
+        T = T @ link(0, -np.pi / 2, 0.3, t[3]) @ link(0, np.pi / 2, 0, t[4])
+        return T @ link(0, 0, 0.1, t[5])
+
+    rng = np.random.default_rng(1)
+    q = rng.uniform(-3, 3, (10_000, 6))
+    near = rng.choice([0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3], q.shape)
+    q[5000:] = (rng.integers(-6, 7, q.shape) * np.pi / 6 + near)[5000:]
+    T = pose(q)
+    np.testing.assert_allclose(robot.fk(q), T, atol=1e-14)
+    check_jacobians(robot, pose, q[:50])
+    answers, status = robot.ik(T)
+    found = np.isin(status, (OK, SINGULAR))
+    assert found.any(axis=1).all() and max(misses(pose(answers), T, status)) < 1e-12
+    gaps = np.abs(wrapped(answers - q[:, None]))[:5000].max(axis=-1)
+    assert np.nanmin(gaps, axis=1).max() < 1e-7
 
 
 def test_what_follows_is_not_an_input(folder: Path) -> None:

@@ -31,7 +31,7 @@ from closedform.scaffold.source import source
 NEEDED = (
     "Known are arms with axes along z that reach x and y by a joint of its own and, after it, "
     "joints that one motor turns about parallel axes: also with a slide along them, with a last "
-    "joint that turns the hand, or after a turret."
+    "joint that turns the hand, or after a turret, there also before a spherical wrist."
 )
 
 
@@ -56,24 +56,27 @@ class Fan:
 class CoupledMaker(KnownMaker):
     """Writes the lines for arms whose joints follow others."""
 
+    turned: tuple[tuple[sp.Expr, str], ...] = ()
+    """The two angles that were solved last, and their pairs."""
+
     def coupled(self) -> str:
         task, groups = self.arm.coordinates(), self.arm.groups
         names = task.names if task else ()
-        kinds = ["".join("P" if row.slides else "R" for row in g.rows) for g in groups]
         if len(groups) == 1 and names[:2] == ("x", "y"):
             return self._flat(groups[0], names)
-        if (
-            kinds[:1] == ["R"]
-            and len(kinds) == 2
-            and names == ("x", "y", "z")
-            and set(kinds[1]) == {"R"}
-        ):
-            return self._upright(groups)
+        if names == ("x", "y", "z") or (not names and len(self.arm.joints) == 6):
+            return self.whole()
+        raise self._other(groups)
+
+    def _other(self, groups: Sequence[Group]) -> NoChainError:
+        """Why an arm with such axes has no chain."""
+        kinds = ["".join("P" if row.slides else "R" for row in g.rows) for g in groups]
         followers = [q.name for q in self.arm.axes if q not in self.arm.joints]
-        raise NoChainError(
+        carry = " that carry its wrist" * (len(self.arm.groups) > len(groups))
+        return NoChainError(
             f"{listed(followers)} {'follows' if len(followers) == 1 else 'follow'} other joints, "
-            f"and the axes are {' | '.join(kinds)} (R turns, P slides, | where the direction "
-            f"changes)",
+            f"and the axes{carry} are {' | '.join(kinds)} (R turns, P slides, | where the "
+            f"direction changes)",
             NEEDED,
         )
 
@@ -102,23 +105,43 @@ class CoupledMaker(KnownMaker):
         self._remaining_yaw(joints[-1])
         return f"{TURNS} and a yaw" + ", with a slide" * ("z" in names)
 
-    def _upright(self, groups: Sequence[Group]) -> str:
-        """Solve a turret and coupled joints in its plane."""
+    def _position(self, groups: Sequence[Group]) -> tuple[str, list[str]]:
+        """Solve a turret and coupled joints in its plane, which carry the point ``p``."""
+        if len(groups) != 2 or [row.slides for g in groups for row in g.rows].count(True):
+            raise self._other(groups)
         base, second = groups
+        self.require(len(base.rows) == 1, "its first two axes are parallel", NEEDED)
         self.require_normal((base.end * Z)[2], 1, 2)
-        beside = sum((row.shift[2] for row in second.rows), (second.end * self.arm.last[:3, 3])[2])
         self.require(
-            sp.simplify(beside) == 0,
-            "its tool is beside the plane through axis 1 in which the coupled joints move",
+            sp.simplify(sum((row.shift[2] for row in second.rows), sp.S.Zero)) == 0,
+            "its tool or wrist is beside the plane through axis 1 in which the coupled joints move",
             "The known chains of a turret and coupled joints need it in this plane.",
         )
-        self.add("p = Matrix(ik.x)")
-        self._lead_away("p")
-        vectors = self.links(second, range(len(second.rows)))
-        self._tool(second, vectors)
-        self._turn_base(base, sp.S.Zero)
-        self._reach(self._fan([row.turn for row in second.rows], vectors), "q[0]", "q[1]")
-        return f"turret and {TURNS}"
+        turns = [row.turn for row in second.rows]
+        fan = self._fan(turns, self.links(second, range(len(turns))))
+        first = self._turn_base(base, sp.S.Zero)
+        self._reach(fan, "q[0]", "q[1]")
+        structure = f"turret and {TURNS}"
+        alone = self.arm.coordinates() is not None
+        return structure, [first, "" if alone else self._sum(sp.Add(*turns))]
+
+    def _sum(self, total: sp.Expr) -> str:
+        """The pair of a sum of turns, by the two angles that were solved."""
+        (one, a), (two, b) = self.turned
+        for factor, text in ((0, a), (1, f"({a} + {b})"), (-1, f"({a} - {b})")):
+            ahead = sp.expand(total - one - factor * two)
+            if ahead.free_symbols & {*self.arm.joints}:
+                continue
+            if ahead != 0:
+                text = f"({text} + Pair{source((sp.sin(ahead), sp.cos(ahead)))})"
+            if text == a:
+                return a
+            self.add(f"turn2 = {text}.known_as(ik.program, '_turn2')")
+            return "turn2"
+        raise NoChainError(
+            f"its wrist turns by {total}, and links by {one} and by {two} more or less",
+            "The axes of the wrist have to turn as the last link does.",
+        )
 
     def _fan(self, joints: Sequence[sp.Expr], vectors: Sequence[sp.Matrix]) -> Fan:
         """The links by the multiples of the motor; each turns with the other joint."""
@@ -146,7 +169,10 @@ class CoupledMaker(KnownMaker):
         steps, v = fan.steps, fan.vectors
         if len(steps) == 2 and fan.degree == 1:
             turn = fan.base + steps[0] * fan.motor
+            one, other = (heading(v[n]) for n in steps)
             self.two_links((turn, fan.motor), [v[n] for n in steps], x, y, alone=x == "x")
+            found = turn + one, fan.motor + other - one
+            self.turned = tuple(zip(found, self.pairs, strict=True))
             return
         self.require(
             fan.degree == 2,
@@ -163,6 +189,7 @@ class CoupledMaker(KnownMaker):
         if ahead.could_extract_minus_sign():
             ahead, aside, turn, opposite = -ahead, -aside, turn + sp.pi, opposite + sp.pi
         angles, lengths = (self.angle(turn), self.angle(opposite)), (norm(v[high]), norm(v[low]))
+        self.turned = (turn, f"{angles[0]}_"), (opposite, f"{angles[1]}_")
         if sp.simplify(lengths[0] - lengths[1]) != 0:
             self._against(angles, lengths, (ahead, aside), (x, y))
         elif aside == 0:
@@ -214,10 +241,10 @@ class CoupledMaker(KnownMaker):
             self.add(f"centre = {source(sp.Matrix(offset))}")
             self.add(f"along, aside = Matrix([{one} + {two}, 0]), Matrix([0, {one} - {two}])")
             self.by_quartic(b, (f"2*{one}*{two}", "0"), "radius", f"{b}_")
-            self.add(f"q = ik.vector('q', centre + Matrix([{along}, {aside}]))")
-            miss = "ik.let('at_end', sqrt(q[0]**2 + q[1]**2)) - radius"
+            self.add(f"on_ellipse = ik.vector('end', centre + Matrix([{along}, {aside}]))")
+            miss = "ik.let('at_end', sqrt(on_ellipse[0]**2 + on_ellipse[1]**2)) - radius"
             self.add(f"ik.program.match({miss}, ik.size/2, 'the point is one of the arm')")
-            end = "q[0]", "q[1]"
+            end = "on_ellipse[0]", "on_ellipse[1]"
         self.solve("rotate", f"{a}, ({', '.join(end)}), ({x}, {y}), because={{{b}: 1}}", f"{a}_")
 
 

@@ -383,7 +383,7 @@ def test_motors_that_make_no_sense_are_refused(rows: tuple, message: str, tmp_pa
 def test_mimic_joints_that_do_not_turn_by_whole_multiples_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "arm.urdf"
     path.write_text(urdf("2", "0.5"), "utf-8")
-    with pytest.raises(TableError, match=r"hand: it mimics shoulder.*by a whole multiple"):
+    with pytest.raises(TableError, match="shoulder; it turns by 1/2 times the angle, which is not"):
         read_urdf(path)
 
 

@@ -139,17 +139,20 @@ class Mimic:
             and (sense := self.sense(*table.axes[k][1:]))
         ]
         near.sort(key=lambda found: found[0] != mimicked)
-        whole = factor.is_Integer and kind == table.joints[mimicked]
-        if not near and whole and self._turns_beside(table):
+        alike = kind == table.joints[mimicked]
+        whole, beside = factor.is_Integer and alike, alike and self._turns_beside(table)
+        if not near and whole and beside:
             return self._follower(table)
         if not near or not (slides or (whole and near[0][0] != mimicked)):
             alone = bool(near) and near[0][0] == mimicked
-            why = self._refusal(alone=alone, near=bool(near), alike=kind == table.joints[mimicked])
+            why = self._refusal(alone=alone, near=bool(near) or beside, alike=alike)
             raise TableError(
                 f"{told}; {why}.  A mimic joint is read if it turns about the axis of a neighbour "
                 f"on the chain that has a motor of its own, and by a whole multiple of the angle "
-                f"of another, as in a parallelogram, or if it slides in the direction of a "
-                f"neighbour, as in a telescope.  If such joints keep the hand level, as in a "
+                f"of another, as in a parallelogram; if it slides in the direction of a "
+                f"neighbour, as in a telescope; or if it turns by a whole multiple of the angle of "
+                f"a joint with a parallel axis, after a third such joint, as in a robot for "
+                f"wafers.  If such joints keep the hand level, as in a "
                 f"palletiser, write the arm as a table, with the lengths from the wrist to the "
                 f"hand in the row of the turret, as docs/adding-a-mechanism.md says.  To give it a "
                 f"motor of its own, leave its mimic element out of the file"
@@ -189,8 +192,8 @@ class Mimic:
         return symbol, list(self.axis), list(self.place[:3, 3])
 
     def _refusal(self, *, near: bool, alone: bool, alike: bool) -> str:
-        """Why the joint is not one with another: is a neighbour ``near`` on its axis, the one that
-        it mimics ``alone``, and are the joint and the one that it mimics ``alike``?"""
+        """Why the joint is not one with another: is a neighbour ``near`` on its axis, or does it
+        turn beside the one it mimics, is that ``alone`` on its axis, and are both ``alike``?"""
         mimicked = shown_name(self.joint.mimics)
         if not alike:
             return (

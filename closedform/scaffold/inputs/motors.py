@@ -21,7 +21,8 @@ def motors_of(table: Table, where: str) -> tuple[list[str], sp.Matrix]:
     if not matrix.is_square or not _invertible(table, matrix):
         raise TableError(
             f"{where}: the column motors names {len(names)} motors for {len(driven)} joints, and "
-            f"they do not determine each other; a joint with an empty cell has a motor of its own"
+            f"they do not determine each other; a joint with an empty cell has a motor of its own, "
+            f"and one motor that turns a joint and slides another leaves no algebraic equation"
         )
     return names, matrix
 

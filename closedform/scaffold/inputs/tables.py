@@ -340,7 +340,10 @@ def own_name(name: str, table: Table, where: str) -> str:
 
 def add_joint(table: Table, joint: str, kind: str, where: str) -> None:
     if joint in table.joints:
-        raise TableError(f"{where}: two joints have the name {shown_name(joint)}")
+        raise TableError(
+            f"{where}: two joints have the name {shown_name(joint)}; if one motor moves both, give "
+            f"them different names, and write what moves each in a column motors"
+        )
     if len(table.joints) == JOINTS:
         raise TableError(f"{where}: there are more than {JOINTS} joints")
     table.joints[joint] = kind

@@ -196,15 +196,39 @@ class Slides:
             second = self._turned_by(three, three.shift, m, m.dot(point("q")))
             self._vector("q", f"q - turned({second}) * {source(three.shift)}", "q2")
             self._slide(two, along.dot(point("q")))
+        elif sp.simplify(a[2]) == 0 and not g[:2, 0].is_zero_matrix:
+            first, second = self._slide_from_turret(one, two, replace(three, end=G), c)
         else:
             raise NoChainError(
-                f"its slide is not normal to axis {three.number}, or axes {one.number} and "
-                f"{three.number} are parallel",
+                f"its slide is not normal to axis {one.number} or {three.number}, or they are "
+                f"parallel",
                 "A turret, a slide and a joint need a right angle there.",
                 degree=4,
             )
         turned = [(first, one.end), ("", two.end), (second, three.end)]
         return Solved("a turret, a slide and a joint", turned)
+
+    def _slide_from_turret(
+        self, one: Single, two: Single, three: Single, c: sp.Matrix
+    ) -> tuple[str, str]:
+        """A slide normal to the first axis: the height of the point gives the third joint.
+
+        What is normal to the slide gives the first.  The third joint is in the frame ``end`` of
+        the first one, at ``c`` where the slide is 0.
+        """
+        G, p, m = three.end, point("p"), Z.cross(simple(one.end * Z))
+        carried = f"{source(c)} + {times(G, f'(turned({{}}) * {source(three.shift)})')}"
+        across = f"{source(m)}.dot({carried.format('pair')})"
+        self.maker.add(
+            f"seen_across = CoordinateWithin(lambda pair: {across}, sqrt(p[0]**2 + p[1]**2))"
+        )
+        height = p[2] - c[2]
+        third = self._turned_by(three, three.shift, simple(G.T * Z), height, "seen_across")
+        self._vector("to_end", carried.format(third))
+        first = self._turn(one, m, "p", m.dot(point("to_end")))
+        self._vector("q", f"turned({first}).T * p - to_end")
+        self._slide(two, simple(one.end * Z).dot(point("q")))
+        return first, third
 
     def _prr(self, one: Single, two: Single, three: Single) -> Solved:
         a = simple(one.end.T * Z)

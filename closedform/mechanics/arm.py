@@ -15,9 +15,8 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.operations import operations
-from closedform.mechanics import linkwise, mounted
+from closedform.mechanics import coupled, linkwise, mounted
 from closedform.mechanics.by_axes import AXES, by_axes
-from closedform.mechanics.coupled import Coupling, coupled_groups, coupling_of, require_driven
 from closedform.mechanics.entries import RowError, check_unit, constant, dh_row, exact, rigid
 from closedform.mechanics.factored import factored_determinant
 from closedform.mechanics.frames import (
@@ -63,7 +62,7 @@ class Serial:
     last: sp.Matrix
     unmounted: Serial | None = None
     """The same without the first of the moves, if that is a tilted mount."""
-    coupling: Coupling | None = None
+    coupling: coupled.Coupling | None = None
     """How the joints move the axes, if some follow others."""
 
     @cached_property
@@ -88,8 +87,8 @@ class Serial:
 
     def _driven(self, twists: Named) -> Named:
         """The same in the names of a program."""
-        coupled = self.coupling
-        return Named(twists.program, twists.matrix * coupled.rates) if coupled else twists
+        by = self.coupling
+        return Named(twists.program, twists.matrix * by.rates) if by else twists
 
     @cached_property
     def space(self) -> sp.Matrix:
@@ -240,6 +239,7 @@ class Serial:
             "prismatic joint is its direction.  Differentiating the pose gives the same."
             + ("" if spelled else TURNED)
             + (AXES if long else "")
+            + (coupled.FOLLOWED if self.coupling else "")
             + (mounted.MOUNTED if apart else ""),
             jacobians
             | ({"J_s": self.space, "J_b": self.body} if spelled else {"J_s": SHIFT, "J_b": TURN}),
@@ -471,7 +471,7 @@ def _motion(d: Derivation, entries: Sequence[sp.Expr], where: str) -> Motion | N
     if len(held) > 1:
         raise RowError(f"{where} must contain at most one joint, not {', '.join(map(str, held))}")
     (joint,) = held
-    require_driven(d, joint, where)
+    coupled.require_driven(d, joint, where)
     column, name = (3, "theta") if joints[joint] == "revolute" else (2, "d")
     place = entries[column]
     if not place.has(joint):
@@ -526,7 +526,7 @@ def from_screws(
         joint = next((s for s in variable.free_symbols if s in kinds), variable)
         if joint not in kinds:
             raise RowError(f"{where}: {joint} is not a joint; declare it with d.joint")
-        require_driven(d, joint, where)
+        coupled.require_driven(d, joint, where)
         (offset,) = constant(d, [variable - joint], where)
         if offset != 0 and kinds[joint] != "revolute":
             raise RowError(f"{where}: {joint} slides; put {offset} into the points after it")
@@ -565,10 +565,10 @@ def from_screws(
 
 def _coupled(d: Derivation, arm: Serial) -> Serial:
     """The arm of axes that may follow others, in the joints that have motors."""
-    coupling = coupling_of(d, arm.joints)
+    coupling = coupled.coupling_of(d, arm.joints)
     if coupling is None:
         return arm
-    moves, groups = tuple(map(d.couple, arm.moves)), coupled_groups(d, arm.groups)
+    moves, groups = tuple(map(d.couple, arm.moves)), coupled.coupled_groups(d, arm.groups)
     joints = tuple(q for q in arm.joints if q in d.actuated)
     return replace(arm, joints=joints, moves=moves, groups=groups, coupling=coupling)
 

@@ -11,6 +11,11 @@ from closedform.mechanics.entries import RowError
 from closedform.mechanics.links import Group
 from closedform.model.derivation import Derivation, Joint
 
+FOLLOWED = (
+    "  Where others follow a joint, its column is the sum of their twists and its own, each times "
+    "how fast it moves."
+)
+
 
 @dataclass(frozen=True)
 class Coupling:
@@ -83,4 +88,4 @@ def coupled_groups(d: Derivation, groups: Sequence[Group]) -> tuple[Group, ...]:
     )
 
 
-__all__ = ["Coupling", "coupled_groups", "coupling_of", "require_driven"]
+__all__ = ["FOLLOWED", "Coupling", "coupled_groups", "coupling_of", "require_driven"]

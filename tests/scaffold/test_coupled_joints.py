@@ -399,3 +399,12 @@ def test_a_coupling_that_is_not_algebraic_is_refused() -> None:
         row = (1, 0, 0, t3) if kind == "revolute" else (0, 0, t3, 0)
         with pytest.raises(RowError, match=message):
             from_dh(d, [(1, 0, 0, t1), (0, 0, d2, 0), row])
+
+
+def test_the_article_says_that_twists_of_followers_are_added() -> None:
+    d = Derivation("arm", "Arm", Paper("toy", "Toys", ("A.",)), "An arm.")
+    t1, t2 = d.joint("t1"), d.joint("t2")
+    t3 = d.joint("t3", coupling=-2 * t2)
+    from_dh(d, [(1, 0, 0, t1), (2, 0, 0, t2), (1, 0, 0, t3)]).export(d)
+    (step,) = (step for step in d.steps if step.title == "Jacobians")
+    assert "Where others follow a joint" in step.reason

@@ -11,6 +11,8 @@ import pytest
 from loop_files import derived, script_of
 from places import TESTS
 
+from closedform.scaffold.inputs.tables import TableError
+
 BOOM = (TESTS / "held_out_loops" / "telescopic_boom.toml").read_text("utf-8")
 OK, UNREACHABLE, SINGULAR = range(3)
 STRUT = """
@@ -118,6 +120,13 @@ def test_a_coupler_may_be_a_cylinder(tmp_path: Path) -> None:
     away = 0.6 - 0.2 * np.exp(1j * q[:, 0])
     exists = (np.abs(away) < 0.4 + q[:, 1]) & (np.abs(away) > abs(0.4 - q[:, 1]))
     assert ((status == OK).all(axis=1) == exists).all()
+
+
+def test_a_body_that_is_held_twice_at_one_place_is_refused(tmp_path: Path) -> None:
+    text = (TESTS / "held_out_loops" / "scissor_lift.toml").read_text("utf-8")
+    text = text.replace('bar1 = {O = [0, 0], M = ["l/2", 0]', "bar1 = {O = [0, 0], M = [0, 0]")
+    with pytest.raises(TableError, match="O and M are at the same point of bar1"):
+        script_of("t", text, tmp_path)
 
 
 @pytest.mark.parametrize("zero", [0, 1.5])

@@ -9,7 +9,9 @@ import sympy as sp
 from closedform.mechanics.assur import degrees
 from closedform.mechanics.assur_slides import (
     Fold,
+    Group,
     Meet,
+    OnCircle,
     SlidingOrder,
     Swing,
     sliding_freedoms,
@@ -104,6 +106,9 @@ def sliding(loop: Loop, *, few: bool = False) -> LinkageLines | None:
     _separate(found)
     order = _ordered(found)
     plain = not found.slides
+    folded = any(isinstance(group, Fold) for group in order.groups)
+    if plain and not (folded or found.cylinders):
+        return None  # what the kinds of pinned bodies say of it is nearer
     follower = loop.joints.get(loop.hand)
     hand = "" if follower else _hand(found)
     turning = {b: j for b, j in found.with_joint.items() if j.kind == "revolute"}
@@ -326,6 +331,8 @@ def _ordered(found: Found) -> SlidingOrder:
             f"the driven joints and the bodies before it hold {step.body} already, so they could "
             f"not move"
         )
+    for group in order.groups:
+        _check_lengths(found, group)
     if order.left:
         without = {name: at for name, at in found.points.items() if name not in found.cylinders}
         others = [
@@ -341,6 +348,21 @@ def _ordered(found: Found) -> SlidingOrder:
             instead += reverse(loop, others, driven)
         raise loop.error(f"this is a planar linkage with slides, but {order.undone}{instead}")
     return order
+
+
+def _check_lengths(found: Found, group: Group) -> None:
+    """Refuse a body that holds a pin where it is held itself."""
+    if not isinstance(group, Meet):
+        return
+    for hold in group.holds:
+        if not isinstance(hold, OnCircle) or hold.body in found.cylinders:
+            continue
+        own = found.points[hold.body]
+        ends = [own[p] for p in (hold.near, group.pin) if p in own]
+        if len(ends) > 1 and not any(map(sp.simplify, ends[1] - ends[0])):
+            raise found.loop.error(
+                f"{hold.near} and {group.pin} are at the same point of {hold.body}"
+            )
 
 
 def _own(found: Found, slide: Slide) -> bool:

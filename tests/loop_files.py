@@ -2,6 +2,7 @@
 
 import importlib
 import re
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import ModuleType
@@ -40,6 +41,8 @@ def derived(name: str, script: str, folder: Path, *, crosscheck: bool = False) -
     path.write_text(script, "utf-8")
     derive = ["derive", str(path), "-o", str(out), "--backend", "numpy"]
     assert main([*derive, *["--no-crosscheck"] * (not crosscheck)]) == 0
+    for known in [m for m in sys.modules if m.split(".")[0] == out.name]:
+        del sys.modules[known]  # another test may have derived a mechanism of this name
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(folder)
         return importlib.import_module(f"{name}_out.numpy.{name}")

@@ -169,7 +169,7 @@ def _forward(m: Linkage, choice: Choice, loop: Step) -> Posture:
             (sp.S.Zero,) * len(equations),
             tuple(equations),
             links=tuple(links),
-            passive=(*passive, *[turn.length] * bool(turn)) if turn else tuple(passive),
+            passive=(*passive, *([turn.length] if turn else ())),
         ),
     )
     return _again(m, found)

@@ -21,7 +21,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.legs import Crank, rotated, vector
+from closedform.lemmas.legs import Crank, rotated, turned_left, vector
 from closedform.loops.hand import square
 from closedform.mechanics.assur import Dyad, Order, degrees, freedoms, needed_for, order
 from closedform.mechanics.lengths import lengths_in_numbers
@@ -224,6 +224,12 @@ class Linkage:
             return self.cylinders[body]
         return sp.sqrt(self.squared(body, start, end))
 
+    def axes(self, body: str, start: str, end: str) -> tuple[sp.Matrix, sp.Matrix]:
+        """The direction from a point of a body to another one, and that to its left."""
+        along = self.span(body, start, end) / self.length(body, start, end)
+        along = along.applyfunc(sp.simplify)
+        return along, turned_left(along)
+
     def turn(self, body: str, start: str, seen: str, end: str) -> sp.Matrix:
         """The turn and stretch that takes a point of a body to another, as seen from a third."""
         if seen == end:
@@ -275,9 +281,7 @@ class Linkage:
     def crank(self, body: str, end: str, rod: Any = 0) -> Crank:
         """A body with a joint as a crank from its pivot to one of its points."""
         joint, pivot = self.bodies[body].joint, self.pivot(body)
-        arm, length = self.span(body, pivot, end), self.length(body, pivot, end)
-        along = (arm / length).applyfunc(sp.simplify)
-        across = (-along[1], along[0])
+        length, (along, across) = self.length(body, pivot, end), self.axes(body, pivot, end)
         assert joint is not None
         return Crank(
             joint,
@@ -285,14 +289,14 @@ class Linkage:
             rod,
             pivot=tuple(self.ground(pivot)),
             along=tuple(along),
-            across=across,
+            across=tuple(across),
         )
 
     def on_turning(self, body: str, point: str) -> sp.Matrix:
         """Where a point of a body is whose joint or pose is known."""
         if body == self.carrier:
-            x, y, yaw = self.hand
-            return sp.Matrix([x, y]) + rotated(self.span(body, self.at, point), Pair.of(yaw))
+            span = self.span(body, self.at, point)
+            return self.hand[:2, :] + rotated(span, Pair.of(self.hand[2]))
         if point == self.pivot(body):
             return self.ground(point)
         return self.crank(body, point).end()

@@ -32,12 +32,9 @@ class Pose:
 
 def pose_of(m: Linkage, f: Program, points: dict[str, sp.Matrix], size: sp.Expr) -> Pose:
     """The pose from the ``points``, of which that of the hand gets names of its own."""
-    step, (x, y, yaw) = m.solved[-1], m.hand
+    step, place, yaw = m.solved[-1], m.hand[:2, :], m.hand[2]
     near, pin = step.near[0], step.pin
-    home = m.span(m.carrier, near, pin)
-    length = m.length(m.carrier, near, pin)
-    along = (home / length).applyfunc(sp.simplify)
-    across = turned_left(along)
+    along, across = m.axes(m.carrier, near, pin)
     span = points[pin] - points[near]
     found = turned(
         f,
@@ -49,12 +46,12 @@ def pose_of(m: Linkage, f: Program, points: dict[str, sp.Matrix], size: sp.Expr)
         name="w",
     )
     points[m.at] = named(f, "p", points[m.at])
-    links = (found.link, *(coordinate(e, p) for e, p in zip((x, y), points[m.at], strict=True)))
+    links = (found.link, *(coordinate(e, p) for e, p in zip(place, points[m.at], strict=True)))
     meant = m.posture[pin] - m.posture[near]
     equations = (
         found.length * sp.cos(yaw) - meant.dot(along),
         found.length * sp.sin(yaw) - meant.dot(across),
-        *(sp.Matrix([x, y]) - m.posture[m.at]),
+        *(place - m.posture[m.at]),
     )
     return Pose(found.angle, links, equations, found.length)
 

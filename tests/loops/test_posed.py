@@ -3,7 +3,6 @@
 The other route is the drawing: lengths of cylinders and rods between points of rigid bodies.
 """
 
-from functools import cache
 from pathlib import Path
 from types import ModuleType
 
@@ -28,19 +27,19 @@ def text(name: str) -> str:
     return (FOLDER / f"{name}.toml").read_text("utf-8")
 
 
-@cache
-def loop(name: str, folder: Path) -> ModuleType:
+def posed(name: str, factory: pytest.TempPathFactory) -> ModuleType:
+    folder = factory.mktemp(name)
     return derived(f"{name}_posed", script_of(f"{name}_posed", text(name), folder), folder)
 
 
 @pytest.fixture(scope="module")
 def excavator(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
-    return loop("excavator", tmp_path_factory.mktemp("excavator"))
+    return posed("excavator", tmp_path_factory)
 
 
 @pytest.fixture(scope="module")
 def tool(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
-    return loop("turned_tool", tmp_path_factory.mktemp("tool"))
+    return posed("turned_tool", tmp_path_factory)
 
 
 def drawn(v, boom: np.ndarray, stick: np.ndarray, lever: np.ndarray) -> tuple:

@@ -50,10 +50,10 @@ def posed_linkage(loop: Loop) -> LinkageLines | None:
         lines = linkage(loop, posed=True)
     except TableError:
         return None  # what the other kinds say of it is nearer
-    if lines is None:
-        return None
-    points = _points(joined(with_pivots(loop))[0])
-    if len(on := [name for name, at in points.items() if lines.hand in at]) > 1:
+    on = list(
+        dict.fromkeys(b for j in loop.joints.values() if j.at == loop.hand for b in j.between)
+    )
+    if lines and on:
         raise loop.error(
             f"three joints move the hand {loop.hand} and turn it, and it is a pin of {listed(on)}; "
             f"give one of them a point of another name there, which is the hand"
@@ -86,9 +86,9 @@ def linkage(loop: Loop, *, posed: bool = False) -> LinkageLines | None:
         return None
     if inputs > 1 and any(_without(loop, name) for name in loop.bodies):
         return None  # a leg may leave out where its body is joined, and its messages say more
-    if posed and (follower or _on_legs(loop, driven)):
-        return None
     points = _points(loop)
+    if posed and (follower or _on_legs(points, driven)):
+        return None
     _check_pins(loop, points)
     check_apart(loop, points, cylinders)
     turned = {j.other(GROUND): j for j in driven}
@@ -106,10 +106,9 @@ def linkage(loop: Loop, *, posed: bool = False) -> LinkageLines | None:
     return LinkageLines(bodies, "" if follower else safe(loop.hand), words, posed=posed)
 
 
-def _on_legs(loop: Loop, driven: Sequence[Joint]) -> bool:
+def _on_legs(points: Mapping[str, Iterable[str]], driven: Sequence[Joint]) -> bool:
     """Whether the hand is on legs that are no dyads, as that of a 3-RPR or 3-RRR mechanism."""
-    known = [GROUND, *(j.other(GROUND) for j in driven)]
-    return bool(order(_points(loop), known).left)
+    return bool(order(points, [GROUND, *(j.other(GROUND) for j in driven)]).left)
 
 
 def _check_slides(loop: Loop, inputs: int, more: bool) -> None:
